@@ -1,0 +1,91 @@
+/** @file aperture.h  The shape of the opening that the rays pass through.
+ *
+ * A mask is drawn as the photographer sees it from behind the camera, x to the
+ * right and y down: a light behind the plane in focus shows the mask as drawn, a
+ * light in front of it shows the mask turned by 180 degrees. So the ray that
+ * passes the mask at (x, y), in units of K, is (u, v) = (-x, -y) of
+ * Yang et al. 2016, eq. 4.
+ */
+#ifndef REFOCUS_APERTURE_H
+#define REFOCUS_APERTURE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Largest side of an aperture mask in pixels, and most rays of a set. */
+enum { REFOCUS_MAX_APERTURE_SIDE = 255, REFOCUS_MAX_RAYS = 1024 };
+
+/** An aperture. Opaque, never changes after its creation, may be shared by threads. */
+struct refocus_aperture;
+
+/**
+ * A round aperture of radius K.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY; on an error
+ *         *aperture is NULL. Ended by refocus_aperture_destroy().
+ */
+REFOCUS_API int refocus_aperture_create_disc(struct refocus_aperture **aperture);
+
+/**
+ * A regular polygon with @p blades corners on the circle of radius K.
+ *
+ * @param blades       3 to 16
+ * @param rotation_deg angle of one corner, counter-clockwise from the right as the
+ *                     mask is seen; any finite number
+ */
+REFOCUS_API int refocus_aperture_create_polygon(struct refocus_aperture **aperture,
+                                                int blades, double rotation_deg);
+
+/**
+ * Any shape: a greyscale picture, 255 = open, 0 = closed. The larger side of the
+ * picture spans 2K, its centre is the centre of the lens.
+ *
+ * @param width, height  1 to REFOCUS_MAX_APERTURE_SIDE
+ * @param stride         bytes from a row to the next; may be negative
+ * @return also REFOCUS_ERR_ARGUMENT when no pixel is open
+ */
+REFOCUS_API int refocus_aperture_create_mask(struct refocus_aperture **aperture,
+                                             const uint8_t *mask, int width, int height,
+                                             ptrdiff_t stride);
+
+/** Free an aperture and set the handle to NULL. A NULL handle is fine. */
+REFOCUS_API void refocus_aperture_destroy(struct refocus_aperture **aperture);
+
+/** A ray: where it passes the aperture, in units of K, and its share. */
+struct refocus_ray {
+    int16_t u, v;    /**< Q15: (u, v) of eq. 4, length at most 1 (for masks, sqrt 2) */
+    uint16_t weight; /**< share of the ray, 1 to 255; sets of N rays are all 255 */
+};
+
+/**
+ * A well-distributed set of @p count rays of equal share, the same on every machine.
+ *
+ * @param count  1 to REFOCUS_MAX_RAYS
+ * @param rays   receives @p count rays
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT. Thread-safe.
+ */
+REFOCUS_API int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
+                                      struct refocus_ray *rays);
+
+/**
+ * Every pixel of the aperture mask at blur radius K: pixel (x, y) is the ray
+ * (-x / K, -y / K), weighted by how much of the pixel is open. K = 20 gives the 41x41
+ * mask of Yang et al. 2016.
+ *
+ * @param max_blur_radius  K in pixels, > 0, at most 127
+ * @param capacity  number of rays that @p rays can hold; 0 only counts
+ * @param rays      receives at most @p capacity rays, those of weight 255 first
+ * @return the number of rays in the set, at most 255 * 255, or a negative status
+ */
+REFOCUS_API int refocus_aperture_full_rays(const struct refocus_aperture *aperture,
+                                           double max_blur_radius, int capacity,
+                                           struct refocus_ray *rays);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,94 @@
+/** @file depth.h  From the numbers in a depth map to disparities. */
+#ifndef REFOCUS_DEPTH_H
+#define REFOCUS_DEPTH_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Type of the samples of a depth map, in the machine's byte order. */
+enum refocus_sample {
+    REFOCUS_SAMPLE_U8 = 1,
+    REFOCUS_SAMPLE_U16 = 2,
+    REFOCUS_SAMPLE_F32 = 3,
+};
+
+/** What the samples are proportional to. */
+enum refocus_depth_meaning {
+    REFOCUS_DEPTH_DISPARITY = 1, /**< linear in 1/z: value_far is d = 0, value_near is d = 1 */
+    REFOCUS_DEPTH_DISTANCE = 2,  /**< linear in z: z = metres_at_zero + v * metres_per_unit */
+};
+
+enum refocus_depth_flags {
+    REFOCUS_DEPTH_ZERO_IS_UNKNOWN = 1, /**< a sample of 0 holds no value */
+};
+
+/**
+ * A depth map as a sensor or a file gives it. The caller owns the samples.
+ * NaN and infinite samples never hold a value; nor does a distance <= 0.
+ */
+struct refocus_depth_map {
+    const void *samples; /**< top row; NULL when there is no map */
+    int32_t width;       /**< samples, 1 to REFOCUS_MAX_SIDE */
+    int32_t height;      /**< samples, 1 to REFOCUS_MAX_SIDE */
+    ptrdiff_t stride;    /**< bytes from a row to the next one below; may be negative */
+    uint32_t sample;     /**< enum refocus_sample */
+    uint32_t meaning;    /**< enum refocus_depth_meaning */
+    uint32_t flags;      /**< enum refocus_depth_flags, or-ed */
+    uint32_t reserved;   /**< 0 */
+
+    /** For disparity: the samples that mean d = 1 and d = 0. Near below far is a map
+     *  whose dark is near. Both equal: measure the least and the greatest sample,
+     *  greatest = nearest. */
+    double value_near, value_far;
+
+    /** For distance. */
+    double metres_per_unit, metres_at_zero;
+
+    /** z0 and z1 in metres; 0 = not known. For distance, unknown ones are measured:
+     *  the nearest and the farthest sample that holds a value. */
+    double near_m, far_m;
+};
+
+/** What refocus_depth_to_disparity() found. */
+struct refocus_depth_report {
+    double near_m;     /**< z0 of the result; 0 when not known */
+    double far_m;      /**< z1 of the result; 0 when not known; may be INFINITY */
+    double value_near; /**< for disparity: the sample that became d = 1 */
+    double value_far;  /**< for disparity: the sample that became d = 0 */
+    uint64_t unknown;  /**< samples that held no value and were filled */
+    uint64_t clamped;  /**< samples beyond z0 or z1 (or the values of d = 1 and 0) */
+};
+
+/**
+ * Turn a depth map into 16-bit disparities, 65535 nearest, rounded to nearest:
+ *
+ *     d = (1/z - 1/z1) / (1/z0 - 1/z1)           for distances
+ *     d = (v - value_far) / (value_near - value_far)   for disparities
+ *
+ * Samples without a value are filled from the nearest samples that have one, from
+ * the farther side where two surfaces meet. A map of one single depth becomes
+ * all 0.
+ *
+ * @param map        see struct refocus_depth_map
+ * @param disparity  receives width x height values; may not overlap the samples
+ * @param stride     bytes from a row of @p disparity to the next; even
+ * @param report     filled on success; may be NULL
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (no sample holds a
+ *         value), REFOCUS_ERR_MEMORY (one byte a sample is needed when there are
+ *         unknown samples). On an error @p disparity holds nothing of use.
+ *
+ * Thread-safe.
+ */
+REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map,
+                                           uint16_t *disparity, ptrdiff_t stride,
+                                           struct refocus_depth_report *report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

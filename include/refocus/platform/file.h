@@ -1,0 +1,170 @@
+/** @file platform/file.h  Photos with their depth from files, and pictures into files.
+ *
+ * Part of librefocus-file, not of the core: `#include <refocus/platform/file.h>`,
+ * pkg-config name `refocus-file`. Formats that were left out of a build are refused with
+ * REFOCUS_ERR_UNSUPPORTED; see refocus_file_formats().
+ */
+#ifndef REFOCUS_PLATFORM_FILE_H
+#define REFOCUS_PLATFORM_FILE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <refocus/depth.h>
+#include <refocus/image.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Why something failed, in words that say what to do: one line, no full stop. */
+struct refocus_reason {
+    char text[256];
+};
+
+/** Bytes owned by the struct that holds them; data is NULL when there are none. */
+struct refocus_blob {
+    uint8_t *data;
+    size_t size;
+};
+
+/** Bounds that a reader keeps whatever a file claims. Zeros stand for the defaults. */
+struct refocus_read_limits {
+    uint64_t max_pixels; /**< of one picture; default 268,435,456 (2^28) */
+    uint64_t max_bytes;  /**< of a file, and of what any part unpacks to; default 1 GiB */
+};
+
+/** Container in which depth was found. */
+enum refocus_depth_source {
+    REFOCUS_DEPTH_SOURCE_NONE = 0,
+    REFOCUS_DEPTH_SOURCE_GDEPTH = 1,    /**< Google GDepth in XMP */
+    REFOCUS_DEPTH_SOURCE_APPLE_MPF = 2, /**< Apple portrait JPEG: a disparity image by MPF */
+    REFOCUS_DEPTH_SOURCE_HEIF = 3,      /**< HEIC: auxiliary depth image */
+    REFOCUS_DEPTH_SOURCE_FILE = 4,      /**< a depth file of its own */
+};
+
+/** Room for the lines of struct refocus_photo_info. */
+enum { REFOCUS_INFO_LINES = 24, REFOCUS_INFO_LENGTH = 160 };
+
+/** What a file says of itself. Numbers that it does not say are 0. */
+struct refocus_photo_info {
+    char container[16];     /**< "JPEG", "PNG", "HEIC", "PPM", "PGM", "PFM" */
+    int32_t stored_width;   /**< before orientation */
+    int32_t stored_height;
+    int32_t orientation;    /**< EXIF 1 to 8, already applied to photo and depth */
+    uint32_t depth_source;  /**< enum refocus_depth_source */
+    int32_t original_used;  /**< 1: the main picture was blurred; the photo is the file's
+                                 own all-in-focus original (GImage) */
+    double focal_length_mm; /**< EXIF */
+    double focal_length_35mm; /**< EXIF, equivalent on 36 x 24 mm */
+    double f_number;        /**< EXIF, of the lens that took the photo */
+    double focus_x, focus_y;      /**< GFocus FocalPoint, 0..1 of the upright picture; -1: none */
+    double focus_distance;        /**< GFocus FocalDistance, unit of the depth range */
+    double blur_at_infinity;      /**< GFocus BlurAtInfinity, of the larger picture side */
+    char camera[96];              /**< EXIF make and model */
+    /** What was found and why it is believed, a line each: containers, parts passed over
+     *  (gain map, portrait matte, thumbnails), units, polarity. */
+    char evidence[REFOCUS_INFO_LINES][REFOCUS_INFO_LENGTH];
+    int32_t evidence_count;
+};
+
+/** A photo read from a file, upright, with the depth it carries. */
+struct refocus_photo {
+    struct refocus_image image;     /**< RGB8; plane[0] NULL in a pure depth file */
+    struct refocus_depth_map depth; /**< samples NULL when the file carries none */
+    struct refocus_photo_info info;
+    struct refocus_blob exif; /**< TIFF block without "Exif\0\0", orientation made 1 */
+    struct refocus_blob icc;  /**< ICC profile */
+};
+
+/**
+ * Read a photo: JPEG, PNG, HEIC, PPM or PGM, told by its content, not its name.
+ *
+ * EXIF orientation is applied to photo and depth alike. Depth comes from GDepth (standard or
+ * extended XMP), Apple's MPF disparity, or a HEIC auxiliary depth image.
+ *
+ * @param photo   receives a new object, or NULL on an error; ended by refocus_photo_free()
+ * @param limits  NULL for the defaults
+ * @param reason  receives words on an error; may be NULL
+ * @return REFOCUS_OK, REFOCUS_ERR_IO, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE,
+ *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. Depth that is damaged is an error,
+ *         not a photo without depth. Thread-safe.
+ */
+REFOCUS_API int refocus_photo_read(struct refocus_photo **photo, const char *path,
+                                   const struct refocus_read_limits *limits,
+                                   struct refocus_reason *reason);
+
+/** The same from memory; the bytes are not used after the return. */
+REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
+                                          size_t size,
+                                          const struct refocus_read_limits *limits,
+                                          struct refocus_reason *reason);
+
+/** Free a photo and set the handle to NULL. A NULL handle is fine. */
+REFOCUS_API void refocus_photo_free(struct refocus_photo **photo);
+
+/**
+ * Read a depth file of its own: greyscale (or grey-valued) PNG, PGM or JPEG of 8 or 16 bits, PFM
+ * (both byte orders), or any photo with depth in it. The result has no image, only depth.
+ *
+ * @param unit  how to read the samples, the words of the command line: "disparity" (bright =
+ *              near), "inverse" (dark = near), "mm", "m", or a number per metre such as
+ *              "5000/m". NULL: what the file says, else "disparity". In distances 0 means
+ *              unknown.
+ * @param near_m, far_m  z0 and z1 in metres; 0 = what the file says, else measured
+ * @return as refocus_photo_read(), and REFOCUS_ERR_ARGUMENT for a unit it does not know,
+ *         REFOCUS_ERR_NO_DEPTH for a colour picture
+ */
+REFOCUS_API int refocus_depth_read(struct refocus_photo **depth, const char *path,
+                                   const char *unit, double near_m, double far_m,
+                                   const struct refocus_read_limits *limits,
+                                   struct refocus_reason *reason);
+
+/** The same from memory. */
+REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
+                                          size_t size, const char *unit, double near_m,
+                                          double far_m,
+                                          const struct refocus_read_limits *limits,
+                                          struct refocus_reason *reason);
+
+/** Words of the command line for how samples are read; see refocus_depth_read().
+ *  Changes @p map's meaning, values and flags. @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT */
+REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit);
+
+/** What goes into a file beside the pixels. Zeros: nothing. */
+struct refocus_write_options {
+    int32_t quality;                /**< JPEG, 1 to 100; 0 = 95 */
+    const struct refocus_blob *exif; /**< TIFF block; NULL = none */
+    const struct refocus_blob *icc;  /**< NULL = none */
+};
+
+/**
+ * Write an 8-bit picture; the end of the name says how: .jpg .jpeg .png .ppm.
+ *
+ * The file is written beside its place under a temporary name and moved there when whole: on an
+ * error what was there before is untouched and nothing partial is left.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (an ending it does not
+ *         know), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Thread-safe.
+ */
+REFOCUS_API int refocus_image_write(const char *path, const struct refocus_image *image,
+                                    const struct refocus_write_options *options,
+                                    struct refocus_reason *reason);
+
+/**
+ * Write 16-bit samples as greyscale: .png (16 bits) or .pgm (16 bits), or .pfm with the value
+ * sample / 65535 as 32-bit float. As refocus_image_write() otherwise.
+ *
+ * @param stride  bytes from a row to the next; even
+ */
+REFOCUS_API int refocus_gray16_write(const char *path, const uint16_t *samples, int width,
+                                     int height, ptrdiff_t stride,
+                                     struct refocus_reason *reason);
+
+/** Formats of this build, e.g. "JPEG PNG HEIC PPM PGM PFM". Thread-safe. */
+REFOCUS_API const char *refocus_file_formats(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,13 @@
+/** @file refocus.h  The whole core API of librefocus. */
+#ifndef REFOCUS_REFOCUS_H
+#define REFOCUS_REFOCUS_H
+
+#include <refocus/aperture.h>
+#include <refocus/depth.h>
+#include <refocus/image.h>
+#include <refocus/lens.h>
+#include <refocus/render.h>
+#include <refocus/status.h>
+#include <refocus/version.h>
+
+#endif

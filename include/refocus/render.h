@@ -1,0 +1,236 @@
+/** @file render.h  Refocusing: create once, prepare a photo, render as often as wanted.
+ *
+ *     refocus_renderer_create    once: threads are started, all memory is taken
+ *     refocus_prepare            once a photo or frame
+ *     refocus_render             once a lens setting
+ *
+ * A renderer is reentrant: one thread at a time may call into one renderer,
+ * except refocus_cancel(), which any thread may call. The result does not depend
+ * on the number of threads, on the processor or on earlier calls.
+ */
+#ifndef REFOCUS_RENDER_H
+#define REFOCUS_RENDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <refocus/aperture.h>
+#include <refocus/image.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Largest blur radius K in pixels. */
+enum { REFOCUS_MAX_BLUR_RADIUS = 127 };
+
+/** A renderer. Opaque. */
+struct refocus_renderer;
+
+/** Where a renderer takes its memory. Both functions or none. */
+struct refocus_allocator {
+    /** @return @p size bytes aligned for any type, or NULL */
+    void *(*allocate)(void *user, size_t size);
+    void (*release)(void *user, void *memory);
+    void *user;
+};
+
+/** Receives one line of text without a line end, from the thread that called in. */
+struct refocus_log {
+    void (*message)(void *user, const char *text);
+    void *user;
+};
+
+/** Instruction sets. AUTO is the best that the processor has. */
+enum refocus_cpu {
+    REFOCUS_CPU_AUTO = 0,
+    REFOCUS_CPU_C = 1,
+    REFOCUS_CPU_NEON = 2,
+    REFOCUS_CPU_SSE41 = 3,
+    REFOCUS_CPU_AVX2 = 4,
+};
+
+/** What a renderer can do at most. Start from refocus_renderer_params_default(). */
+struct refocus_renderer_params {
+    uint32_t struct_size;    /**< sizeof(struct refocus_renderer_params) */
+    int32_t max_width;       /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
+    int32_t max_height;      /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
+    float max_blur_radius;   /**< largest K, 0 to REFOCUS_MAX_BLUR_RADIUS */
+    int32_t threads;         /**< 1 to 64; 0 = one for each processor */
+    uint32_t cpu;            /**< enum refocus_cpu */
+    uint64_t max_memory;     /**< bytes; creation fails above; 0 = no limit */
+    struct refocus_allocator allocator; /**< all NULL: malloc and free */
+    struct refocus_log log;             /**< message NULL: silent */
+};
+
+static inline struct refocus_renderer_params
+refocus_renderer_params_default(int32_t max_width, int32_t max_height,
+                                float max_blur_radius)
+{
+    struct refocus_renderer_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.max_width = max_width;
+    params.max_height = max_height;
+    params.max_blur_radius = max_blur_radius;
+    return params;
+}
+
+/**
+ * Bytes that a renderer with these parameters takes, all of them at its creation
+ * (stacks of its threads not counted):
+ *
+ *     26 (W + 2P) (H + 2P) + 12 W H / 10 + 2^20 (2 + threads),  P = ceil(K) + 2
+ *
+ * is never exceeded. @return 0 if a parameter is out of its range. Thread-safe.
+ */
+REFOCUS_API uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params);
+
+/**
+ * Take the memory and start the threads.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY, REFOCUS_ERR_SIZE
+ *         (above max_memory or the address space), REFOCUS_ERR_UNSUPPORTED (the
+ *         processor lacks the instruction set), REFOCUS_ERR_THREAD. On an error
+ *         *renderer is NULL and nothing stays behind.
+ */
+REFOCUS_API int refocus_renderer_create(struct refocus_renderer **renderer,
+                                        const struct refocus_renderer_params *params);
+
+/** Stop the threads, free all, set the handle to NULL. A NULL handle is fine. */
+REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
+
+/**
+ * Take a photo and its disparities in. Both are copied in the form the renderer needs; the
+ * caller's memory is not used after the return.
+ *
+ * @param photo      all in focus; at most max_width x max_height
+ * @param disparity  of any size; covers the same view as the photo. Another size than
+ *                   the photo's is brought to it by following the photo's edges.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED.
+ *         After an error nothing is prepared.
+ */
+REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
+                                const struct refocus_image *photo,
+                                const struct refocus_disparity *disparity);
+
+/** The methods; refocus_method_name() has their names on the command line. */
+enum refocus_method {
+    REFOCUS_METHOD_SWEEP = 0,    /**< two layers, front-most hit, by a sweep over disparities */
+    REFOCUS_METHOD_SEARCH = 1,   /**< Yang et al. 2016: randomized intersection search */
+    REFOCUS_METHOD_RAYTRACE = 2, /**< Yang et al. 2016: every pixel along every ray; slow */
+};
+enum { REFOCUS_METHOD_COUNT = 3 };
+
+/** Name of a method, NULL for an unknown one. Thread-safe. */
+REFOCUS_API const char *refocus_method_name(uint32_t method);
+
+/** One line on what a method does, NULL for an unknown one. Thread-safe. */
+REFOCUS_API const char *refocus_method_summary(uint32_t method);
+
+/** The values that are averaged. */
+enum refocus_blend {
+    REFOCUS_BLEND_LINEAR = 0, /**< linear light by the sRGB curve */
+    REFOCUS_BLEND_STORED = 1, /**< the 8-bit values as they are, as in the paper */
+    REFOCUS_BLEND_GAMMA = 2,  /**< gamma 2.2 */
+};
+
+/** For rays: every pixel of the aperture mask. */
+enum { REFOCUS_RAYS_FULL = -1 };
+
+/** How to refocus. Start from refocus_render_params_default(). */
+struct refocus_render_params {
+    uint32_t struct_size;   /**< sizeof(struct refocus_render_params) */
+    uint32_t method;        /**< enum refocus_method */
+    float focus_disparity;  /**< df: the disparity in focus, 0 to 1 */
+    float max_blur_radius;  /**< K in pixels, 0 to the renderer's max_blur_radius */
+    int32_t rays;           /**< ray samples at the largest blur, 1 to REFOCUS_MAX_RAYS, or
+                                 REFOCUS_RAYS_FULL */
+    uint32_t blend;         /**< enum refocus_blend */
+    float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
+                                 eq. 5: >= 1; INFINITY = plain average */
+    int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
+    uint8_t mirror;         /**< search, raytrace: 1 = where the ray is hidden take the mirrored one */
+    uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
+    uint8_t prefilter;      /**< sweep: 1 = smooth the input between rays that lie far apart */
+    uint8_t reserved;       /**< 0 */
+    const struct refocus_aperture *aperture; /**< NULL = a disc */
+    int32_t region_x, region_y;              /**< the part of the picture to render: its */
+    int32_t region_width, region_height;     /**< corner and size; all 0 = the whole */
+};
+
+/** Sweep, 64 rays, linear light, a disc, the whole picture. */
+static inline struct refocus_render_params
+refocus_render_params_default(float focus_disparity, float max_blur_radius)
+{
+    struct refocus_render_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.focus_disparity = focus_disparity;
+    params.max_blur_radius = max_blur_radius;
+    params.rays = 64;
+    params.sigma = (float)1e30;
+    params.iterations = 2;
+    params.prefilter = 1;
+    return params;
+}
+
+/**
+ * Refocus the prepared photo.
+ *
+ * Ray (u, v) of pixel p meets disparity d at p + (u, v) K (df - d)
+ * (Yang et al. 2016, eq. 4). Pixels of less than half a pixel of blur, with nothing
+ * blurred reaching over them, come out as they went in; alpha always does (255 where
+ * the photo has none).
+ *
+ * @param params  see struct refocus_render_params
+ * @param out     of the size of the region, any format and stride; may not overlap
+ *                itself
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
+ *         REFOCUS_ERR_CANCELLED. On REFOCUS_ERR_CANCELLED parts of @p out are written,
+ *         on the others none. Allocates nothing.
+ */
+REFOCUS_API int refocus_render(struct refocus_renderer *renderer,
+                               const struct refocus_render_params *params,
+                               const struct refocus_image *out);
+
+/**
+ * End the refocus_prepare() or refocus_render() that is running, if any, early: it
+ * returns REFOCUS_ERR_CANCELLED soon. Has no effect on later calls. Thread-safe.
+ */
+REFOCUS_API void refocus_cancel(struct refocus_renderer *renderer);
+
+/** Layers that can be looked at. */
+enum refocus_view {
+    REFOCUS_VIEW_DISPARITY = 0, /**< the prepared disparity, 65535 nearest */
+    REFOCUS_VIEW_BLUR = 1,      /**< |s| of the last render in 1/256 pixel */
+};
+
+/**
+ * Copy a layer out: width x height 16-bit values of the prepared photo's size.
+ *
+ * @param stride  bytes from a row of @p out to the next; even
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE
+ */
+REFOCUS_API int refocus_get_view(struct refocus_renderer *renderer, uint32_t view,
+                                 uint16_t *out, ptrdiff_t stride);
+
+/** Threads and instruction set that a renderer works with. */
+struct refocus_renderer_info {
+    int32_t threads;
+    uint32_t cpu;    /**< enum refocus_cpu, never AUTO */
+    uint64_t memory; /**< bytes taken */
+};
+REFOCUS_API void refocus_renderer_get_info(const struct refocus_renderer *renderer,
+                                           struct refocus_renderer_info *info);
+
+/** "c", "neon", "sse41", "avx2" or "auto"; NULL for an unknown one. Thread-safe. */
+REFOCUS_API const char *refocus_cpu_name(uint32_t cpu);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,26 @@
+/** @file version.h  Version and visibility of the library. */
+#ifndef REFOCUS_VERSION_H
+#define REFOCUS_VERSION_H
+
+#define REFOCUS_VERSION_MAJOR 0
+#define REFOCUS_VERSION_MINOR 1
+#define REFOCUS_VERSION_PATCH 0
+#define REFOCUS_VERSION_STRING "0.1.0"
+
+#if defined(__GNUC__) || defined(__clang__)
+#define REFOCUS_API __attribute__((visibility("default")))
+#else
+#define REFOCUS_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Version of the library that is linked, "major.minor.patch". Thread-safe. */
+REFOCUS_API const char *refocus_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
