@@ -7,9 +7,9 @@
  *
  *     | l_pq - |u| K (df - d_q) | <= 1/2,
  *
- * is what the ray sees. A ray that meets nothing is hidden: the surface is taken to be
- * symmetric about p, so the ray -u is tried, and after that p itself. Averages by eq. 5
- * over the exact curve of the blend.
+ * is what the ray sees. A ray that meets nothing is hidden: the surface of p is taken to be
+ * symmetric about p, so the hidden pixel at l = |u| K (df - d_p) is replaced by the one at -l.
+ * Averages by eq. 5 over the exact curve of the blend.
  */
 #include "methods/method.h"
 
@@ -89,6 +89,16 @@ static bool trace(const struct rf_frame *f, int x, int y, double u, double v, in
     return false;
 }
 
+/* The pixel that stands for one hidden from ray (u, v). */
+static void mirror(const struct rf_frame *f, int x, int y, double u, double v, int *qx, int *qy)
+{
+    const double d = f->r->disparity[(size_t)y * f->r->width + x] / 65535.0;
+    const double s = f->params->max_blur_radius * (f->params->focus_disparity - d);
+
+    *qx = clamp((int)floor(x - u * s + 0.5), f->r->width - 1);
+    *qy = clamp((int)floor(y - v * s + 0.5), f->r->height - 1);
+}
+
 static void trace_pixel(const struct rf_frame *f, const struct rf_ray_set *set, int x, int y,
                         uint8_t rgb[3])
 {
@@ -106,10 +116,8 @@ static void trace_pixel(const struct rf_frame *f, const struct rf_ray_set *set, 
             u = floor(u * K + 0.5) / K;
             v = floor(v * K + 0.5) / K;
         }
-        if (!trace(f, x, y, u, v, &qx, &qy) && !trace(f, x, y, -u, -v, &qx, &qy)) {
-            qx = x;
-            qy = y;
-        }
+        if (!trace(f, x, y, u, v, &qx, &qy))
+            mirror(f, x, y, u, v, &qx, &qy);
         at = qy * r->stride + qx;
         for (int c = 0; c < 3; c++) {
             code[c] = to_code[4 * r->front.light[c][at]];
