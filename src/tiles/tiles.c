@@ -20,7 +20,7 @@ static int bin_of(struct rf_bin_scale scale, int s)
 /* Least blur of a bin. */
 static int edge_of(struct rf_bin_scale scale, int bin)
 {
-    return ((bin - scale.focus) << scale.shift) - HALF;
+    return (bin - scale.focus) * (1 << scale.shift) - HALF;
 }
 
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)

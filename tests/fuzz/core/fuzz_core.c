@@ -6,7 +6,7 @@
 #include <string.h>
 #include <refocus/refocus.h>
 
-enum { MAX_SIDE = 80, GUARD = 64 };
+enum { MAX_SIDE = 48, GUARD = 64 };
 
 /* What is left of the input; 0 for ever after its end. */
 struct input {
@@ -104,8 +104,8 @@ static struct refocus_render_params take_lens(struct input *in, int wild, float 
     p.prefilter = (uint8_t)take_in(in, wild, 0, 1);
     p.region_x = take_in(in, wild, 0, 20);
     p.region_y = take_in(in, wild, 0, 20);
-    p.region_width = take_in(in, wild, 0, 60);
-    p.region_height = take_in(in, wild, 0, 60);
+    p.region_width = take_in(in, wild, 0, MAX_SIDE);
+    p.region_height = take_in(in, wild, 0, MAX_SIDE);
     return p;
 }
 
@@ -173,7 +173,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int wild_limits = flags & 1, wild = flags >> 1 & 1;
     struct refocus_renderer_params limits = refocus_renderer_params_default(
         take_in(&in, wild_limits, 1, MAX_SIDE), take_in(&in, wild_limits, 1, MAX_SIDE),
-        take_fraction(&in, wild_limits, 20));
+        take_fraction(&in, wild_limits, 12));
     struct refocus_renderer *renderer;
     int status;
 

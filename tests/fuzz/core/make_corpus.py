@@ -16,7 +16,7 @@ def share(part, whole):
 
 
 def limits(width, height, blur, threads):
-    return b"\0" + u16(width, 1) + u16(height, 1) + share(blur, 20) + u16(threads, 1)
+    return b"\0" + u16(width, 1) + u16(height, 1) + share(blur, 12) + u16(threads, 1)
 
 
 def picture(width, height, form, out, bits, depth=None):
@@ -46,15 +46,15 @@ def main():
         + lens(0, 12, 12, 1, 64, blend=1, iterations=1, flags=(1, 1, 0)) + POLYGON,
         "raytrace": limits(20, 20, 6, 1) + picture(20, 19, 4, 2, 8)
         + lens(.5, 6, 6, 2, 65, blend=2, flags=(1, 0, 0)) + b"\0",
-        "region": limits(64, 48, 10, 2) + picture(64, 48, 1, 3, 16)
+        "region": limits(48, 48, 10, 2) + picture(48, 48, 1, 3, 16)
         + lens(.8, 7, 10, 0, 32, region=(5, 9, 20, 17)) + DISC,
-        "coarse_depth": limits(64, 48, 10, 2) + picture(60, 44, 1, 1, 8, depth=(9, 7))
+        "coarse_depth": limits(48, 48, 10, 2) + picture(46, 44, 1, 1, 8, depth=(9, 7))
         + lens(.2, 10, 10, 0, 24, sigma=3) + DISC,
-        "fine_depth": limits(12, 12, 3, 1) + picture(9, 12, 1, 1, 16, depth=(80, 71))
+        "fine_depth": limits(12, 12, 3, 1) + picture(9, 12, 1, 1, 16, depth=(48, 41))
         + lens(.2, 3, 3, 1, 7) + DISC,
         "too_large": limits(10, 10, 3, 1) + picture(11, 10, 1, 1, 16) + lens(.2, 3, 3, 0, 7),
         "no_blur": limits(10, 10, 3, 1) + picture(10, 10, 1, 1, 16) + lens(.2, 0, 3, 0, 7) + DISC,
-        "column": limits(1, 80, 20, 3) + picture(1, 80, 1, 1, 16) + lens(.6, 20, 20, 0, 64) + DISC,
+        "column": limits(1, 48, 12, 3) + picture(1, 48, 1, 1, 16) + lens(.6, 12, 12, 0, 64) + DISC,
         "wild_limits": b"\1" + struct.pack(">iifi", 65535, 65535, 127, 64),
         "wild_nan": b"\2" + limits(9, 9, 3, 1)[1:] + picture(9, 9, 1, 1, 16)
         + struct.pack(">ff", float("nan"), 1) + b"\xff" * 40,
