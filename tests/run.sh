@@ -152,11 +152,11 @@ fuzz_stage() {
     say 'fuzz targets: their corpora again'
     need_packages clang libclang-rt-dev || { skip fuzz 'no clang with libFuzzer'; return; }
     CC=clang CXX=clang++ build fuzz --buildtype=debugoptimized -Dfuzz=true \
-        -Db_sanitize=address,undefined -Db_lundef=false || return
+        -Db_sanitize=address,undefined -Db_lundef=false -Dexamples=false \
+        "-Dc_args=-fsanitize=fuzzer-no-link -fno-sanitize-recover=all" || return
     run fuzz --suite fuzz --timeout-multiplier 5
     [ "$mode" = long ] || return
-    for target in "$builds"/fuzz/tests/fuzz/fuzz-*; do
-        [ -f "$target" ] && [ -x "$target" ] || continue
+    for target in $(find "$builds/fuzz/tests/fuzz" -name 'fuzz-*' -type f -perm -u+x | sort); do
         name=${target##*/fuzz-}
         say "fuzz target $name: $fuzz_seconds s"
         mkdir -p "$builds/fuzz/found/$name"
