@@ -102,7 +102,7 @@ static size_t find_insertion(const unsigned char *bytes, unsigned long size)
     if (size < 6 || bytes[2] != 0xff || bytes[3] != 0xe0) {
         return 2;
     }
-    length = 4 + ((size_t)bytes[4] << 8 | bytes[5]) - 2;
+    length = 4 + ((size_t)bytes[4] << 8 | bytes[5]);
     return length <= size ? length : 2;
 }
 
