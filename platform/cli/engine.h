@@ -103,8 +103,8 @@ const char *engine_blend_summary(uint32_t index);
      .argument = "NAME",                                                                    \
      .offset = offsetof(type, member.cpu),                                                  \
      .choice = refocus_cpu_name,                                                            \
-     .help = "instruction set; default auto, the best that there is; never changes the "    \
-             "result"},                                                                     \
+     .help = "instruction set, auto = the best that there is, the default; never "         \
+             "changes the result"},                                                                     \
     {.kind = OPTION_INTEGER,                                                                \
      .name = "--repeat",                                                                    \
      .argument = "N",                                                                       \

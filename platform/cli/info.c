@@ -167,15 +167,21 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
         depth, "evidence", evidence_json(info));
 }
 
-/* Read a photo, or a depth file that is none. */
+/* Read a photo, or a depth file that is none; a grey picture without depth may be both. */
 static int read_any(struct refocus_photo **photo, const char *file)
 {
-    struct refocus_reason reason = {""}, other = {""};
+    struct refocus_reason reason = {""};
+    struct refocus_photo *map = NULL;
     int status = refocus_photo_read(photo, file, NULL, &reason);
 
-    if ((status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED) &&
-        refocus_depth_read(photo, file, NULL, 0, 0, NULL, &other) == REFOCUS_OK)
-        status = REFOCUS_OK;
+    if (status == REFOCUS_OK ? !(*photo)->depth.samples
+                             : status == REFOCUS_ERR_FORMAT ||
+                                   status == REFOCUS_ERR_UNSUPPORTED)
+        if (refocus_depth_read(&map, file, NULL, 0, 0, NULL, NULL) == REFOCUS_OK) {
+            refocus_photo_free(photo);
+            *photo = map;
+            status = REFOCUS_OK;
+        }
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));

@@ -343,15 +343,16 @@ static void print_option(const struct option *option)
         snprintf(text, sizeof text, "%s (%s)", option->help, range_text(option, range));
     else
         snprintf(text, sizeof text, "%s", option->help);
+    if (option->kind == OPTION_CHOICE && !option->summary)
+        for (uint32_t i = 0; option->choice(i); i++)
+            snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s",
+                     i == 0 ? ": " : ", ", option->choice(i));
     print_wrapped(text, HELP_COLUMN, HELP_COLUMN);
-    for (uint32_t i = 0; option->kind == OPTION_CHOICE && option->choice(i); i++) {
-        printf("%*s%-10s", HELP_COLUMN + 2, "", option->choice(i));
-        if (option->summary) {
+    if (option->kind == OPTION_CHOICE && option->summary)
+        for (uint32_t i = 0; option->choice(i); i++) {
+            printf("%*s%-10s", HELP_COLUMN + 2, "", option->choice(i));
             print_wrapped(option->summary(i), HELP_COLUMN + 12, HELP_COLUMN + 12);
-        } else {
-            putchar('\n');
         }
-    }
 }
 
 void options_print_help(const struct command *command)
