@@ -48,7 +48,7 @@ static const char *source_text(uint32_t source)
     case REFOCUS_DEPTH_SOURCE_HEIF:
         return "auxiliary depth image in HEIF";
     case REFOCUS_DEPTH_SOURCE_FILE:
-        return "the file itself";
+        return "the file itself, as --depth reads it";
     }
     return "none";
 }
