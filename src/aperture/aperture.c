@@ -140,7 +140,8 @@ int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8
         return REFOCUS_ERR_ARGUMENT;
     *aperture = NULL;
     if (!mask || width < 1 || height < 1 || width > REFOCUS_MAX_APERTURE_SIDE ||
-        height > REFOCUS_MAX_APERTURE_SIDE)
+        height > REFOCUS_MAX_APERTURE_SIDE ||
+        (height > 1 && stride < width && stride > -width))
         return REFOCUS_ERR_ARGUMENT;
     status = create(aperture, RF_SHAPE_MASK);
     if (status)

@@ -113,8 +113,8 @@ static void trace_pixel(const struct rf_frame *f, const struct rf_ray_set *set, 
         ptrdiff_t at;
 
         if (f->params->rays == REFOCUS_RAYS_FULL && K > 0) { /* Q15 back to mask pixels */
-            u = floor(u * K + 0.5) / K;
-            v = floor(v * K + 0.5) / K;
+            u = fmax(-1, fmin(1, floor(u * K + 0.5) / K));
+            v = fmax(-1, fmin(1, floor(v * K + 0.5) / K));
         }
         if (!trace(f, x, y, u, v, &qx, &qy))
             mirror(f, x, y, u, v, &qx, &qy);

@@ -1,6 +1,7 @@
 #include <refocus/render.h>
 
 #include "depth/upsample.h"
+#include "planes/format.h"
 #include "planes/planes.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
@@ -30,18 +31,12 @@ static void disparity_band(void *context, int band, int worker)
         rf_upsample_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
 }
 
-static bool good_photo(const struct refocus_image *photo)
-{
-    return photo && photo->plane[0] && refocus_format_bytes(photo->format) &&
-           photo->width >= 1 && photo->height >= 1 && photo->width <= REFOCUS_MAX_SIDE &&
-           photo->height <= REFOCUS_MAX_SIDE;
-}
-
 static bool good_map(const struct refocus_disparity *map)
 {
     return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
            map->height >= 1 && map->width <= REFOCUS_MAX_SIDE &&
            map->height <= REFOCUS_MAX_SIDE &&
+           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
            (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
 }
 
@@ -53,7 +48,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
     r->prepared = r->blurred = false;
-    if (!good_photo(photo) || !good_map(disparity))
+    if (!rf_good_image(photo) || !good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;

@@ -5,6 +5,7 @@
 
 #include "background/background.h"
 #include "methods/method.h"
+#include "planes/format.h"
 #include "planes/planes.h"
 #include "renderer/bands.h"
 #include "renderer/rays.h"
@@ -136,7 +137,10 @@ static void tile_item(void *context, int item, int worker)
         smaller((ty + 1) * RF_TILE, f->region.y1),
     };
 
-    methods[f->params->method].tile(f, tx, ty, rect, worker);
+    if (f->params->max_blur_radius > 0)
+        methods[f->params->method].tile(f, tx, ty, rect, worker);
+    else
+        rf_copy_tile(f, rect); /* a pinhole */
 }
 
 /* Eq. 5 over the Q12 values of the blend in use. */
@@ -176,8 +180,9 @@ static void run_passes(struct rf_frame *f)
         rf_exact_init(&exact, r->blend, f->params->sigma);
         f->exact = &exact;
     }
-    rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
     rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
+    if (f->params->max_blur_radius > 0)
+        rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
     if (layers)
         rf_pool_run(&r->pool, smooth_band, f, rf_bands(r));
     if (layers && !rf_cancelled(r)) {
@@ -196,9 +201,8 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         return REFOCUS_ERR_ARGUMENT;
     if (!r->prepared)
         return REFOCUS_ERR_STATE;
-    if (!good_params(r, params) || !region_of(r, params, &f.region) || !out ||
-        !out->plane[0] || !refocus_format_bytes(out->format) ||
-        out->width != f.region.x1 - f.region.x0 || out->height != f.region.y1 - f.region.y0)
+    if (!good_params(r, params) || !region_of(r, params, &f.region) ||
+        !rf_good_image(out) || out->width != f.region.x1 - f.region.x0 || out->height != f.region.y1 - f.region.y0)
         return REFOCUS_ERR_ARGUMENT;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);

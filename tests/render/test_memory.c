@@ -113,13 +113,13 @@ static void every_failure(void **state)
     }
 }
 
-/* render.h: 26 (W + 2P)(H + 2P) + 12 W H / 10 + 2^20 (2 + threads), P = ceil(K) + 2 */
-static double stated(int width, int height, float blur, int threads)
+/* render.h: 22 (W + 2P + 47)(H + 2P + 16) + 6 (W + 16)(H + 16) + 2^20, P = ceil(K) + 2 */
+static double stated(int width, int height, float blur)
 {
     const double p = 2 * (ceil((double)blur) + 2);
 
-    return 26 * (width + p) * (height + p) + 1.2 * width * height
-           + 1048576.0 * (2 + threads);
+    return 22 * (width + p + 47) * (height + p + 16) + 6.0 * (width + 16) * (height + 16) +
+           1048576.0;
 }
 
 static void formula(void **state)
@@ -137,7 +137,7 @@ static void formula(void **state)
                 const struct refocus_renderer_params params =
                     counted(&counter, sides[s][0], sides[s][1], blurs[k], threads[t]);
                 const uint64_t bytes = refocus_renderer_memory(&params);
-                const double most = stated(sides[s][0], sides[s][1], blurs[k], threads[t]);
+                const double most = stated(sides[s][0], sides[s][1], blurs[k]);
 
                 if (bytes == 0 || (double)bytes > most)
                     fail_msg("%d x %d, K = %g, %d threads: says %llu bytes, header %.0f",
@@ -192,7 +192,7 @@ static void largest(void **state)
     const uint64_t bytes = refocus_renderer_memory(&params);
 
     (void)state;
-    assert_true((double)bytes <= stated(65535, 65535, 127, 1));
+    assert_true((double)bytes <= stated(65535, 65535, 127));
     assert_true((double)bytes > 10.0 * 65535 * 65535);
     counter.fail_at = 0;
     const int status = refocus_renderer_create(&renderer, &params);
