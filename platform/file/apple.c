@@ -1,0 +1,200 @@
+/* Apple's portrait JPEG: behind the main picture lie others, found by MPF. The one whose own
+ * XMP says "disparity" is the depth; HDR gain map and portrait matte look alike but are not. */
+#include "internal.h"
+
+#include <math.h>
+#include <string.h>
+
+void rf_depth_from_disparity(struct refocus_depth_map *map, double value_min,
+                             double value_max, double disparity_min,
+                             double disparity_max)
+{
+    map->meaning = REFOCUS_DEPTH_DISPARITY;
+    map->value_near = value_max;
+    map->value_far = value_min;
+    if (disparity_max > 0.0) {
+        map->near_m = 1.0 / disparity_max;
+        map->far_m = disparity_min > 0.0 ? 1.0 / disparity_min : INFINITY;
+        if (disparity_min < 0.0) {
+            /* Nothing is farther than infinity: d = 0 is where the disparity is. */
+            map->value_far += (value_max - value_min) * -disparity_min /
+                              (disparity_max - disparity_min);
+        }
+    }
+}
+
+#ifdef RF_HAVE_XMP
+
+struct auxiliary {
+    struct rf_bytes file;
+    int number; /* as MPF counts, the main picture being 1 */
+    struct rf_xmp xmp;
+};
+
+static struct rf_bytes find_xmp(struct rf_bytes file)
+{
+    struct rf_bytes packet = {NULL, 0};
+    struct rf_jpeg_walk walk;
+
+    if (rf_jpeg_walk_begin(&walk, file)) {
+        while (!packet.data && rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
+            if (walk.marker == 0xe1) {
+                rf_jpeg_after(walk.segment, rf_jpeg_xmp_signature,
+                              sizeof rf_jpeg_xmp_signature, &packet);
+            }
+        }
+    }
+    return packet;
+}
+
+static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary,
+                       bool disparity)
+{
+    const struct rf_xmp *const xmp = &auxiliary->xmp;
+    struct refocus_depth_map *const map = &read->depth;
+    const char *const accuracy = xmp->value[RF_XMP_APPLE_ACCURACY];
+    double low, high, code_low, code_high;
+    bool has_low, has_high, has_code_low, has_code_high;
+    int status;
+
+    status = rf_xmp_number(read, xmp, RF_XMP_APPLE_FLOAT_MIN, "FloatMinValue", &has_low,
+                           &low);
+    if (status == REFOCUS_OK) {
+        status = rf_xmp_number(read, xmp, RF_XMP_APPLE_FLOAT_MAX, "FloatMaxValue",
+                               &has_high, &high);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_xmp_number(read, xmp, RF_XMP_APPLE_INT_MIN, "IntMinValue",
+                               &has_code_low, &code_low);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_xmp_number(read, xmp, RF_XMP_APPLE_INT_MAX, "IntMaxValue",
+                               &has_code_high, &code_high);
+    }
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    code_low = has_code_low ? code_low : 0.0;
+    code_high = has_code_high ? code_high : read->samples.max_value;
+    if (code_low >= code_high || (has_low && has_high && low >= high) ||
+        (!disparity && !(has_low && has_high))) {
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged: the range of its depth image is empty");
+    }
+    if (!disparity) {
+        map->meaning = REFOCUS_DEPTH_DISTANCE;
+        map->metres_per_unit = (high - low) / (code_high - code_low);
+        map->metres_at_zero = low - code_low * map->metres_per_unit;
+        rf_note(read->info, "Apple: distances from %g to %g m, bright is far", low, high);
+        return REFOCUS_OK;
+    }
+    if (has_low && has_high) {
+        rf_depth_from_disparity(map, code_low, code_high, low, high);
+        rf_note(read->info, "Apple: disparity from %g to %g per metre, bright is near", low,
+                high);
+    } else {
+        rf_depth_from_disparity(map, code_low, code_high, 0.0, 0.0);
+        rf_note(read->info, "Apple: disparity without a range, bright is near");
+    }
+    if (accuracy) {
+        rf_note(read->info, "Apple: accuracy of the distances: %.60s", accuracy);
+    }
+    return REFOCUS_OK;
+}
+
+static int take_depth(struct rf_read *read, const struct auxiliary *auxiliary,
+                      bool disparity)
+{
+    int status = rf_decode_part(read, auxiliary->file, "depth image", &read->samples);
+
+    if (status == REFOCUS_OK) {
+        status = rf_raster_to_grey(read, &read->samples);
+        if (status == REFOCUS_ERR_NO_DEPTH) {
+            status = rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                             "damaged: its depth image is a colour picture");
+        }
+    }
+    if (status == REFOCUS_OK) {
+        rf_note(read->info, "MPF: image %d is %s by its own XMP, %d x %d samples",
+                auxiliary->number, disparity ? "disparity" : "depth",
+                (int)read->samples.width, (int)read->samples.height);
+        status = set_meaning(read, auxiliary, disparity);
+    }
+    if (status == REFOCUS_OK) {
+        read->info->depth_source = REFOCUS_DEPTH_SOURCE_APPLE_MPF;
+    }
+    return status;
+}
+
+static int judge(struct rf_read *read, const struct auxiliary *auxiliary)
+{
+    const char *const type = auxiliary->xmp.value[RF_XMP_APPLE_TYPE];
+
+    if (type && (strcmp(type, "disparity") == 0 || strcmp(type, "depth") == 0)) {
+        if (!read->samples.pixels) {
+            return take_depth(read, auxiliary, type[1] == 'i');
+        }
+        rf_note(read->info, "MPF: image %d, a second depth image, passed over",
+                auxiliary->number);
+    } else if (type || auxiliary->xmp.value[RF_XMP_GAIN_MAP]) {
+        rf_note(read->info, "MPF: image %d passed over, it is no depth but \"%.80s\"",
+                auxiliary->number, type ? type : "HDR gain map");
+    } else {
+        rf_note(read->info, "MPF: image %d passed over, it says nothing of depth",
+                auxiliary->number);
+    }
+    return REFOCUS_OK;
+}
+
+static int read_image(struct rf_read *read, struct rf_bytes file, int number)
+{
+    struct auxiliary auxiliary = {.file = file, .number = number};
+    const struct rf_bytes packet = find_xmp(file);
+    int status = REFOCUS_OK;
+
+    if (packet.data) {
+        status = rf_xmp_parse(read, packet, &auxiliary.xmp);
+    }
+    if (status == REFOCUS_OK) {
+        status = judge(read, &auxiliary);
+    }
+    rf_xmp_free(&auxiliary.xmp);
+    return status;
+}
+
+int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mpf_tiff,
+                  size_t main_end)
+{
+    const size_t base = (size_t)(mpf_tiff.data - file.data);
+    struct rf_mpf mpf;
+    int status = REFOCUS_OK;
+
+    if (read->samples.pixels) {
+        return REFOCUS_OK;
+    }
+    if (!rf_mpf_parse(mpf_tiff, &mpf)) {
+        rf_note(read->info, "MPF: damaged, passed over");
+        return REFOCUS_OK;
+    }
+    for (int i = 1; i < mpf.count && status == REFOCUS_OK; i++) {
+        const uint64_t begin = base + mpf.image[i].offset;
+        const uint64_t end = begin + mpf.image[i].size;
+
+        if (end > file.size && file.size > main_end) {
+            return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                           "damaged: it ends before image %d of those it announces; copy "
+                           "it again",
+                           i + 1);
+        }
+        if (begin < main_end || end > file.size || begin == end) {
+            /* An editor that kept the index and dropped or moved the images. */
+            rf_note(read->info, "MPF: image %d is not where the index says, passed over",
+                    i + 1);
+            continue;
+        }
+        status = read_image(read,
+                            (struct rf_bytes){file.data + begin, mpf.image[i].size}, i + 1);
+    }
+    return status;
+}
+#endif

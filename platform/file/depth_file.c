@@ -1,0 +1,244 @@
+/* Depth files of their own, and the words for how samples are read. */
+#include "internal.h"
+#include "read.h"
+
+#include <math.h>
+#include <string.h>
+
+/* "m", "mm" or "N/m" as metres in a unit; 0 for anything else. */
+static double metres_in(const char *unit)
+{
+    const size_t length = strlen(unit);
+    char number[64];
+    double per_metre;
+
+    if (strcmp(unit, "m") == 0) {
+        return 1.0;
+    }
+    if (strcmp(unit, "mm") == 0) {
+        return 0.001;
+    }
+    if (length < 3 || length - 2 >= sizeof number || strcmp(unit + length - 2, "/m") != 0) {
+        return 0.0;
+    }
+    memcpy(number, unit, length - 2);
+    number[length - 2] = '\0';
+    if (!rf_parse_number(number, &per_metre) || per_metre <= 0.0 ||
+        !isfinite(1.0 / per_metre)) {
+        return 0.0;
+    }
+    return 1.0 / per_metre;
+}
+
+/* Floats have no greatest code. "Greatest is nearest" needs no measuring here, see
+ * value_near in depth.h; for the inverse the ends of the map are its ends. */
+static void set_float_ends(struct refocus_depth_map *map, bool inverse)
+{
+    const uint8_t *row = map->samples;
+    double low = INFINITY, high = -INFINITY;
+
+    map->value_near = map->value_far = 0.0;
+    if (!inverse || !row) {
+        return;
+    }
+    for (int32_t y = 0; y < map->height; y++, row += map->stride) {
+        for (int32_t x = 0; x < map->width; x++) {
+            float value;
+            memcpy(&value, row + 4 * (size_t)x, 4);
+            if (isfinite(value)) {
+                low = value < low ? value : low;
+                high = value > high ? value : high;
+            }
+        }
+    }
+    if (low < high) {
+        map->value_near = low;
+        map->value_far = high;
+    }
+}
+
+int rf_depth_unit(struct refocus_depth_map *map, const char *unit, double max_value)
+{
+    const bool inverse = strcmp(unit, "inverse") == 0;
+    double metres;
+
+    if (inverse || strcmp(unit, "disparity") == 0) {
+        map->meaning = REFOCUS_DEPTH_DISPARITY;
+        map->flags = 0;
+        map->metres_per_unit = map->metres_at_zero = 0.0;
+        if (map->sample == REFOCUS_SAMPLE_F32) {
+            set_float_ends(map, inverse);
+        } else {
+            map->value_near = inverse ? 0.0 : max_value;
+            map->value_far = inverse ? max_value : 0.0;
+        }
+        return REFOCUS_OK;
+    }
+    metres = metres_in(unit);
+    if (metres <= 0.0) {
+        return REFOCUS_ERR_ARGUMENT;
+    }
+    map->meaning = REFOCUS_DEPTH_DISTANCE;
+    map->flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
+    map->metres_per_unit = metres;
+    map->metres_at_zero = 0.0;
+    map->value_near = map->value_far = 0.0;
+    return REFOCUS_OK;
+}
+
+int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit)
+{
+    if (!map || !unit) {
+        return REFOCUS_ERR_ARGUMENT;
+    }
+    return rf_depth_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
+}
+
+static int check_range(double near_m, double far_m, struct refocus_reason *reason)
+{
+    if (!(near_m >= 0.0) || isinf(near_m) || !(far_m >= 0.0) ||
+        (near_m > 0.0 && far_m > 0.0 && near_m >= far_m)) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
+                       "near and far must be metres, near the smaller");
+    }
+    return REFOCUS_OK;
+}
+
+/* A grey picture becomes the depth when the file carries no other. */
+static int picture_as_samples(struct rf_read *read, double *max_value)
+{
+    int status;
+
+    if (read->samples.pixels) {
+        *max_value = read->samples.max_value;
+        return REFOCUS_OK;
+    }
+    status = rf_raster_to_grey(read, &read->image);
+    if (status == REFOCUS_OK) {
+        read->samples = read->image;
+        read->image.pixels = NULL;
+        *max_value = read->samples.max_value;
+    }
+    return status;
+}
+
+static const char *sample_name(uint32_t sample)
+{
+    return sample == REFOCUS_SAMPLE_F32   ? "32-bit float"
+           : sample == REFOCUS_SAMPLE_U16 ? "16-bit"
+                                          : "8-bit";
+}
+
+/* Say how the samples are read, and why. */
+static int apply_unit(struct rf_read *read, const char *unit, double max_value)
+{
+    struct refocus_depth_map *const map = &read->depth;
+    const bool said = map->meaning != 0;
+    const uint32_t meaning = map->meaning;
+
+    map->samples = read->samples.pixels;
+    map->width = read->samples.width;
+    map->height = read->samples.height;
+    map->stride = (ptrdiff_t)rf_raster_stride(&read->samples);
+    map->sample = read->samples.sample;
+    if (unit || !said) {
+        const int status = rf_depth_unit(map, unit ? unit : "disparity", max_value);
+        if (status != REFOCUS_OK) {
+            return rf_fail(read->reason, status,
+                           "the depth unit is none of disparity, inverse, m, mm, or a "
+                           "number per metre such as 5000/m");
+        }
+        if (meaning != map->meaning) {
+            map->near_m = map->far_m = 0.0;
+        }
+    }
+    if (!said) {
+        read->info->depth_source = REFOCUS_DEPTH_SOURCE_FILE;
+        rf_note(read->info, "depth file: %d x %d %s samples", (int)map->width,
+                (int)map->height, sample_name(map->sample));
+    }
+    if (unit) {
+        rf_note(read->info, "depth: read as \"%s\", as asked for", unit);
+    } else if (!said) {
+        rf_note(read->info, "depth: no unit in the file, read as disparity: %s is near",
+                map->sample == REFOCUS_SAMPLE_F32 ? "greater" : "brighter");
+    }
+    return REFOCUS_OK;
+}
+
+int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, size_t size,
+                              const char *unit, double near_m, double far_m,
+                              const struct refocus_read_limits *limits,
+                              struct refocus_reason *reason)
+{
+    struct refocus_depth_map probe = {.sample = REFOCUS_SAMPLE_U8};
+    struct refocus_reason unused;
+    struct rf_photo *made;
+    struct rf_read read;
+    double max_value = 0;
+    int status;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!depth) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no place for the depth");
+    }
+    *depth = NULL;
+    status = check_range(near_m, far_m, reason);
+    if (status == REFOCUS_OK && unit && rf_depth_unit(&probe, unit, 255.0) != REFOCUS_OK) {
+        status = rf_fail(reason, REFOCUS_ERR_ARGUMENT,
+                         "the depth unit is none of disparity, inverse, m, mm, or a "
+                         "number per metre such as 5000/m");
+    }
+    if (status == REFOCUS_OK && !bytes && size > 0) {
+        status = rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no bytes to read");
+    }
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    made = calloc(1, sizeof *made);
+    if (!made) {
+        return rf_fail_memory(reason);
+    }
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false,
+                           &made->shown.info, reason);
+    if (status == REFOCUS_OK) {
+        status = picture_as_samples(&read, &max_value);
+    }
+    if (status == REFOCUS_OK) {
+        status = apply_unit(&read, unit, max_value);
+    }
+    if (status == REFOCUS_OK) {
+        read.depth.near_m = near_m > 0.0 ? near_m : read.depth.near_m;
+        read.depth.far_m = far_m > 0.0 ? far_m : read.depth.far_m;
+        rf_raster_free(&read.image);
+    }
+    status = rf_read_finish(&read, status, &made);
+    *depth = made ? &made->shown : NULL;
+    return status;
+}
+
+int refocus_depth_read(struct refocus_photo **depth, const char *path, const char *unit,
+                       double near_m, double far_m,
+                       const struct refocus_read_limits *limits,
+                       struct refocus_reason *reason)
+{
+    const uint64_t max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
+    struct refocus_reason unused;
+    struct refocus_blob file;
+    int status;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!depth || !path) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no depth or no path");
+    }
+    *depth = NULL;
+    status = rf_load(path, max_bytes, reason, &file);
+    if (status == REFOCUS_OK) {
+        status = refocus_depth_read_memory(depth, file.data, file.size, unit, near_m,
+                                           far_m, limits, reason);
+        free(file.data);
+    }
+    return status;
+}

@@ -1,0 +1,256 @@
+/* EXIF: a TIFF structure of one main directory and one for the camera's settings. Only these
+ * two are ever followed, so that no chain of offsets, circular or not, can be long. */
+#include "internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct tiff {
+    uint8_t *data;
+    size_t size;
+    bool big_endian;
+};
+
+struct entry {
+    size_t place; /* of the 12 bytes */
+    uint32_t tag, type, count;
+    size_t value; /* where the value is */
+};
+
+enum {
+    TAG_MAKE = 0x010f,
+    TAG_MODEL = 0x0110,
+    TAG_ORIENTATION = 0x0112,
+    TAG_SETTINGS = 0x8769,
+    TAG_F_NUMBER = 0x829d,
+    TAG_FOCAL_LENGTH = 0x920a,
+    TAG_WIDTH = 0xa002,
+    TAG_HEIGHT = 0xa003,
+    TAG_FOCAL_LENGTH_35MM = 0xa405,
+};
+enum { TYPE_ASCII = 2, TYPE_SHORT = 3, TYPE_LONG = 4, TYPE_RATIONAL = 5 };
+
+static uint32_t get16(const struct tiff *tiff, size_t at)
+{
+    const uint8_t *const b = tiff->data + at;
+
+    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1]) : (uint32_t)(b[1] << 8 | b[0]);
+}
+
+static uint32_t get32(const struct tiff *tiff, size_t at)
+{
+    const uint32_t first = get16(tiff, at), second = get16(tiff, at + 2);
+
+    return tiff->big_endian ? first << 16 | second : second << 16 | first;
+}
+
+static void put16(struct tiff *tiff, size_t at, uint32_t value)
+{
+    tiff->data[at] = (uint8_t)(tiff->big_endian ? value >> 8 : value);
+    tiff->data[at + 1] = (uint8_t)(tiff->big_endian ? value : value >> 8);
+}
+
+/* Entries that a directory really has room for; -1 when not even their number fits. */
+static int count_entries(const struct tiff *tiff, size_t directory)
+{
+    size_t room;
+
+    if (directory > tiff->size || tiff->size - directory < 2) {
+        return -1;
+    }
+    room = (tiff->size - directory - 2) / 12;
+    return get16(tiff, directory) <= room ? (int)get16(tiff, directory) : (int)room;
+}
+
+/* False for an entry whose value lies outside the block or is of no type used here. */
+static bool get_entry(const struct tiff *tiff, size_t directory, int index,
+                      struct entry *entry)
+{
+    static const uint8_t type_bytes[] = {0, 1, 1, 2, 4, 8};
+    uint64_t bytes;
+
+    entry->place = directory + 2 + (size_t)index * 12;
+    entry->tag = get16(tiff, entry->place);
+    entry->type = get16(tiff, entry->place + 2);
+    entry->count = get32(tiff, entry->place + 4);
+    if (entry->type == 0 || entry->type > TYPE_RATIONAL || entry->count == 0) {
+        return false;
+    }
+    bytes = (uint64_t)entry->count * type_bytes[entry->type];
+    entry->value = bytes <= 4 ? entry->place + 8 : get32(tiff, entry->place + 8);
+    return entry->value <= tiff->size && bytes <= tiff->size - entry->value;
+}
+
+static uint32_t get_integer(const struct tiff *tiff, const struct entry *entry)
+{
+    return entry->type == TYPE_SHORT  ? get16(tiff, entry->value)
+           : entry->type == TYPE_LONG ? get32(tiff, entry->value)
+                                      : 0;
+}
+
+static double get_rational(const struct tiff *tiff, const struct entry *entry)
+{
+    uint32_t below;
+
+    if (entry->type != TYPE_RATIONAL) {
+        return 0.0;
+    }
+    below = get32(tiff, entry->value + 4);
+    return below ? get32(tiff, entry->value) / (double)below : 0.0;
+}
+
+static void get_text(const struct tiff *tiff, const struct entry *entry, char *text,
+                     size_t size)
+{
+    size_t n = 0;
+
+    if (entry->type != TYPE_ASCII) {
+        return;
+    }
+    for (; n < entry->count && n + 1 < size && tiff->data[entry->value + n]; n++) {
+        const uint8_t c = tiff->data[entry->value + n];
+        text[n] = (char)(c < 0x20 || c == 0x7f ? '?' : c);
+    }
+    while (n > 0 && text[n - 1] == ' ') {
+        n--;
+    }
+    text[n] = '\0';
+}
+
+/* Most models repeat the make: "Canon" and "Canon EOS R5". */
+static void join_camera(struct rf_exif *exif, const char *make, const char *model)
+{
+    if (make[0] == '\0' || strncmp(model, make, strlen(make)) == 0) {
+        snprintf(exif->camera, sizeof exif->camera, "%s", model);
+    } else {
+        snprintf(exif->camera, sizeof exif->camera, "%s%s%s", make, model[0] ? " " : "",
+                 model);
+    }
+}
+
+static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *exif)
+{
+    const int count = count_entries(tiff, directory);
+    struct entry width = {0}, height = {0}, entry;
+
+    for (int i = 0; i < count; i++) {
+        if (!get_entry(tiff, directory, i, &entry)) {
+            continue;
+        }
+        if (entry.tag == TAG_F_NUMBER) {
+            exif->f_number = get_rational(tiff, &entry);
+        } else if (entry.tag == TAG_FOCAL_LENGTH) {
+            exif->focal_length_mm = get_rational(tiff, &entry);
+        } else if (entry.tag == TAG_FOCAL_LENGTH_35MM) {
+            exif->focal_length_35mm = get_integer(tiff, &entry);
+        } else if (entry.tag == TAG_WIDTH) {
+            width = entry;
+        } else if (entry.tag == TAG_HEIGHT) {
+            height = entry;
+        }
+    }
+    if (exif->orientation >= 5 && width.tag && height.tag && width.count == 1 &&
+        height.count == 1) {
+        /* Exchange the tags, not the values: types may differ. Their order, which TIFF
+         * wants ascending, is put right by exchanging the rest of the entries too. */
+        uint8_t rest[10];
+        memcpy(rest, tiff->data + width.place + 2, 10);
+        memcpy(tiff->data + width.place + 2, tiff->data + height.place + 2, 10);
+        memcpy(tiff->data + height.place + 2, rest, 10);
+    }
+}
+
+bool rf_exif_parse(uint8_t *data, size_t size, struct rf_exif *exif)
+{
+    struct tiff tiff = {data, size, false};
+    char make[48] = "", model[64] = "";
+    size_t directory, settings = 0, next;
+    struct entry entry;
+    int count;
+
+    memset(exif, 0, sizeof *exif);
+    exif->orientation = 1;
+    if (size < 8 || (memcmp(data, "MM\0*", 4) != 0 && memcmp(data, "II*\0", 4) != 0)) {
+        return false;
+    }
+    tiff.big_endian = data[0] == 'M';
+    directory = get32(&tiff, 4);
+    count = count_entries(&tiff, directory);
+    if (count < 0) {
+        return false;
+    }
+    for (int i = 0; i < count; i++) {
+        if (!get_entry(&tiff, directory, i, &entry)) {
+            continue;
+        }
+        if (entry.tag == TAG_MAKE) {
+            get_text(&tiff, &entry, make, sizeof make);
+        } else if (entry.tag == TAG_MODEL) {
+            get_text(&tiff, &entry, model, sizeof model);
+        } else if (entry.tag == TAG_ORIENTATION && entry.type == TYPE_SHORT) {
+            const uint32_t value = get16(&tiff, entry.value);
+            exif->orientation = value >= 1 && value <= 8 ? (int)value : 1;
+            put16(&tiff, entry.value, 1);
+        } else if (entry.tag == TAG_SETTINGS) {
+            settings = get_integer(&tiff, &entry);
+        }
+    }
+    join_camera(exif, make, model);
+    if (settings != 0) {
+        read_settings(&tiff, settings, exif);
+    }
+    /* The link to the thumbnail's directory follows the entries. */
+    next = directory + 2 + (size_t)count * 12;
+    if (count == (int)get16(&tiff, directory) && size - next >= 4) {
+        memset(data + next, 0, 4);
+    }
+    return true;
+}
+
+int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
+{
+    struct refocus_photo_info *const info = read->info;
+    struct rf_exif exif;
+
+    if (tiff.size == 0 || read->exif.data) {
+        return REFOCUS_OK;
+    }
+    read->exif.data = malloc(tiff.size);
+    if (!read->exif.data) {
+        return rf_fail_memory(read->reason);
+    }
+    memcpy(read->exif.data, tiff.data, tiff.size);
+    read->exif.size = tiff.size;
+    if (!rf_exif_parse(read->exif.data, read->exif.size, &exif)) {
+        rf_note(info, "EXIF: damaged, passed over");
+        free(read->exif.data);
+        read->exif.data = NULL;
+        read->exif.size = 0;
+        return REFOCUS_OK;
+    }
+    info->focal_length_mm = exif.focal_length_mm;
+    info->focal_length_35mm = exif.focal_length_35mm;
+    info->f_number = exif.f_number;
+    memcpy(info->camera, exif.camera, sizeof info->camera);
+    if (orient) {
+        read->orientation = exif.orientation;
+    }
+    return REFOCUS_OK;
+}
+
+int rf_icc_take(struct rf_read *read, struct refocus_blob *profile)
+{
+    /* ICC.1, 7.2: a header of 128 bytes, the colour space at 16, "acsp" at 36 */
+    if (profile->size >= 128 && memcmp(profile->data + 16, "RGB ", 4) == 0 &&
+        memcmp(profile->data + 36, "acsp", 4) == 0) {
+        read->icc = *profile;
+    } else {
+        if (profile->data) {
+            rf_note(read->info, "ICC profile: not for RGB or damaged, passed over");
+        }
+        free(profile->data);
+    }
+    profile->data = NULL;
+    profile->size = 0;
+    return REFOCUS_OK;
+}

@@ -1,0 +1,356 @@
+/* HEIC by libheif, read only. libheif turns every image upright by the container's own
+ * irot and imir; EXIF orientation says the same once more and is not applied. */
+#include "internal.h"
+
+#include <libheif/heif.h>
+#include <math.h>
+#include <string.h>
+
+struct heic {
+    struct rf_read *read;
+    struct heif_context *context;
+    struct heif_image_handle *primary;
+    struct heif_decoding_options *options;
+};
+
+static int fail_heif(const struct rf_read *read, struct heif_error error)
+{
+    int status = REFOCUS_ERR_FORMAT;
+
+    if (error.subcode == heif_suberror_Security_limit_exceeded) {
+        status = REFOCUS_ERR_SIZE;
+    } else if (error.code == heif_error_Memory_allocation_error) {
+        status = REFOCUS_ERR_MEMORY;
+    } else if (error.code == heif_error_Unsupported_feature ||
+               error.code == heif_error_Unsupported_filetype ||
+               error.subcode == heif_suberror_Unsupported_codec) {
+        status = REFOCUS_ERR_UNSUPPORTED;
+    }
+    return rf_fail(read->reason, status, "HEIC: %.200s", error.message);
+}
+
+/* Copy rows out of libheif; bytes is what a row needs. */
+static int copy_plane(struct rf_read *read, const struct heif_image *image,
+                      enum heif_channel channel, struct rf_raster *raster)
+{
+    int stride = 0, status;
+    const uint8_t *const plane = heif_image_get_plane_readonly(image, channel, &stride);
+
+    raster->width = heif_image_get_width(image, channel);
+    raster->height = heif_image_get_height(image, channel);
+    if (!plane || raster->width < 1 || raster->height < 1) {
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "HEIC: its picture is of an unknown layout");
+    }
+    status = rf_raster_alloc(read, raster);
+    for (int32_t y = 0; status == REFOCUS_OK && y < raster->height; y++) {
+        const size_t bytes = rf_raster_stride(raster);
+        memcpy(raster->pixels + (size_t)y * bytes, plane + (ptrdiff_t)y * stride, bytes);
+    }
+    return status;
+}
+
+static int decode(struct heic *heic, struct heif_image_handle *handle, bool colour,
+                  struct rf_raster *raster)
+{
+    struct rf_read *const read = heic->read;
+    enum heif_channel channel = heif_channel_Y;
+    struct heif_image *image = NULL;
+    struct heif_error error;
+    int bits, status;
+
+    status = rf_check_size(read, (uint64_t)heif_image_handle_get_width(handle),
+                           (uint64_t)heif_image_handle_get_height(handle), 3);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    error = heif_decode_image(handle, &image,
+                              colour ? heif_colorspace_RGB : heif_colorspace_undefined,
+                              colour ? heif_chroma_interleaved_RGB : heif_chroma_undefined,
+                              heic->options);
+    if (error.code != heif_error_Ok) {
+        return fail_heif(read, error);
+    }
+    if (colour) {
+        channel = heif_channel_interleaved;
+    }
+    bits = colour ? 8 : heif_image_get_bits_per_pixel_range(image, channel);
+    raster->channels = colour ? 3 : 1;
+    raster->sample = bits > 8 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
+    raster->max_value = bits >= 1 && bits <= 16 ? (1u << bits) - 1 : 0;
+    status = raster->max_value == 0
+                 ? rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                           "HEIC: its picture is of an unknown layout")
+                 : copy_plane(read, image, channel, raster);
+    heif_image_release(image);
+    return status;
+}
+
+static bool has_disparity(const struct heif_depth_representation_info *about)
+{
+    return about->has_d_min && about->has_d_max && isfinite(about->d_min) &&
+           isfinite(about->d_max) && about->d_min < about->d_max;
+}
+
+static bool has_distance(const struct heif_depth_representation_info *about)
+{
+    return about->has_z_near && about->has_z_far && isfinite(about->z_near) &&
+           isfinite(about->z_far) && about->z_near > 0.0 && about->z_near < about->z_far;
+}
+
+/* ISO/IEC 23008-2, depth representation information. False when it does not say enough. */
+static bool set_meaning(struct rf_read *read,
+                        const struct heif_depth_representation_info *about)
+{
+    struct refocus_depth_map *const map = &read->depth;
+    const double max = read->samples.max_value;
+
+    switch (about->depth_representation_type) {
+    case heif_depth_representation_type_uniform_disparity:
+        if (has_disparity(about)) {
+            rf_depth_from_disparity(map, 0.0, max, about->d_min, about->d_max);
+            rf_note(read->info,
+                    "HEIC: uniform disparity from %g to %g per metre, bright is near",
+                    about->d_min, about->d_max);
+        } else {
+            rf_depth_from_disparity(map, 0.0, max, 0.0, 0.0);
+            rf_note(read->info, "HEIC: uniform disparity without a range, bright is near");
+        }
+        return true;
+    case heif_depth_representation_type_uniform_inverse_Z:
+        rf_depth_from_disparity(map, 0.0, max, 0.0, 0.0);
+        if (has_distance(about)) {
+            map->near_m = about->z_near;
+            map->far_m = about->z_far;
+        }
+        rf_note(read->info, "HEIC: uniform 1/z from %g to %g m, bright is near",
+                map->near_m, map->far_m);
+        return true;
+    case heif_depth_representation_type_uniform_Z:
+        if (!has_distance(about)) {
+            return false;
+        }
+        map->meaning = REFOCUS_DEPTH_DISTANCE;
+        map->metres_at_zero = about->z_near;
+        map->metres_per_unit = (about->z_far - about->z_near) / max;
+        map->near_m = about->z_near;
+        map->far_m = about->z_far;
+        rf_note(read->info, "HEIC: uniform z from %g to %g m, bright is far", map->near_m,
+                map->far_m);
+        return true;
+    default:
+        return false;
+    }
+}
+
+static int take_depth(struct heic *heic, heif_item_id item,
+                      const struct heif_depth_representation_info *about)
+{
+    struct rf_read *const read = heic->read;
+    struct heif_image_handle *handle = NULL;
+    struct heif_error error =
+        heif_image_handle_get_depth_image_handle(heic->primary, item, &handle);
+    int status;
+
+    if (error.code != heif_error_Ok) {
+        return fail_heif(read, error);
+    }
+    status = decode(heic, handle, false, &read->samples);
+    heif_image_handle_release(handle);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    rf_note(read->info, "HEIC: auxiliary depth image, %d x %d samples of %d bits",
+            (int)read->samples.width, (int)read->samples.height,
+            read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8);
+    if (set_meaning(read, about)) {
+        read->info->depth_source = REFOCUS_DEPTH_SOURCE_HEIF;
+    } else {
+        rf_note(read->info, "HEIC: what its samples mean is not said in a known way: "
+                            "passed over");
+        rf_raster_free(&read->samples);
+    }
+    return REFOCUS_OK;
+}
+
+static int read_depth(struct heic *heic)
+{
+    const struct heif_depth_representation_info *about = NULL;
+    struct rf_read *const read = heic->read;
+    heif_item_id item;
+    int status;
+
+    if (heif_image_handle_get_list_of_depth_image_IDs(heic->primary, &item, 1) < 1) {
+        return REFOCUS_OK;
+    }
+    if (!heif_image_handle_get_depth_image_representation_info(heic->primary, item,
+                                                               &about) ||
+        !about) {
+        rf_note(read->info, "HEIC: a depth image that does not say which end is near: "
+                            "passed over");
+        return REFOCUS_OK;
+    }
+    status = take_depth(heic, item, about);
+    heif_depth_representation_info_free(about);
+    return status;
+}
+
+/* Gain maps and mattes are auxiliary images too. */
+static void note_auxiliaries(struct heic *heic)
+{
+    enum { MOST = 8 };
+    heif_item_id items[MOST];
+    const int filter = LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH | LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA;
+    const int count = heif_image_handle_get_list_of_auxiliary_image_IDs(
+        heic->primary, filter, items, MOST);
+
+    for (int i = 0; i < count; i++) {
+        struct heif_image_handle *handle = NULL;
+        const char *type = NULL;
+
+        if (heif_image_handle_get_auxiliary_image_handle(heic->primary, items[i],
+                                                         &handle)
+                .code != heif_error_Ok) {
+            continue;
+        }
+        if (heif_image_handle_get_auxiliary_type(handle, &type).code == heif_error_Ok) {
+            rf_note(heic->read->info,
+                    "HEIC: auxiliary image passed over, it is no depth but \"%.80s\"",
+                    type);
+            heif_image_handle_free_auxiliary_types(handle, &type);
+        }
+        heif_image_handle_release(handle);
+    }
+}
+
+static int read_exif(struct heic *heic)
+{
+    struct rf_read *const read = heic->read;
+    struct rf_bytes tiff = {NULL, 0};
+    heif_item_id item;
+    size_t size, skip;
+    uint8_t *block;
+    int status;
+
+    if (heif_image_handle_get_list_of_metadata_block_IDs(heic->primary, "Exif", &item, 1) <
+        1) {
+        return REFOCUS_OK;
+    }
+    size = heif_image_handle_get_metadata_size(heic->primary, item);
+    status = rf_check_bytes(read, size, "its EXIF");
+    if (status != REFOCUS_OK || size < 4) {
+        return status;
+    }
+    block = malloc(size);
+    if (!block) {
+        return rf_fail_memory(read->reason);
+    }
+    if (heif_image_handle_get_metadata(heic->primary, item, block).code == heif_error_Ok) {
+        /* ISO/IEC 23008-12, A.2.1: where the TIFF header is, counted from behind this. */
+        skip = (size_t)block[0] << 24 | (size_t)block[1] << 16 | (size_t)block[2] << 8 |
+               block[3];
+        if (skip < size - 4) {
+            tiff = (struct rf_bytes){block + 4 + skip, size - 4 - skip};
+        }
+    }
+    status = rf_exif_take(read, tiff, false);
+    free(block);
+    return status;
+}
+
+static int read_icc(struct heic *heic)
+{
+    struct rf_read *const read = heic->read;
+    struct refocus_blob profile = {NULL, 0};
+    const enum heif_color_profile_type type =
+        heif_image_handle_get_color_profile_type(heic->primary);
+    int status;
+
+    if (type != heif_color_profile_type_rICC && type != heif_color_profile_type_prof) {
+        return REFOCUS_OK;
+    }
+    profile.size = heif_image_handle_get_raw_color_profile_size(heic->primary);
+    status = rf_check_bytes(read, profile.size, "its ICC profile");
+    if (status != REFOCUS_OK || profile.size == 0) {
+        return status;
+    }
+    profile.data = malloc(profile.size);
+    if (!profile.data) {
+        return rf_fail_memory(read->reason);
+    }
+    if (heif_image_handle_get_raw_color_profile(heic->primary, profile.data).code !=
+        heif_error_Ok) {
+        profile.size = 0;
+    }
+    return rf_icc_take(read, &profile);
+}
+
+/* Which of the eight orientations has been applied: EXIF's word, when sizes agree. */
+static void say_orientation(struct heic *heic)
+{
+    struct refocus_photo_info *const info = heic->read->info;
+    const int width = heif_image_handle_get_width(heic->primary);
+
+    info->stored_width = heif_image_handle_get_ispe_width(heic->primary);
+    info->stored_height = heif_image_handle_get_ispe_height(heic->primary);
+    rf_note(info, "HEIC: %d x %d stored, %d x %d upright by the container's own rotation",
+            (int)info->stored_width, (int)info->stored_height, width,
+            heif_image_handle_get_height(heic->primary));
+}
+
+static int run(struct heic *heic, struct rf_bytes file)
+{
+    struct rf_read *const read = heic->read;
+    struct heif_error error;
+    int status;
+
+    /* libheif takes a side and allows its square. */
+    heif_context_set_maximum_image_size_limit(
+        heic->context, (int)fmin(sqrt((double)read->limits.max_pixels), 65535.0));
+    heif_context_set_max_decoding_threads(heic->context, 0);
+    heic->options->strict_decoding = 1;
+    heic->options->convert_hdr_to_8bit = 1;
+    error = heif_context_read_from_memory_without_copy(heic->context, file.data, file.size,
+                                                       NULL);
+    if (error.code == heif_error_Ok) {
+        error = heif_context_get_primary_image_handle(heic->context, &heic->primary);
+    }
+    if (error.code != heif_error_Ok) {
+        return fail_heif(read, error);
+    }
+    say_orientation(heic);
+    status = read_exif(heic);
+    if (status == REFOCUS_OK) {
+        status = read_icc(heic);
+    }
+    if (status == REFOCUS_OK) {
+        note_auxiliaries(heic);
+        status = read_depth(heic);
+    }
+    if (status == REFOCUS_OK && (read->picture_always || !read->samples.pixels)) {
+        status = decode(heic, heic->primary, true, &read->image);
+    }
+    return status;
+}
+
+int rf_read_heic(struct rf_read *read, struct rf_bytes file)
+{
+    struct heic heic = {.read = read};
+    int status;
+
+    memcpy(read->info->container, "HEIC", 5);
+    heic.context = heif_context_alloc();
+    heic.options = heif_decoding_options_alloc();
+    status = heic.context && heic.options ? run(&heic, file)
+                                          : rf_fail_memory(read->reason);
+    if (heic.primary) {
+        heif_image_handle_release(heic.primary);
+    }
+    if (heic.options) {
+        heif_decoding_options_free(heic.options);
+    }
+    if (heic.context) {
+        heif_context_free(heic.context);
+    }
+    return status;
+}

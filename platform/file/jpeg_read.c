@@ -1,0 +1,197 @@
+/* A JPEG photo: what its segments hold, and where its depth is. */
+#include "internal.h"
+
+#include <string.h>
+
+enum { MARKER_APP1 = 0xe1, MARKER_APP2 = 0xe2, ICC_CHUNKS = 255 };
+
+struct parts {
+    struct rf_bytes exif, xmp, mpf;
+    struct rf_bytes icc[ICC_CHUNKS];
+    int icc_count; /* as the chunks say; -1: they disagree */
+    size_t end;    /* the byte behind the main picture */
+};
+
+/* ICC.1, annex B.4: number of this chunk, counted from 1, and how many there are. */
+static void take_icc(struct parts *parts, struct rf_bytes chunk)
+{
+    int number, count;
+
+    if (chunk.size < 2) {
+        parts->icc_count = -1;
+        return;
+    }
+    number = chunk.data[0];
+    count = chunk.data[1];
+    if (number < 1 || number > count || parts->icc[number - 1].data ||
+        (parts->icc_count != 0 && parts->icc_count != count)) {
+        parts->icc_count = -1;
+        return;
+    }
+    parts->icc_count = count;
+    parts->icc[number - 1] = (struct rf_bytes){chunk.data + 2, chunk.size - 2};
+}
+
+static void take_segment(struct parts *parts, int marker, struct rf_bytes segment)
+{
+    struct rf_bytes rest;
+
+    if (marker == MARKER_APP1) {
+        if (!parts->exif.data &&
+            rf_jpeg_after(segment, rf_jpeg_exif_signature, 6, &rest)) {
+            parts->exif = rest;
+        } else if (!parts->xmp.data && rf_jpeg_after(segment, rf_jpeg_xmp_signature,
+                                                     sizeof rf_jpeg_xmp_signature, &rest)) {
+            parts->xmp = rest;
+        }
+    } else if (marker == MARKER_APP2) {
+        if (!parts->mpf.data && rf_jpeg_after(segment, rf_jpeg_mpf_signature,
+                                              sizeof rf_jpeg_mpf_signature, &rest)) {
+            parts->mpf = rest;
+        } else if (parts->icc_count >= 0 &&
+                   rf_jpeg_after(segment, rf_jpeg_icc_signature,
+                                 sizeof rf_jpeg_icc_signature, &rest)) {
+            take_icc(parts, rest);
+        }
+    }
+}
+
+static bool find_parts(struct rf_bytes file, struct parts *parts)
+{
+    struct rf_jpeg_walk walk;
+    enum rf_jpeg_step step;
+
+    memset(parts, 0, sizeof *parts);
+    if (!rf_jpeg_walk_begin(&walk, file)) {
+        return false;
+    }
+    while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
+        take_segment(parts, walk.marker, walk.segment);
+    }
+    parts->end = walk.position;
+    return step == RF_JPEG_END;
+}
+
+static int join_icc(struct rf_read *read, const struct parts *parts)
+{
+    struct refocus_blob profile = {NULL, 0};
+    size_t position = 0;
+
+    for (int i = 0; i < parts->icc_count; i++) {
+        if (!parts->icc[i].data) {
+            rf_note(read->info, "ICC profile: parts are missing, passed over");
+            return REFOCUS_OK;
+        }
+        profile.size += parts->icc[i].size;
+    }
+    if (profile.size == 0) {
+        if (parts->icc_count != 0) {
+            rf_note(read->info, "ICC profile: damaged, passed over");
+        }
+        return REFOCUS_OK;
+    }
+    profile.data = malloc(profile.size);
+    if (!profile.data) {
+        return rf_fail_memory(read->reason);
+    }
+    for (int i = 0; i < parts->icc_count; i++) {
+        memcpy(profile.data + position, parts->icc[i].data, parts->icc[i].size);
+        position += parts->icc[i].size;
+    }
+    return rf_icc_take(read, &profile);
+}
+
+#ifdef RF_HAVE_XMP
+static bool mentions_depth(struct rf_bytes packet)
+{
+    static const char name[] = "ns.google.com/photos/1.0/depthmap/";
+    const size_t n = sizeof name - 1;
+
+    for (size_t i = 0; i + n <= packet.size; i++) {
+        if (packet.data[i] == 'n' && memcmp(packet.data + i, name, n) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The standard packet and, when it names one, the extended packet. */
+static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
+                    struct rf_xmp *xmp)
+{
+    struct refocus_blob extended = {NULL, 0};
+    int status = rf_xmp_parse(read, packet, xmp);
+
+    if (status == REFOCUS_ERR_FORMAT && !mentions_depth(packet)) {
+        rf_note(read->info, "XMP: damaged and without depth, passed over");
+        return REFOCUS_OK;
+    }
+    if (status != REFOCUS_OK || !xmp->value[RF_XMP_EXTENDED]) {
+        return status;
+    }
+    status = rf_xmp_extended(read, file, xmp->value[RF_XMP_EXTENDED],
+                             xmp->length[RF_XMP_EXTENDED], &extended);
+    if (status == REFOCUS_OK) {
+        status = rf_xmp_parse(read, (struct rf_bytes){extended.data, extended.size}, xmp);
+    }
+    free(extended.data);
+    return status;
+}
+
+/* Depth from the first container that holds some. */
+static int read_depth(struct rf_read *read, struct rf_bytes file,
+                      const struct parts *parts)
+{
+    const struct rf_bytes main_picture = {file.data, parts->end};
+    struct rf_xmp xmp = {{NULL}, {0}};
+    int status = REFOCUS_OK;
+
+    if (parts->xmp.data) {
+        status = read_xmp(read, main_picture, parts->xmp, &xmp);
+        if (status == REFOCUS_OK) {
+            status = rf_read_gdepth(read, &xmp);
+        }
+    }
+    rf_xmp_free(&xmp);
+    if (status == REFOCUS_OK && parts->mpf.data) {
+        status = rf_read_apple(read, file, parts->mpf, parts->end);
+    }
+    return status;
+}
+#else
+static int read_depth(struct rf_read *read, struct rf_bytes file,
+                      const struct parts *parts)
+{
+    (void)file;
+    if (parts->xmp.data || parts->mpf.data) {
+        rf_note(read->info, "XMP: passed over, this build has no expat");
+    }
+    return REFOCUS_OK;
+}
+#endif
+
+int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
+{
+    struct parts parts;
+    int status;
+
+    memcpy(read->info->container, "JPEG", 5);
+    if (!find_parts(file, &parts)) {
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged JPEG: it ends in the middle of the picture; copy it again");
+    }
+    status = rf_exif_take(read, parts.exif, true);
+    if (status == REFOCUS_OK) {
+        status = join_icc(read, &parts);
+    }
+    if (status == REFOCUS_OK) {
+        status = read_depth(read, file, &parts);
+    }
+    /* rf_read_gdepth() may have put the all-in-focus original there already. */
+    if (status == REFOCUS_OK && !read->image.pixels &&
+        (read->picture_always || !read->samples.pixels)) {
+        status = rf_jpeg_decode(read, (struct rf_bytes){file.data, parts.end},
+                                &read->image);
+    }
+    return status;
+}

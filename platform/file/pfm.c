@@ -1,0 +1,141 @@
+/* PFM: 32-bit floats, rows from the bottom up, byte order by the sign of the scale. */
+#include "internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool is_blank(uint8_t c)
+{
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+/* The next word of the header; false when the file ends or the word is too long. */
+static bool scan_word(struct rf_bytes file, size_t *position, char *word, size_t size)
+{
+    size_t n = 0;
+
+    while (*position < file.size && is_blank(file.data[*position])) {
+        ++*position;
+    }
+    while (*position < file.size && !is_blank(file.data[*position])) {
+        if (n + 1 >= size) {
+            return false;
+        }
+        word[n++] = (char)file.data[(*position)++];
+    }
+    word[n] = '\0';
+    return n > 0;
+}
+
+static bool scan_side(struct rf_bytes file, size_t *position, uint64_t *side)
+{
+    char word[32];
+    double value;
+
+    if (!scan_word(file, position, word, sizeof word) || !rf_parse_number(word, &value) ||
+        value < 0 || value > 4294967295.0 || value != floor(value)) {
+        return false;
+    }
+    *side = (uint64_t)value;
+    return true;
+}
+
+static float load_float(const uint8_t *b, bool little_endian)
+{
+    const uint32_t bits = little_endian
+                              ? (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 |
+                                    (uint32_t)b[1] << 8 | b[0]
+                              : (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 |
+                                    (uint32_t)b[2] << 8 | b[3];
+    float value;
+
+    memcpy(&value, &bits, 4);
+    return value;
+}
+
+int rf_read_pfm(struct rf_read *read, struct rf_bytes file)
+{
+    struct rf_raster *const raster = &read->samples;
+    size_t position = 2, stride;
+    uint64_t width, height;
+    char word[32];
+    double scale;
+    int status;
+
+    snprintf(read->info->container, sizeof read->info->container, "PFM");
+    if (file.data[1] == 'F') {
+        return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
+                       "it is a PFM of three colours, not a depth map; give one of the "
+                       "kind \"Pf\"");
+    }
+    if (!scan_side(file, &position, &width) || !scan_side(file, &position, &height) ||
+        !scan_word(file, &position, word, sizeof word) ||
+        !rf_parse_number(word, &scale) || scale == 0.0) {
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged: its PFM header holds no width, height and scale");
+    }
+    status = rf_check_size(read, width, height, 4);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    if (position >= file.size || file.size - position - 1 < width * height * 4) {
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged: it ends in the middle of the map; copy it again");
+    }
+    raster->width = (int32_t)width;
+    raster->height = (int32_t)height;
+    raster->channels = 1;
+    raster->sample = REFOCUS_SAMPLE_F32;
+    status = rf_raster_alloc(read, raster);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    stride = (size_t)width * 4;
+    for (size_t y = 0; y < height; y++) {
+        const uint8_t *const from = file.data + position + 1 + (height - 1 - y) * stride;
+        float *const to = (float *)(void *)(raster->pixels + y * stride);
+        for (size_t x = 0; x < width; x++) {
+            to[x] = load_float(from + 4 * x, scale < 0);
+        }
+    }
+    rf_note(read->info, "PFM: 32-bit floats, %s byte first, bottom row first",
+            scale < 0 ? "low" : "high");
+    if (fabs(scale) != 1.0) {
+        rf_note(read->info, "PFM: its scale factor %g is not applied", fabs(scale));
+    }
+    return REFOCUS_OK;
+}
+
+int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows,
+                 struct refocus_reason *reason)
+{
+    uint8_t *const row = malloc((size_t)rows->width * 4);
+    char header[64];
+    int n;
+
+    if (!row) {
+        return rf_fail_memory(reason);
+    }
+    n = snprintf(header, sizeof header, "Pf\n%d %d\n-1.0\n", (int)rows->width,
+                 (int)rows->height);
+    rf_store_write(store, header, (size_t)n);
+    for (int32_t y = rows->height - 1; y >= 0; y--) {
+        const uint8_t *const from = rows->top + y * rows->stride;
+        for (int32_t x = 0; x < rows->width; x++) {
+            uint16_t sample;
+            uint32_t bits;
+            float value;
+
+            memcpy(&sample, from + 2 * x, 2);
+            value = (float)(sample / 65535.0);
+            memcpy(&bits, &value, 4);
+            for (int i = 0; i < 4; i++) {
+                row[4 * x + i] = (uint8_t)(bits >> (8 * i));
+            }
+        }
+        rf_store_write(store, row, (size_t)rows->width * 4);
+    }
+    free(row);
+    return REFOCUS_OK;
+}

@@ -1,0 +1,81 @@
+/* From samples as they are stored to RGB8 photos and to one channel of depth. */
+#include "internal.h"
+
+static uint32_t load_sample(const uint8_t *pixels, uint32_t sample, size_t index)
+{
+    return sample == REFOCUS_SAMPLE_U8 ? pixels[index]
+                                       : ((const uint16_t *)(const void *)pixels)[index];
+}
+
+int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
+{
+    struct rf_raster rgb = *raster;
+    const size_t count = (size_t)raster->width * (size_t)raster->height;
+    const int channels = raster->channels;
+    const uint32_t max = raster->max_value;
+    int status;
+
+    if (raster->sample == REFOCUS_SAMPLE_U8 && channels == 3 && max == 255) {
+        return REFOCUS_OK;
+    }
+    rgb.channels = 3;
+    rgb.sample = REFOCUS_SAMPLE_U8;
+    rgb.max_value = 255;
+    status = rf_raster_alloc(read, &rgb);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+        for (int c = 0; c < 3; c++) {
+            const size_t from = i * (size_t)channels + (size_t)(channels == 3 ? c : 0);
+            const uint32_t v = load_sample(raster->pixels, raster->sample, from);
+            rgb.pixels[3 * i + (size_t)c] = (uint8_t)((v * 255u + max / 2) / max);
+        }
+    }
+    rf_raster_free(raster);
+    *raster = rgb;
+    return REFOCUS_OK;
+}
+
+/* JPEG stores brightness and colour apart: grey that went through colour differs by a few
+ * levels between its channels (11 at most in the files at hand). */
+enum { LOSSY_GREY = 24 };
+
+int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster)
+{
+    struct rf_raster grey = *raster;
+    const size_t count = (size_t)raster->width * (size_t)raster->height;
+    const uint32_t tolerance = raster->lossy ? LOSSY_GREY : 0;
+    int status;
+
+    if (raster->channels == 1) {
+        return REFOCUS_OK;
+    }
+    grey.channels = 1;
+    status = rf_raster_alloc(read, &grey);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t r = load_sample(raster->pixels, raster->sample, 3 * i);
+        const uint32_t g = load_sample(raster->pixels, raster->sample, 3 * i + 1);
+        const uint32_t b = load_sample(raster->pixels, raster->sample, 3 * i + 2);
+        const uint32_t low = r < g ? (r < b ? r : b) : (g < b ? g : b);
+        const uint32_t high = r > g ? (r > b ? r : b) : (g > b ? g : b);
+        const uint32_t v = (r + 2 * g + b + 2) / 4;
+
+        if (high - low > tolerance) {
+            rf_raster_free(&grey);
+            return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
+                           "it is a colour picture, not a depth map; give one in grey");
+        }
+        if (grey.sample == REFOCUS_SAMPLE_U8) {
+            grey.pixels[i] = (uint8_t)v;
+        } else {
+            ((uint16_t *)(void *)grey.pixels)[i] = (uint16_t)v;
+        }
+    }
+    rf_raster_free(raster);
+    *raster = grey;
+    return REFOCUS_OK;
+}

@@ -1,0 +1,276 @@
+/* Photos: told by their first bytes, read by their format, turned upright. */
+#include "internal.h"
+#include "read.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const char *refocus_file_formats(void)
+{
+    return RF_FORMATS;
+}
+
+static bool begins(struct rf_bytes file, const char *bytes, size_t size)
+{
+    return file.size >= size && memcmp(file.data, bytes, size) == 0;
+}
+
+/* ISO 14496-12: size, "ftyp", the main brand, a version, compatible brands. */
+static bool is_heif(struct rf_bytes file)
+{
+    static const char brands[][5] = {"heic", "heix", "hevc", "hevx",
+                                     "heim", "heis", "mif1", "msf1"};
+
+    if (file.size < 12 || memcmp(file.data + 4, "ftyp", 4) != 0) {
+        return false;
+    }
+    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++) {
+        if (memcmp(file.data + 8, brands[i], 4) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+enum rf_container rf_sniff(struct rf_bytes file)
+{
+    if (begins(file, "\xff\xd8\xff", 3)) {
+        return RF_CONTAINER_JPEG;
+    }
+    if (begins(file, "\x89PNG\r\n\x1a\n", 8)) {
+        return RF_CONTAINER_PNG;
+    }
+    if (is_heif(file)) {
+        return RF_CONTAINER_HEIC;
+    }
+    if (file.size >= 3 && file.data[0] == 'P' && strchr("\t\n\v\f\r #", file.data[2]) &&
+        file.data[2] != '\0') {
+        switch (file.data[1]) {
+        case '2':
+        case '3':
+        case '5':
+        case '6':
+            return RF_CONTAINER_PNM;
+        case 'f':
+        case 'F':
+            return RF_CONTAINER_PFM;
+        }
+    }
+    return RF_CONTAINER_UNKNOWN;
+}
+
+int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char *what,
+                   struct rf_raster *raster)
+{
+    int status;
+
+    switch (rf_sniff(part)) {
+    case RF_CONTAINER_JPEG:
+        status = rf_jpeg_decode(read, part, raster);
+        break;
+    case RF_CONTAINER_PNG:
+        status = rf_png_decode(read, part, raster, NULL, NULL);
+        break;
+    default:
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged: its %s is neither PNG nor JPEG", what);
+    }
+    if (status != REFOCUS_OK) {
+        struct refocus_reason inner = *read->reason;
+        inner.text[sizeof inner.text - 32] = '\0';
+        rf_fail(read->reason, status, "%s: %s", what, inner.text);
+    }
+    return status;
+}
+
+static int read_container(struct rf_read *read, struct rf_bytes file)
+{
+    switch (rf_sniff(file)) {
+    case RF_CONTAINER_JPEG:
+        return rf_read_jpeg(read, file);
+    case RF_CONTAINER_PNG:
+        return rf_read_png(read, file);
+    case RF_CONTAINER_HEIC:
+        return rf_read_heic(read, file);
+    case RF_CONTAINER_PNM:
+        return rf_read_pnm(read, file);
+    case RF_CONTAINER_PFM:
+        if (!read->picture_always) {
+            return rf_read_pfm(read, file);
+        }
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "a PFM file is a depth map, not a photo; give it as the depth");
+    default:
+        if (file.size == 0) {
+            return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "it is empty");
+        }
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "its content is of no known format; known are %s", RF_FORMATS);
+    }
+}
+
+static void set_limits(struct rf_read *read, const struct refocus_read_limits *limits)
+{
+    read->limits.max_pixels = limits && limits->max_pixels ? limits->max_pixels : 1u << 28;
+    read->limits.max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
+}
+
+int rf_read_begin(struct rf_read *read, struct rf_bytes file,
+                  const struct refocus_read_limits *limits, bool picture_always,
+                  struct refocus_photo_info *info, struct refocus_reason *reason)
+{
+    int status;
+
+    memset(read, 0, sizeof *read);
+    set_limits(read, limits);
+    read->reason = reason;
+    read->picture_always = picture_always;
+    read->info = info;
+    read->orientation = 1;
+    info->orientation = 1;
+    info->focus_x = info->focus_y = -1.0;
+    status = rf_check_bytes(read, file.size, "it");
+    if (status == REFOCUS_OK) {
+        status = read_container(read, file);
+    }
+    if (status == REFOCUS_OK) {
+        const struct rf_raster *const stored =
+            read->image.pixels ? &read->image : &read->samples;
+        /* HEIC says its own size: its picture is upright already. */
+        if (info->stored_width == 0) {
+            info->stored_width = stored->width;
+            info->stored_height = stored->height;
+        }
+        if (read->orientation != 1) {
+            info->orientation = read->orientation;
+            rf_note(info, "EXIF: orientation %d is applied to photo and depth",
+                    read->orientation);
+        }
+        if (info->focus_x >= 0.0) {
+            rf_orient_point(&info->focus_x, &info->focus_y, read->orientation);
+        }
+    }
+    return status;
+}
+
+/* Give the finished parts to the photo. */
+static void hand_over(struct rf_read *read, struct rf_photo *photo)
+{
+    struct refocus_photo *const shown = &photo->shown;
+
+    photo->image = read->image.pixels;
+    photo->depth = read->samples.pixels;
+    photo->exif = read->exif.data;
+    photo->icc = read->icc.data;
+    if (read->image.pixels) {
+        shown->image = refocus_image_packed(REFOCUS_FORMAT_RGB8, read->image.pixels,
+                                            read->image.width, read->image.height,
+                                            (ptrdiff_t)rf_raster_stride(&read->image));
+    }
+    if (read->samples.pixels) {
+        shown->depth = read->depth;
+        shown->depth.samples = read->samples.pixels;
+        shown->depth.width = read->samples.width;
+        shown->depth.height = read->samples.height;
+        shown->depth.stride = (ptrdiff_t)rf_raster_stride(&read->samples);
+        shown->depth.sample = read->samples.sample;
+    }
+    shown->exif = read->exif;
+    shown->icc = read->icc;
+    memset(&read->image, 0, sizeof read->image);
+    memset(&read->samples, 0, sizeof read->samples);
+    read->exif.data = read->icc.data = NULL;
+}
+
+int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
+{
+    if (status == REFOCUS_OK && read->image.pixels) {
+        status = rf_raster_to_rgb8(read, &read->image);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_raster_orient(read, &read->image, read->orientation);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_raster_orient(read, &read->samples, read->orientation);
+    }
+    if (status == REFOCUS_OK) {
+        hand_over(read, *photo);
+    } else {
+        free(*photo);
+        *photo = NULL;
+    }
+    rf_raster_free(&read->image);
+    rf_raster_free(&read->samples);
+    free(read->exif.data);
+    free(read->icc.data);
+    return status;
+}
+
+int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes, size_t size,
+                              const struct refocus_read_limits *limits,
+                              struct refocus_reason *reason)
+{
+    struct refocus_reason unused;
+    struct rf_photo *made;
+    struct rf_read read;
+    int status;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!photo) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no place for the photo");
+    }
+    *photo = NULL;
+    if (!bytes && size > 0) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no bytes to read");
+    }
+    made = calloc(1, sizeof *made);
+    if (!made) {
+        return rf_fail_memory(reason);
+    }
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true,
+                           &made->shown.info, reason);
+    status = rf_read_finish(&read, status, &made);
+    *photo = made ? &made->shown : NULL;
+    return status;
+}
+
+int refocus_photo_read(struct refocus_photo **photo, const char *path,
+                       const struct refocus_read_limits *limits,
+                       struct refocus_reason *reason)
+{
+    struct refocus_reason unused;
+    struct refocus_blob file;
+    struct rf_read read;
+    int status;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!photo || !path) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no photo or no path");
+    }
+    *photo = NULL;
+    set_limits(&read, limits);
+    status = rf_load(path, read.limits.max_bytes, reason, &file);
+    if (status == REFOCUS_OK) {
+        status = refocus_photo_read_memory(photo, file.data, file.size, limits, reason);
+        free(file.data);
+    }
+    return status;
+}
+
+void refocus_photo_free(struct refocus_photo **photo)
+{
+    struct rf_photo *owner;
+
+    if (!photo || !*photo) {
+        return;
+    }
+    owner = (struct rf_photo *)(void *)*photo;
+    free(owner->image);
+    free(owner->depth);
+    free(owner->exif);
+    free(owner->icc);
+    free(owner);
+    *photo = NULL;
+}

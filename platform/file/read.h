@@ -1,0 +1,14 @@
+/* The two halves of a reading, between which depth_file.c chooses what is depth. */
+#ifndef RF_FILE_READ_H
+#define RF_FILE_READ_H
+
+#include "internal.h"
+
+/* Read the container. The info must be zero and stay where it is. */
+int rf_read_begin(struct rf_read *read, struct rf_bytes file,
+                  const struct refocus_read_limits *limits, bool picture_always,
+                  struct refocus_photo_info *info, struct refocus_reason *reason);
+/* Turn upright and hand over, or, when status is an error, free; returns the status. */
+int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo);
+
+#endif
