@@ -1,0 +1,380 @@
+/* Formats without metadata of depth: PNM, PFM, PNG; and the words for depth units. */
+#include "check.h"
+
+#include <locale.h>
+#include <math.h>
+
+static struct bytes text_file(const char *text)
+{
+    return bytes_copy(text, strlen(text));
+}
+
+static void ppm_raw_and_plain(void **state)
+{
+    struct bytes raw = text_file("P6 # a comment\n2 2\n255\n");
+    struct refocus_photo *photo;
+
+    (void)state;
+    bytes_add(&raw, "\1\2\3\4\5\6\7\10\11\12\13\14trailing bytes do not matter", 40);
+    photo = read_photo(raw, REFOCUS_OK);
+    assert_int_equal(photo->image.width, 2);
+    assert_int_equal(photo->image.height, 2);
+    assert_string_equal(photo->info.container, "PPM");
+    assert_memory_equal(pixel_at(&photo->image, 1, 1), "\12\13\14", 3);
+    assert_null(photo->depth.samples);
+    refocus_photo_free(&photo);
+    assert_null(photo);
+    photo = read_photo(text_file("P3\n1 1 100\n0 50 100\n"), REFOCUS_OK);
+    assert_memory_equal(pixel_at(&photo->image, 0, 0), "\0\200\377", 3);
+    refocus_photo_free(&photo);
+}
+
+static void pgm_16_bits_as_photo_and_depth(void **state)
+{
+    struct bytes file = text_file("P5\n3 1\n65535\n");
+    struct refocus_photo *photo;
+
+    (void)state;
+    bytes_add(&file, "\0\0\200\0\377\377", 6);
+    photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
+    assert_memory_equal(photo->image.plane[0], "\0\0\0\200\200\200\377\377\377", 9);
+    refocus_photo_free(&photo);
+    photo = read_depth(file, NULL, REFOCUS_OK);
+    assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U16);
+    assert_int_equal(sample_at(&photo->depth, 1, 0), 0x8000);
+    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
+    assert_true(photo->depth.value_near == 65535 && photo->depth.value_far == 0);
+    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_FILE);
+    assert_null(photo->image.plane[0]);
+    refocus_photo_free(&photo);
+}
+
+static void pgm_white_is_its_greatest_value(void **state)
+{
+    struct refocus_photo *photo =
+        read_depth(text_file("P2 2 1 1000\n0 1000\n"), NULL, REFOCUS_OK);
+
+    (void)state;
+    assert_true(photo->depth.value_near == 1000);
+    refocus_photo_free(&photo);
+    photo = read_depth(text_file("P2 2 1 1000\n0 1000\n"), "mm", REFOCUS_OK);
+    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_true(photo->depth.flags == REFOCUS_DEPTH_ZERO_IS_UNKNOWN);
+    assert_near(photo->depth.metres_per_unit, 0.001);
+    refocus_photo_free(&photo);
+}
+
+static void pnm_damaged(void **state)
+{
+    static const char *const bad[] = {
+        "P6", "P6\n", "P6 2 2", "P6 2 2 255", "P6 2 2 255 x", "P6 0 2 255 ", "P6 2 -2 255 ",
+        "P6 2 2 0 xxxxxxxxxxxx", "P6 2 2 65536 xxxxxxxxxxxxxxxxxxxxxxxxxx",
+        "P2 1 1 5 6", "P2 2 1 5 1", "P2 1 1 5 x", "P5 1 1 10 \377", "P6 2 2 255 xxxxxxxxxxx",
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        read_photo(text_file(bad[i]), REFOCUS_ERR_FORMAT);
+    }
+    read_photo(text_file("P6 2147483648 2147483648 255 x"), REFOCUS_ERR_SIZE);
+    read_photo(text_file("P6 65535 65535 255 x"), REFOCUS_ERR_SIZE);
+    read_photo(text_file("P6 99999999999999999999 1 255 x"), REFOCUS_ERR_FORMAT);
+}
+
+static struct bytes make_pfm(bool big_endian, const char *kind)
+{
+    static const float values[6] = {-1.5f, 0.0f, 2.25f, 3.0f, 100.0f, 0.125f};
+    struct bytes file = text_file(kind);
+
+    bytes_text(&file, big_endian ? "\n3 2\n1.0\n" : "\n3 2\n-1.0\n");
+    for (int i = 0; i < 6; i++) {
+        uint32_t bits;
+        memcpy(&bits, &values[i], 4);
+        bytes_number(&file, bits, 4, big_endian);
+    }
+    return file;
+}
+
+static void pfm_both_byte_orders(void **state)
+{
+    (void)state;
+    for (int big_endian = 0; big_endian < 2; big_endian++) {
+        struct refocus_photo *photo =
+            read_depth(make_pfm(big_endian, "Pf"), NULL, REFOCUS_OK);
+
+        assert_int_equal(photo->depth.width, 3);
+        assert_int_equal(photo->depth.height, 2);
+        /* The file begins with the bottom row. */
+        assert_true(float_at(&photo->depth, 0, 1) == -1.5);
+        assert_true(float_at(&photo->depth, 2, 1) == 2.25);
+        assert_true(float_at(&photo->depth, 1, 0) == 100.0);
+        assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
+        assert_true(photo->depth.value_near == photo->depth.value_far);
+        refocus_photo_free(&photo);
+    }
+}
+
+static void pfm_units(void **state)
+{
+    struct refocus_photo *photo = read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
+
+    (void)state;
+    assert_true(photo->depth.value_near == -1.5 && photo->depth.value_far == 100.0);
+    refocus_photo_free(&photo);
+    photo = read_depth(make_pfm(false, "Pf"), "m", REFOCUS_OK);
+    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_true(photo->depth.metres_per_unit == 1.0 && photo->depth.metres_at_zero == 0.0);
+    refocus_photo_free(&photo);
+}
+
+static void pfm_refused(void **state)
+{
+    struct bytes tall = text_file("Pf\n2147483648 2147483648\n-1\n....");
+
+    (void)state;
+    read_depth(make_pfm(false, "PF"), NULL, REFOCUS_ERR_NO_DEPTH);
+    read_photo(make_pfm(false, "Pf"), REFOCUS_ERR_UNSUPPORTED);
+    read_depth(tall, NULL, REFOCUS_ERR_SIZE);
+    read_depth(text_file("Pf\n65535 4096\n-1\n...."), NULL, REFOCUS_ERR_FORMAT);
+    read_depth(text_file("Pf\n1 1\n0\n...."), NULL, REFOCUS_ERR_FORMAT);
+    read_depth(text_file("Pf\n1.5 1\n-1\n...."), NULL, REFOCUS_ERR_FORMAT);
+    read_depth(text_file("Pf\n-1 1\n-1\n...."), NULL, REFOCUS_ERR_FORMAT);
+    read_depth(text_file("Pf\n1 1\n-1"), NULL, REFOCUS_ERR_FORMAT);
+}
+
+static void unit_words(void **state)
+{
+    static const char *const bad[] = {"",    "M",     "cm",       "m/m",  "/m", "0/m",
+                                      "-1/m", "1e999/m", "5000/mm", "5000", "nan/m", "inf/m"};
+    struct refocus_depth_map map = {.sample = REFOCUS_SAMPLE_U8};
+
+    (void)state;
+    assert_int_equal(refocus_depth_set_unit(&map, "disparity"), REFOCUS_OK);
+    assert_true(map.value_near == 255 && map.value_far == 0 && map.flags == 0);
+    assert_int_equal(refocus_depth_set_unit(&map, "inverse"), REFOCUS_OK);
+    assert_true(map.value_near == 0 && map.value_far == 255);
+    map.sample = REFOCUS_SAMPLE_U16;
+    assert_int_equal(refocus_depth_set_unit(&map, "inverse"), REFOCUS_OK);
+    assert_true(map.value_far == 65535);
+    assert_int_equal(refocus_depth_set_unit(&map, "5000/m"), REFOCUS_OK);
+    assert_int_equal(map.meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_near(map.metres_per_unit, 0.0002);
+    assert_int_equal(refocus_depth_set_unit(&map, "2.5e3/m"), REFOCUS_OK);
+    assert_near(map.metres_per_unit, 0.0004);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_int_equal(refocus_depth_set_unit(&map, bad[i]), REFOCUS_ERR_ARGUMENT);
+        read_depth(make_pfm(false, "Pf"), bad[i], REFOCUS_ERR_ARGUMENT);
+    }
+    assert_near(map.metres_per_unit, 0.0004);
+    assert_int_equal(refocus_depth_set_unit(NULL, "m"), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_depth_set_unit(&map, NULL), REFOCUS_ERR_ARGUMENT);
+}
+
+static void range_overrules(void **state)
+{
+    static const double bad[][2] = {{-1, 0}, {0, -1}, {2, 1}, {1, 1}, {NAN, 0}, {0, NAN},
+                                    {INFINITY, 0}};
+    struct bytes file = text_file("P5\n1 1\n255\n\1");
+    struct refocus_photo *photo;
+
+    (void)state;
+    assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, "disparity",
+                                               0.5, INFINITY, NULL, NULL),
+                     REFOCUS_OK);
+    assert_true(photo->depth.near_m == 0.5 && isinf(photo->depth.far_m));
+    refocus_photo_free(&photo);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, NULL,
+                                                   bad[i][0], bad[i][1], NULL, NULL),
+                         REFOCUS_ERR_ARGUMENT);
+        assert_null(photo);
+    }
+    bytes_free(&file);
+}
+
+static void unknown_content(void **state)
+{
+    struct refocus_reason reason;
+    struct refocus_photo *photo;
+
+    (void)state;
+    read_photo(text_file("GIF89a..........."), REFOCUS_ERR_FORMAT);
+    read_photo(text_file(""), REFOCUS_ERR_FORMAT);
+    read_photo(text_file("P"), REFOCUS_ERR_FORMAT);
+    read_photo(text_file("P4 1 1 x"), REFOCUS_ERR_FORMAT);
+    assert_int_equal(refocus_photo_read_memory(&photo, NULL, 0, NULL, &reason),
+                     REFOCUS_ERR_FORMAT);
+    assert_int_equal(refocus_photo_read_memory(&photo, NULL, 5, NULL, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_photo_read(&photo, "/does/not/exist.png", NULL, &reason),
+                     REFOCUS_ERR_IO);
+    assert_null(strstr(reason.text, "exist.png"));
+    assert_int_equal(refocus_photo_read(&photo, "/", NULL, &reason), REFOCUS_ERR_IO);
+    assert_int_equal(refocus_depth_read(&photo, "/", NULL, 0, 0, NULL, &reason),
+                     REFOCUS_ERR_IO);
+    assert_null(photo);
+    refocus_photo_free(NULL);
+}
+
+static void limits_are_kept(void **state)
+{
+    const struct refocus_read_limits few_pixels = {.max_pixels = 11};
+    const struct refocus_read_limits few_bytes = {.max_bytes = 20};
+    struct bytes file = text_file("P5\n4 3\n255\n............");
+    struct refocus_reason reason;
+    struct refocus_photo *photo;
+
+    (void)state;
+    assert_int_equal(
+        refocus_photo_read_memory(&photo, file.data, file.size, &few_pixels, &reason),
+        REFOCUS_ERR_SIZE);
+    assert_non_null(strstr(reason.text, "11"));
+    assert_int_equal(
+        refocus_photo_read_memory(&photo, file.data, file.size, &few_bytes, &reason),
+        REFOCUS_ERR_SIZE);
+    bytes_free(&file);
+}
+
+#ifdef RF_HAVE_PNG
+static void png_kinds(void **state)
+{
+    static const int kinds[][2] = {{0, 8}, {0, 16}, {2, 8}, {2, 16}, {3, 8},
+                                   {4, 8}, {4, 16}, {6, 8}, {6, 16}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        const int type = kinds[i][0], bits = kinds[i][1];
+        struct refocus_photo *photo = read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
+
+        assert_string_equal(photo->info.container, "PNG");
+        assert_int_equal(photo->image.width, 7);
+        for (int y = 0; y < 5; y++) {
+            for (int x = 0; x < 7; x++) {
+                for (int c = 0; c < 3; c++) {
+                    const unsigned max = bits == 16 ? 65535 : 255;
+                    const unsigned v = pattern(x, y, type & 2 && type != 3 ? c : 0, max);
+                    assert_int_equal(pixel_at(&photo->image, x, y)[c],
+                                     (v * 255 + max / 2) / max);
+                }
+            }
+        }
+        refocus_photo_free(&photo);
+    }
+}
+
+static void png_small_samples(void **state)
+{
+    /* 5 pixels of 2 bits: 0 1 2 3 0 */
+    struct refocus_photo *photo =
+        read_photo(make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
+
+    (void)state;
+    assert_int_equal(pixel_at(&photo->image, 1, 0)[0], 85);
+    assert_int_equal(pixel_at(&photo->image, 3, 0)[0], 255);
+    refocus_photo_free(&photo);
+}
+
+static void png_depth(void **state)
+{
+    struct refocus_photo *photo = read_depth(make_png(6, 4, 0, 16), "5000/m", REFOCUS_OK);
+    uint8_t grey_rgb[2 * 3 * 2];
+
+    (void)state;
+    assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U16);
+    assert_int_equal(sample_at(&photo->depth, 5, 3), pattern(5, 3, 0, 65535));
+    assert_near(photo->depth.metres_per_unit, 1 / 5000.0);
+    refocus_photo_free(&photo);
+    read_depth(make_png(6, 4, 2, 8), NULL, REFOCUS_ERR_NO_DEPTH);
+    for (int i = 0; i < 12; i++) {
+        grey_rgb[i] = (uint8_t)(i / 3 * 20);
+    }
+    photo = read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_OK);
+    assert_int_equal(sample_at(&photo->depth, 1, 1), 60);
+    assert_true(photo->depth.value_near == 255);
+    refocus_photo_free(&photo);
+    grey_rgb[11] ^= 1;
+    read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_ERR_NO_DEPTH);
+}
+
+/* Only the header's size is changed, its checksum mended. */
+static struct bytes png_of_size(uint64_t width, uint64_t height)
+{
+    struct bytes png = {NULL, 0}, header = {NULL, 0};
+
+    bytes_add(&png, "\x89PNG\r\n\x1a\n", 8);
+    bytes_number(&header, width, 4, true);
+    bytes_number(&header, height, 4, true);
+    bytes_add(&header, "\10\2\0\0\0", 5);
+    png_chunk(&png, "IHDR", header.data, header.size);
+    png_chunk(&png, "IDAT", "x", 1);
+    png_chunk(&png, "IEND", "", 0);
+    bytes_free(&header);
+    return png;
+}
+
+static void png_absurd(void **state)
+{
+    (void)state;
+    read_photo(png_of_size(0x7fffffff, 0x7fffffff), REFOCUS_ERR_SIZE);
+    read_photo(png_of_size(65535, 65535), REFOCUS_ERR_SIZE);
+    read_photo(png_of_size(65536, 1), REFOCUS_ERR_SIZE);
+    read_photo(png_of_size(0x80000000u, 1), REFOCUS_ERR_FORMAT);
+    read_photo(png_of_size(0, 1), REFOCUS_ERR_FORMAT);
+    read_photo(png_of_size(8, 8), REFOCUS_ERR_FORMAT);
+}
+#endif
+
+static void numbers_ignore_the_locale(void **state)
+{
+    (void)state;
+    /* Not every machine has one with a decimal comma; with one this is the test. */
+    if (!setlocale(LC_NUMERIC, "de_DE.UTF-8")) {
+        setlocale(LC_NUMERIC, "C.UTF-8");
+    }
+    unit_words(NULL);
+    setlocale(LC_NUMERIC, "C");
+}
+
+static void formats_are_named(void **state)
+{
+    (void)state;
+    assert_non_null(strstr(refocus_file_formats(), "PFM"));
+#ifdef RF_HAVE_PNG
+    assert_non_null(strstr(refocus_file_formats(), "PNG"));
+#else
+    read_photo(make_png(2, 2, 0, 8), REFOCUS_ERR_UNSUPPORTED);
+#endif
+#ifndef RF_HAVE_JPEG
+    read_photo(bytes_copy("\xff\xd8\xff\xd9", 4), REFOCUS_ERR_UNSUPPORTED);
+#endif
+#ifndef RF_HAVE_HEIC
+    read_photo(bytes_copy("\0\0\0\14ftypheic", 12), REFOCUS_ERR_UNSUPPORTED);
+#endif
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ppm_raw_and_plain),
+        cmocka_unit_test(pgm_16_bits_as_photo_and_depth),
+        cmocka_unit_test(pgm_white_is_its_greatest_value),
+        cmocka_unit_test(pnm_damaged),
+        cmocka_unit_test(pfm_both_byte_orders),
+        cmocka_unit_test(pfm_units),
+        cmocka_unit_test(pfm_refused),
+        cmocka_unit_test(unit_words),
+        cmocka_unit_test(range_overrules),
+        cmocka_unit_test(unknown_content),
+        cmocka_unit_test(limits_are_kept),
+#ifdef RF_HAVE_PNG
+        cmocka_unit_test(png_kinds),
+        cmocka_unit_test(png_small_samples),
+        cmocka_unit_test(png_depth),
+        cmocka_unit_test(png_absurd),
+#endif
+        cmocka_unit_test(numbers_ignore_the_locale),
+        cmocka_unit_test(formats_are_named),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
