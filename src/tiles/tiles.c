@@ -8,8 +8,9 @@ struct rf_bin_scale rf_bin_scale_of(float max_blur_radius)
 {
     const int shift = max_blur_radius <= 31.5f ? 6 : max_blur_radius <= 63.5f ? 7 : 8;
 
-    /* The bins below the focus hold -31.5 .. -1/2 pixel at shift 6, and so on. */
-    return (struct rf_bin_scale){shift, 124, 256 >> shift};
+    /* Then -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
+     * shift 7, -127 .. 127 bins 0 .. 254 at shift 8. */
+    return (struct rf_bin_scale){shift, 127, 256 >> shift};
 }
 
 static int bin_of(struct rf_bin_scale scale, int s)
@@ -20,7 +21,7 @@ static int bin_of(struct rf_bin_scale scale, int s)
 /* Least blur of a bin. */
 static int edge_of(struct rf_bin_scale scale, int bin)
 {
-    return ((bin - scale.focus) << scale.shift) - HALF;
+    return (bin - scale.focus) * (1 << scale.shift) - HALF;
 }
 
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
