@@ -2,7 +2,9 @@
 
 #include <string.h>
 
-enum { STEP = 256, DIAGONAL = 362, HALF = 128 }; /* Q7.8 pixels */
+/* Q7.8 pixels. The cone falls by 2/3 pixel a pixel: a third deeper than anything can be
+ * seen through, so that mixed pixels along the edge do not end up as sources. */
+enum { STEP = 171, DIAGONAL = 241, HALF = 128, SURFACE = 256 };
 
 static int max(int a, int b)
 {
@@ -89,7 +91,7 @@ static void push(const struct rf_level *fine, ptrdiff_t fine_stride, struct rf_l
             for (int i = 0; i < children; i++) {
                 const int s = fine->blur[child[i]];
 
-                if (s == RF_NO_BLUR || s < farthest - STEP)
+                if (s == RF_NO_BLUR || s < farthest - SURFACE)
                     continue;
                 n++;
                 blur += s;

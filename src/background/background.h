@@ -14,10 +14,11 @@
  *
  * Mark: p is foreground where some q lies farther behind than it is away,
  *
- *     max over q of (s(q) - |p - q|) > s(p) + 1/2 pixel,
+ *     max over q of (s(q) - 2/3 |p - q|) > s(p) + 1/2 pixel,
  *
  * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and
- * sqrt 2. Fill: marked pixels take light and blur by push-pull from the others.
+ * sqrt 2. (Slope 1 would be what can be seen through; 2/3 keeps the mixed pixels beside it
+ * out of the sources.) Fill: marked pixels take light and blur by push-pull from the rest.
  */
 void rf_background(struct refocus_renderer *r);
 

@@ -1,22 +1,5 @@
 #include "methods/method.h"
-
-struct order {
-    int bytes, r, g, b, a;
-};
-
-static struct order order_of(uint32_t format)
-{
-    switch (format) {
-    case REFOCUS_FORMAT_RGB8:
-        return (struct order){3, 0, 1, 2, -1};
-    case REFOCUS_FORMAT_BGR8:
-        return (struct order){3, 2, 1, 0, -1};
-    case REFOCUS_FORMAT_RGBA8:
-        return (struct order){4, 0, 1, 2, 3};
-    default:
-        return (struct order){4, 2, 1, 0, 3};
-    }
-}
+#include "planes/format.h"
 
 static uint8_t *pixel(const struct rf_frame *f, int bytes, int x, int y)
 {
@@ -26,7 +9,7 @@ static uint8_t *pixel(const struct rf_frame *f, int bytes, int x, int y)
 
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
 {
-    const struct order o = order_of(f->out->format);
+    const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
@@ -48,7 +31,7 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
 
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
 {
-    const struct order o = order_of(f->out->format);
+    const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
@@ -65,4 +48,16 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
                 out[o.a] = alpha[x];
         }
     }
+}
+
+void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3])
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    uint8_t *out = pixel(f, o.bytes, x, y);
+
+    out[o.r] = rgb[0];
+    out[o.g] = rgb[1];
+    out[o.b] = rgb[2];
+    if (o.a >= 0)
+        out[o.a] = f->r->alpha[(size_t)y * f->r->width + x];
 }

@@ -12,6 +12,14 @@ struct rf_rect {
     int x0, y0, x1, y1;
 };
 
+/* Curve and weights of eq. 5 in double precision, of 8-bit codes. */
+struct rf_exact {
+    double light[256];
+    double boundary[256]; /* light in the middle between code c and c + 1 */
+    double weight[256];
+};
+void rf_exact_init(struct rf_exact *exact, uint32_t blend, double sigma);
+
 /* One refocus_render() call. */
 struct rf_frame {
     struct refocus_renderer *r;
@@ -24,6 +32,7 @@ struct rf_frame {
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above;    /* |s| from which rays lie far apart, Q7.8 */
     bool weighted;          /* eq. 5 weights differ from 1 */
+    const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
 
 /*
@@ -62,6 +71,9 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
 
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
+
+/* One pixel given as codes; alpha is the photo's. */
+void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
 
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);

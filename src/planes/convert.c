@@ -1,30 +1,12 @@
+#include "planes/format.h"
 #include "planes/planes.h"
 
 #include <string.h>
 
-/* Where R, G, B and alpha stand in a pixel of a format; alpha -1: none. */
-struct order {
-    int bytes, r, g, b, a;
-};
-
-static struct order order_of(uint32_t format)
-{
-    switch (format) {
-    case REFOCUS_FORMAT_RGB8:
-        return (struct order){3, 0, 1, 2, -1};
-    case REFOCUS_FORMAT_BGR8:
-        return (struct order){3, 2, 1, 0, -1};
-    case REFOCUS_FORMAT_RGBA8:
-        return (struct order){4, 0, 1, 2, 3};
-    default:
-        return (struct order){4, 2, 1, 0, 3};
-    }
-}
-
 void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0,
                      int y1)
 {
-    const struct order o = order_of(photo->format);
+    const struct rf_order o = rf_order_of(photo->format);
     const uint16_t *to_light = r->transfer[r->blend].to_light;
 
     for (int y = y0; y < y1; y++) {

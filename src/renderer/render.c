@@ -12,17 +12,18 @@
 struct method {
     const char *name, *summary;
     rf_tile_fn *tile;
-    bool tiles, behind, smooth; /* passes it needs */
+    bool layers; /* it needs the pre-filter, the bins of tiles and the background */
+    bool exact;  /* it works in double precision */
 };
 
 static const struct method methods[REFOCUS_METHOD_COUNT] = {
     [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
-                              rf_sweep_tile, true, true, true},
+                              rf_sweep_tile, true, false},
     [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               rf_search_tile, false, false, false},
+                               rf_search_tile, false, false},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace",
                                  "full image-space ray tracing, Yang et al. 2016; slow",
-                                 rf_raytrace_tile, false, false, false},
+                                 rf_raytrace_tile, false, true},
 };
 
 const char *refocus_method_name(uint32_t method)
@@ -159,7 +160,8 @@ static void run_passes(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     const struct method *method = &methods[f->params->method];
-    const bool behind = method->behind || f->params->background;
+    const bool layers = method->layers || f->params->background;
+    struct rf_exact exact;
 
     if (r->blend != f->params->blend) {
         rf_pool_run(&r->pool, reblend_band, f, rf_bands(r));
@@ -170,11 +172,15 @@ static void run_passes(struct rf_frame *f)
         r->blend = f->params->blend;
     }
     set_weights(f);
+    if (method->exact) {
+        rf_exact_init(&exact, r->blend, f->params->sigma);
+        f->exact = &exact;
+    }
     rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
     rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
-    if (method->smooth || behind)
+    if (layers)
         rf_pool_run(&r->pool, smooth_band, f, rf_bands(r));
-    if (behind && !rf_cancelled(r)) {
+    if (layers && !rf_cancelled(r)) {
         rf_background(r);
         rf_pool_run(&r->pool, extend_behind_band, f, rf_bands(r));
     }
