@@ -310,7 +310,8 @@ class Results(Case):
                      ('--method', 'raytrace'), ('--focus', '0.4'), ('--blur', '3')):
             self.succeeds(*self.render('--focus', '1', '--blur', '6', *more))
             self.differs(pictures.read_pnm('out.ppm'), first, more)
-        search = ('--method', 'search', '--focus', '0.2', '--blur', '6')
+        pictures.pgm('many.pgm', W, H, lambda x, y: (x // 5 * 37 + y // 4 * 51) & 255)
+        search = ('--depth', 'many.pgm', '--method', 'search', '--focus', '0.2', '--blur', '6')
         self.succeeds(*self.render(*search))
         first = pictures.read_pnm('out.ppm')
         for more in (('--iterations', '1'), ('--mirror',), ('--background',)):
