@@ -1,6 +1,7 @@
 /* XMP by expat: the few properties that say what is depth, as attributes or elements. */
 #include "internal.h"
 
+#include <errno.h>
 #include <expat.h>
 #include <limits.h>
 #include <string.h>
@@ -160,6 +161,7 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
 {
     enum XML_Error error;
 
+    errno = 0;
     /* Writers pad packets with blanks, some with zeros that XML does not allow. */
     while (packet.size > 0 && packet.data[packet.size - 1] == 0) {
         packet.size--;
@@ -178,7 +180,8 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
         return parsing->status;
     }
     error = XML_GetErrorCode(parsing->parser);
-    if (error == XML_ERROR_NO_MEMORY) {
+    /* expat calls some failed allocations an unbound prefix; malloc() says it in errno. */
+    if (error == XML_ERROR_NO_MEMORY || errno == ENOMEM) {
         return rf_fail_memory(parsing->read->reason);
     }
     return rf_fail(parsing->read->reason, REFOCUS_ERR_FORMAT, "damaged: its XMP: %s",
