@@ -176,13 +176,17 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
         packet.data += step;
         packet.size -= step;
     }
-    if (parsing->status != REFOCUS_OK || packet.size == 0) {
+    if (parsing->status != REFOCUS_OK) {
         return parsing->status;
     }
+    /* expat takes some failed allocations for an unbound prefix, or goes on without what
+     * it had no room for; malloc() itself says so in errno. */
     error = XML_GetErrorCode(parsing->parser);
-    /* expat calls some failed allocations an unbound prefix; malloc() says it in errno. */
     if (error == XML_ERROR_NO_MEMORY || errno == ENOMEM) {
         return rf_fail_memory(parsing->read->reason);
+    }
+    if (packet.size == 0) {
+        return REFOCUS_OK;
     }
     return rf_fail(parsing->read->reason, REFOCUS_ERR_FORMAT, "damaged: its XMP: %s",
                    XML_ErrorString(error));
