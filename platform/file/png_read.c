@@ -92,7 +92,7 @@ static void read_picture(struct reader *reader)
     const png_uint_32 width = png_get_image_width(png, reader->info);
     const png_uint_32 height = png_get_image_height(png, reader->info);
     size_t stride;
-    int passes;
+    int passes, status;
 
     choose_samples(reader);
     passes = png_set_interlace_handling(png);
@@ -103,8 +103,9 @@ static void read_picture(struct reader *reader)
     if (png_get_rowbytes(png, reader->info) != stride) {
         png_error(png, "rows of an unknown layout");
     }
-    reader->status = rf_raster_alloc(reader->read, &reader->raster);
-    if (reader->status != REFOCUS_OK) {
+    status = rf_raster_alloc(reader->read, &reader->raster);
+    if (status != REFOCUS_OK) {
+        reader->status = status;
         png_longjmp(png, 1);
     }
     for (; passes > 0; passes--) {
@@ -150,6 +151,7 @@ static bool run(struct reader *reader)
 {
     const struct refocus_read_limits *const limits = &reader->read->limits;
     const uint64_t chunk = limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
+    int status;
 
     if (setjmp(png_jmpbuf(reader->png))) {
         return false;
@@ -160,10 +162,10 @@ static bool run(struct reader *reader)
     png_set_chunk_malloc_max(reader->png, (png_alloc_size_t)chunk);
     png_read_info(reader->png, reader->info);
     /* Before libpng's row buffers, and with our words rather than libpng's. */
-    reader->status = rf_check_size(
-        reader->read, png_get_image_width(reader->png, reader->info),
-        png_get_image_height(reader->png, reader->info), 1);
-    if (reader->status != REFOCUS_OK) {
+    status = rf_check_size(reader->read, png_get_image_width(reader->png, reader->info),
+                           png_get_image_height(reader->png, reader->info), 1);
+    if (status != REFOCUS_OK) {
+        reader->status = status;
         return false;
     }
     read_picture(reader);

@@ -1,6 +1,7 @@
 /* XMP by expat: the few properties that say what is depth, as attributes or elements. */
 #include "internal.h"
 
+#include <errno.h>
 #include <expat.h>
 #include <limits.h>
 #include <string.h>
@@ -160,6 +161,7 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
 {
     enum XML_Error error;
 
+    errno = 0;
     /* Writers pad packets with blanks, some with zeros that XML does not allow. */
     while (packet.size > 0 && packet.data[packet.size - 1] == 0) {
         packet.size--;
@@ -174,12 +176,17 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
         packet.data += step;
         packet.size -= step;
     }
-    if (parsing->status != REFOCUS_OK || packet.size == 0) {
+    if (parsing->status != REFOCUS_OK) {
         return parsing->status;
     }
+    /* expat takes some failed allocations for an unbound prefix, or goes on without what
+     * it had no room for; malloc() itself says so in errno. */
     error = XML_GetErrorCode(parsing->parser);
-    if (error == XML_ERROR_NO_MEMORY) {
+    if (error == XML_ERROR_NO_MEMORY || errno == ENOMEM) {
         return rf_fail_memory(parsing->read->reason);
+    }
+    if (packet.size == 0) {
+        return REFOCUS_OK;
     }
     return rf_fail(parsing->read->reason, REFOCUS_ERR_FORMAT, "damaged: its XMP: %s",
                    XML_ErrorString(error));

@@ -1,0 +1,211 @@
+/* Every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no crash, and
+ * nothing kept. The linker sends the library's calls here; libpng and expat take theirs
+ * from the library. */
+#include "check.h"
+#include "samples.h"
+
+#include <errno.h>
+#include <unistd.h>
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *memory, size_t size);
+void __real_free(void *memory);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *memory, size_t size);
+void __wrap_free(void *memory);
+
+static long calls, fail_at, live; /* fail_at: 0 = none */
+
+static int refuse(void)
+{
+    if (++calls == fail_at) {
+        errno = ENOMEM;
+        return 1;
+    }
+    return 0;
+}
+
+void *__wrap_malloc(size_t size)
+{
+    void *const memory = refuse() ? NULL : __real_malloc(size);
+
+    live += memory != NULL;
+    return memory;
+}
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+    void *const memory = refuse() ? NULL : __real_calloc(count, size);
+
+    live += memory != NULL;
+    return memory;
+}
+
+void *__wrap_realloc(void *memory, size_t size)
+{
+    void *const grown = refuse() ? NULL : __real_realloc(memory, size);
+
+    live += grown != NULL && memory == NULL;
+    return grown;
+}
+
+void __wrap_free(void *memory)
+{
+    live -= memory != NULL;
+    __real_free(memory);
+}
+
+static int read_one(const struct sample *sample, bool depth, bool *photo_made)
+{
+    struct refocus_photo *photo = NULL;
+    struct refocus_reason reason;
+    const int status =
+        depth ? refocus_depth_read_memory(&photo, sample->bytes.data, sample->bytes.size,
+                                          NULL, 0, 0, NULL, &reason)
+              : refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size,
+                                          NULL, &reason);
+
+    *photo_made = photo != NULL;
+    refocus_photo_free(&photo);
+    return status;
+}
+
+static void fail_each_in(const struct sample *sample, bool depth)
+{
+    bool made;
+    long total;
+
+    calls = live = fail_at = 0;
+    assert_int_equal(read_one(sample, depth, &made), REFOCUS_OK);
+    assert_int_equal(live, 0);
+    total = calls;
+    assert_true(total >= 2);
+    for (long k = 1; k <= total; k++) {
+        int status;
+        calls = live = 0;
+        fail_at = k;
+        status = read_one(sample, depth, &made);
+        fail_at = 0;
+        if (status != REFOCUS_ERR_MEMORY || made || live != 0) {
+            fail_msg("%s: allocation %ld of %ld: status %d, %ld kept", sample->name, k,
+                     total, status, live);
+        }
+    }
+}
+
+static void readers(void **state)
+{
+    struct sample samples[SAMPLES_MAX];
+    const int count = make_samples(samples);
+
+    (void)state;
+    for (int i = 0; i < count; i++) {
+        if (samples[i].photo) {
+            fail_each_in(&samples[i], false);
+        }
+        if (samples[i].depth) {
+            fail_each_in(&samples[i], true);
+        }
+    }
+    free_samples(samples, count);
+}
+
+static int write_one(const char *path, long fail)
+{
+    uint8_t pixels[12 * 3] = {0};
+    uint16_t samples[12] = {0};
+    struct bytes exif = make_exif(true, 1);
+    const struct refocus_blob blob = {exif.data, exif.size};
+    const struct refocus_write_options options = {.exif = &blob};
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 4, 3, 12);
+    struct refocus_reason reason;
+    int status;
+
+    calls = live = 0;
+    fail_at = fail;
+    status = strstr(path, ".p") && !strstr(path, ".ppm")
+                 ? refocus_gray16_write(path, samples, 4, 3, 8, &reason)
+                 : refocus_image_write(path, &image, &options, &reason);
+    fail_at = 0;
+    assert_int_equal(live, 0);
+    bytes_free(&exif);
+    return status;
+}
+
+static void writers(void **state)
+{
+    static const char *const endings[] = {".ppm", ".pgm", ".pfm",
+#ifdef RF_HAVE_PNG
+                                          ".png",
+#endif
+#ifdef RF_HAVE_JPEG
+                                          ".jpg",
+#endif
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        char path[64];
+        long total;
+
+        snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(),
+                 endings[i]);
+        assert_int_equal(write_one(path, 0), REFOCUS_OK);
+        total = calls;
+        assert_int_equal(unlink(path), 0);
+        for (long k = 1; k <= total; k++) {
+            const int status = write_one(path, k);
+            if (status != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0) {
+                fail_msg("%s: allocation %ld: status %d", path, k, status);
+            }
+        }
+    }
+}
+
+static int read_path(const char *path, bool depth, long fail)
+{
+    struct refocus_photo *photo = NULL;
+    struct refocus_reason reason;
+    int status;
+
+    calls = live = 0;
+    fail_at = fail;
+    status = depth ? refocus_depth_read(&photo, path, NULL, 0, 0, NULL, &reason)
+                   : refocus_photo_read(&photo, path, NULL, &reason);
+    fail_at = 0;
+    assert_true((photo != NULL) == (status == REFOCUS_OK));
+    refocus_photo_free(&photo);
+    assert_int_equal(live, 0);
+    return status;
+}
+
+static void files(void **state)
+{
+    const uint16_t samples[12] = {0};
+    char path[64];
+
+    (void)state;
+    snprintf(path, sizeof path, "/tmp/refocus-memory-%ld.pgm", (long)getpid());
+    assert_int_equal(refocus_gray16_write(path, samples, 4, 3, 8, NULL), REFOCUS_OK);
+    for (int depth = 0; depth < 2; depth++) {
+        assert_int_equal(read_path(path, depth, 0), REFOCUS_OK);
+        for (long k = calls; k >= 1; k--) {
+            assert_int_equal(read_path(path, depth, k), REFOCUS_ERR_MEMORY);
+        }
+    }
+    assert_int_equal(unlink(path), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(readers),
+        cmocka_unit_test(writers),
+        cmocka_unit_test(files),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
