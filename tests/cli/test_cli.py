@@ -619,9 +619,9 @@ class Running(Case):
     def test_terminate(self):
         self.interrupt(signal.SIGTERM)
 
-    def test_progress_on_a_terminal(self):
+    def on_a_terminal(self, *arguments):
         terminal, other = pty.openpty()
-        process = subprocess.Popen([REFOCUS, *self.render()], stderr=other)
+        process = subprocess.Popen([REFOCUS, *arguments], stderr=other)
         os.close(other)
         text = b''
         try:
@@ -631,9 +631,23 @@ class Running(Case):
             pass
         os.close(terminal)
         self.assertEqual(process.wait(), 0)
+        return text
+
+    def test_progress_on_a_terminal(self):
+        text = self.on_a_terminal(*self.render())
         for word in (b'reading', b'preparing', b'rendering', b'writing', b' % '):
             self.assertIn(word, text)
         self.assertTrue(text.endswith(b'\r\x1b[K'), text)
+
+    def test_slow_methods_progress_by_strips(self):
+        """And the picture is the same."""
+        slow = self.render('--method', 'raytrace', '--focus', '1', '--blur', '7')
+        for region in ((), ('--region', '5,3,30,27')):
+            self.succeeds(*slow, *region)
+            whole = pictures.read_pnm('out.ppm')
+            text = self.on_a_terminal(*slow, *region)
+            self.assertGreater(text.count(b'rendering'), 10)
+            self.same(pictures.read_pnm('out.ppm'), whole, region)
 
 
 class Photos(Case):
