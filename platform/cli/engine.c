@@ -177,6 +177,9 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
         return report_failure(EXIT_FAILED, "--cpu",
                               "this processor or build has no %s; give auto",
                               refocus_cpu_name(params.cpu));
+    if (status == REFOCUS_ERR_THREAD)
+        return report_failure(EXIT_FAILED, "--threads", "%s; give fewer",
+                              refocus_strerror(status));
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name,
                               "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a smaller "

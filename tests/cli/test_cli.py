@@ -5,6 +5,7 @@ import json
 import os
 import pty
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -595,6 +596,64 @@ class Failures(Case):
         with open('text.pgm', 'w') as file:
             file.write('P5\n')
         return 'text.pgm'
+
+
+class Extremes(Case):
+    METHODS = ('sweep', 'search', 'raytrace')
+
+    def test_one_pixel(self):
+        pictures.ppm('one.ppm', 1, 1, lambda x, y: (7, 77, 177))
+        pictures.pgm('one.pgm', 1, 1, lambda x, y: 9)
+        for method in self.METHODS:
+            for depth in ('one.pgm', 'depth.pgm'):
+                self.succeeds('render', 'one.ppm', '--depth', depth, '--blur', '127', '-o',
+                              'out.ppm', '--method', method)
+                self.same(pictures.read_pnm('out.ppm'), pictures.read_pnm('one.ppm'))
+            self.succeeds(*self.render('--depth', 'one.pgm', '--method', method))
+        for view in ('depth', 'blur'):
+            self.succeeds('render', 'one.ppm', '--depth', 'one.pgm', '-o', 'out.ppm', '--view',
+                          view)
+
+    def test_longest_side(self):
+        pictures.ppm('long.ppm', 65535, 1, lambda x, y: (x & 255, 7, x >> 8))
+        pictures.pgm('long.pgm', 65535, 1, lambda x, y: x // 300)
+        pictures.pgm('tall.pgm', 1, 65535, lambda x, y: x // 300)
+        for depth in ('long.pgm', 'tall.pgm'):
+            report = self.reports('render', 'long.ppm', '--depth', depth, '--blur', '5', '-o',
+                                  'out.png')
+            self.assertEqual((report['width'], report['height']), (65535, 1))
+        self.succeeds('render', 'long.ppm', '--depth', 'long.pgm', '--view', 'depth', '-o',
+                      'out.png')
+
+    def test_absurd_size(self):
+        with open('huge.ppm', 'wb') as file:
+            file.write(b'P6\n65535 65535\n255\n')
+        self.fails(1, re.compile('^refocus: huge.ppm: .*limit'), 'info', 'huge.ppm')
+
+    def test_little_memory(self):
+        """Whatever allocation fails: a line, and no file."""
+        def limit(kib):
+            return lambda: resource.setrlimit(resource.RLIMIT_AS, (kib << 10, kib << 10))
+
+        least = next((kib for kib in range(8000, 200000, 2000) if subprocess.run(
+            [REFOCUS, '--version'], preexec_fn=limit(kib), stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL).returncode == 0), None)
+        if not least:
+            self.skipTest('a sanitizer takes more address space than that')
+        pictures.png('black.png', 1500, 1000, [bytes(4500)] * 1000)
+        codes = set()
+        for more in range(0, 80000, 5000):
+            out = 'out%d.png' % more
+            result = self.run_it('render', 'black.png', '--depth', 'depth.pgm', '--blur', '9',
+                                 '--threads', '1', '--rays', '8', '-o', out,
+                                 preexec_fn=limit(least + more))
+            codes.add(result.returncode)
+            self.assertEqual(os.path.exists(out), result.returncode == 0)
+            if result.returncode != 0:
+                self.assertRegex(result.stderr, r'^refocus: .*: .*\n$')
+                self.assertEqual(result.stderr.count('\n'), 1)
+        self.assertIn(1, codes)
+        self.assertTrue(codes <= {0, 1}, codes)
 
 
 class Running(Case):
