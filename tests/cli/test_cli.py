@@ -369,7 +369,7 @@ class Results(Case):
         def blur(*more):
             return self.reports(*self.render(*more))['blur']
 
-        self.assertAlmostEqual(blur(), W / 36, 5)
+        self.assertAlmostEqual(blur(), W / 50, 5)
         lens = ('--near', '0.5', '--far', '4', '--f-number', '8', '--focal-length', '50')
         expected = 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4)
         self.assertAlmostEqual(blur(*lens), expected, 5)
