@@ -220,13 +220,15 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
                               "--f-number needs a focal length, which it does not say; give "
                               "--focal-length and --sensor-width, or --blur");
     *blur = refocus_max_blur_radius(&lens, &range, image->width);
-    if (!(*blur <= REFOCUS_MAX_BLUR_RADIUS))
-        return report_failure(
-            EXIT_WRONG, "--f-number",
-            "f/%g blurs by %.0f pixels, %d is the most; give f/%.2g or more",
-            lens.f_number, *blur, (int)REFOCUS_MAX_BLUR_RADIUS,
-            0.005 + refocus_f_number_of_blur(&lens, &range, image->width,
-                                             REFOCUS_MAX_BLUR_RADIUS) * 1.01);
+    if (!(*blur <= REFOCUS_MAX_BLUR_RADIUS)) {
+        const double least = refocus_f_number_of_blur(&lens, &range, image->width,
+                                                      REFOCUS_MAX_BLUR_RADIUS);
+
+        return report_failure(EXIT_WRONG, "--f-number",
+                              "f/%g blurs by %.0f pixels, %d is the most; give f/%g or more",
+                              lens.f_number, *blur, (int)REFOCUS_MAX_BLUR_RADIUS,
+                              ceil(least * 100 + 1e-6) / 100);
+    }
     return EXIT_DONE;
 }
 
