@@ -8,6 +8,7 @@
 
 struct heic {
     struct rf_read *read;
+    struct rf_bytes file;
     struct heif_context *context;
     struct heif_image_handle *primary;
     struct heif_decoding_options *options;
@@ -165,12 +166,16 @@ static int take_depth(struct heic *heic, heif_item_id item,
             read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8);
     if (set_meaning(read, about)) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_HEIF;
+        if (rf_heif_orientation(heic->file, item) == 1) {
+            /* Then libheif has not turned it: it lies as the main picture was stored. */
+            status = rf_raster_orient(read, &read->samples, read->info->orientation);
+        }
     } else {
         rf_note(read->info, "HEIC: what its samples mean is not said in a known way: "
                             "passed over");
         rf_raster_free(&read->samples);
     }
-    return REFOCUS_OK;
+    return status;
 }
 
 static int read_depth(struct heic *heic)
@@ -285,20 +290,20 @@ static int read_icc(struct heic *heic)
     return rf_icc_take(read, &profile);
 }
 
-/* Which of the eight orientations has been applied: EXIF's word, when sizes agree. */
 static void say_orientation(struct heic *heic)
 {
     struct refocus_photo_info *const info = heic->read->info;
-    const int width = heif_image_handle_get_width(heic->primary);
 
     info->stored_width = heif_image_handle_get_ispe_width(heic->primary);
     info->stored_height = heif_image_handle_get_ispe_height(heic->primary);
-    rf_note(info, "HEIC: %d x %d stored, %d x %d upright by the container's own rotation",
-            (int)info->stored_width, (int)info->stored_height, width,
-            heif_image_handle_get_height(heic->primary));
+    info->orientation = rf_heif_orientation(heic->file, 0);
+    if (info->orientation != 1) {
+        rf_note(info, "HEIC: the container's orientation %d is applied to photo and depth",
+                info->orientation);
+    }
 }
 
-static int run(struct heic *heic, struct rf_bytes file)
+static int run(struct heic *heic)
 {
     struct rf_read *const read = heic->read;
     struct heif_error error;
@@ -310,8 +315,8 @@ static int run(struct heic *heic, struct rf_bytes file)
     heif_context_set_max_decoding_threads(heic->context, 0);
     heic->options->strict_decoding = 1;
     heic->options->convert_hdr_to_8bit = 1;
-    error = heif_context_read_from_memory_without_copy(heic->context, file.data, file.size,
-                                                       NULL);
+    error = heif_context_read_from_memory_without_copy(heic->context, heic->file.data,
+                                                       heic->file.size, NULL);
     if (error.code == heif_error_Ok) {
         error = heif_context_get_primary_image_handle(heic->context, &heic->primary);
     }
@@ -335,13 +340,13 @@ static int run(struct heic *heic, struct rf_bytes file)
 
 int rf_read_heic(struct rf_read *read, struct rf_bytes file)
 {
-    struct heic heic = {.read = read};
+    struct heic heic = {.read = read, .file = file};
     int status;
 
     memcpy(read->info->container, "HEIC", 5);
     heic.context = heif_context_alloc();
     heic.options = heif_decoding_options_alloc();
-    status = heic.context && heic.options ? run(&heic, file)
+    status = heic.context && heic.options ? run(&heic)
                                           : rf_fail_memory(read->reason);
     if (heic.primary) {
         heif_image_handle_release(heic.primary);

@@ -166,6 +166,10 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient);
 /* An ICC profile for RGB is taken over; any other would be wrong for the RGB8 photo. */
 int rf_icc_take(struct rf_read *read, struct refocus_blob *profile);
 
+/* heif_boxes.c: EXIF's number for the rotation and mirroring of an item; item 0 is the main
+ * picture. 1 when the container states none. */
+int rf_heif_orientation(struct rf_bytes file, uint32_t item);
+
 /* JPEG structure ---------------------------------------------------------------------- */
 
 enum rf_jpeg_step { RF_JPEG_SEGMENT, RF_JPEG_END, RF_JPEG_DAMAGED };

@@ -76,6 +76,17 @@ static void seed_mpf(void)
     }
 }
 
+static void seed_heif_boxes(void)
+{
+    static const struct heif_property both[] = {{"irot", 1}, {"imir", 0}};
+
+    for (int large = 0; large < 2; large++) {
+        struct bytes file = make_heif_boxes(both, 2, large);
+        seed("heif_boxes", large ? "large" : "small", file.data, file.size);
+        bytes_free(&file);
+    }
+}
+
 static void seed_xmp(void)
 {
     static const char apple[] =
@@ -115,6 +126,7 @@ int main(int count, char **arguments)
     seed_samples();
     seed_exif();
     seed_mpf();
+    seed_heif_boxes();
     seed_xmp();
     seed_text("number", "decimal", " -12.5e-3 ");
     seed_text("number", "long", "123456789012345678901234567890.000000000000000000001");

@@ -223,6 +223,48 @@ struct bytes make_exif(bool big_endian, int orientation)
     return tiff.block;
 }
 
+/* HEIF ---------------------------------------------------------------------------- */
+
+static void add_box(struct bytes *to, const char *type, struct bytes content)
+{
+    bytes_number(to, content.size + 8, 4, true);
+    bytes_add(to, type, 4);
+    bytes_join(to, content);
+}
+
+struct bytes make_heif_boxes(const struct heif_property *properties, int count, bool large)
+{
+    struct bytes file = {NULL, 0}, meta = {NULL, 0}, iprp = {NULL, 0}, ipco = {NULL, 0};
+    struct bytes ipma = {NULL, 0}, pitm = {NULL, 0};
+
+    /* large: 32-bit item numbers and 15-bit indices */
+    bytes_number(&pitm, large ? 1u << 24 : 0, 4, true);
+    bytes_number(&pitm, 1, large ? 4 : 2, true);
+    add_box(&ipco, "ispe", bytes_copy("\0\0\0\0\0\0\0\2\0\0\0\1", 12));
+    bytes_number(&ipma, large ? 1u << 24 | 1 : 0, 4, true);
+    bytes_number(&ipma, 2, 4, true);
+    for (int item = 2; item >= 1; item--) {
+        const int own = item == 1 ? count + 1 : 1;
+        bytes_number(&ipma, (uint64_t)item, large ? 4 : 2, true);
+        bytes_number(&ipma, (uint64_t)own, 1, true);
+        for (int i = 1; i <= own; i++) {
+            bytes_number(&ipma, (uint64_t)i | (large ? 0x8000 : 0x80), large ? 2 : 1, true);
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        const uint8_t value = (uint8_t)properties[i].value;
+        add_box(&ipco, properties[i].type, bytes_copy(&value, 1));
+    }
+    add_box(&iprp, "ipco", ipco);
+    add_box(&iprp, "ipma", ipma);
+    bytes_number(&meta, 0, 4, true);
+    add_box(&meta, "pitm", pitm);
+    add_box(&meta, "iprp", iprp);
+    add_box(&file, "ftyp", bytes_copy("heic\0\0\0\0mif1", 12));
+    add_box(&file, "meta", meta);
+    return file;
+}
+
 /* Text ---------------------------------------------------------------------------- */
 
 struct bytes base64(const void *data, size_t size)

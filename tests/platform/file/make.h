@@ -44,6 +44,15 @@ void jpeg_insert_xmp(struct bytes *jpeg, const char *xmp);
  * sides 640 and 480, a thumbnail directory. */
 struct bytes make_exif(bool big_endian, int orientation);
 
+/* The boxes of a HEIF file with one item, 1, whose properties are ispe and then the given
+ * ones: "irot" with an angle, "imir" with an axis. Nothing to decode. */
+struct heif_property {
+    const char *type;
+    int value;
+};
+struct bytes make_heif_boxes(const struct heif_property *properties, int count,
+                             bool large);
+
 struct bytes base64(const void *data, size_t size); /* NUL-terminated */
 
 /* XMP packets. Attributes are written as given: GDepth:Format="RangeInverse" ... */
