@@ -108,13 +108,13 @@ static void get_text(const struct tiff *tiff, const struct entry *entry, char *t
         return;
     }
     for (; n < entry->count && n + 1 < size && tiff->data[entry->value + n]; n++) {
-        const uint8_t c = tiff->data[entry->value + n];
-        text[n] = (char)(c < 0x20 || c == 0x7f ? '?' : c);
+        text[n] = (char)tiff->data[entry->value + n];
     }
     while (n > 0 && text[n - 1] == ' ') {
         n--;
     }
     text[n] = '\0';
+    rf_clean_text(text);
 }
 
 /* Most models repeat the make: "Canon" and "Canon EOS R5". */

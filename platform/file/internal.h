@@ -60,6 +60,9 @@ int rf_fail_memory(struct refocus_reason *reason);
 int rf_fail_errno(struct refocus_reason *reason, int error, const char *what);
 /* Add a line of evidence; what does not fit any more is dropped. */
 void rf_note(struct refocus_photo_info *info, const char *format, ...) RF_PRINTF(2, 3);
+/* Files may hold anything: only printable ASCII gets out, which no terminal obeys and every
+ * JSON writer takes. char may be signed or not: both ends are checked. */
+void rf_clean_text(char *text);
 /* Bytes of one sample of enum refocus_sample. */
 size_t rf_sample_bytes(uint32_t sample);
 /* Bytes of one pixel of enum refocus_format; 0 for an unknown one. This library does not

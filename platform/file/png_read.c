@@ -213,6 +213,10 @@ int rf_read_png(struct rf_read *read, struct rf_bytes file)
 
     memcpy(read->info->container, "PNG", 4);
     status = rf_png_decode(read, file, &read->image, &exif, &icc);
+    /* IHDR comes first: its colour type is byte 25 of the file. */
+    if (status == REFOCUS_OK && file.data[25] & PNG_COLOR_MASK_ALPHA) {
+        rf_note(read->info, "PNG: transparency is dropped");
+    }
     if (status == REFOCUS_OK) {
         status = rf_exif_take(read, (struct rf_bytes){exif.data, exif.size}, true);
     }

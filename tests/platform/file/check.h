@@ -97,6 +97,22 @@ static inline int near_to(double a, double b)
 }
 #define assert_near(a, b) assert_true(near_to(a, b))
 
+/* EXIF 2.3, tag 274: which side of the upright picture row 0 and column 0 lie on. */
+static const struct {
+    char row, column; /* t, b, l, r */
+} upright_sides[9] = {{0, 0},     {'t', 'l'}, {'t', 'r'}, {'b', 'r'}, {'b', 'l'},
+              {'l', 't'}, {'r', 't'}, {'r', 'b'}, {'l', 'b'}};
+
+/* Where the stored pixel (column, row) of a w x h picture lies in the upright one. */
+static inline void upright_place(int orientation, int w, int h, int column, int row,
+                                 int *x, int *y)
+{
+    const char r = upright_sides[orientation].row, c = upright_sides[orientation].column;
+
+    *x = c == 'l' ? column : c == 'r' ? w - 1 - column : r == 'l' ? row : h - 1 - row;
+    *y = r == 't' ? row : r == 'b' ? h - 1 - row : c == 't' ? column : w - 1 - column;
+}
+
 /* True when a line of evidence holds the text. */
 static inline int has_evidence(const struct refocus_photo *photo, const char *text)
 {

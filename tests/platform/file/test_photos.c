@@ -1,71 +1,8 @@
 /* Photos that nobody of this project made. They are not part of it: the environment variable
  * REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
-#include "check.h"
+#include "photos.h"
 
 #include <math.h>
-#include <sys/stat.h>
-
-static char folder[3000];
-
-static const char *in_folder(const char *name)
-{
-    static char path[4096];
-
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static struct refocus_photo *photo_of(const char *name)
-{
-    struct refocus_photo *photo = NULL;
-    struct refocus_reason reason;
-    const int status = refocus_photo_read(&photo, in_folder(name), NULL, &reason);
-
-    check_status(status, REFOCUS_OK, reason.text, name, 0);
-    for (int i = 0; i < photo->info.evidence_count; i++) {
-        /* A position is nobody's business but the owner's. */
-        assert_null(strstr(photo->info.evidence[i], "GPS"));
-        assert_null(strstr(photo->info.evidence[i], "itude"));
-    }
-    return photo;
-}
-
-static struct refocus_photo *depth_of(const char *name, const char *unit)
-{
-    struct refocus_photo *photo = NULL;
-    struct refocus_reason reason;
-    const int status =
-        refocus_depth_read(&photo, in_folder(name), unit, 0, 0, NULL, &reason);
-
-    check_status(status, REFOCUS_OK, reason.text, name, 0);
-    assert_null(photo->image.plane[0]);
-    return photo;
-}
-
-static void assert_sizes(const struct refocus_photo *photo, int width, int height,
-                         int depth_width, int depth_height)
-{
-    assert_int_equal(photo->image.width, width);
-    assert_int_equal(photo->image.height, height);
-    assert_int_equal(photo->depth.width, depth_width);
-    assert_int_equal(photo->depth.height, depth_height);
-}
-
-static void assert_samples(const struct refocus_depth_map *map, unsigned least,
-                           unsigned greatest)
-{
-    unsigned low = ~0u, high = 0;
-
-    for (int y = 0; y < map->height; y++) {
-        for (int x = 0; x < map->width; x++) {
-            const unsigned v = sample_at(map, x, y);
-            low = v < low ? v : low;
-            high = v > high ? v : high;
-        }
-    }
-    assert_int_equal(low, least);
-    assert_int_equal(high, greatest);
-}
 
 #ifdef RF_HAVE_JPEG
 #if defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
@@ -195,21 +132,6 @@ static void light_field_truth(void **state)
 }
 
 #ifdef RF_HAVE_HEIC
-static struct bytes load(const char *name)
-{
-    FILE *const file = fopen(in_folder(name), "rb");
-    struct bytes bytes = {NULL, 0};
-    char part[65536];
-    size_t n;
-
-    assert_non_null(file);
-    while ((n = fread(part, 1, sizeof part, file)) > 0) {
-        bytes_add(&bytes, part, n);
-    }
-    fclose(file);
-    return bytes;
-}
-
 static void heic_depth(void **state)
 {
     struct refocus_photo *photo = photo_of("phone/apple-heic-pug.heic");
@@ -330,16 +252,6 @@ static void heic_without_depth(void **state)
 }
 #endif
 
-static bool find_folder(void)
-{
-    const char *const given = getenv("REFOCUS_PHOTOS");
-    struct stat facts;
-
-    snprintf(folder, sizeof folder, "%s",
-             given ? given : REFOCUS_SOURCE "/../shared/photos");
-    return stat(folder, &facts) == 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -367,8 +279,9 @@ int main(void)
 #endif
     };
 
-    if (!find_folder()) {
-        printf("SKIPPED: no photos in %s; set REFOCUS_PHOTOS to their folder\n", folder);
+    if (!find_photos()) {
+        printf("SKIPPED: no photos in %s; set REFOCUS_PHOTOS to their folder\n",
+               photos_folder);
         return 77;
     }
     return cmocka_run_group_tests(tests, NULL, NULL);
