@@ -82,7 +82,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     26 (W + 2P) (H + 2P) + 12 W H / 10 + 2^20 (2 + threads),  P = ceil(K) + 2
+ *     22 (W + 2P + 47) (H + 2P + 16) + 6 (W + 16) (H + 16) + 2^20,  P = ceil(K) + 2
  *
  * is never exceeded. @return 0 if a parameter is out of its range. Thread-safe.
  */
@@ -152,7 +152,7 @@ struct refocus_render_params {
     float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
                                  eq. 5: >= 1; INFINITY = plain average */
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
-    uint8_t mirror;         /**< search, raytrace: 1 = where the ray is hidden take the mirrored one */
+    uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
     uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
     uint8_t prefilter;      /**< sweep: 1 = smooth the input between rays that lie far apart */
     uint8_t reserved;       /**< 0 */

@@ -1,0 +1,266 @@
+/* refocus bench */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "commands.h"
+#include "engine.h"
+#include "inputs.h"
+
+struct settings {
+    struct depth_settings depth;
+    struct lens_settings lens;
+    struct engine_settings engine;
+    double size[2];
+};
+
+static const struct option options[] = {
+    {.kind = OPTION_HEADING, .help = "What is rendered"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--size",
+     .argument = "WxH",
+     .offset = offsetof(struct settings, size),
+     .least = 1,
+     .greatest = REFOCUS_MAX_SIDE,
+     .count = 2,
+     .help = "size of the made-up scene that is taken without PHOTO, default 720x540"},
+    DEPTH_FILE_OPTION(struct settings, depth),
+    DEPTH_UNIT_OPTIONS(struct settings, depth),
+    FOCUS_OPTIONS(struct settings, lens),
+    {.kind = OPTION_HEADING, .help = "How"},
+    METHOD_OPTIONS(struct settings, engine),
+    RUN_OPTIONS(struct settings, engine),
+    {.help = NULL},
+};
+
+/* A photo in memory and its disparities. */
+struct scene {
+    struct refocus_image photo;
+    uint16_t *disparity;
+    int map_width, map_height;
+};
+
+static uint32_t hash(uint32_t x, uint32_t y)
+{
+    uint32_t h = x * 0x9e3779b1u ^ y * 0x85ebca77u;
+
+    h ^= h >> 15;
+    h *= 0x2c1b3c6du;
+    return h ^ h >> 13;
+}
+
+/* A tilted floor before a wall, and upright discs in front of it that hide each other: the
+ * same for every size but for its scale, with fine texture everywhere. */
+static uint16_t surface_at(double x, double y, int *which)
+{
+    uint16_t nearest = y > 0.5 ? (uint16_t)(65535 * (0.05 + (y - 0.5) * 1.2)) : 3277;
+
+    *which = y > 0.5;
+    for (int i = 0; i < 12; i++) {
+        const uint32_t h = hash((uint32_t)i + 1, 77);
+        const double dx = x - (h & 255) / 255.0 * 1.33;
+        const double dy = y - (0.2 + (h >> 8 & 255) / 425.0);
+        const double radius = 0.05 + (h >> 16 & 63) / 420.0;
+        const uint16_t d = (uint16_t)(6000 + (h >> 22) * 57);
+
+        if (dx * dx + dy * dy < radius * radius && d > nearest) {
+            nearest = d;
+            *which = i + 2;
+        }
+    }
+    return nearest;
+}
+
+static int make_scene(struct scene *scene, int width, int height)
+{
+    const uint64_t pixels = (uint64_t)width * (uint64_t)height;
+
+    scene->photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
+                                        (ptrdiff_t)width * 3);
+    scene->map_width = width;
+    scene->map_height = height;
+    if (pixels <= SIZE_MAX / 3) {
+        scene->photo.plane[0] = malloc((size_t)pixels * 3);
+        scene->disparity = malloc((size_t)pixels * 2);
+    }
+    if (!scene->photo.plane[0] || !scene->disparity)
+        return report_failure(EXIT_FAILED, "--size", "not enough memory for %dx%d pixels",
+                              width, height);
+    for (int y = 0; y < height; y++) {
+        uint8_t *row = scene->photo.plane[0] + y * scene->photo.stride[0];
+        uint16_t *disparity = scene->disparity + (size_t)y * (size_t)width;
+
+        for (int x = 0; x < width; x++) {
+            int which;
+
+            disparity[x] = surface_at((double)x / height, (double)y / height, &which);
+            for (int c = 0; c < 3; c++)
+                row[3 * x + c] = (uint8_t)((hash((uint32_t)which, (uint32_t)c) & 127) +
+                                           (hash((uint32_t)x, (uint32_t)y) & 63) +
+                                           ((x ^ y) & 8) * 4);
+        }
+    }
+    return EXIT_DONE;
+}
+
+static double megapixels(const struct scene *scene)
+{
+    return (double)scene->photo.width * scene->photo.height / 1e6;
+}
+
+static int print_report(const struct settings *settings, const struct engine *engine,
+                        const struct scene *scene, const char *photo)
+{
+    const struct spread *times = &engine->render_ms;
+    const struct refocus_render_params *params = &engine->params;
+    char rays[16] = "full";
+
+    if (settings->engine.json) {
+        json_t *json = json_pack(
+            "{s:o, s:i, s:i, s:i, s:f}", "photo", photo ? report_text_json(photo) : json_null(),
+            "width", (int)scene->photo.width, "height", (int)scene->photo.height, "repeat",
+            (int)settings->engine.repeat, "megapixels_per_second",
+            megapixels(scene) * 1e3 / times->median);
+        json_t *run = engine_json(engine);
+
+        if (json && json_object_update(json, run) != 0) {
+            json_decref(json);
+            json = NULL;
+        }
+        json_decref(run);
+        return report_print_json(json);
+    }
+    if (params->rays != REFOCUS_RAYS_FULL)
+        snprintf(rays, sizeof rays, "%d", (int)params->rays);
+    printf("%dx%d, %s, blur %.4g, focus %.3f, %s rays, %d threads, %s\n",
+           (int)scene->photo.width, (int)scene->photo.height,
+           refocus_method_name(params->method), (double)params->max_blur_radius,
+           (double)params->focus_disparity, rays, (int)engine->info.threads,
+           refocus_cpu_name(engine->info.cpu));
+    printf("create   %9.2f ms   %.1f MiB\n", engine->create_ms,
+           (double)engine->info.memory / (1 << 20));
+    printf("prepare  %9.2f ms\n", engine->prepare_ms);
+    printf("render   %9.2f ms   median of %.0f, %.2f to %.2f; %.2f megapixels a second\n",
+           times->median, settings->engine.repeat, times->min, times->max,
+           megapixels(scene) * 1e3 / times->median);
+    return report_end_output();
+}
+
+static int check(const struct settings *settings, const char *photo)
+{
+    int status = input_check_depth(&settings->depth);
+
+    if (status == EXIT_DONE)
+        status = input_check_lens(&settings->lens);
+    if (status != EXIT_DONE)
+        return status;
+    if (photo && !isnan(settings->size[0]))
+        return report_failure(EXIT_WRONG, "--size",
+                              "the photo has a size of its own; leave one of them out");
+    if (!photo && (settings->depth.file || settings->depth.unit ||
+                   !isnan(settings->depth.near_m) || !isnan(settings->depth.far_m) ||
+                   !isnan(settings->lens.focus_distance)))
+        return report_failure(EXIT_WRONG, "bench",
+                              "--depth, --depth-unit, --near, --far and --focus-distance go "
+                              "with a photo; give one");
+    return EXIT_DONE;
+}
+
+static int measure(struct engine *engine, const struct settings *settings,
+                   struct input *input, const struct scene *scene)
+{
+    const int width = scene->photo.width, height = scene->photo.height;
+    const struct refocus_disparity disparity = refocus_disparity16(
+        scene->disparity, scene->map_width, scene->map_height,
+        (ptrdiff_t)scene->map_width * 2);
+    const size_t pixels = (size_t)width * (size_t)height;
+    struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
+                                                    (ptrdiff_t)width * 3);
+    uint16_t *prepared = malloc(pixels * 2);
+    double blur = 0, focus = 0;
+    int status;
+
+    out.plane[0] = malloc(pixels * 3);
+    status = prepared && out.plane[0]
+                 ? input_blur(input, &settings->lens, &blur)
+                 : report_failure(EXIT_FAILED, "bench", "not enough memory");
+    if (status == EXIT_DONE)
+        status = engine_create(engine, &settings->engine, width, height, blur);
+    report_progress("preparing", 0.15);
+    if (status == EXIT_DONE)
+        status = engine_prepare(engine, &scene->photo, &disparity);
+    if (status == EXIT_DONE) {
+        refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared,
+                         (ptrdiff_t)width * 2);
+        status = input_focus(input, &settings->lens, prepared, &focus);
+        engine->params.focus_disparity = (float)focus;
+    }
+    if (status == EXIT_DONE)
+        status = engine_render(engine, &out, (int)settings->engine.repeat);
+    report_progress_end();
+    free(prepared);
+    free(out.plane[0]);
+    return status;
+}
+
+static int run(int argc, char **argv)
+{
+    struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
+                                .lens = LENS_SETTINGS_NONE,
+                                .engine = ENGINE_SETTINGS_NONE(5),
+                                .size = {NAN, NAN}};
+    struct engine engine;
+    struct input input = {0};
+    struct refocus_photo made = {0};
+    struct scene scene = {0};
+    const char *files[2];
+    int status;
+
+    status = options_parse(&bench_command, argc, argv, &settings, files);
+    if (status != OPTIONS_PARSED)
+        return status;
+    status = check(&settings, files[0]);
+    if (status != EXIT_DONE)
+        return status;
+    status = engine_begin(&engine, &settings.engine);
+    if (status == EXIT_DONE && files[0]) {
+        engine.name = files[0];
+        status = input_read(&input, files[0], &settings.depth);
+        if (status == EXIT_DONE) {
+            scene.photo = input.photo->image;
+            scene.disparity = input.disparity;
+            scene.map_width = input.depth_from->depth.width;
+            scene.map_height = input.depth_from->depth.height;
+        }
+    } else if (status == EXIT_DONE) {
+        engine.name = input.photo_name = input.depth_name = "made-up scene";
+        status = make_scene(&scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
+                            isnan(settings.size[0]) ? 540 : (int)settings.size[1]);
+        made.image = scene.photo;
+        made.info.focus_x = made.info.focus_y = -1;
+        input.photo = &made;
+    }
+    if (status == EXIT_DONE)
+        status = measure(&engine, &settings, &input, &scene);
+    if (status == EXIT_DONE)
+        status = print_report(&settings, &engine, &scene, files[0]);
+    engine_end(&engine);
+    if (files[0]) {
+        input_free(&input);
+    } else {
+        free(scene.photo.plane[0]);
+        free(scene.disparity);
+    }
+    return status;
+}
+
+const struct command bench_command = {
+    .name = "bench",
+    .usage = "[PHOTO] [options]",
+    .summary = "time whole frames",
+    .notes = "Without PHOTO a made-up scene is rendered. The times are of preparing and "
+             "rendering alone, without files, and of --repeat frames, default 5.",
+    .options = options,
+    .files_least = 0,
+    .files_most = 1,
+    .run = run,
+};

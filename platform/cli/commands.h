@@ -1,0 +1,12 @@
+/* The subcommands, one file each. */
+#ifndef RF_CLI_COMMANDS_H
+#define RF_CLI_COMMANDS_H
+
+#include "options.h"
+
+extern const struct command render_command;
+extern const struct command depth_command;
+extern const struct command info_command;
+extern const struct command bench_command;
+
+#endif

@@ -1,0 +1,259 @@
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <refocus/platform/file.h>
+#include "engine.h"
+#include "interrupt.h"
+
+static const struct {
+    const char *name, *summary;
+    int rays;
+} qualities[] = {
+    {"preview", "32 rays", 32}, {"standard", "64 rays", 64}, {"best", "128 rays", 128}};
+
+static const struct {
+    const char *name, *summary;
+} blends[] = {
+    [REFOCUS_BLEND_LINEAR] = {"linear", "linear light by the sRGB curve"},
+    [REFOCUS_BLEND_STORED] = {"stored", "stored values, as in the paper"},
+    [REFOCUS_BLEND_GAMMA] = {"gamma", "gamma 2.2"},
+};
+
+const char *engine_quality_name(uint32_t index)
+{
+    return index < sizeof qualities / sizeof *qualities ? qualities[index].name : NULL;
+}
+
+const char *engine_quality_summary(uint32_t index)
+{
+    return index < sizeof qualities / sizeof *qualities ? qualities[index].summary : NULL;
+}
+
+const char *engine_blend_name(uint32_t index)
+{
+    return index < sizeof blends / sizeof *blends ? blends[index].name : NULL;
+}
+
+const char *engine_blend_summary(uint32_t index)
+{
+    return index < sizeof blends / sizeof *blends ? blends[index].summary : NULL;
+}
+
+/* "polygon:6" or "polygon:6:15". */
+static int polygon_aperture(struct engine *engine, const char *shape)
+{
+    double degrees = 0;
+    long blades;
+    char *end;
+
+    errno = 0;
+    blades = strtol(shape + strlen("polygon:"), &end, 10);
+    if (errno == 0 && end != shape + strlen("polygon:") && *end == ':') {
+        const char *number = end + 1;
+
+        degrees = number[strspn(number, "+-.0123456789")] == '\0' ? strtod(number, &end) : NAN;
+        if (end == number)
+            degrees = NAN;
+    }
+    if (errno != 0 || *end != '\0' || blades < 3 || blades > 16 || !isfinite(degrees))
+        return report_failure(EXIT_WRONG, "--aperture",
+                              "'%s' cannot be used; give polygon:BLADES or "
+                              "polygon:BLADES:DEGREES with 3 to 16 blades",
+                              shape);
+    if (refocus_aperture_create_polygon(&engine->aperture, (int)blades, degrees) !=
+        REFOCUS_OK)
+        return report_failure(EXIT_FAILED, "--aperture", "not enough memory");
+    return EXIT_DONE;
+}
+
+/* A greyscale mask out of a picture: its luma, exact for grey pixels. */
+static int mask_aperture(struct engine *engine, const char *file)
+{
+    struct refocus_reason reason = {""};
+    struct refocus_photo *photo = NULL;
+    uint8_t *mask = NULL;
+    int status, result = EXIT_FAILED;
+
+    status = refocus_photo_read(&photo, file, NULL, &reason);
+    if (status != REFOCUS_OK || !photo->image.plane[0]) {
+        report_failure(result, file, "%s",
+                       reason.text[0] ? reason.text : "it is not a picture of a mask");
+        goto end;
+    }
+
+    const struct refocus_image *image = &photo->image;
+    const int width = image->width, height = image->height;
+    if (width > REFOCUS_MAX_APERTURE_SIDE || height > REFOCUS_MAX_APERTURE_SIDE) {
+        report_failure(result, file, "%dx%d pixels are too many for an aperture; give at most "
+                       "%dx%d", width, height, REFOCUS_MAX_APERTURE_SIDE,
+                       REFOCUS_MAX_APERTURE_SIDE);
+        goto end;
+    }
+    mask = malloc((size_t)width * (size_t)height);
+    if (!mask) {
+        report_failure(result, file, "not enough memory");
+        goto end;
+    }
+    for (int y = 0; y < height; y++) {
+        const uint8_t *row = image->plane[0] + y * image->stride[0];
+        for (int x = 0; x < width; x++)
+            mask[y * width + x] =
+                (uint8_t)((54 * row[3 * x] + 183 * row[3 * x + 1] + 19 * row[3 * x + 2]) >> 8);
+    }
+    status = refocus_aperture_create_mask(&engine->aperture, mask, width, height, width);
+    if (status == REFOCUS_OK)
+        result = EXIT_DONE;
+    else
+        report_failure(result, file, "%s",
+                       status == REFOCUS_ERR_ARGUMENT
+                           ? "no pixel of the aperture is open; give white where light passes"
+                           : refocus_strerror(status));
+end:
+    free(mask);
+    refocus_photo_free(&photo);
+    return result;
+}
+
+static int make_aperture(struct engine *engine, const char *shape)
+{
+    if (strcmp(shape, "disc") == 0) {
+        if (refocus_aperture_create_disc(&engine->aperture) != REFOCUS_OK)
+            return report_failure(EXIT_FAILED, "--aperture", "not enough memory");
+        return EXIT_DONE;
+    }
+    if (strncmp(shape, "polygon:", strlen("polygon:")) == 0)
+        return polygon_aperture(engine, shape);
+    if (!strpbrk(shape, "./") && access(shape, F_OK) != 0)
+        return report_failure(EXIT_WRONG, "--aperture",
+                              "'%s' is not known; give disc, polygon:BLADES, "
+                              "polygon:BLADES:DEGREES or a mask picture",
+                              shape);
+    return mask_aperture(engine, shape);
+}
+
+int engine_begin(struct engine *engine, const struct engine_settings *settings)
+{
+    struct refocus_render_params *params = &engine->params;
+    int status;
+
+    memset(engine, 0, sizeof *engine);
+    *params = refocus_render_params_default(0, 0);
+    params->method = (uint32_t)settings->method;
+    params->blend = (uint32_t)settings->blend;
+    params->rays = isnan(settings->rays) ? qualities[settings->quality].rays
+                                         : (int32_t)settings->rays;
+    if (!isnan(settings->iterations))
+        params->iterations = (int32_t)settings->iterations;
+    if (!isnan(settings->sigma))
+        params->sigma = (float)settings->sigma;
+    params->mirror = settings->mirror;
+    params->background = settings->background;
+    status = make_aperture(engine, settings->aperture);
+    params->aperture = engine->aperture;
+    return status;
+}
+
+static int interrupted(const struct engine *engine)
+{
+    return report_failure(EXIT_FAILED, engine->name, "interrupted; nothing was written");
+}
+
+int engine_create(struct engine *engine, const struct engine_settings *settings, int width,
+                  int height, double blur)
+{
+    struct refocus_renderer_params params =
+        refocus_renderer_params_default(width, height, (float)blur);
+    const double start = report_clock_ms();
+    int status;
+
+    params.threads = (int32_t)settings->threads;
+    params.cpu = (uint32_t)settings->cpu;
+    engine->params.max_blur_radius = (float)blur;
+    status = refocus_renderer_create(&engine->renderer, &params);
+    engine->create_ms = report_clock_ms() - start;
+    if (status == REFOCUS_ERR_UNSUPPORTED)
+        return report_failure(EXIT_FAILED, "--cpu",
+                              "this processor or build has no %s; give auto",
+                              refocus_cpu_name(params.cpu));
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, engine->name,
+                              "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a smaller "
+                              "picture or less blur",
+                              refocus_strerror(status), width, height, blur,
+                              (double)refocus_renderer_memory(&params) / (1 << 20));
+    interrupt_watch(engine->renderer);
+    refocus_renderer_get_info(engine->renderer, &engine->info);
+    return EXIT_DONE;
+}
+
+int engine_prepare(struct engine *engine, const struct refocus_image *photo,
+                   const struct refocus_disparity *disparity)
+{
+    const double start = report_clock_ms();
+    const int status = interrupt_came()
+                           ? REFOCUS_ERR_CANCELLED
+                           : refocus_prepare(engine->renderer, photo, disparity);
+
+    engine->prepare_ms = report_clock_ms() - start;
+    if (status == REFOCUS_ERR_CANCELLED)
+        return interrupted(engine);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, engine->name, "it cannot be prepared: %s",
+                              refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
+{
+    double *times = malloc((size_t)repeat * sizeof *times);
+    int status = REFOCUS_OK;
+
+    if (!times)
+        return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
+    for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
+        double start;
+
+        report_progress("rendering", 0.3 + 0.6 * i / repeat);
+        start = report_clock_ms();
+        status = interrupt_came() ? REFOCUS_ERR_CANCELLED
+                                  : refocus_render(engine->renderer, &engine->params, out);
+        times[i] = report_clock_ms() - start;
+    }
+    if (status == REFOCUS_OK)
+        engine->render_ms = report_spread(times, repeat);
+    free(times);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return interrupted(engine);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, engine->name, "it cannot be rendered: %s",
+                              refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+void engine_end(struct engine *engine)
+{
+    interrupt_watch(NULL);
+    refocus_renderer_destroy(&engine->renderer);
+    refocus_aperture_destroy(&engine->aperture);
+}
+
+json_t *engine_json(const struct engine *engine)
+{
+    const struct refocus_render_params *params = &engine->params;
+    json_t *rays = params->rays == REFOCUS_RAYS_FULL ? json_string("full")
+                                                     : json_integer(params->rays);
+
+    return json_pack(
+        "{s:s, s:o, s:s, s:o, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:I, s:I}", "method",
+        refocus_method_name(params->method), "rays", rays, "blend",
+        engine_blend_name(params->blend), "sigma",
+        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "iterations",
+        (int)params->iterations, "blur", (double)params->max_blur_radius, "focus",
+        (double)params->focus_disparity, "threads", (int)engine->info.threads, "cpu",
+        refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms, "prepare_ms",
+        engine->prepare_ms, "render_ms", report_spread_json(engine->render_ms),
+        "renderer_bytes", (json_int_t)engine->info.memory, "peak_rss_kib",
+        (json_int_t)report_peak_rss_kib());
+}

@@ -1,0 +1,33 @@
+/* transfer.h: between 8-bit codes and the values that are averaged.
+ *
+ * Values are Q12: 0 to RF_LIGHT_MAX = 4095 is black to white. Means are Q14: four times
+ * that, so that an average keeps two bits that its parts do not have.
+ */
+#ifndef RF_TRANSFER_H
+#define RF_TRANSFER_H
+
+#include <stdint.h>
+
+enum {
+    RF_LIGHT_MAX = 4095,
+    RF_MEAN_MAX = 4 * RF_LIGHT_MAX,
+    RF_BLEND_COUNT = 3, /* enum refocus_blend */
+};
+
+struct rf_transfer {
+    uint16_t to_light[256];           /* Q12 */
+    uint8_t to_code[RF_MEAN_MAX + 4]; /* of a Q14 mean */
+};
+
+void rf_transfer_init(struct rf_transfer *transfer, int blend);
+
+/*
+ * Highlight weights of Yang et al. 2016, eq. 5, in Q16 of the largest:
+ *
+ *     w[c] = exp(-(c - 255)^2 / 2 sigma^2),  c = max(R, G, B)
+ *
+ * at least 1/65536, so that no average is ever empty.
+ */
+void rf_highlight_weights(uint16_t weight[256], double sigma);
+
+#endif

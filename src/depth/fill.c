@@ -1,0 +1,140 @@
+#include <stdlib.h>
+#include "depth/fill.h"
+
+enum {
+    STRAIGHT = 2, /* distance to a neighbour in half samples, */
+    DIAGONAL = 3, /* and to one across a corner */
+    FARTHEST = RF_SAMPLE_UNKNOWN - 1,
+    CONTINUOUS = 65535 / 32, /* largest step within a surface */
+    SPREADS = 4,             /* scans to spread: enough to turn three corners */
+    WIDEST = 16,             /* widest smoothing step, a power of 2 */
+};
+
+struct holes {
+    uint16_t *disparity;
+    ptrdiff_t stride;
+    uint8_t *state;
+    int width, height;
+    uint32_t weight; /* w in half samples */
+};
+
+static uint16_t *disparity_row(const struct holes *holes, int y)
+{
+    return (uint16_t *)((char *)holes->disparity + y * holes->stride);
+}
+
+static uint8_t *state_row(const struct holes *holes, int y)
+{
+    return holes->state + (size_t)y * (size_t)holes->width;
+}
+
+/* |p - q| + w d(q) in units of 1/65535 half sample: below 2^30 + 2^24. */
+static uint32_t cost(const struct holes *holes, uint32_t distance, uint32_t disparity)
+{
+    return distance * 65535 + holes->weight * disparity;
+}
+
+/* Let the sample at @p x take its neighbour's disparity when that costs less. */
+static void spread_from(const struct holes *holes, uint16_t *disparity, uint8_t *state,
+                        uint16_t from, uint8_t from_state, uint32_t step)
+{
+    uint32_t distance;
+
+    if (from_state == RF_SAMPLE_UNKNOWN)
+        return;
+    distance = from_state + step;
+    if (distance > FARTHEST)
+        distance = FARTHEST;
+    if (*state == RF_SAMPLE_UNKNOWN ||
+        cost(holes, distance, from) < cost(holes, *state, *disparity)) {
+        *disparity = from;
+        *state = (uint8_t)distance;
+    }
+}
+
+/* One scan: rows from the top or the bottom, and each row in both directions. */
+static void spread(const struct holes *holes, int down)
+{
+    const int width = holes->width;
+
+    for (int i = 0; i < holes->height; i++) {
+        const int y = down ? i : holes->height - 1 - i;
+        uint16_t *d = disparity_row(holes, y);
+        uint8_t *state = state_row(holes, y);
+
+        if (i > 0) {
+            const uint16_t *last = disparity_row(holes, down ? y - 1 : y + 1);
+            const uint8_t *last_state = state_row(holes, down ? y - 1 : y + 1);
+
+            for (int x = 0; x < width; x++) {
+                if (state[x] == RF_SAMPLE_KNOWN)
+                    continue;
+                spread_from(holes, d + x, state + x, last[x], last_state[x], STRAIGHT);
+                if (x > 0)
+                    spread_from(holes, d + x, state + x, last[x - 1], last_state[x - 1],
+                                DIAGONAL);
+                if (x + 1 < width)
+                    spread_from(holes, d + x, state + x, last[x + 1], last_state[x + 1],
+                                DIAGONAL);
+            }
+        }
+        for (int x = 1; x < width; x++)
+            if (state[x] != RF_SAMPLE_KNOWN)
+                spread_from(holes, d + x, state + x, d[x - 1], state[x - 1], STRAIGHT);
+        for (int x = width - 2; x >= 0; x--)
+            if (state[x] != RF_SAMPLE_KNOWN)
+                spread_from(holes, d + x, state + x, d[x + 1], state[x + 1], STRAIGHT);
+    }
+}
+
+/* Mean of the sample and of those of its eight neighbours @p step away that continue it. */
+static uint16_t smoothed(const struct holes *holes, int x, int y, int step)
+{
+    const int centre = disparity_row(holes, y)[x];
+    int sum = centre, count = 1;
+
+    for (int j = y - step; j <= y + step; j += step) {
+        if (j < 0 || j >= holes->height)
+            continue;
+        const uint16_t *d = disparity_row(holes, j);
+        for (int i = x - step; i <= x + step; i += step) {
+            if (i < 0 || i >= holes->width || (i == x && j == y) ||
+                abs(d[i] - centre) > CONTINUOUS)
+                continue;
+            sum += d[i];
+            count++;
+        }
+    }
+    return (uint16_t)((sum + count / 2) / count);
+}
+
+/* In place, which carries values on along the scan: to and fro in turns. */
+static void smooth(const struct holes *holes, int step, int forwards)
+{
+    for (int i = 0; i < holes->height; i++) {
+        const int y = forwards ? i : holes->height - 1 - i;
+        uint16_t *d = disparity_row(holes, y);
+        const uint8_t *state = state_row(holes, y);
+
+        for (int j = 0; j < holes->width; j++) {
+            const int x = forwards ? j : holes->width - 1 - j;
+            if (state[x] >= step * STRAIGHT)
+                d[x] = smoothed(holes, x, y, step);
+        }
+    }
+}
+
+void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
+                   uint8_t *state)
+{
+    const int side = width > height ? width : height;
+    const struct holes holes = {disparity, stride, state, width, height,
+                                (uint32_t)(side > 128 ? side / 8 : 16) * STRAIGHT};
+
+    for (int i = 0; i < SPREADS; i++)
+        spread(&holes, i % 2 == 0);
+    for (int step = WIDEST; step >= 1; step /= 2) {
+        smooth(&holes, step, 1);
+        smooth(&holes, step, 0);
+    }
+}

@@ -1,0 +1,32 @@
+/* Filling the samples of a depth map that hold no value. */
+#ifndef RF_DEPTH_FILL_H
+#define RF_DEPTH_FILL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* What the state of a sample is when rf_fill_holes() begins. */
+enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
+
+/*
+ * Fill the unknown disparities from the known ones around them.
+ *
+ * An unknown sample p takes the disparity of the known sample q with the least
+ *
+ *     |p - q| + w d(q),    w = an eighth of the larger side, at least 16 samples
+ *
+ * over paths through unknown samples: the nearest one on a continuous surface, whose d
+ * changes by less than 1/w a sample, and the farther of two surfaces that meet, up to w
+ * times their difference away. What is filled is then smoothed where it is continuous,
+ * the wider the deeper it lies in a hole.
+ *
+ * Time is linear in the number of samples. At least one sample is known.
+ *
+ * stride: bytes from a row of the disparities to the next
+ * state:  width x height, RF_SAMPLE_KNOWN or RF_SAMPLE_UNKNOWN; holds the distances to q
+ *         in half samples afterwards, 254 at most
+ */
+void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
+                   uint8_t *state);
+
+#endif

@@ -1,0 +1,63 @@
+#include "methods/method.h"
+#include "planes/format.h"
+
+static uint8_t *pixel(const struct rf_frame *f, int bytes, int x, int y)
+{
+    return f->out->plane[0] + (y - f->region.y0) * f->out->stride[0] +
+           (ptrdiff_t)(x - f->region.x0) * bytes;
+}
+
+void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width;
+        uint8_t *out = pixel(f, o.bytes, rect.x0, y);
+
+        for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
+            const int at = y % RF_TILE * RF_TILE + x % RF_TILE;
+            const uint64_t w = sums->weight[at], half = w / 2;
+
+            out[o.r] = to_code[(4 * sums->light[0][at] + half) / w];
+            out[o.g] = to_code[(4 * sums->light[1][at] + half) / w];
+            out[o.b] = to_code[(4 * sums->light[2][at] + half) / w];
+            if (o.a >= 0)
+                out[o.a] = alpha[x];
+        }
+    }
+}
+
+void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width;
+        uint8_t *out = pixel(f, o.bytes, rect.x0, y);
+
+        for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
+            const ptrdiff_t at = y * f->r->stride + x;
+
+            out[o.r] = to_code[4 * f->r->front.light[0][at]];
+            out[o.g] = to_code[4 * f->r->front.light[1][at]];
+            out[o.b] = to_code[4 * f->r->front.light[2][at]];
+            if (o.a >= 0)
+                out[o.a] = alpha[x];
+        }
+    }
+}
+
+void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3])
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    uint8_t *out = pixel(f, o.bytes, x, y);
+
+    out[o.r] = rgb[0];
+    out[o.g] = rgb[1];
+    out[o.b] = rgb[2];
+    if (o.a >= 0)
+        out[o.a] = f->r->alpha[(size_t)y * f->r->width + x];
+}

@@ -1,0 +1,82 @@
+/* method.h: what a renderer calls for each tile. */
+#ifndef RF_METHOD_H
+#define RF_METHOD_H
+
+#include "aperture/aperture.h"
+#include "planes/planes.h"
+#include "renderer/renderer.h"
+#include "tiles/tiles.h"
+
+/* A rectangle of the picture, at most RF_TILE x RF_TILE, inside one tile. */
+struct rf_rect {
+    int x0, y0, x1, y1;
+};
+
+/* Curve and weights of eq. 5 in double precision, of 8-bit codes. */
+struct rf_exact {
+    double light[256];
+    double boundary[256]; /* light in the middle between code c and c + 1 */
+    double weight[256];
+};
+void rf_exact_init(struct rf_exact *exact, uint32_t blend, double sigma);
+
+/* One refocus_render() call. */
+struct rf_frame {
+    struct refocus_renderer *r;
+    const struct refocus_render_params *params;
+    const struct refocus_image *out;
+    const struct refocus_aperture *aperture;
+    struct rf_focus focus;
+    struct rf_bin_scale scale;
+    struct rf_rect region;  /* of the picture; out covers just this */
+    int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
+    int prefilter_above;    /* |s| from which rays lie far apart, Q7.8 */
+    bool weighted;          /* eq. 5 weights differ from 1 */
+    const struct rf_exact *exact; /* of methods in double precision, else NULL */
+};
+
+/*
+ * Sums over the rays of the pixels of a tile. Exact: Q12 light times Q16 weight (or 1)
+ * times a ray weight, 65,025 rays at the most, stays below 2^12 2^16 2^8 2^16 = 2^52.
+ */
+struct rf_sums {
+    uint64_t light[3][RF_TILE * RF_TILE];
+    uint64_t weight[RF_TILE * RF_TILE];
+};
+
+/* Weight of the pixel at `at` of light planes: eq. 5, or 1. */
+static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const light[3],
+                                    ptrdiff_t at)
+{
+    uint16_t most = light[0][at];
+
+    if (!f->weighted)
+        return 1;
+    most = light[1][at] > most ? light[1][at] : most;
+    most = light[2][at] > most ? light[2][at] : most;
+    return f->r->light_weight[most];
+}
+
+/* Offset of a ray in whole pixels: round half up of u s, Q15 times Q7.8. */
+static inline int rf_offset(int u, int s)
+{
+    return (u * s + (1 << 22)) >> 23;
+}
+
+/* The ray set for a reach (Q7.8): enough rays for it, at most the preset. */
+const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach);
+
+/* Means of a tile into the output picture. */
+void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);
+
+/* Pixels that come out as they went in. */
+void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
+
+/* One pixel given as codes; alpha is the photo's. */
+void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
+
+typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                        int worker);
+rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile;
+
+#endif

@@ -1,0 +1,107 @@
+/* search.c: randomized intersection search, Yang et al. 2016, section "Randomized
+ * Intersection Searching".
+ *
+ * A ray (u, v) of pixel p starts with the disparity found where it would meet the nearest
+ * plane, d = 1: at p + (u, v) K (df - 1), the same offset for every pixel. A guess d leads to the
+ * pixel q = p + (u, v) K (df - d) (eq. 4). If the disparity at q confirms the guess to half
+ * a pixel, |u| K |d_q - d| <= 1/2, q is an intersection. If not, d_q is the next guess. After T
+ * tests the last pixel looked at is taken, unless it is no intersection and farther than
+ * p: then p itself is (or, by option, the mirrored pixel, or the background layer).
+ */
+#include "methods/method.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Largest |s - s'| that half a pixel allows a ray: 1/2 / |u|, in Q7.8. */
+static int tolerance(const struct refocus_ray *ray)
+{
+    const double length = sqrt((double)ray->u * ray->u + (double)ray->v * ray->v);
+    const double most = length > 0 ? 4194304.0 / length : 65535; /* 2^22 = half in Q23 */
+
+    return most > 65535 ? 65535 : (int)most;
+}
+
+struct hit {
+    ptrdiff_t at;
+    int blur; /* that led there */
+    bool valid;
+};
+
+static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
+                         const struct refocus_ray *ray, ptrdiff_t start, int within, int tests)
+{
+    const int16_t *s = r->front.blur;
+    struct hit hit = {p, s[p + start], false};
+    int next = hit.blur;
+
+    while (tests-- > 0 && !hit.valid) {
+        int apart;
+
+        hit.blur = next;
+        hit.at = p + rf_offset(ray->v, hit.blur) * r->stride + rf_offset(ray->u, hit.blur);
+        next = s[hit.at];
+        apart = next - hit.blur;
+        hit.valid = apart <= within && -apart <= within;
+    }
+    return hit;
+}
+
+/* Where the light of a ray comes from: a pixel of *light. */
+static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p,
+                         const struct refocus_ray *ray, struct hit hit,
+                         uint16_t *const **light)
+{
+    const struct refocus_renderer *r = f->r;
+
+    *light = r->front.light;
+    if (hit.valid || r->front.blur[hit.at] <= r->front.blur[p])
+        return hit.at;
+    if (f->params->background) {
+        const int s = r->behind.blur[p];
+
+        *light = r->behind.light;
+        return p + rf_offset(ray->v, s) * r->stride + rf_offset(ray->u, s);
+    }
+    if (f->params->mirror)
+        return p - rf_offset(ray->v, hit.blur) * r->stride - rf_offset(ray->u, hit.blur);
+    return p;
+}
+
+void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+{
+    const struct refocus_renderer *r = f->r;
+    /* s of the nearest plane, d = 1 */
+    const int nearest = -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius +
+                                (1 << 15)) >> 16);
+    const struct rf_ray_set *set = &r->set[r->sets - 1];
+    struct rf_sums sums;
+
+    (void)tx;
+    (void)ty;
+    (void)worker;
+    memset(&sums, 0, sizeof sums);
+    for (int n = 0; n < set->count; n++) {
+        const struct refocus_ray *ray = &set->ray[n];
+        const ptrdiff_t start = rf_offset(ray->v, nearest) * r->stride +
+                                rf_offset(ray->u, nearest);
+        const int within = tolerance(ray);
+
+        for (int y = rect.y0; y < rect.y1; y++) {
+            for (int x = rect.x0; x < rect.x1; x++) {
+                const ptrdiff_t p = y * r->stride + x;
+                const int i = y % RF_TILE * RF_TILE + x % RF_TILE;
+                const struct hit hit =
+                    search(r, p, ray, start, within, f->params->iterations);
+                uint16_t *const *light;
+                const ptrdiff_t q = resolve(f, p, ray, hit, &light);
+                const uint64_t w = (uint64_t)rf_weight_of(f, light, q) * ray->weight;
+
+                sums.weight[i] += w;
+                for (int c = 0; c < 3; c++)
+                    sums.light[c][i] += w * light[c][q];
+            }
+        }
+    }
+    rf_encode_tile(f, rect, &sums);
+}

@@ -1,0 +1,45 @@
+/* format.h: where R, G, B and alpha stand in a pixel of a packed format. */
+#ifndef RF_FORMAT_H
+#define RF_FORMAT_H
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include <refocus/image.h>
+
+struct rf_order {
+    int bytes, r, g, b, a; /* a < 0: no alpha */
+};
+
+static inline struct rf_order rf_order_of(uint32_t format)
+{
+    switch (format) {
+    case REFOCUS_FORMAT_RGB8:
+        return (struct rf_order){3, 0, 1, 2, -1};
+    case REFOCUS_FORMAT_BGR8:
+        return (struct rf_order){3, 2, 1, 0, -1};
+    case REFOCUS_FORMAT_RGBA8:
+        return (struct rf_order){4, 0, 1, 2, 3};
+    default:
+        return (struct rf_order){4, 2, 1, 0, 3};
+    }
+}
+
+/* Whether rows of `bytes` bytes, `rows` of them, can lie `stride` apart. */
+static inline bool rf_good_stride(ptrdiff_t stride, ptrdiff_t bytes, int rows)
+{
+    return rows == 1 || stride >= bytes || stride <= -bytes;
+}
+
+/* Whether a picture is of a known format, a possible size and has pixels. */
+static inline bool rf_good_image(const struct refocus_image *image)
+{
+    return image && image->plane[0] && refocus_format_bytes(image->format) &&
+           image->width >= 1 && image->width <= REFOCUS_MAX_SIDE && image->height >= 1 &&
+           image->height <= REFOCUS_MAX_SIDE &&
+           rf_good_stride(image->stride[0],
+                          (ptrdiff_t)image->width * refocus_format_bytes(image->format),
+                          image->height);
+}
+
+#endif

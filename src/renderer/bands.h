@@ -1,0 +1,41 @@
+/* bands.h: rows are shared out in bands of one row of tiles; calls begin and end. */
+#ifndef RF_BANDS_H
+#define RF_BANDS_H
+
+#include "renderer/renderer.h"
+
+static inline int rf_bands(const struct refocus_renderer *r)
+{
+    return r->tiles_y;
+}
+
+static inline int rf_band_start(int band)
+{
+    return band * RF_TILE;
+}
+
+static inline int rf_band_end(const struct refocus_renderer *r, int band)
+{
+    const int end = (band + 1) * RF_TILE;
+
+    return end < r->height ? end : r->height;
+}
+
+static inline void rf_run_begin(struct refocus_renderer *r)
+{
+    atomic_store(&r->run, RF_RUN_RUNNING);
+}
+
+static inline bool rf_cancelled(const struct refocus_renderer *r)
+{
+    return atomic_load_explicit(&((struct refocus_renderer *)r)->run,
+                                memory_order_relaxed) == RF_RUN_CANCELLED;
+}
+
+/* Whether the run that ends here was cancelled. */
+static inline bool rf_run_end(struct refocus_renderer *r)
+{
+    return atomic_exchange(&r->run, RF_RUN_IDLE) == RF_RUN_CANCELLED;
+}
+
+#endif

@@ -1,0 +1,131 @@
+#include <refocus/render.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "renderer/layout.h"
+
+static void *default_allocate(void *user, size_t size)
+{
+    (void)user;
+    return malloc(size);
+}
+
+static void default_release(void *user, void *memory)
+{
+    (void)user;
+    free(memory);
+}
+
+/* Parameters with defaults in place of what an older caller's struct does not have. */
+static bool read_params(struct refocus_renderer_params *own,
+                        const struct refocus_renderer_params *params)
+{
+    if (!params || params->struct_size != sizeof *params)
+        return false;
+    *own = *params;
+    return own->max_width >= 1 && own->max_width <= REFOCUS_MAX_SIDE &&
+           own->max_height >= 1 && own->max_height <= REFOCUS_MAX_SIDE &&
+           own->max_blur_radius >= 0 && own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS &&
+           own->threads >= 0 && own->threads <= RF_MAX_THREADS &&
+           own->cpu <= REFOCUS_CPU_AVX2 &&
+           !own->allocator.allocate == !own->allocator.release;
+}
+
+uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params)
+{
+    struct refocus_renderer_params own;
+
+    return read_params(&own, params) ? rf_layout_size(&own) : 0;
+}
+
+static int threads_for(const struct refocus_renderer_params *params)
+{
+    long n = params->threads;
+
+    if (n == 0)
+        n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
+}
+
+int refocus_renderer_create(struct refocus_renderer **renderer,
+                            const struct refocus_renderer_params *params)
+{
+    struct refocus_renderer_params own;
+    struct refocus_renderer *r;
+    uint64_t size;
+    void *block;
+    int status;
+
+    if (!renderer)
+        return REFOCUS_ERR_ARGUMENT;
+    *renderer = NULL;
+    if (!read_params(&own, params))
+        return REFOCUS_ERR_ARGUMENT;
+    if (own.cpu != REFOCUS_CPU_AUTO && own.cpu != REFOCUS_CPU_C)
+        return REFOCUS_ERR_UNSUPPORTED;
+    size = rf_layout_size(&own);
+    if (size > PTRDIFF_MAX || (own.max_memory && size > own.max_memory))
+        return REFOCUS_ERR_SIZE;
+    if (!own.allocator.allocate)
+        own.allocator = (struct refocus_allocator){default_allocate, default_release, NULL};
+    block = own.allocator.allocate(own.allocator.user, (size_t)size);
+    if (!block)
+        return REFOCUS_ERR_MEMORY;
+    r = rf_layout_place(&own, block);
+    r->allocator = own.allocator;
+    r->log = own.log;
+    r->block = block;
+    r->memory = size;
+    r->cpu = REFOCUS_CPU_C;
+    r->max_width = own.max_width;
+    r->max_height = own.max_height;
+    r->max_blur_radius = own.max_blur_radius;
+    r->pad = rf_padding_for(own.max_blur_radius);
+    for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
+        rf_transfer_init(&r->transfer[blend], blend);
+    atomic_init(&r->run, RF_RUN_IDLE);
+    status = rf_pool_start(&r->pool, threads_for(&own), &r->run);
+    if (status) {
+        own.allocator.release(own.allocator.user, block);
+        return status;
+    }
+    *renderer = r;
+    return REFOCUS_OK;
+}
+
+void refocus_renderer_destroy(struct refocus_renderer **renderer)
+{
+    struct refocus_renderer *r;
+
+    if (!renderer || !*renderer)
+        return;
+    r = *renderer;
+    *renderer = NULL;
+    rf_pool_end(&r->pool);
+    r->allocator.release(r->allocator.user, r->block);
+}
+
+void refocus_cancel(struct refocus_renderer *renderer)
+{
+    int running = RF_RUN_RUNNING;
+
+    if (renderer)
+        atomic_compare_exchange_strong(&renderer->run, &running, RF_RUN_CANCELLED);
+}
+
+void refocus_renderer_get_info(const struct refocus_renderer *renderer,
+                               struct refocus_renderer_info *info)
+{
+    info->threads = renderer->pool.threads;
+    info->cpu = renderer->cpu;
+    info->memory = renderer->memory;
+}
+
+const char *refocus_cpu_name(uint32_t cpu)
+{
+    static const char *const name[] = {"auto", "c", "neon", "sse41", "avx2"};
+
+    return cpu < sizeof name / sizeof *name ? name[cpu] : NULL;
+}

@@ -1,0 +1,108 @@
+/* layout.c: where everything in a renderer's block of memory lies. */
+#include "renderer/layout.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "support/arena.h"
+
+/* Pixels that may be read beyond the picture: the largest offset, one for the pre-filter,
+ * one for rounding. */
+int rf_padding_for(float max_blur_radius)
+{
+    return (int)ceilf(max_blur_radius) + 2;
+}
+
+ptrdiff_t rf_stride_for(int width, int pad)
+{
+    const int tiles = (width + RF_TILE - 1) / RF_TILE;
+
+    return ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
+}
+
+static void take_level(struct rf_arena *arena, struct rf_level *level, int width, int height)
+{
+    const uint64_t pixels = (uint64_t)width * height;
+
+    for (int c = 0; c < 3; c++)
+        level->light[c] = rf_arena_take(arena, pixels, 2);
+    level->blur = rf_arena_take(arena, pixels, 2);
+}
+
+/* A padded plane, and where its pixel (0, 0) is. */
+static void *take_plane(struct rf_arena *arena, uint64_t elements, ptrdiff_t origin)
+{
+    uint16_t *plane = rf_arena_take(arena, elements, 2);
+
+    return plane ? plane + origin : NULL;
+}
+
+/* The pyramid of a picture of this size, for sizes alone or with memory. */
+int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height)
+{
+    int levels = 0;
+
+    while (width > 1 || height > 1) {
+        width = (width + 1) / 2;
+        height = (height + 1) / 2;
+        level[levels].width = width;
+        level[levels].height = height;
+        levels++;
+    }
+    return levels;
+}
+
+/* Sets the pointers of r, or with arena->base == NULL only counts. */
+static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+                    struct rf_arena *arena)
+{
+    const int w = params->max_width, h = params->max_height;
+    const int pad = rf_padding_for(params->max_blur_radius);
+    const ptrdiff_t stride = rf_stride_for(w, pad);
+    const uint64_t rows = (uint64_t)h + 2 * pad + RF_TILE;
+    const uint64_t elements = (uint64_t)stride * rows;
+    const ptrdiff_t origin = (ptrdiff_t)pad * stride + pad;
+    const uint64_t tiles = (uint64_t)((w + RF_TILE - 1) / RF_TILE) *
+                           (uint64_t)((h + RF_TILE - 1) / RF_TILE);
+    struct rf_level level[RF_LEVELS];
+    const int levels = rf_pyramid(level, w, h);
+
+    for (int c = 0; c < 3; c++) {
+        r->front.light[c] = take_plane(arena, elements, origin);
+        r->behind.light[c] = take_plane(arena, elements, origin);
+        r->smooth[c] = take_plane(arena, elements, origin);
+    }
+    r->front.blur = take_plane(arena, elements, origin);
+    r->behind.blur = take_plane(arena, elements, origin);
+    r->disparity = rf_arena_take(arena, (uint64_t)w * h, 2);
+    r->alpha = rf_arena_take(arena, (uint64_t)w * h, 1);
+    for (int i = 0; i < levels; i++) {
+        take_level(arena, &level[i], level[i].width, level[i].height);
+        r->level[i] = level[i];
+    }
+    r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
+    r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
+    r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
+}
+
+uint64_t rf_layout_size(const struct refocus_renderer_params *params)
+{
+    struct refocus_renderer counted;
+    struct rf_arena arena = {NULL, RF_ARENA_ALIGN}; /* blocks may begin anywhere */
+
+    rf_arena_take(&arena, 1, sizeof counted);
+    lay_out(&counted, params, &arena);
+    return arena.used;
+}
+
+struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *params,
+                                         void *block)
+{
+    const uintptr_t at = (uintptr_t)block;
+    struct rf_arena arena = {(uint8_t *)block + (-at & (RF_ARENA_ALIGN - 1)), 0};
+    struct refocus_renderer *r = rf_arena_take(&arena, 1, sizeof *r);
+
+    memset(r, 0, sizeof *r);
+    lay_out(r, params, &arena);
+    return r;
+}

@@ -1,0 +1,17 @@
+#ifndef RF_LAYOUT_H
+#define RF_LAYOUT_H
+
+#include "renderer/renderer.h"
+
+int rf_padding_for(float max_blur_radius);
+ptrdiff_t rf_stride_for(int width, int pad);
+int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height);
+
+/* Bytes of a renderer; UINT64_MAX: too many to address. */
+uint64_t rf_layout_size(const struct refocus_renderer_params *params);
+
+/* A renderer in a block of that size, its pointers set and all else 0. */
+struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *params,
+                                         void *block);
+
+#endif

@@ -1,0 +1,64 @@
+/* rays.c: the ray sets of the current aperture, kept until it changes. */
+#include "aperture/aperture.h"
+#include "methods/method.h"
+#include "renderer/rays.h"
+
+/* Sizes of sets, and the presets' own: a tile takes the smallest that is dense enough. */
+static const int class_rays[RF_RAY_CLASSES - 1] = {24, 32, 48, 64, 96, 128};
+
+static uint64_t total_weight(const struct rf_ray_set *set)
+{
+    uint64_t sum = 0;
+
+    for (int i = 0; i < set->count; i++)
+        sum += set->ray[i].weight;
+    return sum;
+}
+
+void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
+                  int rays, float max_blur_radius)
+{
+    struct refocus_ray *next = r->rays;
+    int sets = 0;
+
+    if (rays != REFOCUS_RAYS_FULL)
+        max_blur_radius = 0; /* sets of N do not depend on it */
+    if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays &&
+        r->set_blur == max_blur_radius)
+        return;
+    if (rays == REFOCUS_RAYS_FULL) {
+        r->set[0].ray = next;
+        r->set[0].count =
+            refocus_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, next);
+        r->set[0].total_weight = total_weight(&r->set[0]);
+        sets = 1;
+    } else {
+        for (int i = 0; i < RF_RAY_CLASSES; i++) {
+            const bool own = i == RF_RAY_CLASSES - 1 || class_rays[i] >= rays;
+            struct rf_ray_set *set = &r->set[sets++];
+
+            set->ray = next;
+            set->count = own ? rays : class_rays[i];
+            refocus_aperture_rays(aperture, set->count, next);
+            set->total_weight = total_weight(set);
+            next += set->count;
+            if (own)
+                break;
+        }
+    }
+    r->sets = sets;
+    r->set_aperture = aperture->id;
+    r->set_rays = rays;
+    r->set_blur = max_blur_radius;
+}
+
+/* N >= 1.3 pi reach^2 rays are as good as all. */
+const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach)
+{
+    const int64_t need = (int64_t)reach * reach * 4084 / 1000; /* Q16 */
+
+    for (int i = 0; i < r->sets - 1; i++)
+        if ((int64_t)r->set[i].count << 16 >= need)
+            return &r->set[i];
+    return &r->set[r->sets - 1];
+}

@@ -1,0 +1,94 @@
+/* renderer.h: what a renderer holds. One block of memory, laid out by layout.c. */
+#ifndef RF_RENDERER_H
+#define RF_RENDERER_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <refocus/render.h>
+
+#include "colour/transfer.h"
+#include "support/pool.h"
+
+enum {
+    RF_TILE = 16,     /* tiles are RF_TILE x RF_TILE pixels */
+    RF_BINS = 256,    /* of signed blur in a tile */
+    RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
+    RF_RAY_CLASSES = 7,
+    RF_FULL_RAYS = 255 * 255,
+};
+
+/* Rays and runs of equal weight among them. */
+struct rf_ray_set {
+    struct refocus_ray *ray;
+    int count;
+    uint64_t total_weight;
+};
+
+/* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
+ * negative by as much as the padding. */
+struct rf_layer {
+    uint16_t *light[3]; /* Q12; R, G, B */
+    int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
+};
+
+/* A level of the background pyramid, without padding. */
+struct rf_level {
+    int width, height;
+    uint16_t *light[3];
+    int16_t *blur; /* RF_NO_BLUR: nothing known here */
+};
+
+enum { RF_NO_BLUR = INT16_MIN };
+
+/* Occupied bins of signed blur, a bit each, nearest first. */
+struct rf_bins {
+    uint64_t word[RF_BINS / 64];
+};
+
+struct refocus_renderer {
+    struct refocus_allocator allocator;
+    struct refocus_log log;
+    void *block;
+    uint64_t memory;
+    uint32_t cpu;
+    int max_width, max_height;
+    float max_blur_radius;
+
+    struct rf_pool pool;
+    atomic_int run; /* enum rf_run */
+
+    /* The prepared photo. */
+    bool prepared;
+    int width, height;
+    int pad;            /* pixels beyond each side that may be read */
+    ptrdiff_t stride;   /* elements, of all padded planes */
+    uint32_t blend;     /* that the light planes are in */
+    uint16_t *disparity;
+    uint8_t *alpha;     /* unpadded, width a row */
+    struct rf_layer front;
+    uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
+
+    /* Of the last lens setting. */
+    struct rf_layer behind; /* the background layer */
+    struct rf_level level[RF_LEVELS];
+    int levels;
+    int tiles_x, tiles_y;
+    struct rf_bins *bins; /* of each tile */
+    bool blurred;         /* front.blur is valid */
+
+    struct rf_transfer transfer[RF_BLEND_COUNT];
+    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q16 */
+    float weight_sigma;     /* that it was made for, in weight_blend */
+    uint32_t weight_blend;
+
+    struct refocus_ray *rays;    /* memory of all sets */
+    struct rf_ray_set set[RF_RAY_CLASSES];
+    int sets;               /* how many are filled, 0: none yet */
+    uint64_t set_aperture;  /* what they were made for */
+    int set_rays;
+    float set_blur;
+};
+
+#endif

@@ -1,0 +1,34 @@
+/* arena.h: one block of memory, handed out in aligned pieces.
+ *
+ * The same code runs twice: with base == NULL it only adds up the bytes, then, on the
+ * block of that size, it sets the pointers. So size and use cannot disagree. Sizes are
+ * 64-bit and saturate at UINT64_MAX, which no allocation can satisfy.
+ */
+#ifndef RF_ARENA_H
+#define RF_ARENA_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { RF_ARENA_ALIGN = 64 };
+
+struct rf_arena {
+    uint8_t *base; /* NULL: only count */
+    uint64_t used;
+};
+
+static inline void *rf_arena_take(struct rf_arena *arena, uint64_t count, uint64_t size)
+{
+    const uint64_t at = arena->used;
+    uint64_t bytes;
+
+    if (__builtin_mul_overflow(count, size, &bytes) ||
+        __builtin_add_overflow(bytes, RF_ARENA_ALIGN - 1, &bytes) ||
+        __builtin_add_overflow(at, bytes & ~(uint64_t)(RF_ARENA_ALIGN - 1), &arena->used)) {
+        arena->used = UINT64_MAX;
+        return NULL;
+    }
+    return arena->base ? arena->base + at : NULL;
+}
+
+#endif

@@ -1,0 +1,44 @@
+/* pool.h: threads that share out the items of a loop.
+ *
+ * rf_pool_run() calls work(context, item, worker) once for each item in 0 .. count - 1,
+ * from the calling thread and the pool's. Which thread takes which item is left open, so
+ * an item's result must not depend on it. worker, 0 .. threads - 1, picks scratch memory.
+ */
+#ifndef RF_POOL_H
+#define RF_POOL_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+
+enum { RF_MAX_THREADS = 64 };
+
+/* A run can be cancelled from outside: RUNNING becomes CANCELLED, nothing else does. */
+enum rf_run { RF_RUN_IDLE, RF_RUN_RUNNING, RF_RUN_CANCELLED };
+
+typedef void rf_work_fn(void *context, int item, int worker);
+
+struct rf_pool {
+    int threads; /* with the calling one */
+    int started;
+    pthread_t thread[RF_MAX_THREADS];
+    pthread_mutex_t lock;
+    pthread_cond_t wake, done;
+    unsigned generation; /* of the loop being run; guarded by lock */
+    int busy;            /* pool threads still in that loop; guarded by lock */
+    bool quit;           /* guarded by lock */
+    rf_work_fn *work;
+    void *context;
+    int count;
+    atomic_int next;
+    atomic_int *run; /* enum rf_run; CANCELLED: hand out no more items */
+};
+
+/* Returns REFOCUS_OK or REFOCUS_ERR_THREAD, then with nothing left behind. */
+int rf_pool_start(struct rf_pool *pool, int threads, atomic_int *run);
+void rf_pool_end(struct rf_pool *pool);
+
+/* Returns when all items are done, or those under way once *run is CANCELLED. */
+void rf_pool_run(struct rf_pool *pool, rf_work_fn *work, void *context, int count);
+
+#endif

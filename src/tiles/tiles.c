@@ -1,0 +1,169 @@
+#include "tiles/tiles.h"
+
+#include <string.h>
+
+enum { HALF = 128, OVERLAP = 32 }; /* Q7.8 pixels */
+
+struct rf_bin_scale rf_bin_scale_of(float max_blur_radius)
+{
+    const int shift = max_blur_radius <= 31.5f ? 6 : max_blur_radius <= 63.5f ? 7 : 8;
+
+    /* Then -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
+     * shift 7, -127 .. 127 bins 0 .. 254 at shift 8. */
+    return (struct rf_bin_scale){shift, 127, 256 >> shift};
+}
+
+static int bin_of(struct rf_bin_scale scale, int s)
+{
+    return ((s + HALF) >> scale.shift) + scale.focus;
+}
+
+/* Least blur of a bin. */
+static int edge_of(struct rf_bin_scale scale, int bin)
+{
+    return (bin - scale.focus) * (1 << scale.shift) - HALF;
+}
+
+void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
+{
+    const int y1 = (ty + 1) * RF_TILE < r->height ? (ty + 1) * RF_TILE : r->height;
+
+    for (int tx = 0; tx < r->tiles_x; tx++) {
+        const int x0 = tx * RF_TILE;
+        const int x1 = x0 + RF_TILE < r->width ? x0 + RF_TILE : r->width;
+        struct rf_bins bins = {{0}};
+
+        for (int y = ty * RF_TILE; y < y1; y++) {
+            const int16_t *s = r->front.blur + y * r->stride;
+
+            for (int x = x0; x < x1; x++) {
+                const int bin = bin_of(scale, s[x]);
+
+                bins.word[bin / 64] |= UINT64_C(1) << (bin % 64);
+            }
+        }
+        r->bins[(size_t)ty * r->tiles_x + tx] = bins;
+    }
+}
+
+static bool has(const struct rf_bins *bins, int bin)
+{
+    return bins->word[bin / 64] >> (bin % 64) & 1;
+}
+
+/* Clear bins [from, to). */
+static void clear(struct rf_bins *bins, int from, int to)
+{
+    for (int i = 0; i < RF_BINS / 64; i++) {
+        const int a = from - 64 * i < 0 ? 0 : from - 64 * i;
+        const int b = to - 64 * i > 64 ? 64 : to - 64 * i;
+
+        if (a < b)
+            bins->word[i] &= ~((b - a == 64 ? ~UINT64_C(0) : (UINT64_C(1) << (b - a)) - 1)
+                               << a);
+    }
+}
+
+/* Pixels between tiles that are n tiles apart: those side by side are one pixel apart. */
+static int gap_of(int n)
+{
+    n = n < 0 ? -n : n;
+    return n ? (n - 1) * RF_TILE + 1 : 0;
+}
+
+/* Bins that reach tile (tx, ty) and all bins that stand in the window around it. */
+static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx,
+                    int ty, bool square, struct rf_bins *reach, struct rf_bins *window)
+{
+    const int most = (r->pad - 2 + RF_TILE - 1) / RF_TILE;
+
+    memset(reach, 0, sizeof *reach);
+    memset(window, 0, sizeof *window);
+    for (int j = -most; j <= most; j++) {
+        if (ty + j < 0 || ty + j >= r->tiles_y)
+            continue;
+        for (int i = -most; i <= most; i++) {
+            const int gx = gap_of(i), gy = gap_of(j);
+            struct rf_bins bins;
+            int least = gx > gy ? gx : gy;
+
+            if (tx + i < 0 || tx + i >= r->tiles_x)
+                continue;
+            bins = r->bins[(size_t)(ty + j) * r->tiles_x + tx + i];
+            for (int k = 0; k < RF_BINS / 64; k++)
+                window->word[k] |= bins.word[k];
+            if (!square)
+                while (least * least < gx * gx + gy * gy)
+                    least++;
+            /* a pixel `least` away is met only if |s| >= least - 1 */
+            if (least > 1) {
+                const int s = (least - 1) * 256;
+
+                clear(&bins, bin_of(scale, -s + (1 << scale.shift)), bin_of(scale, s));
+            }
+            for (int k = 0; k < RF_BINS / 64; k++)
+                reach->word[k] |= bins.word[k];
+        }
+    }
+}
+
+/* Cover the occupied bins from the near side. Slabs are a pixel wide, and half of that
+ * where the blur is small and a pixel would show. The blurs below half a pixel are a slab
+ * of their own with offset 0, which nothing else may take: they stay as they are. */
+static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
+                  struct rf_tile_plan *plan)
+{
+    const int pixel = 256 >> scale.shift;
+    const int focus_end = scale.focus + scale.focus_bins;
+
+    plan->slabs = 0;
+    plan->reach = 0;
+    plan->sharp = true;
+    for (int bin = 0; bin < RF_BINS;) {
+        int end = bin + pixel, last = bin, low, high, centre;
+
+        if (!has(bins, bin)) {
+            bin++;
+            continue;
+        }
+        if (bin >= scale.focus && bin < focus_end) {
+            plan->slab[plan->slabs++] = (struct rf_slab){-HALF, 2 * HALF - 1, 0};
+            bin = focus_end;
+            continue;
+        }
+        low = edge_of(scale, bin);
+        if (pixel > 1 && low > -3 * 256 && low < 3 * 256)
+            end = bin + pixel / 2;
+        if (bin < scale.focus && end > scale.focus)
+            end = scale.focus;
+        for (int b = bin; b < end && b < RF_BINS; b++)
+            if (has(bins, b))
+                last = b;
+        high = edge_of(scale, last + 1) - 1;
+        centre = (low + high + 1) / 2;
+        plan->sharp = false;
+        if (-low > plan->reach)
+            plan->reach = -low;
+        if (high > plan->reach)
+            plan->reach = high;
+        low -= OVERLAP;
+        high += OVERLAP;
+        if (centre < 0 && high >= -HALF)
+            high = -HALF - 1;
+        if (centre > 0 && low < HALF)
+            low = HALF;
+        plan->slab[plan->slabs++] =
+            (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre};
+        bin = last + 1;
+    }
+}
+
+void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                  bool square, struct rf_tile_plan *plan)
+{
+    struct rf_bins reach, window;
+
+    collect(r, scale, tx, ty, square, &reach, &window);
+    cover(&reach, scale, plan);
+    plan->uniform = plan->slabs == 1 && !memcmp(&reach, &window, sizeof reach);
+}

@@ -1,0 +1,44 @@
+/* tiles.h: which signed blurs can reach a tile, and the slabs that cover them. */
+#ifndef RF_TILES_H
+#define RF_TILES_H
+
+#include "renderer/renderer.h"
+
+/*
+ * Bins of signed blur: a quarter pixel wide up to K = 31.5, then half, then whole pixels.
+ * Their edges lie so that |s| < 1/2 pixel, the blurs that leave a pixel as it is, are
+ * whole bins.
+ */
+struct rf_bin_scale {
+    int shift;      /* a bin is 1 << shift in Q7.8 */
+    int focus;      /* first bin of |s| < 1/2 pixel */
+    int focus_bins; /* and how many there are */
+};
+struct rf_bin_scale rf_bin_scale_of(float max_blur_radius);
+
+/* A range of signed blur that is met at one offset: ray u sees it at round(u centre). */
+struct rf_slab {
+    int16_t low;    /* a pixel of blur s is hit if 0 <= s - low <= width */
+    uint16_t width;
+    int16_t centre; /* Q7.8 */
+};
+
+enum { RF_MAX_SLABS = RF_BINS };
+
+struct rf_tile_plan {
+    int slabs;
+    int reach; /* largest |s| that reaches the tile, Q7.8 */
+    bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
+    bool uniform; /* one slab holds all blurs in reach: every ray hits at once */
+    struct rf_slab slab[RF_MAX_SLABS];
+};
+
+/* Bins of the tiles of row ty. */
+void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);
+
+/* Everything the rays of a tile need. `square`: the aperture reaches beyond the unit
+ * circle, so that distances count by the larger axis. */
+void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                  bool square, struct rf_tile_plan *plan);
+
+#endif

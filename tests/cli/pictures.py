@@ -1,0 +1,93 @@
+"""Small pictures, made and read with the standard library alone."""
+import struct
+import zlib
+
+
+def ppm(path, width, height, pixel):
+    data = bytes(v for y in range(height) for x in range(width) for v in pixel(x, y))
+    with open(path, 'wb') as file:
+        file.write(b'P6\n%d %d\n255\n' % (width, height) + data)
+
+
+def pgm(path, width, height, value, greatest=255):
+    pack = '>H' if greatest > 255 else 'B'
+    data = b''.join(struct.pack(pack, value(x, y)) for y in range(height)
+                    for x in range(width))
+    with open(path, 'wb') as file:
+        file.write(b'P5\n%d %d\n%d\n' % (width, height, greatest) + data)
+
+
+def pfm(path, width, height, value):
+    rows = [struct.pack('<%df' % width, *(value(x, y) for x in range(width)))
+            for y in range(height)]
+    with open(path, 'wb') as file:
+        file.write(b'Pf\n%d %d\n-1.0\n' % (width, height) + b''.join(reversed(rows)))
+
+
+def png(path, width, height, rows, depth=8, colour=2):
+    def chunk(name, data):
+        return (struct.pack('>I', len(data)) + name + data +
+                struct.pack('>I', zlib.crc32(name + data)))
+
+    with open(path, 'wb') as file:
+        file.write(b'\x89PNG\r\n\x1a\n' +
+                   chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, depth, colour,
+                                              0, 0, 0)) +
+                   chunk(b'IDAT', zlib.compress(b''.join(b'\0' + row for row in rows))) +
+                   chunk(b'IEND', b''))
+
+
+def read_bytes(path):
+    with open(path, 'rb') as file:
+        return file.read()
+
+
+def read_pnm(path):
+    """(width, height, samples) of a P5 or P6 file."""
+    data = read_bytes(path)
+    kind, width, height, greatest = data.split(None, 4)[:4]
+    size = int(width) * int(height) * (3 if kind == b'P6' else 1)
+    if int(greatest) > 255:
+        return int(width), int(height), struct.unpack('>%dH' % size, data[-2 * size:])
+    return int(width), int(height), tuple(data[-size:])
+
+
+def read_pfm(path):
+    data = read_bytes(path)
+    kind, width, height, scale = data.split(None, 4)[:4]
+    width, height = int(width), int(height)
+    assert kind == b'Pf'
+    values = struct.unpack(('<' if float(scale) < 0 else '>') + '%df' % (width * height),
+                           data[-4 * width * height:])
+    return width, height, tuple(v for y in reversed(range(height))
+                                for v in values[y * width:(y + 1) * width])
+
+
+def read_png(path):
+    """(width, height, bits, channels, rows of bytes); any filter, no interlace."""
+    data = read_bytes(path)
+    at, idat = 8, b''
+    while at < len(data):
+        size, name = struct.unpack('>I4s', data[at:at + 8])
+        body = data[at + 8:at + 8 + size]
+        if name == b'IHDR':
+            width, height, bits, colour = struct.unpack('>IIBB', body[:10])
+        if name == b'IDAT':
+            idat += body
+        at += 12 + size
+    channels = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
+    step, row_size = channels * bits // 8, width * channels * bits // 8
+    raw, rows, last = zlib.decompress(idat), [], bytes(row_size)
+    for y in range(height):
+        kind, row = raw[y * (row_size + 1)], bytearray(
+            raw[y * (row_size + 1) + 1:(y + 1) * (row_size + 1)])
+        for i in range(row_size):
+            a = row[i - step] if i >= step else 0
+            b = last[i]
+            c = last[i - step] if i >= step else 0
+            p = a + b - c
+            near = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            row[i] = (row[i] + (0, a, b, (a + b) // 2, near)[kind]) & 255
+        rows.append(bytes(row))
+        last = bytes(row)
+    return width, height, bits, channels, rows

@@ -1,0 +1,684 @@
+#!/usr/bin/env python3
+"""The refocus command: every option at and beyond its limits, every error line, no
+leftovers. Usage: test_cli.py REFOCUS [unittest arguments]"""
+import json
+import os
+import pty
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import pictures
+
+REFOCUS = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else 'refocus'
+ROOT = os.environ.get('REFOCUS_SOURCE_ROOT', os.path.join(os.path.dirname(__file__), '../..'))
+PHOTOS = os.environ.get('REFOCUS_PHOTOS', os.path.join(ROOT, '../shared/photos'))
+W, H = 48, 32
+
+
+class Case(unittest.TestCase):
+    """Runs in a folder of its own with photo.ppm, depth.pgm and friends."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix='refocus-cli-')
+        os.chdir(cls.folder)
+        pictures.ppm('photo.ppm', W, H,
+                     lambda x, y: ((x * 5) & 255, (y * 8) & 255, ((x ^ y) & 7) * 32))
+        pictures.pgm('depth.pgm', W, H, lambda x, y: 255 if x >= W // 2 else 51)
+        pictures.pgm('mm.pgm', W, H,
+                     lambda x, y: 0 if (x, y) == (3, 3) else 500 if x < 24 else 2000, 65535)
+        pictures.pfm('metres.pfm', W, H, lambda x, y: 0.5 if x < 24 else 2.0)
+        pictures.ppm('plain.ppm', W, H, lambda x, y: (90, 160, 30))
+
+    @classmethod
+    def tearDownClass(cls):
+        os.chdir('/')
+        shutil.rmtree(cls.folder)
+
+    def run_it(self, *arguments, **more):
+        return subprocess.run([REFOCUS, *arguments], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL, **more)
+
+    def succeeds(self, *arguments):
+        result = self.run_it(*arguments)
+        self.assertEqual((result.returncode, result.stderr), (0, ''), arguments)
+        return result.stdout
+
+    def reports(self, *arguments):
+        """The object that --json prints, alone on standard output."""
+        return json.loads(self.succeeds(*arguments, '--json'))
+
+    def fails(self, status, line, *arguments):
+        """Exactly this line, this status, nothing printed, no file made or changed."""
+        before = {name: os.stat(name).st_mtime_ns for name in os.listdir('.')}
+        result = self.run_it(*arguments)
+        after = {name: os.stat(name).st_mtime_ns for name in os.listdir('.')}
+        self.assertEqual(result.stdout, '', arguments)
+        if isinstance(line, str):
+            self.assertEqual(result.stderr, 'refocus: ' + line + '\n', arguments)
+        else:
+            self.assertRegex(result.stderr, line, arguments)
+        self.assertEqual(result.stderr.count('\n'), 1, arguments)
+        self.assertTrue(result.stderr.startswith('refocus: '), arguments)
+        self.assertEqual(result.returncode, status, arguments)
+        self.assertEqual(before, after, arguments)
+
+    def differs(self, a, b, what=None):
+        self.assertFalse(a == b, what)  # without pages of samples
+
+    def same(self, a, b, what=None):
+        self.assertTrue(a == b, what)
+
+    def render(self, *arguments):
+        return ('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm') + arguments
+
+
+class Usage(Case):
+    SUBCOMMANDS = ('render', 'depth', 'info', 'bench')
+
+    def test_help(self):
+        text = self.succeeds('--help')
+        self.assertEqual(text, self.succeeds('-h'))
+        for name in self.SUBCOMMANDS:
+            self.assertRegex(text, r'(?m)^  %s +\S' % name)
+        for name in ('sheet', 'pull', 'view', 'live', 'compare'):
+            self.assertNotRegex(text, r'(?m)^  %s ' % name)
+            self.fails(2, re.compile(r'^refocus: %s: unknown subcommand; ' % name), name,
+                       'photo.ppm')
+
+    def test_help_lists_every_option(self):
+        options = {
+            'render': '-o --output --depth --depth-unit --near --far --focus --focus-at '
+                      '--focus-distance --blur --f-number --focal-length --sensor-width '
+                      '--method --rays --iterations --quality --aperture --blend --sigma '
+                      '--mirror --background --threads --cpu --repeat --json --view --region '
+                      '-h --help',
+            'depth': '-o --output --depth-unit --near --far --json -h --help',
+            'info': '--json -h --help',
+            'bench': '--size --depth --depth-unit --near --far --focus --focus-at '
+                     '--focus-distance --blur --method --rays --iterations --quality '
+                     '--aperture --blend --sigma --mirror --background --threads --cpu '
+                     '--repeat --json -h --help',
+        }
+        for name, expected in options.items():
+            text = self.succeeds(name, '--help')
+            self.assertEqual(text, self.succeeds(name, 'x', '--help', '--nonsense'))
+            listed = set(re.findall(r'(?m)^  (-\w|--[\w-]+)(?=[ ,\n])', text))
+            listed |= set(re.findall(r'(?m)^  -\w, (--[\w-]+)', text))
+            self.assertEqual(listed, set(expected.split()))
+            self.assertLessEqual(max(map(len, text.splitlines())), 80)
+            for word in set(expected.split()) - {'-h', '--help'}:  # and the parser knows it
+                error = self.run_it(name, word + '=' if word.startswith('--') else word)
+                self.assertNotIn('unknown', error.stderr)
+        for method in ('sweep', 'search', 'raytrace'):
+            self.assertIn(method, self.succeeds('render', '--help'))
+
+    def test_version(self):
+        self.assertRegex(self.succeeds('--version'), r'^refocus \d+\.\d+\.\d+\nfiles: \S')
+
+    def test_wrong_beginnings(self):
+        self.fails(2, "subcommand: none is given; 'refocus --help' lists them")
+        self.fails(2, "rendr: unknown subcommand; did you mean 'render'?", 'rendr')
+        self.fails(2, "nifo: unknown subcommand; did you mean 'info'?", 'nifo')
+        self.fails(2, "zzz: unknown subcommand; 'refocus --help' lists them", 'zzz')
+        self.fails(2, ': unknown subcommand; \'refocus --help\' lists them', '')
+        self.fails(2, '--json: unknown option; give a subcommand first, or --help', '--json')
+
+    def test_options_that_cannot_be_parsed(self):
+        self.fails(2, '--focsu: unknown option; did you mean --focus?', 'render', '--focsu=1')
+        self.fails(2, '--bulr: unknown option; did you mean --blur?', *self.render('--bulr', '3'))
+        self.fails(2, '--iter: unknown option; did you mean --iterations?',
+                   *self.render('--iter', '3'))
+        self.fails(2, "-x: unknown option; 'refocus render --help' lists them",
+                   *self.render('-x'))
+        self.fails(2, '--focus: has no value; give D', *self.render('--focus'))
+        self.fails(2, '--focus: has no value; give D', *self.render('--focus', '--json'))
+        self.fails(2, "--json: takes no value; leave '=1' out", *self.render('--json=1'))
+        self.fails(2, '--depth: is empty; give FILE', *self.render('--depth='))
+        self.fails(2, 'two.ppm: one file too many; give refocus render PHOTO -o OUT [options]',
+                   'render', 'photo.ppm', 'two.ppm')
+        self.fails(2, 'render: no file; give refocus render PHOTO -o OUT [options]', 'render')
+        self.fails(2, 'info: no file; give refocus info FILE [--json]', 'info')
+        self.fails(2, 'info: a file name is empty; give refocus info FILE [--json]', 'info', '')
+        self.fails(2, '-o: the output has no name; give -o OUT', 'render', 'photo.ppm')
+        self.fails(2, "--method: 'swep' is not one of sweep, search, raytrace; did you mean "
+                      "'sweep'?", *self.render('--method', 'swep'))
+        self.fails(2, "--blend: 'foo' cannot be used; give one of linear, stored, gamma",
+                   *self.render('--blend', 'foo'))
+
+    def test_odd_spellings(self):
+        shutil.copy('photo.ppm', '-odd.ppm')
+        self.succeeds('render', '--depth=depth.pgm', '-oout.ppm', '--', '-odd.ppm')
+        os.remove('-odd.ppm')
+        os.remove('out.ppm')
+
+
+class Limits(Case):
+    def check(self, option, good, bad, what, *more):
+        for value in good:
+            self.succeeds(*self.render(option, value, *more))
+        os.remove('out.ppm')
+        for value in bad:
+            self.fails(2, "%s: '%s' cannot be used; give %s" % (option, value, what),
+                       *self.render(option, value, *more))
+
+    def test_numbers(self):
+        nonsense = ['x', '1x', '0x1', 'nan', ' 1', '1 ', '1,5', '-', '1e', 'inf']
+        unit = ['-0.001', '1.001'] + nonsense
+        self.check('--focus', ['0', '1', '0.5', '1e-3'], unit, 'a number from 0 to 1')
+        self.check('--blur', ['0', '0.3', '127'], ['-1', '127.1', '1e99'] + nonsense,
+                   'a number from 0 to 127')
+        self.check('--near', ['1e-9', '1e9'], ['0', '-1', '1.1e9'] + nonsense,
+                   'a number above 0, at most 1e+09')
+        self.check('--far', ['1e-9', '7', 'inf'], ['0', '-1', '-inf', 'nan', 'x'],
+                   'a number above 0')
+        self.check('--sigma', ['1', '128', '1e30', 'off'], ['0', '0.99', 'on'] + nonsense,
+                   "a number from 1 to 1e+30, or 'off'")
+        self.check('--f-number', ['1000', '1.4'], ['0', '-2', '1001'] + nonsense,
+                   'a number above 0, at most 1000', '--near', '1', '--far', '2',
+                   '--focal-length', '50')
+
+    def test_whole_numbers(self):
+        nonsense = ['1.5', 'x', '', '1e', 'inf', '0x2']
+        self.check('--rays', ['1', '1024', 'full'], ['0', '-1', '1025', 'ful'] + nonsense,
+                   "a whole number from 1 to 1024, or 'full'", '--blur', '3')
+        self.check('--iterations', ['1', '64'], ['0', '65'] + nonsense,
+                   'a whole number from 1 to 64', '--method', 'search')
+        self.check('--threads', ['0', '1', '2', '64'], ['-1', '65'] + nonsense,
+                   'a whole number from 0 to 64')
+        self.check('--repeat', ['1', '3'], ['0', '-1', '10001'] + nonsense,
+                   'a whole number from 1 to 10000')
+
+    def test_positions(self):
+        self.check('--focus-at', ['0,0', '47,31', '3x4'],
+                   ['1', '1,', ',1', '1;2', '1,2,3', '1.5,2', 'a,b'], 'X,Y')
+        for at in ('-1,0', '48,0', '0,32', '1e9,0'):
+            self.fails(2, '--focus-at: %s lies outside of photo.ppm; give 0,0 to 47,31' %
+                       at.replace('1e9', '1e+09'), *self.render('--focus-at', at))
+        for region in ('0,0,49,1', '0,0,1,33', '48,0,1,1', '0,0,0,5', '0,0,5,0'):
+            self.fails(2, '--region: %s does not lie within the 48x32 pixels of photo.ppm' %
+                       region, *self.render('--region', region))
+        self.check('--region', ['0,0,48,32', '47,31,1,1'],
+                   ['-1,0,3,3', '1,2,3', '1,2,3,4,5', '0,0,1.5,1', '0,0,70000,1'],
+                   'X,Y,W,H from 0 to 65535')
+
+    def test_what_excludes_what(self):
+        twice = 'the focus is given twice; give one of --focus, --focus-at and --focus-distance'
+        self.fails(2, '--focus-at: ' + twice,
+                   *self.render('--focus', '1', '--focus-at', '1,1'))
+        self.fails(2, '--focus-distance: ' + twice,
+                   *self.render('--focus', '1', '--focus-distance', '1'))
+        self.fails(2, '--f-number: the blur is given twice; give --blur or --f-number',
+                   *self.render('--blur', '1', '--f-number', '2'))
+        self.fails(2, '--focal-length: it goes with --f-number; give that too',
+                   *self.render('--focal-length', '50'))
+        self.fails(2, '--sensor-width: it goes with --focal-length; give that too',
+                   *self.render('--sensor-width', '36', '--f-number', '2'))
+        self.fails(2, '--near: 3 m is not nearer than --far 2 m; give the smaller number to '
+                      '--near', *self.render('--near', '3', '--far', '2'))
+        self.fails(2, '--region: a view is always of the whole; leave --region or --view out',
+                   *self.render('--region', '0,0,1,1', '--view', 'depth'))
+        self.fails(2, '--size: the photo has a size of its own; leave one of them out',
+                   'bench', 'photo.ppm', '--size', '10x10')
+        self.fails(2, 'bench: --depth, --depth-unit, --near, --far and --focus-distance go '
+                      'with a photo; give one', 'bench', '--depth', 'depth.pgm')
+
+    def test_apertures(self):
+        pictures.pgm('mask.pgm', 9, 5, lambda x, y: 255 if x > 2 else 0)
+        pictures.pgm('widest.pgm', 255, 1, lambda x, y: 255)
+        pictures.pgm('wide.pgm', 256, 1, lambda x, y: 255)
+        pictures.pgm('black.pgm', 5, 5, lambda x, y: 0)
+        for shape in ('disc', 'polygon:3', 'polygon:16', 'polygon:6:15', 'polygon:5:-7.5',
+                      'mask.pgm', 'widest.pgm'):
+            self.succeeds(*self.render('--aperture', shape))
+        os.remove('out.ppm')
+        for shape in ('polygon:', 'polygon:2', 'polygon:17', 'polygon:6:', 'polygon:6:x',
+                      'polygon:6:1:2', 'polygon:99999999999999999999', 'polygon:6:nan'):
+            self.fails(2, "--aperture: '%s' cannot be used; give polygon:BLADES or "
+                          "polygon:BLADES:DEGREES with 3 to 16 blades" % shape,
+                       *self.render('--aperture', shape))
+        self.fails(2, "--aperture: 'dics' is not known; give disc, polygon:BLADES, "
+                      "polygon:BLADES:DEGREES or a mask picture",
+                   *self.render('--aperture', 'dics'))
+        self.fails(1, 'wide.pgm: 256x1 pixels are too many for an aperture; give at most '
+                      '255x255', *self.render('--aperture', 'wide.pgm'))
+        self.fails(1, 'black.pgm: no pixel of the aperture is open; give white where light '
+                      'passes', *self.render('--aperture', 'black.pgm'))
+        self.fails(1, re.compile('^refocus: missing.png: '),
+                   *self.render('--aperture', 'missing.png'))
+
+
+class Results(Case):
+    def test_report(self):
+        report = self.reports(*self.render('--focus', '0.25', '--blur', '4', '--threads', '2',
+                                           '--repeat', '3'))
+        for key, value in {'width': W, 'height': H, 'method': 'sweep', 'rays': 64,
+                           'blur': 4.0, 'focus': 0.25, 'threads': 2,
+                           'output': 'out.ppm'}.items():
+            self.assertEqual(report[key], value, key)
+        times = report['render_ms']
+        self.assertTrue(0 < times['min'] <= times['median'] <= times['max'])
+        self.assertGreater(report['prepare_ms'], 0)
+        self.assertGreater(report['peak_rss_kib'], 500)
+        self.assertIn(report['cpu'], ('c', 'neon', 'sse41', 'avx2'))
+        depth = report['depth']
+        self.assertEqual((depth['unknown'], depth['clamped'], depth['near_m'], depth['far_m'],
+                          depth['width'], depth['height']), (0, 0, None, None, W, H))
+        for quality, rays in (('preview', 32), ('standard', 64), ('best', 128)):
+            self.assertEqual(self.reports(*self.render('--quality', quality))['rays'], rays)
+        self.assertEqual(self.reports(*self.render('--quality', 'best', '--rays', '7'))['rays'],
+                         7)
+        self.assertEqual(self.reports(*self.render('--rays', 'full', '--blur', '3'))['rays'],
+                         'full')
+        text = self.succeeds(*self.render('--repeat', '2'))
+        self.assertRegex(text, r'^prepare [\d.]+ ms, render [\d.]+ ms \(median of 2; ')
+        self.assertEqual(self.succeeds(*self.render()), '')
+
+    def test_nothing_to_blur(self):
+        photo = pictures.read_pnm('photo.ppm')
+        self.succeeds(*self.render('--blur', '0'))
+        self.same(pictures.read_pnm('out.ppm'), photo)
+        for method in ('sweep', 'search', 'raytrace'):
+            self.succeeds('render', 'plain.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm',
+                          '--blur', '5', '--method', method)
+            self.same(pictures.read_pnm('out.ppm'), pictures.read_pnm('plain.ppm'), method)
+
+    def test_blur_happens_where_it_should(self):
+        photo = pictures.read_pnm('photo.ppm')[2]
+        self.succeeds(*self.render('--focus', '1', '--blur', '6'))
+        near = pictures.read_pnm('out.ppm')[2]
+        row = slice(16 * W * 3, 17 * W * 3)
+        self.same(near[row][40 * 3:], photo[row][40 * 3:])   # sharp on the right
+        self.differs(near[row][:20 * 3], photo[row][:20 * 3])  # and not on the left
+        self.succeeds(*self.render('--focus', '0.2', '--blur', '6'))
+        far = pictures.read_pnm('out.ppm')[2]
+        self.same(far[row][:10 * 3], photo[row][:10 * 3])
+        self.differs(far[row][30 * 3:], photo[row][30 * 3:])
+
+    def test_options_change_the_picture(self):
+        self.succeeds(*self.render('--focus', '1', '--blur', '6'))
+        first = pictures.read_pnm('out.ppm')
+        for more in (('--rays', '8'), ('--aperture', 'polygon:3'), ('--blend', 'stored'),
+                     ('--blend', 'gamma'), ('--sigma', '40'), ('--method', 'search'),
+                     ('--method', 'raytrace'), ('--focus', '0.4'), ('--blur', '3')):
+            self.succeeds(*self.render('--focus', '1', '--blur', '6', *more))
+            self.differs(pictures.read_pnm('out.ppm'), first, more)
+        pictures.pgm('many.pgm', W, H, lambda x, y: (x // 5 * 37 + y // 4 * 51) & 255)
+        search = ('--depth', 'many.pgm', '--method', 'search', '--focus', '0.2', '--blur', '6')
+        self.succeeds(*self.render(*search))
+        first = pictures.read_pnm('out.ppm')
+        for more in (('--iterations', '1'), ('--mirror',), ('--background',)):
+            self.succeeds(*self.render(*search, *more))
+            self.differs(pictures.read_pnm('out.ppm'), first, more)
+
+    def test_threads_do_not_change_the_picture(self):
+        pictures_seen = set()
+        for threads in ('1', '2', '3', '8'):
+            self.succeeds(*self.render('--focus', '1', '--threads', threads, '--cpu', 'c'))
+            pictures_seen.add(pictures.read_pnm('out.ppm'))
+        self.assertEqual(len(pictures_seen), 1)
+
+    def test_region_is_a_part_of_the_whole(self):
+        self.succeeds(*self.render('--focus', '1', '--blur', '6'))
+        whole = pictures.read_pnm('out.ppm')[2]
+        self.succeeds(*self.render('--focus', '1', '--blur', '6', '--region', '11,5,20,9'))
+        width, height, part = pictures.read_pnm('out.ppm')
+        self.assertEqual((width, height), (20, 9))
+        for y in range(9):
+            at = ((y + 5) * W + 11) * 3
+            self.same(part[y * 60:(y + 1) * 60], whole[at:at + 60])
+
+    def test_focus(self):
+        def focus(*more):
+            return self.reports(*self.render(*more))['focus']
+
+        self.assertAlmostEqual(focus('--focus-at', '47,0'), 1, 4)
+        self.assertAlmostEqual(focus('--focus-at', '0,31'), 0.2, 4)
+        self.assertAlmostEqual(focus(), 1, 4)  # the centre lies on the right half
+        near_far = ('--near', '0.5', '--far', '4')
+        for metres, disparity in (('0.5', 1), ('4', 0), ('1', 3 / 7), ('2', 1 / 7)):
+            self.assertAlmostEqual(focus('--focus-distance', metres, *near_far), disparity, 6)
+        self.assertAlmostEqual(focus('--focus-distance', 'inf', '--near', '1', '--far', 'inf'),
+                               0, 6)
+        for metres in ('0.49', '4.1', 'inf'):
+            self.fails(2, '--focus-distance: %s m lies outside of the depth of depth.pgm; give '
+                          '0.5 to 4 m' % metres,
+                       *self.render('--focus-distance', metres, *near_far))
+        self.fails(1, 'depth.pgm: --focus-distance needs distances, which it does not say; '
+                      'give --near and --far in metres, or --focus',
+                   *self.render('--focus-distance', '1', '--near', '1'))
+
+    def test_focus_at_is_robust(self):
+        """Wrong single samples do not win: the median of 5x5 is asked."""
+        pictures.pgm('specks.pgm', W, H,
+                     lambda x, y: 255 if (x, y) in ((10, 10), (0, 0), (1, 1)) else 51)
+        for at in ('10,10', '0,0', '2,1'):
+            report = self.reports('render', 'photo.ppm', '--depth', 'specks.pgm', '-o',
+                                  'out.ppm', '--focus-at', at)
+            self.assertAlmostEqual(report['focus'], 0.2, 4)
+
+    def test_lens(self):
+        def blur(*more):
+            return self.reports(*self.render(*more))['blur']
+
+        self.assertAlmostEqual(blur(), W / 36, 5)
+        lens = ('--near', '0.5', '--far', '4', '--f-number', '8', '--focal-length', '50')
+        expected = 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4)
+        self.assertAlmostEqual(blur(*lens), expected, 5)
+        self.assertAlmostEqual(blur(*lens, '--sensor-width', '18'), 2 * expected, 5)
+        self.fails(1, 'depth.pgm: --f-number needs distances, which it does not say; give '
+                      '--near and --far in metres, or --blur', *self.render('--f-number', '2'))
+        self.fails(1, 'photo.ppm: --f-number needs a focal length, which it does not say; give '
+                      '--focal-length and --sensor-width, or --blur',
+                   *self.render('--f-number', '2', '--near', '1', '--far', '2'))
+        wide = ('--near', '0.01', '--far', 'inf', '--focal-length', '85', '--f-number')
+        result = self.run_it(*self.render(*wide, '1.4'))
+        self.assertEqual(result.returncode, 2)
+        least = re.fullmatch(r'refocus: --f-number: f/1.4 blurs by 344 pixels, 127 is the most; '
+                             r'give f/([\d.]+) or more\n', result.stderr)
+        self.assertIsNotNone(least, result.stderr)
+        self.assertLessEqual(blur(*wide, least[1]), 127)  # and what it says does work
+        self.assertGreater(blur(*wide, least[1]), 100)
+
+    def test_portrait_sensor(self):
+        """36 mm go with the larger side, whichever that is."""
+        pictures.ppm('tall.ppm', H, W, lambda x, y: (x, y, 0))
+        pictures.pgm('tall.pgm', H, W, lambda x, y: y)
+        report = self.reports('render', 'tall.ppm', '--depth', 'tall.pgm', '-o', 'out.ppm',
+                              '--near', '0.5', '--far', '4', '--f-number', '8',
+                              '--focal-length', '50')
+        self.assertAlmostEqual(report['blur'], 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4), 5)
+
+    def test_depth_units(self):
+        def depth(file, unit, *more):
+            return self.reports('render', 'photo.ppm', '--depth', file, '--depth-unit', unit,
+                                '-o', 'out.ppm', *more)['depth']
+
+        mm = depth('mm.pgm', 'mm')
+        self.assertEqual((mm['meaning'], mm['unknown']), ('distance', 1))
+        self.assertAlmostEqual(mm['near_m'], 0.5)
+        self.assertAlmostEqual(mm['far_m'], 2)
+        self.assertAlmostEqual(depth('mm.pgm', '5000/m')['near_m'], 0.1)
+        self.assertAlmostEqual(depth('metres.pfm', 'm')['far_m'], 2)
+        wider = depth('metres.pfm', 'm', '--near', '0.25', '--far', 'inf')
+        self.assertEqual((wider['near_m'], wider['far_m'], wider['clamped']),
+                         (0.25, 'infinity', 0))
+        self.assertEqual(depth('metres.pfm', 'm', '--far', '1')['clamped'], W * H // 2)
+        for unit in ('feet', '0/m', '-5/m', '/m', 'nan/m', '5000', 'MM'):
+            self.fails(2, "--depth-unit: '%s' is not known; give disparity, inverse, mm, m or a "
+                          "number per metre such as 5000/m" % unit,
+                       *self.render('--depth-unit', unit))
+        # Dark is near: the left half, sharp when 1 is in focus.
+        self.succeeds(*self.render('--depth-unit', 'inverse', '--focus', '0.8', '--blur', '6'))
+        self.assertEqual(pictures.read_pnm('out.ppm')[2][:30],
+                         pictures.read_pnm('photo.ppm')[2][:30])
+
+    def test_views(self):
+        self.succeeds(*self.render('--view', 'depth'))
+        width, height, values = pictures.read_pnm('out.ppm')
+        self.assertEqual(width, W)
+        self.assertGreater(height, H + 20)  # the legend
+        self.assertNotEqual(values[:3], values[(W - 1) * 3:W * 3])
+        self.assertEqual(values[:3], values[3:6])
+        legend = values[H * W * 3:]
+        self.assertIn((240, 240, 240), {legend[i:i + 3] for i in range(0, len(legend), 3)})
+        self.succeeds(*self.render('--view', 'blur', '--focus', '1', '--blur', '9'))
+        values = pictures.read_pnm('out.ppm')[2]
+        self.assertEqual(values[(W - 1) * 3:W * 3], (0, 255, 120))  # sharp
+        self.assertNotEqual(values[:3], (0, 255, 120))
+        self.succeeds(*self.render('--view', 'none'))
+        self.assertEqual(pictures.read_pnm('out.ppm')[1], H)
+
+    def test_a_low_map(self):
+        pictures.pgm('low.pgm', W // 4, H // 4, lambda x, y: 20 * x)
+        report = self.reports('render', 'photo.ppm', '--depth', 'low.pgm', '-o', 'out.ppm')
+        self.assertEqual((report['width'], report['depth']['width']), (W, W // 4))
+
+    def test_bench(self):
+        report = self.reports('bench', '--size', '64x40', '--repeat', '2', '--blur', '5')
+        self.assertEqual((report['width'], report['height'], report['repeat'], report['blur']),
+                         (64, 40, 2, 5.0))
+        self.assertGreater(report['megapixels_per_second'], 0)
+        self.assertEqual(report['photo'], None)
+        report = self.reports('bench', 'photo.ppm', '--depth', 'depth.pgm', '--repeat', '1')
+        self.assertEqual((report['photo'], report['width']), ('photo.ppm', W))
+        self.assertRegex(self.succeeds('bench', '--size', '1x1', '--repeat', '1'),
+                         r'^1x1, sweep, blur .*\ncreate .*\nprepare .*\nrender .*\n$')
+        for size in ('0x5', '5', '5x65536', '5x5x5', 'axb'):
+            self.fails(2, "--size: '%s' cannot be used; give WxH from 1 to 65535" % size,
+                       'bench', '--size', size)
+
+
+class DepthAndInfo(Case):
+    def test_depth(self):
+        report = self.reports('depth', 'depth.pgm', '-o', 'd.pgm')
+        self.assertEqual(report['depth']['unknown'], 0)
+        expected = tuple(65535 if x >= W // 2 else 13107 for y in range(H) for x in range(W))
+        self.same(pictures.read_pnm('d.pgm'), (W, H, expected))
+        self.succeeds('depth', 'depth.pgm', '-o', 'd.pfm')
+        width, height, values = pictures.read_pfm('d.pfm')
+        self.assertEqual((width, height), (W, H))
+        self.assertTrue(all(abs(v - e / 65535) < 1e-6 for v, e in zip(values, expected)))
+        self.succeeds('depth', 'depth.pgm', '-o', 'd.png', '--depth-unit', 'inverse')
+        width, height, bits, channels, rows = pictures.read_png('d.png')
+        self.assertEqual((width, height, bits, channels), (W, H, 16, 1))
+        self.assertEqual((rows[0][:2], rows[0][-2:]), (b'\xcc\xcc', b'\0\0'))
+        text = self.succeeds('depth', 'mm.pgm', '-o', 'd.png', '--depth-unit', 'mm')
+        self.assertEqual(text, 'size     48x32\nnear     0.5 m\nfar      2 m\n'
+                               'filled   1 samples without a value, 0.1 %\n'
+                               'clamped  0 samples beyond the range, 0.0 %\n')
+        self.fails(2, 'd.jpg: no such format is written; end the name in .png, .pgm or .pfm',
+                   'depth', 'depth.pgm', '-o', 'd.jpg')
+
+    def test_info(self):
+        info = self.reports('info', 'photo.ppm')
+        self.assertEqual((info['container'], info['picture'], info['depth'], info['orientation'],
+                          info['camera'], info['file']),
+                         ('PPM', [W, H], None, 1, None, 'photo.ppm'))
+        info = self.reports('info', 'metres.pfm')
+        self.assertEqual((info['container'], info['depth']['width'], info['depth']['sample']),
+                         ('PFM', W, 'float'))
+        self.assertTrue(info['evidence'])
+        text = self.succeeds('info', 'mm.pgm')
+        self.assertIn('depth size    48x32, 16-bit\n', text)
+        self.assertIn('because ', text)
+        self.fails(1, re.compile('^refocus: missing: '), 'info', 'missing')
+
+    def test_odd_names(self):
+        """A name cannot break the one line or the terminal."""
+        name = 'a\nb\x1b[31m.ppm'
+        shutil.copy('photo.ppm', name)
+        self.assertNotIn('\x1b', self.succeeds('info', name))
+        self.assertEqual(self.reports('info', name)['file'], 'a?b?[31m.ppm')
+        self.fails(1, re.compile(r'^refocus: a\?b\?\[31m.ppm: it carries no depth'), 'render',
+                   name, '-o', 'out.ppm')
+        os.remove(name)
+        raw = b'\xff.ppm'
+        shutil.copy(b'photo.ppm', raw)
+        result = subprocess.run([REFOCUS, 'info', raw, '--json'], stdout=subprocess.PIPE)
+        self.assertEqual(json.loads(result.stdout)['file'], '?.ppm')
+        os.remove(raw)
+
+
+class Failures(Case):
+    def test_inputs(self):
+        self.fails(1, 'photo.ppm: it carries no depth; give a depth map to --depth', 'render',
+                   'photo.ppm', '-o', 'out.ppm')
+        self.fails(1, re.compile('^refocus: missing.jpg: .*No such file'), 'render',
+                   'missing.jpg', '-o', 'out.ppm')
+        self.fails(1, re.compile('^refocus: missing.png: .*No such file'), 'render',
+                   'photo.ppm', '--depth', 'missing.png', '-o', 'out.ppm')
+        self.fails(1, re.compile('^refocus: photo.ppm: '), 'render', 'photo.ppm', '--depth',
+                   'photo.ppm', '-o', 'out.ppm')  # in colour
+        os.mkdir('folder')
+        self.fails(1, re.compile('^refocus: folder: '), 'render', 'folder', '-o', 'out.ppm')
+        os.rmdir('folder')
+        for name, data in (('empty.jpg', b''), ('text.jpg', b'not a picture\n'),
+                           ('cut.ppm', pictures.read_bytes('photo.ppm')[:100])):
+            with open(name, 'wb') as file:
+                file.write(data)
+            for arguments in (('render', name, '--depth', 'depth.pgm', '-o', 'out.ppm'),
+                              ('render', 'photo.ppm', '--depth', name, '-o', 'out.ppm'),
+                              ('depth', name, '-o', 'out.png'), ('info', name)):
+                self.fails(1, re.compile('^refocus: %s: ' % name), *arguments)
+        pictures.pgm('holes.pgm', 4, 4, lambda x, y: 0)
+        self.fails(1, 'holes.pgm: no sample of the depth map holds a value; give another '
+                      '--depth or --depth-unit', 'render', 'photo.ppm', '--depth', 'holes.pgm',
+                   '--depth-unit', 'mm', '-o', 'out.ppm')
+        self.fails(1, re.compile('^refocus: metres.pfm: '), 'render', 'metres.pfm', '-o',
+                   'out.ppm')
+
+    def test_cpu(self):
+        states = [self.run_it(*self.render('--cpu', name)) for name in
+                  ('c', 'neon', 'sse41', 'avx2', 'auto')]
+        self.assertEqual((states[0].returncode, states[4].returncode), (0, 0))
+        for state in states:
+            self.assertIn(state.returncode, (0, 1))
+            if state.returncode == 1:
+                self.assertRegex(state.stderr, r'^refocus: --cpu: this processor or build has '
+                                               r'no \w+; give auto\n$')
+        self.assertIn(1, [state.returncode for state in states])  # no processor has them all
+        os.remove('out.ppm')
+
+    def test_outputs(self):
+        self.fails(2, 'out.tif: no such format is written; end the name in .jpg, .jpeg, .png or '
+                      '.ppm', 'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.tif')
+        self.fails(1, re.compile('^refocus: none/out.ppm: the folder none cannot be written to '
+                                 r'\(No such file or directory\); give another place'), 'render',
+                   'photo.ppm', '--depth', 'depth.pgm', '-o', 'none/out.ppm')
+        os.mkdir('dir.ppm')
+        self.fails(1, 'dir.ppm: it is a folder; give the name of a file', 'render', 'photo.ppm',
+                   '--depth', 'depth.pgm', '-o', 'dir.ppm')
+        os.rmdir('dir.ppm')
+        if os.geteuid() != 0:
+            os.mkdir('locked', 0o500)
+            self.fails(1, re.compile('^refocus: locked/out.ppm: the folder locked cannot be '),
+                       'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'locked/out.ppm')
+            os.rmdir('locked')
+
+    def test_inputs_are_not_overwritten(self):
+        lost = ': it is an input too and would be lost; give another name'
+        os.link('photo.ppm', 'link.ppm')
+        shutil.copy('depth.pgm', 'depth.png')
+        for name in ('photo.ppm', './photo.ppm', 'link.ppm'):
+            self.fails(2, name + lost, 'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', name)
+        self.fails(2, 'depth.png' + lost, 'render', 'photo.ppm', '--depth', 'depth.png', '-o',
+                   'depth.png')
+        self.fails(2, 'depth.pgm' + lost, 'depth', 'depth.pgm', '-o', 'depth.pgm')
+        os.remove('link.ppm')
+
+    def test_full_output(self):
+        if not os.path.exists('/dev/full'):
+            self.skipTest('no /dev/full here')
+        with open('/dev/full', 'w') as full:
+            result = subprocess.run([REFOCUS, 'info', 'photo.ppm', '--json'], stdout=full,
+                                    stderr=subprocess.PIPE, text=True)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, '^refocus: (standard output|--json): .*\n$')
+
+    def test_what_was_there_stays(self):
+        """A failure after the checks leaves the old file at OUT whole."""
+        with open('old.ppm', 'wb') as file:
+            file.write(b'old')
+        self.fails(1, re.compile('^refocus: text.pgm: '), 'render', 'photo.ppm', '--depth',
+                   self.text_file(), '-o', 'old.ppm')
+        self.assertEqual(pictures.read_bytes('old.ppm'), b'old')
+
+    def text_file(self):
+        with open('text.pgm', 'w') as file:
+            file.write('P5\n')
+        return 'text.pgm'
+
+
+class Running(Case):
+    def interrupt(self, number):
+        pictures.ppm('large.ppm', 640, 480, lambda x, y: (x & 255, y & 255, 7))
+        pictures.pgm('large.pgm', 640, 480, lambda x, y: (x * 7 + y) & 255)
+        before = sorted(os.listdir('.'))
+        process = subprocess.Popen(
+            [REFOCUS, 'render', 'large.ppm', '--depth', 'large.pgm', '-o', 'out.png', '--rays',
+             '1024', '--blur', '100', '--repeat', '10000'], stderr=subprocess.PIPE, text=True)
+        time.sleep(1)
+        self.assertIsNone(process.poll())
+        process.send_signal(number)
+        error = process.communicate(timeout=60)[1]
+        self.assertEqual(error, 'refocus: large.ppm: interrupted; nothing was written\n')
+        self.assertEqual(process.returncode, 1)
+        self.assertEqual(sorted(os.listdir('.')), before)
+
+    def test_interrupt(self):
+        self.interrupt(signal.SIGINT)
+
+    def test_terminate(self):
+        self.interrupt(signal.SIGTERM)
+
+    def test_progress_on_a_terminal(self):
+        terminal, other = pty.openpty()
+        process = subprocess.Popen([REFOCUS, *self.render()], stderr=other)
+        os.close(other)
+        text = b''
+        try:
+            while chunk := os.read(terminal, 4096):
+                text += chunk
+        except OSError:  # how a terminal ends
+            pass
+        os.close(terminal)
+        self.assertEqual(process.wait(), 0)
+        for word in (b'reading', b'preparing', b'rendering', b'writing', b' % '):
+            self.assertIn(word, text)
+        self.assertTrue(text.endswith(b'\r\x1b[K'), text)
+
+
+class Photos(Case):
+    def setUp(self):
+        if not os.path.isdir(PHOTOS):
+            print('SKIP: no photos in %s; set REFOCUS_PHOTOS' % PHOTOS, file=sys.stderr)
+            self.skipTest('no photos')
+        self.formats = self.succeeds('--version')
+
+    def path(self, name):
+        return os.path.join(PHOTOS, name)
+
+    def test_phone_files(self):
+        for name, source, near, far in (
+                ('gdepth-dahlia.jpg', 'gdepth', 18.8495, 633.323),
+                ('apple-jpeg-cup.jpg', 'apple-mpf', 1 / 4.835938, 1 / 0.229614),
+                ('apple-heic-pug.heic', 'heif', 1 / 4.382812, 1 / 1.498047)):
+            if source == 'heif' and 'HEIC' not in self.formats:
+                print('SKIP: this build reads no HEIC', file=sys.stderr)
+                continue
+            info = self.reports('info', self.path('phone/' + name))
+            self.assertEqual(info['depth']['source'], source)
+            self.assertAlmostEqual(info['depth']['near_m'] / near, 1, 4)
+            self.assertAlmostEqual(info['depth']['far_m'] / far, 1, 4)
+            self.assertTrue(info['evidence'])
+        self.assertTrue(self.reports('info', self.path('phone/gdepth-dahlia.jpg'))
+                        ['original_used'])
+
+    def test_dahlia(self):
+        """Focus at the flower the phone focused on; f-number by the EXIF lens."""
+        photo = self.path('phone/gdepth-dahlia.jpg')
+        report = self.reports('render', photo, '-o', 'out.jpg', '--rays', '8', '--region',
+                              '400,1000,64,64', '--blur', '8')
+        self.assertAlmostEqual(report['focus'], 0.7, 1)
+        report = self.reports('render', photo, '-o', 'out.jpg', '--rays', '8', '--region',
+                              '400,1000,64,64', '--f-number', '0.5')
+        self.assertGreater(report['blur'], 1)
+
+    def test_kinect(self):
+        report = self.reports('depth', self.path('rgbd/tum-office-depth.png'), '-o', 'out.png',
+                              '--depth-unit', '5000/m')
+        self.assertEqual(report['depth']['unknown'], 58950)
+        self.assertAlmostEqual(report['depth']['near_m'], 1.464)
+        self.assertAlmostEqual(report['depth']['far_m'], 9.331)
+
+
+if __name__ == '__main__':
+    unittest.main()

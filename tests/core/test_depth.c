@@ -1,0 +1,416 @@
+/* refocus_depth_to_disparity(): samples, meanings, ranges, strides, holes. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include <refocus/depth.h>
+
+static struct refocus_depth_map map_of(uint32_t sample, const void *samples, int width,
+                                       int height)
+{
+    static const int bytes[] = {0, 1, 2, 4};
+    struct refocus_depth_map map;
+
+    memset(&map, 0, sizeof map);
+    map.samples = samples;
+    map.width = width;
+    map.height = height;
+    map.sample = sample;
+    map.stride = (ptrdiff_t)width * bytes[sample];
+    map.meaning = REFOCUS_DEPTH_DISPARITY;
+    map.metres_per_unit = 1;
+    return map;
+}
+
+static struct refocus_depth_map distances_of(uint32_t sample, const void *samples, int width,
+                                             int height)
+{
+    struct refocus_depth_map map = map_of(sample, samples, width, height);
+
+    map.meaning = REFOCUS_DEPTH_DISTANCE;
+    map.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
+    return map;
+}
+
+static void test_disparity_samples(void **state)
+{
+    (void)state;
+    static const uint8_t u8[] = {0, 1, 51, 128, 254, 255};
+    static const uint16_t u16[] = {0, 1, 13107, 32768, 65534, 65535};
+    static const float f32[] = {-1, -0.5f, 0, 0.5f, 1, 3};
+    uint16_t out[6];
+    struct refocus_depth_report report;
+
+    struct refocus_depth_map map = map_of(REFOCUS_SAMPLE_U8, u8, 6, 1);
+    map.value_near = 255;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 12, &report), REFOCUS_OK);
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(out[i], u8[i] * 257);
+    assert_int_equal(report.unknown, 0);
+    assert_int_equal(report.clamped, 0);
+    assert_true(report.near_m == 0 && report.far_m == 0);
+
+    map = map_of(REFOCUS_SAMPLE_U16, u16, 6, 1);
+    map.value_near = 65535;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 12, NULL), REFOCUS_OK);
+    assert_memory_equal(out, u16, sizeof u16);
+
+    /* Dark = near. */
+    map.value_near = 0;
+    map.value_far = 65535;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 12, &report), REFOCUS_OK);
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(out[i], 65535 - u16[i]);
+    assert_int_equal(report.clamped, 0);
+
+    /* Measured: -1 is 0 and 3 is 65535. */
+    map = map_of(REFOCUS_SAMPLE_F32, f32, 6, 1);
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 12, &report), REFOCUS_OK);
+    static const uint16_t quarters[] = {0, 8192, 16384, 24576, 32768, 65535};
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(out[i], quarters[i]);
+    assert_true(report.value_near == 3 && report.value_far == -1);
+
+    /* Given: the rest is clamped and counted; the range in metres is passed on. */
+    map.value_far = 0;
+    map.value_near = 1;
+    map.near_m = 0.5;
+    map.far_m = INFINITY;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 12, &report), REFOCUS_OK);
+    static const uint16_t clamped[] = {0, 0, 0, 32768, 65535, 65535};
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(out[i], clamped[i]);
+    assert_int_equal(report.clamped, 3);
+    assert_true(report.near_m == 0.5 && isinf(report.far_m));
+}
+
+static void test_distances(void **state)
+{
+    (void)state;
+    static const uint16_t mm[] = {500, 1000, 2000, 4000};
+    static const float metres[] = {0.5f, 1, 2, 4};
+    static const uint8_t quarters[] = {1, 3, 7, 15}; /* 0.25 + v / 4 */
+    /* d = (1/z - 1/4) / (2 - 1/4) = 4/7 (1/z - 1/4) */
+    static const uint16_t expected[] = {65535, 28086, 9362, 0};
+    uint16_t out[4];
+    struct refocus_depth_report report;
+
+    struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_U16, mm, 4, 1);
+    map.metres_per_unit = 0.001;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_OK);
+    assert_memory_equal(out, expected, sizeof out);
+    assert_true(fabs(report.near_m - 0.5) < 1e-12 && fabs(report.far_m - 4) < 1e-12);
+
+    map = distances_of(REFOCUS_SAMPLE_F32, metres, 4, 1);
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_OK);
+    assert_memory_equal(out, expected, sizeof out);
+
+    map = distances_of(REFOCUS_SAMPLE_U8, quarters, 4, 1);
+    map.metres_at_zero = 0.25;
+    map.metres_per_unit = 0.25;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_OK);
+    assert_memory_equal(out, expected, sizeof out);
+
+    /* Range beyond the data on both sides: nothing is clamped. */
+    map = distances_of(REFOCUS_SAMPLE_F32, metres, 4, 1);
+    map.near_m = 0.25;
+    map.far_m = INFINITY;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_OK);
+    assert_int_equal(report.clamped, 0);
+    assert_true(report.near_m == 0.25 && isinf(report.far_m));
+    static const uint16_t wide[] = {32768, 16384, 8192, 4096};
+    assert_memory_equal(out, wide, sizeof out);
+
+    /* Range within the data. */
+    map.near_m = 1;
+    map.far_m = 2;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_OK);
+    static const uint16_t narrow[] = {65535, 65535, 0, 0};
+    assert_memory_equal(out, narrow, sizeof out);
+    assert_int_equal(report.clamped, 2);
+
+    /* One end given, beyond all the data: every sample lies on it. */
+    map.near_m = 8;
+    map.far_m = 0;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_OK);
+    static const uint16_t none[4] = {0};
+    assert_memory_equal(out, none, sizeof out);
+    assert_int_equal(report.clamped, 4);
+    map.near_m = 0;
+    map.far_m = 0.1;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_OK);
+    assert_memory_equal(out, none, sizeof out);
+    assert_int_equal(report.clamped, 4);
+}
+
+static void test_unknown_samples(void **state)
+{
+    (void)state;
+    const float f32[] = {1, NAN, INFINITY, -INFINITY, 0, -2, 4};
+    uint16_t out[7];
+    struct refocus_depth_report report;
+
+    struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_F32, f32, 7, 1);
+    for (int zero_flag = 0; zero_flag <= 1; zero_flag++) { /* a distance <= 0 is none anyway */
+        map.flags = zero_flag ? REFOCUS_DEPTH_ZERO_IS_UNKNOWN : 0;
+        assert_int_equal(refocus_depth_to_disparity(&map, out, 14, &report), REFOCUS_OK);
+        assert_int_equal(report.unknown, 5);
+        assert_true(report.near_m == 1 && report.far_m == 4);
+        assert_int_equal(out[0], 65535);
+        for (int i = 1; i < 7; i++)
+            assert_int_equal(out[i], 0); /* the farther side */
+    }
+
+    /* As disparities 0 and -2 do hold values, unless 0 is said not to. */
+    map = map_of(REFOCUS_SAMPLE_F32, f32, 7, 1);
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 14, &report), REFOCUS_OK);
+    assert_int_equal(report.unknown, 3);
+    assert_true(report.value_near == 4 && report.value_far == -2);
+    map.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 14, &report), REFOCUS_OK);
+    assert_int_equal(report.unknown, 4);
+
+    /* Nothing but holes. */
+    static const uint8_t zeros[12] = {0};
+    map = distances_of(REFOCUS_SAMPLE_U8, zeros, 4, 3);
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report),
+                     REFOCUS_ERR_NO_DEPTH);
+}
+
+static void test_one_depth(void **state)
+{
+    (void)state;
+    static const uint8_t same[6] = {77, 77, 0, 77, 77, 77};
+    static const uint8_t one = 200;
+    uint16_t out[6];
+    static const uint16_t none[6] = {0};
+    struct refocus_depth_report report;
+
+    struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_U8, same, 3, 2);
+    memset(out, 0xff, sizeof out);
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 6, &report), REFOCUS_OK);
+    assert_memory_equal(out, none, sizeof out);
+    assert_int_equal(report.unknown, 1);
+    assert_int_equal(report.clamped, 0);
+
+    map = map_of(REFOCUS_SAMPLE_U8, &one, 1, 1);
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 2, &report), REFOCUS_OK);
+    assert_int_equal(out[0], 0);
+    map.value_near = 255;
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 2, &report), REFOCUS_OK);
+    assert_int_equal(out[0], 200 * 257);
+}
+
+/* Rows anywhere: odd addresses, odd and negative strides; nothing is written between rows. */
+static void test_strides(void **state)
+{
+    (void)state;
+    enum { W = 5, H = 4, STRIDE = 2 * W + 3 };
+    unsigned char bytes[1 + H * STRIDE];
+    uint16_t plain[W * H], out[H][W + 2], straight[W * H];
+
+    for (int i = 0; i < W * H; i++)
+        plain[i] = (uint16_t)((i * 7919 + 1) % 65521);
+    plain[7] = 0;
+    for (int y = 0; y < H; y++)
+        memcpy(bytes + 1 + y * STRIDE, plain + y * W, 2 * W);
+
+    struct refocus_depth_map map = map_of(REFOCUS_SAMPLE_U16, plain, W, H);
+    map.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
+    assert_int_equal(refocus_depth_to_disparity(&map, straight, 2 * W, NULL), REFOCUS_OK);
+
+    for (int turned = 0; turned <= 1; turned++) {
+        map.samples = turned ? bytes + 1 + (H - 1) * STRIDE : bytes + 1;
+        map.stride = turned ? -STRIDE : STRIDE;
+        memset(out, 0xa5, sizeof out);
+        assert_int_equal(
+            turned ? refocus_depth_to_disparity(&map, out[H - 1], -(ptrdiff_t)sizeof *out, NULL)
+                   : refocus_depth_to_disparity(&map, out[0], sizeof *out, NULL),
+            REFOCUS_OK);
+        for (int y = 0; y < H; y++) { /* turned twice is straight */
+            assert_int_equal(out[y][W], 0xa5a5);
+            assert_int_equal(out[y][W + 1], 0xa5a5);
+            for (int x = 0; x < W; x++)
+                if (y != 1 || x != 2) /* the hole may be filled from another side */
+                    assert_int_equal(out[y][x], straight[y * W + x]);
+        }
+    }
+}
+
+static void test_bad_arguments(void **state)
+{
+    (void)state;
+    static const uint16_t samples[6] = {1, 2, 3, 4, 5, 6};
+    const struct refocus_depth_map good = distances_of(REFOCUS_SAMPLE_U16, samples, 3, 2);
+    struct refocus_depth_map bad[26];
+    uint16_t out[6];
+    int n = 0;
+
+    assert_int_equal(refocus_depth_to_disparity(&good, out, 6, NULL), REFOCUS_OK);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        bad[i] = good;
+    bad[n++].samples = NULL;
+    bad[n++].width = 0;
+    bad[n++].width = -1;
+    bad[n++].height = 0;
+    bad[n++].width = 65536;
+    bad[n++].height = 65536;
+    bad[n++].stride = 5;
+    bad[n++].stride = -5;
+    bad[n++].stride = PTRDIFF_MIN;
+    bad[n++].sample = 0;
+    bad[n++].sample = 4;
+    bad[n++].meaning = 0;
+    bad[n++].meaning = 3;
+    bad[n++].flags = 2;
+    bad[n++].metres_per_unit = 0;
+    bad[n++].metres_per_unit = NAN;
+    bad[n++].metres_at_zero = INFINITY;
+    bad[n++].near_m = -1;
+    bad[n++].near_m = NAN;
+    bad[n++].near_m = INFINITY;
+    bad[n++].far_m = -1;
+    bad[n++].far_m = NAN;
+    bad[n].near_m = 2;
+    bad[n++].far_m = 2;
+    bad[n].meaning = REFOCUS_DEPTH_DISPARITY;
+    bad[n++].value_near = NAN;
+    bad[n].meaning = REFOCUS_DEPTH_DISPARITY;
+    bad[n++].value_far = INFINITY;
+    bad[n].meaning = REFOCUS_DEPTH_DISPARITY;
+    bad[n].value_near = 1e308;
+    bad[n++].value_far = -1e308;
+    assert_int_equal(n, sizeof bad / sizeof *bad);
+    for (int i = 0; i < n; i++)
+        if (refocus_depth_to_disparity(bad + i, out, 6, NULL) != REFOCUS_ERR_ARGUMENT)
+            fail_msg("bad map %d is taken", i);
+    assert_int_equal(refocus_depth_to_disparity(NULL, out, 6, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_depth_to_disparity(&good, NULL, 6, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_depth_to_disparity(&good, out, 4, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_depth_to_disparity(&good, out, 7, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_depth_to_disparity(&good, out, PTRDIFF_MIN, NULL),
+                     REFOCUS_ERR_ARGUMENT);
+}
+
+/* The two ends of the sizes, with one sample known. */
+static void test_long_rows(void **state)
+{
+    (void)state;
+    enum { N = 65535 };
+    uint16_t *samples = calloc(N, sizeof *samples);
+    uint16_t *out = malloc(N * sizeof *out);
+
+    assert_non_null(samples);
+    assert_non_null(out);
+    samples[0] = 1000;
+    samples[N - 1] = 4000;
+    for (int upright = 0; upright <= 1; upright++) {
+        struct refocus_depth_report report;
+        struct refocus_depth_map map =
+            distances_of(REFOCUS_SAMPLE_U16, samples, upright ? 1 : N, upright ? N : 1);
+        assert_int_equal(refocus_depth_to_disparity(&map, out, upright ? 2 : 2 * N, &report),
+                         REFOCUS_OK);
+        assert_int_equal(report.unknown, N - 2);
+        assert_int_equal(out[0], 65535);
+        for (int i = N / 2; i < N; i++)
+            assert_int_equal(out[i], 0);
+        for (int i = 1; i < N; i++) /* one step from the near to the far side */
+            assert_true(out[i] <= out[i - 1]);
+    }
+    free(samples);
+    free(out);
+}
+
+/* A near post before a far wall with the shadow beside it that a depth sensor leaves. */
+static void test_fill_takes_the_farther_side(void **state)
+{
+    (void)state;
+    enum { W = 64, H = 48 };
+    float z[H][W];
+    uint16_t out[H][W], again[H][W];
+    struct refocus_depth_report report;
+
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            z[y][x] = x >= 20 && x < 32 ? 1.0f : x >= 32 && x < 40 ? 0 : 4.0f;
+    struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_F32, z, W, H);
+    assert_int_equal(refocus_depth_to_disparity(&map, out[0], sizeof *out, &report),
+                     REFOCUS_OK);
+    assert_int_equal(report.unknown, 8 * H);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            assert_int_equal(out[y][x], x >= 20 && x < 32 ? 65535 : 0);
+    assert_int_equal(refocus_depth_to_disparity(&map, again[0], sizeof *again, &report),
+                     REFOCUS_OK);
+    assert_memory_equal(out, again, sizeof out);
+
+    /* A hole within the post is the post's. */
+    for (int y = 20; y < 24; y++)
+        for (int x = 24; x < 27; x++)
+            z[y][x] = 0;
+    assert_int_equal(refocus_depth_to_disparity(&map, again[0], sizeof *again, &report),
+                     REFOCUS_OK);
+    assert_int_equal(report.unknown, 8 * H + 12);
+    assert_memory_equal(out, again, sizeof out);
+}
+
+/* A tilted, noisy floor with a round hole: filled near its plane, and rows inside do not
+ * differ from those above and below more than the surface itself does. */
+static void test_fill_leaves_no_streaks(void **state)
+{
+    (void)state;
+    enum { W = 160, H = 120, R = 24 };
+    static uint16_t v[H][W], out[H][W];
+    uint32_t seed = 1;
+    double across = 0, along = 0;
+    int worst = 0, n = 0;
+
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const int dx = x - W / 2, dy = y - H / 2;
+            seed = seed * 1664525 + 1013904223;
+            v[y][x] = (uint16_t)(20000 + 100 * y + 40 * x + (int)(seed >> 22) - 512);
+            if (dx * dx + dy * dy < R * R)
+                v[y][x] = 0;
+        }
+    struct refocus_depth_map map = map_of(REFOCUS_SAMPLE_U16, v, W, H);
+    map.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
+    map.value_near = 65535;
+    assert_int_equal(refocus_depth_to_disparity(&map, out[0], sizeof *out, NULL), REFOCUS_OK);
+    for (int y = 1; y < H; y++)
+        for (int x = 1; x < W; x++) {
+            if (v[y][x] != 0) {
+                assert_int_equal(out[y][x], v[y][x]);
+                continue;
+            }
+            const int error = abs(out[y][x] - (20000 + 100 * y + 40 * x));
+            worst = error > worst ? error : worst;
+            across += abs(out[y][x] - out[y - 1][x]);
+            along += abs(out[y][x] - out[y][x - 1]);
+            n++;
+        }
+    assert_true(n > 1700);
+    assert_true(worst < 100 * R + 512); /* no farther off than its nearest rim and noise */
+    assert_true(across / n < 200);      /* streaks: a mean step of some 340, the noise's */
+    assert_true(along / n < 200);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_disparity_samples),
+        cmocka_unit_test(test_distances),
+        cmocka_unit_test(test_unknown_samples),
+        cmocka_unit_test(test_one_depth),
+        cmocka_unit_test(test_strides),
+        cmocka_unit_test(test_bad_arguments),
+        cmocka_unit_test(test_long_rows),
+        cmocka_unit_test(test_fill_takes_the_farther_side),
+        cmocka_unit_test(test_fill_leaves_no_streaks),
+    };
+    return cmocka_run_group_tests_name("depth", tests, NULL, NULL);
+}

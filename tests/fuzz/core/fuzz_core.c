@@ -1,0 +1,191 @@
+/* Any parameters and any picture through the public API. Whatever comes in, the status
+ * is a documented one, nothing outside the result is written, and rendering twice gives
+ * the same bytes. */
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <refocus/refocus.h>
+
+enum { MAX_SIDE = 48, GUARD = 64 };
+
+/* What is left of the input; 0 for ever after its end. */
+struct input {
+    const uint8_t *data;
+    size_t size;
+};
+
+static uint32_t take(struct input *in, int bytes)
+{
+    uint32_t value = 0;
+
+    while (bytes-- > 0 && in->size > 0) {
+        value = value << 8 | *in->data++;
+        in->size--;
+    }
+    return value;
+}
+
+static float take_float(struct input *in)
+{
+    const uint32_t bits = take(in, 4);
+    float value;
+
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* A value in its range mostly; of all 32 bits when `wild`. */
+static int32_t take_in(struct input *in, int wild, int32_t low, int32_t high)
+{
+    if (wild)
+        return (int32_t)take(in, 4);
+    return low + (int32_t)(take(in, 2) % (uint32_t)(high - low + 1));
+}
+
+static float take_fraction(struct input *in, int wild, float high)
+{
+    return wild ? take_float(in) : high * (float)take(in, 2) / 65535;
+}
+
+/* Not one of the documented ones: end the program, that is what a fuzzer looks for. */
+static void check(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+static void take_pixels(struct input *in, uint8_t *to, size_t size)
+{
+    for (size_t i = 0; i < size; i++)
+        to[i] = in->size > 0 ? in->data[i % in->size] : (uint8_t)(i * 37);
+}
+
+static struct refocus_aperture *take_aperture(struct input *in, int wild)
+{
+    struct refocus_aperture *aperture = NULL;
+    uint8_t mask[16];
+    int status = REFOCUS_OK;
+
+    switch (take(in, 1) % 4) {
+    case 1:
+        status = refocus_aperture_create_disc(&aperture);
+        break;
+    case 2: {
+        const int blades = take_in(in, wild, 3, 16);
+        status = refocus_aperture_create_polygon(&aperture, blades,
+                                                 (double)take_fraction(in, wild, 360));
+        break;
+    }
+    case 3:
+        for (int i = 0; i < 16; i++)
+            mask[i] = (uint8_t)take(in, 1);
+        status = refocus_aperture_create_mask(&aperture, mask, 4, 4, 4);
+        break;
+    }
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT);
+    check(status == REFOCUS_OK || !aperture);
+    return aperture;
+}
+
+static struct refocus_render_params take_lens(struct input *in, int wild, float most)
+{
+    struct refocus_render_params p = refocus_render_params_default(
+        take_fraction(in, wild, 1), take_fraction(in, wild, most));
+
+    p.method = (uint32_t)take_in(in, wild, 0, REFOCUS_METHOD_COUNT - 1);
+    p.rays = take_in(in, wild, 0, 65);
+    if (p.rays == 65)
+        p.rays = REFOCUS_RAYS_FULL;
+    p.blend = (uint32_t)take_in(in, wild, 0, 2);
+    p.sigma = 1 + take_fraction(in, wild, 300);
+    p.iterations = take_in(in, wild, 1, 8);
+    p.mirror = (uint8_t)take_in(in, wild, 0, 1);
+    p.background = (uint8_t)take_in(in, wild, 0, 1);
+    p.prefilter = (uint8_t)take_in(in, wild, 0, 1);
+    p.region_x = take_in(in, wild, 0, 20);
+    p.region_y = take_in(in, wild, 0, 20);
+    p.region_width = take_in(in, wild, 0, MAX_SIDE);
+    p.region_height = take_in(in, wild, 0, MAX_SIDE);
+    return p;
+}
+
+/* Renders into a guarded picture of the region's size; the bytes go to @out. */
+static int render(struct refocus_renderer *renderer, struct refocus_render_params *p, int width,
+                  int height, uint32_t format, uint8_t *out, size_t capacity)
+{
+    const int whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
+    const int w = whole ? width : p->region_width, h = whole ? height : p->region_height;
+    const int bytes = refocus_format_bytes(format);
+    struct refocus_image image = refocus_image_packed(
+        format, out + GUARD, w, h, (ptrdiff_t)(w > 0 && w <= MAX_SIDE ? w : 1) * bytes);
+    int status;
+
+    memset(out, 0xa5, capacity);
+    status = refocus_render(renderer, p, &image);
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT
+          || status == REFOCUS_ERR_STATE);
+    const size_t written = status == REFOCUS_OK ? (size_t)w * (size_t)h * (size_t)bytes : 0;
+    for (size_t i = 0; i < capacity; i++)
+        check((i >= GUARD && i < GUARD + written) || out[i] == 0xa5);
+    return status;
+}
+
+static void use(struct input *in, struct refocus_renderer *renderer, float most, int wild)
+{
+    enum { CAPACITY = 4 * MAX_SIDE * MAX_SIDE + 2 * GUARD };
+    static uint8_t photo[4 * MAX_SIDE * MAX_SIDE], out[2][CAPACITY];
+    static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
+    const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
+    const uint32_t format = 1 + take(in, 1) % 4, out_format = 1 + take(in, 1) % 4;
+    const int bits = take(in, 1) & 1 ? 16 : 8;
+    const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
+    const int same = (int)take(in, 1) & 1;
+    const ptrdiff_t stride = (ptrdiff_t)width * refocus_format_bytes(format);
+    const struct refocus_image image =
+        refocus_image_packed(format, photo + stride * (height - 1), width, height, -stride);
+    const struct refocus_disparity map = {
+        (uint32_t)bits, same ? width : dw, same ? height : dh, disparity,
+        (ptrdiff_t)(same ? width : dw) * bits / 8};
+    struct refocus_render_params lens = take_lens(in, wild, most);
+    struct refocus_aperture *aperture = take_aperture(in, wild);
+    int status;
+
+    take_pixels(in, photo, sizeof photo);
+    take_pixels(in, (uint8_t *)disparity, sizeof disparity);
+    status = refocus_prepare(renderer, &image, &map);
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE);
+    lens.aperture = aperture;
+    status = render(renderer, &lens, width, height, out_format, out[0], CAPACITY);
+    if (status == REFOCUS_OK) {
+        check(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, view, 2 * width) == 0);
+        check(render(renderer, &lens, width, height, out_format, out[1], CAPACITY) == 0);
+        check(memcmp(out[0], out[1], CAPACITY) == 0);
+    }
+    refocus_aperture_destroy(&aperture);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct input in = {data, size};
+    const uint32_t flags = take(&in, 1);
+    const int wild_limits = flags & 1, wild = flags >> 1 & 1;
+    struct refocus_renderer_params limits = refocus_renderer_params_default(
+        take_in(&in, wild_limits, 1, MAX_SIDE), take_in(&in, wild_limits, 1, MAX_SIDE),
+        take_fraction(&in, wild_limits, 12));
+    struct refocus_renderer *renderer;
+    int status;
+
+    limits.threads = take_in(&in, wild_limits, 1, 3);
+    limits.max_memory = 64 << 20;
+    status = refocus_renderer_create(&renderer, &limits);
+    check((status == REFOCUS_OK) == (renderer != NULL));
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE
+          || status == REFOCUS_ERR_THREAD);
+    check((status == REFOCUS_ERR_ARGUMENT) == (refocus_renderer_memory(&limits) == 0));
+    for (int i = 0; i < 2 && renderer; i++)
+        use(&in, renderer, limits.max_blur_radius, wild);
+    refocus_renderer_destroy(&renderer);
+    return 0;
+}

@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""Writes the seeds of fuzz_core into corpus/; the order is that of take() in fuzz_core.c."""
+import random
+import struct
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parent / "corpus"
+
+
+def u16(value, low=0):
+    return struct.pack(">H", value - low)
+
+
+def share(part, whole):
+    return struct.pack(">H", round(65535 * part / whole))
+
+
+def limits(width, height, blur, threads):
+    return b"\0" + u16(width, 1) + u16(height, 1) + share(blur, 12) + u16(threads, 1)
+
+
+def picture(width, height, form, out, bits, depth=None):
+    dw, dh = depth or (width, height)
+    return (u16(width, 1) + u16(height, 1) + bytes([form - 1, out - 1, bits == 16])
+            + u16(dw, 1) + u16(dh, 1) + bytes([depth is None]))
+
+
+def lens(focus, blur, most, method, rays, blend=0, sigma=128, iterations=2, flags=(0, 0, 1),
+         region=(0, 0, 0, 0)):
+    return (share(focus, 1) + share(blur / most, 1) + u16(method) + u16(rays) + u16(blend)
+            + share(sigma - 1, 300) + u16(iterations, 1) + b"".join(map(u16, flags))
+            + b"".join(map(u16, region)))
+
+
+DISC, POLYGON, MASK = b"\1", b"\2" + u16(6, 3) + share(15, 360), b"\3" + bytes(range(0, 256, 16))
+
+
+def main():
+    noise = random.Random(1)
+    pixels = bytes(noise.randrange(256) for _ in range(48)) + bytes(range(0, 250, 10)) * 2
+    seeds = {
+        "sweep": limits(40, 30, 8, 2) + picture(40, 30, 1, 1, 16) + lens(.3, 8, 8, 0, 64) + DISC,
+        "sweep_full_mask": limits(33, 17, 5, 1) + picture(33, 17, 3, 4, 8)
+        + lens(1, 5, 5, 0, 65) + MASK,
+        "search": limits(40, 30, 12, 3) + picture(31, 29, 2, 1, 16)
+        + lens(0, 12, 12, 1, 64, blend=1, iterations=1, flags=(1, 1, 0)) + POLYGON,
+        "raytrace": limits(20, 20, 6, 1) + picture(20, 19, 4, 2, 8)
+        + lens(.5, 6, 6, 2, 65, blend=2, flags=(1, 0, 0)) + b"\0",
+        "region": limits(48, 48, 10, 2) + picture(48, 48, 1, 3, 16)
+        + lens(.8, 7, 10, 0, 32, region=(5, 9, 20, 17)) + DISC,
+        "coarse_depth": limits(48, 48, 10, 2) + picture(46, 44, 1, 1, 8, depth=(9, 7))
+        + lens(.2, 10, 10, 0, 24, sigma=3) + DISC,
+        "fine_depth": limits(12, 12, 3, 1) + picture(9, 12, 1, 1, 16, depth=(48, 41))
+        + lens(.2, 3, 3, 1, 7) + DISC,
+        "too_large": limits(10, 10, 3, 1) + picture(11, 10, 1, 1, 16) + lens(.2, 3, 3, 0, 7),
+        "no_blur": limits(10, 10, 3, 1) + picture(10, 10, 1, 1, 16) + lens(.2, 0, 3, 0, 7) + DISC,
+        "column": limits(1, 48, 12, 3) + picture(1, 48, 1, 1, 16) + lens(.6, 12, 12, 0, 64) + DISC,
+        "wild_limits": b"\1" + struct.pack(">iifi", 65535, 65535, 127, 64),
+        "wild_nan": b"\2" + limits(9, 9, 3, 1)[1:] + picture(9, 9, 1, 1, 16)
+        + struct.pack(">ff", float("nan"), 1) + b"\xff" * 40,
+    }
+    FOLDER.mkdir(exist_ok=True)
+    for name, seed in seeds.items():
+        (FOLDER / name).write_bytes(seed + pixels)
+
+
+if __name__ == "__main__":
+    main()

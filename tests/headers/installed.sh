@@ -1,0 +1,40 @@
+#!/bin/sh
+# usage: installed.sh SOURCE BUILD WORK_FOLDER COMPILER...
+# Installs into WORK_FOLDER, then builds and runs the program in README.md and the
+# examples as a user would: by pkg-config, with nothing else from the source tree.
+set -eu
+source=$1 build=$2 work=$3
+shift 3
+rm -rf "$work"
+mkdir -p "$work/src"
+DESTDIR=$work/dest meson install -C "$build" --no-rebuild >"$work/install.log"
+
+pc=$(find "$work/dest" -name refocus.pc)
+export PKG_CONFIG_LIBDIR="${pc%/*}" PKG_CONFIG_SYSROOT_DIR="$work/dest"
+export PKG_CONFIG_ALLOW_SYSTEM_CFLAGS=1 PKG_CONFIG_ALLOW_SYSTEM_LIBS=1
+LD_LIBRARY_PATH=$(pkg-config --variable=libdir refocus)
+case $LD_LIBRARY_PATH in "$work"/*) ;; *) LD_LIBRARY_PATH=$work/dest$LD_LIBRARY_PATH ;; esac
+export LD_LIBRARY_PATH
+[ -e "$LD_LIBRARY_PATH/librefocus.so" ] || { echo "no librefocus.so in $LD_LIBRARY_PATH"; exit 1; }
+
+awk '/^```c$/ {on = 1; next} /^```$/ {on = 0} on' "$source/README.md" >"$work/src/readme.c"
+[ -s "$work/src/readme.c" ] || { echo 'README.md shows no C program'; exit 1; }
+cp "$source"/examples/*.c "$work/src"
+
+cd "$work"
+for program in src/*.c; do
+    name=$(basename "$program" .c)
+    # shellcheck disable=SC2046
+    "$@" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -pedantic -Werror -o "$name" \
+        "$program" $(pkg-config --cflags --libs refocus) -lm -pthread
+    "./$name"
+    echo "ok $name"
+done
+
+# The static library, with what its pkg-config file says it needs.
+archive=$(find "$work/dest" -name librefocus.a)
+# shellcheck disable=SC2046
+"$@" -std=c11 -o static src/readme.c $(pkg-config --cflags refocus) "$archive" \
+    $(pkg-config --static --libs-only-l refocus | sed 's/-lrefocus//') -lm -pthread
+LD_LIBRARY_PATH='' ./static
+echo 'ok readme, static'

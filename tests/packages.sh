@@ -1,0 +1,36 @@
+# Sourced by scripts: installs Debian packages that are missing.
+
+have_package() {
+    # A program that came another way will do: meson, ninja, gcc, clang, ...
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ||
+        command -v "${1%-build}" >/dev/null 2>&1
+}
+
+# need_packages PACKAGE...: 0 when all are there in the end; else says what to do, 1
+need_packages() {
+    local missing=() as=() package
+
+    for package; do
+        have_package "$package" || missing+=("$package")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+    if ! command -v apt-get >/dev/null 2>&1; then
+        echo "Missing, and there is no apt-get: install what Debian 12 calls ${missing[*]}" >&2
+        return 1
+    fi
+    if [ "$(id -u)" != 0 ]; then
+        if ! command -v sudo >/dev/null 2>&1; then
+            echo "Missing, and neither root nor sudo: as root, run" >&2
+            echo "    apt-get install ${missing[*]}" >&2
+            return 1
+        fi
+        as=(sudo)
+    fi
+    echo "Installing: ${missing[*]}" >&2
+    "${as[@]}" apt-get -qq update >&2 || echo "apt-get update failed; going on" >&2
+    if ! "${as[@]}" env DEBIAN_FRONTEND=noninteractive \
+            apt-get -qq install -y --no-install-recommends "${missing[@]}" >/dev/null; then
+        echo "apt-get could not install: ${missing[*]} (is the network there?)" >&2
+        return 1
+    fi
+}

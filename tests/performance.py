@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Times whole frames with the refocus command and writes tests/performance.md.
+
+usage: performance.py BUILD_DIR [--repeat N] [--out FILE]
+
+BUILD_DIR holds a release build. The picture is the shipped scene, 720x540, K = 20.
+"""
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1]
+SCENE = SOURCE / "examples" / "data" / "portrait"
+
+# method, options, repeats: 1 for what takes seconds
+RUNS = [
+    ("sweep", ["--rays", "32"], 0),
+    ("sweep", ["--rays", "64"], 0),
+    ("sweep", ["--rays", "128"], 0),
+    ("search", ["--rays", "64", "--iterations", "1"], 0),
+    ("search", ["--rays", "64", "--iterations", "2"], 0),
+    ("search", ["--rays", "full", "--iterations", "1"], 3),
+    ("raytrace", ["--rays", "full"], 1),
+]
+
+
+def machine():
+    """Model of the processor and how many there are."""
+    models = []
+    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith(("model name", "Model", "Processor")):
+            models.append(line.split(":", 1)[1].strip())
+    compiler = subprocess.run(["cc", "--version"], stdout=subprocess.PIPE, text=True,
+                              check=False).stdout.splitlines()[:1]
+    return f"{models[0] if models else 'unknown processor'}, {len(models)} logical processors; " \
+           f"{compiler[0] if compiler else 'unknown compiler'}"
+
+
+def measure(refocus, method, options, threads, repeat):
+    with tempfile.TemporaryDirectory() as work:
+        done = subprocess.run(
+            [refocus, "render", SCENE / "allfocus.png", "--depth", SCENE / "disparity.png",
+             "--focus", "0.689", "--blur", "20", "--method", method, *options, "--threads",
+             str(threads), "--repeat", str(repeat), "--json", "-o", Path(work) / "out.png"],
+            stdout=subprocess.PIPE, check=True)
+    return json.loads(done.stdout)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("build", type=Path)
+    parser.add_argument("--repeat", type=int, default=20)
+    parser.add_argument("--out", type=Path, default=SOURCE / "tests" / "performance.md")
+    args = parser.parse_args()
+    refocus = args.build / "platform" / "cli" / "refocus"
+
+    lines = ["# How long it takes\n",
+             "Written by `tests/performance.py`; do not edit. 720x540, K = 20, whole frames "
+             "(everything but reading and writing files); the best and the median.\n",
+             machine() + "\n",
+             "| method | options | threads | cpu | frames | prepare ms | render ms, best | median "
+             "| peak memory MiB |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for method, options, repeat in RUNS:
+        for threads in (1, 2):
+            n = repeat or args.repeat
+            r = measure(refocus, method, options, threads, n)
+            ms = r["render_ms"]
+            prepare = r["prepare_ms"]
+            if isinstance(prepare, dict):
+                prepare = prepare["median"]
+            lines.append(f"| `{r['method']}` | {' '.join(options)} | {r['threads']} | {r['cpu']} "
+                         f"| {n} | {prepare:.1f} | {ms['min']:.1f} | {ms['median']:.1f} "
+                         f"| {r['peak_rss_kib'] / 1024:.0f} |")
+            print(lines[-1], file=sys.stderr)
+    args.out.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print(f"wrote {args.out}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,144 @@
+#include "settings.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum kind { INT32, BYTE, FLOAT, NAMED, TEXT };
+
+struct name {
+    const char *name;
+    double value;
+};
+
+static const struct name ray_names[] = {{"full", REFOCUS_RAYS_FULL}, {0}};
+static const struct name sigma_names[] = {{"off", INFINITY}, {0}};
+static const struct name blend_names[] = {{"linear", REFOCUS_BLEND_LINEAR},
+                                          {"stored", REFOCUS_BLEND_STORED},
+                                          {"gamma", REFOCUS_BLEND_GAMMA},
+                                          {0}};
+static const struct name method_names[] = {{"sweep", REFOCUS_METHOD_SWEEP},
+                                           {"search", REFOCUS_METHOD_SEARCH},
+                                           {"raytrace", REFOCUS_METHOD_RAYTRACE},
+                                           {"input", -1},
+                                           {0}};
+static const struct name cpu_names[] = {{"auto", REFOCUS_CPU_AUTO},
+                                        {"c", REFOCUS_CPU_C},
+                                        {"neon", REFOCUS_CPU_NEON},
+                                        {"sse41", REFOCUS_CPU_SSE41},
+                                        {"avx2", REFOCUS_CPU_AVX2},
+                                        {0}};
+
+#define RENDER(field) offsetof(struct quality_settings, render.field)
+
+/* A new setting of the renderer is one line here. */
+static const struct key {
+    const char *name;
+    enum kind kind;
+    size_t offset;
+    const struct name *names;
+} keys[] = {
+    {"method", NAMED, RENDER(method), method_names},
+    {"rays", INT32, RENDER(rays), ray_names},
+    {"iterations", INT32, RENDER(iterations), NULL},
+    {"blend", NAMED, RENDER(blend), blend_names},
+    {"sigma", FLOAT, RENDER(sigma), sigma_names},
+    {"mirror", BYTE, RENDER(mirror), NULL},
+    {"background", BYTE, RENDER(background), NULL},
+    {"prefilter", BYTE, RENDER(prefilter), NULL},
+    {"threads", INT32, offsetof(struct quality_settings, threads), NULL},
+    {"cpu", NAMED, offsetof(struct quality_settings, cpu), cpu_names},
+    {"against", TEXT, offsetof(struct quality_settings, against), NULL},
+};
+
+static int parse_value(const struct key *key, const char *text, double *value)
+{
+    char *end;
+
+    for (const struct name *n = key->names; n && n->name; n++) {
+        if (!strcmp(n->name, text)) {
+            *value = n->value;
+            return 0;
+        }
+    }
+    *value = strtod(text, &end);
+    return key->kind == NAMED || end == text || *end ? -1 : 0;
+}
+
+static int set(struct quality_settings *settings, const struct key *key, const char *text)
+{
+    void *field = (char *)settings + key->offset;
+    double value;
+
+    if (key->kind == TEXT) {
+        snprintf(field, sizeof settings->against, "%s", text);
+        return 0;
+    }
+    if (parse_value(key, text, &value) || fabs(value) > INT32_MAX) {
+        if (key->kind != FLOAT || !isinf(value))
+            return -1;
+    }
+    if (key->names == method_names && value < 0)
+        settings->input = 1;
+    else if (key->kind == BYTE)
+        *(uint8_t *)field = (uint8_t)value;
+    else if (key->kind == FLOAT)
+        *(float *)field = (float)value;
+    else
+        *(int32_t *)field = (int32_t)value;
+    return 0;
+}
+
+static int set_pair(struct quality_settings *settings, char *pair)
+{
+    char *value = strchr(pair, '=');
+
+    if (value)
+        *value++ = 0;
+    for (size_t i = 0; value && i < sizeof keys / sizeof keys[0]; i++) {
+        if (!strcmp(keys[i].name, pair)) {
+            if (!set(settings, &keys[i], value))
+                return 0;
+            fprintf(stderr, "refocus-quality: %s: bad value '%s'\n", pair, value);
+            return -1;
+        }
+    }
+    fprintf(stderr, "refocus-quality: no setting '%s': one of these:\n", pair);
+    quality_settings_help(stderr);
+    return -1;
+}
+
+int quality_settings_parse(struct quality_settings *settings, const char *text)
+{
+    char copy[512];
+    char *colon, *save, *pair;
+
+    memset(settings, 0, sizeof *settings);
+    settings->render = refocus_render_params_default(0, 0);
+    if (strlen(text) >= sizeof copy || !(colon = strchr(strcpy(copy, text), ':'))
+        || (size_t)(colon - copy) >= sizeof settings->label) {
+        fprintf(stderr, "refocus-quality: '%s' is not LABEL:key=value,...\n", text);
+        return -1;
+    }
+    *colon = 0;
+    strcpy(settings->label, copy);
+    for (pair = strtok_r(colon + 1, ",", &save); pair; pair = strtok_r(NULL, ",", &save)) {
+        if (set_pair(settings, pair))
+            return -1;
+    }
+    return 0;
+}
+
+void quality_settings_help(FILE *file)
+{
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        fprintf(file, "  %-11s", keys[i].name);
+        if (keys[i].kind == TEXT)
+            fprintf(file, " label of an earlier run");
+        else if (keys[i].kind != NAMED)
+            fprintf(file, " number");
+        for (const struct name *n = keys[i].names; n && n->name; n++)
+            fprintf(file, " %s", n->name);
+        fputc('\n', file);
+    }
+}

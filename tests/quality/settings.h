@@ -1,0 +1,26 @@
+/* One way to render, as named on the command line:
+ *
+ *     LABEL:key=value,key=value      e.g. paper:method=search,iterations=1,rays=full
+ */
+#ifndef QUALITY_SETTINGS_H
+#define QUALITY_SETTINGS_H
+
+#include <stdio.h>
+#include <refocus/refocus.h>
+
+struct quality_settings {
+    char label[64];
+    char against[64]; /* score against that run's picture; empty: the reference */
+    int input;        /* method=input: the untouched photo, the floor */
+    int32_t threads;
+    int32_t cpu;
+    struct refocus_render_params render;
+};
+
+/* Returns 0, or -1 after a line on standard error. */
+int quality_settings_parse(struct quality_settings *settings, const char *text);
+
+/* The keys, one a line. */
+void quality_settings_help(FILE *file);
+
+#endif

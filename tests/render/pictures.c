@@ -1,0 +1,204 @@
+#include "pictures.h"
+
+const struct style styles[] = {
+    {"sweep", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0},
+    {"sweep 32", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0},
+    {"sweep 1", REFOCUS_METHOD_SWEEP, 1, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
+    {"sweep 1024", REFOCUS_METHOD_SWEEP, 1024, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 0, 0},
+    {"sweep full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
+    {"sweep stored", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0},
+    {"sweep gamma", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_GAMMA, 40, 0},
+    {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0},
+    {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5},
+    {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1},
+    {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0},
+    {"search T=2", REFOCUS_METHOD_SEARCH, 64, 2, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
+    {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6},
+    {"search background", REFOCUS_METHOD_SEARCH, 64, 4, 0, 1, 0, REFOCUS_BLEND_GAMMA, 0, 0},
+    {"search mask", REFOCUS_METHOD_SEARCH, 24, 64, 1, 1, 0, REFOCUS_BLEND_LINEAR, 2, -1},
+    {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
+    {"raytrace plain", REFOCUS_METHOD_RAYTRACE, 32, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 96, 7},
+};
+const int style_count = sizeof styles / sizeof styles[0];
+
+uint32_t noise(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return *state >> 8;
+}
+
+static void pixel(struct picture *p, int x, int y, int r, int g, int b, int disparity)
+{
+    const size_t i = (size_t)y * (size_t)p->width + (size_t)x;
+
+    p->rgb[3 * i] = (uint8_t)r;
+    p->rgb[3 * i + 1] = (uint8_t)g;
+    p->rgb[3 * i + 2] = (uint8_t)b;
+    p->disparity[i] = (uint16_t)disparity;
+}
+
+static struct picture picture_new(int width, int height)
+{
+    struct picture p = {width, height, NULL, NULL};
+    const size_t pixels = (size_t)width * (size_t)height;
+
+    p.rgb = malloc(3 * pixels);
+    p.disparity = malloc(2 * pixels);
+    assert_non_null(p.rgb);
+    assert_non_null(p.disparity);
+    return p;
+}
+
+static void draw_slope(struct picture *p, uint32_t *state)
+{
+    for (int y = 0; y < p->height; y++) {
+        for (int x = 0; x < p->width; x++) {
+            const int texture = (int)(noise(state) % 64), light = noise(state) % 97 == 0;
+            const int checker = ((x / 5 + y / 3) & 1) * 90;
+
+            if (light)
+                pixel(p, x, y, 255, 255, 250, 20000 * y / p->height);
+            else
+                pixel(p, x, y, 40 + texture + checker, 90 + texture, 30 + checker,
+                      20000 * y / p->height);
+        }
+    }
+}
+
+static void draw_ball(struct picture *p, int cx, int cy, int radius, int disparity,
+                      uint32_t *state)
+{
+    const int red = (int)(noise(state) % 256), blue = (int)(noise(state) % 256);
+
+    for (int y = cy - radius; y <= cy + radius; y++) {
+        for (int x = cx - radius; x <= cx + radius; x++) {
+            const int dx = x - cx, dy = y - cy;
+
+            if (x < 0 || y < 0 || x >= p->width || y >= p->height
+                || dx * dx + dy * dy > radius * radius)
+                continue;
+            pixel(p, x, y, red, 128 + dx * dy * 100 / (radius * radius + 1), blue,
+                  disparity - dx * 300 / (radius + 1));
+        }
+    }
+}
+
+struct picture picture_make(int width, int height, uint32_t seed)
+{
+    struct picture p = picture_new(width, height);
+    uint32_t state = seed;
+
+    draw_slope(&p, &state);
+    for (int i = 0; i < 4; i++)
+        draw_ball(&p, (int)(noise(&state) % (uint32_t)width),
+                  (int)(noise(&state) % (uint32_t)height), 1 + width / 9,
+                  24000 + 9000 * i, &state);
+    for (int y = 0; y < height; y++) {
+        const int x = width / 4 + y / 3;
+
+        if (x < width)
+            pixel(&p, x, y, 10, 10, 200, 65535);
+        if (x + 1 < width)
+            pixel(&p, x + 1, y, 20, 200, 20, 65535);
+    }
+    return p;
+}
+
+struct picture picture_flat(int width, int height, const uint8_t rgb[3], uint16_t disparity)
+{
+    struct picture p = picture_new(width, height);
+
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++)
+            pixel(&p, x, y, rgb[0], rgb[1], rgb[2], disparity);
+    }
+    return p;
+}
+
+void picture_free(struct picture *picture)
+{
+    free(picture->rgb);
+    free(picture->disparity);
+}
+
+struct refocus_image picture_image(const struct picture *p)
+{
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, p->rgb, p->width, p->height,
+                                3 * (ptrdiff_t)p->width);
+}
+
+struct refocus_disparity picture_disparity(const struct picture *p)
+{
+    return refocus_disparity16(p->disparity, p->width, p->height, 2 * (ptrdiff_t)p->width);
+}
+
+struct refocus_render_params style_params(const struct style *style, float focus, float blur)
+{
+    struct refocus_render_params params = refocus_render_params_default(focus, blur);
+
+    params.method = style->method;
+    params.rays = style->rays;
+    params.iterations = style->iterations;
+    params.mirror = (uint8_t)style->mirror;
+    params.background = (uint8_t)style->background;
+    params.prefilter = (uint8_t)style->prefilter;
+    params.blend = style->blend;
+    params.sigma = style->sigma > 0 ? style->sigma : INFINITY;
+    return params;
+}
+
+struct refocus_aperture *style_aperture(const struct style *style)
+{
+    static const uint8_t letter[5][4] = {
+        {255, 0, 0, 0}, {255, 0, 0, 0}, {128, 0, 0, 0}, {255, 0, 0, 0}, {255, 255, 255, 64}};
+    struct refocus_aperture *aperture = NULL;
+
+    if (style->blades > 0)
+        assert_int_equal(refocus_aperture_create_polygon(&aperture, style->blades, 15), 0);
+    else if (style->blades < 0)
+        assert_int_equal(refocus_aperture_create_mask(&aperture, letter[0], 4, 5, 4), 0);
+    return aperture;
+}
+
+struct refocus_renderer *prepared(const struct picture *picture, float blur, int threads)
+{
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(picture->width, picture->height, blur);
+    const struct refocus_image photo = picture_image(picture);
+    const struct refocus_disparity disparity = picture_disparity(picture);
+    struct refocus_renderer *renderer;
+
+    limits.threads = threads;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+    return renderer;
+}
+
+void render_style(struct refocus_renderer *renderer, const struct picture *picture,
+                  const struct style *style, float focus, float blur, uint8_t *out)
+{
+    struct refocus_render_params params = style_params(style, focus, blur);
+    struct refocus_aperture *aperture = style_aperture(style);
+    const struct refocus_image image = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, out, picture->width, picture->height,
+        3 * (ptrdiff_t)picture->width);
+    int status;
+
+    params.aperture = aperture;
+    status = refocus_render(renderer, &params, &image);
+    refocus_aperture_destroy(&aperture);
+    if (status)
+        fail_msg("%s, %d x %d, focus %g, blur %g: %s", style->name, picture->width,
+                 picture->height, (double)focus, (double)blur, refocus_strerror(status));
+}
+
+void assert_same_pixels(const uint8_t *a, const uint8_t *b, int width, int height,
+                        const char *what)
+{
+    for (size_t i = 0; i < 3 * (size_t)width * (size_t)height; i++) {
+        if (a[i] != b[i])
+            fail_msg("%s, %d x %d: channel %d of (%d, %d) is %d, should be %d", what, width,
+                     height, (int)(i % 3), (int)(i / 3 % (size_t)width),
+                     (int)(i / 3 / (size_t)width), a[i], b[i]);
+    }
+}

@@ -1,0 +1,67 @@
+/* Pictures and settings that the render tests share. */
+#ifndef RENDER_PICTURES_H
+#define RENDER_PICTURES_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <refocus/refocus.h>
+
+/* A photo, R G B without padding, and its disparities. */
+struct picture {
+    int width, height;
+    uint8_t *rgb;
+    uint16_t *disparity;
+};
+
+/* A textured slope with lights, balls before it and bars close to the lens: every
+ * class of tile, hard edges, clipped pixels. The same for the same seed everywhere. */
+struct picture picture_make(int width, int height, uint32_t seed);
+
+/* All pixels of one colour, all disparities the same. */
+struct picture picture_flat(int width, int height, const uint8_t rgb[3],
+                            uint16_t disparity);
+void picture_free(struct picture *picture);
+
+struct refocus_image picture_image(const struct picture *picture);
+struct refocus_disparity picture_disparity(const struct picture *picture);
+
+/* A way to render, with a name for messages. */
+struct style {
+    const char *name;
+    uint32_t method;
+    int rays;
+    int iterations;
+    int mirror, background, prefilter;
+    uint32_t blend;
+    float sigma;  /* 0: plain average */
+    int blades;   /* 0: disc; -1: a mask with an L in it */
+};
+extern const struct style styles[];
+extern const int style_count;
+
+struct refocus_render_params style_params(const struct style *style, float focus, float blur);
+/* To be destroyed by the caller; NULL for a disc. */
+struct refocus_aperture *style_aperture(const struct style *style);
+
+/* A prepared renderer, threads as given; fails the test when it cannot. */
+struct refocus_renderer *prepared(const struct picture *picture, float blur, int threads);
+
+/* Renders all of the picture to R G B without padding; fails the test when it cannot. */
+void render_style(struct refocus_renderer *renderer, const struct picture *picture,
+                  const struct style *style, float focus, float blur, uint8_t *out);
+
+/* Fails with the place of the first difference. */
+void assert_same_pixels(const uint8_t *a, const uint8_t *b, int width, int height,
+                        const char *what);
+
+uint32_t noise(uint32_t *state);
+
+#endif

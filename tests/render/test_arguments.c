@@ -1,0 +1,296 @@
+/* Each argument out of its documented range is refused, and nothing is written. */
+#include "pictures.h"
+
+enum { W = 20, H = 12 };
+
+/* Sets one field to a bad value. */
+#define BAD(type, field, value) \
+    {#field " = " #value, offsetof(struct type, field), sizeof((struct type *)0)->field, \
+     &(__typeof__(((struct type *)0)->field)){value}}
+
+struct bad {
+    const char *what;
+    size_t offset, size;
+    const void *value;
+};
+
+static void *odd_address(void)
+{
+    static uint16_t samples[W * H + 2];
+    return (uint8_t *)samples + 1;
+}
+
+static void *some_allocate(void *user, size_t size)
+{
+    (void)user;
+    return malloc(size);
+}
+
+static void some_release(void *user, void *memory)
+{
+    (void)user;
+    free(memory);
+}
+
+static void spoil(void *params, const struct bad *bad)
+{
+    memcpy((char *)params + bad->offset, bad->value, bad->size);
+}
+
+static void bad_limits(void **state)
+{
+    const struct bad bad[] = {
+        BAD(refocus_renderer_params, struct_size, 0), BAD(refocus_renderer_params, struct_size, 4),
+        BAD(refocus_renderer_params, max_width, 0), BAD(refocus_renderer_params, max_width, -1), BAD(refocus_renderer_params, max_width, 65536),
+        BAD(refocus_renderer_params, max_height, 0), BAD(refocus_renderer_params, max_height, INT32_MIN),
+        BAD(refocus_renderer_params, max_height, INT32_MAX), BAD(refocus_renderer_params, max_blur_radius, -0.001f),
+        BAD(refocus_renderer_params, max_blur_radius, 127.001f), BAD(refocus_renderer_params, max_blur_radius, NAN),
+        BAD(refocus_renderer_params, max_blur_radius, INFINITY), BAD(refocus_renderer_params, threads, -1),
+        BAD(refocus_renderer_params, threads, 65), BAD(refocus_renderer_params, cpu, 5), BAD(refocus_renderer_params, cpu, UINT32_MAX),
+        BAD(refocus_renderer_params, allocator.allocate, some_allocate),
+        BAD(refocus_renderer_params, allocator.release, some_release)};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct refocus_renderer_params params = refocus_renderer_params_default(W, H, 5);
+        struct refocus_renderer *renderer = (struct refocus_renderer *)&params;
+        int status;
+
+        params.threads = 1;
+        spoil(&params, &bad[i]);
+        status = refocus_renderer_create(&renderer, &params);
+        if (status != REFOCUS_ERR_ARGUMENT || renderer)
+            fail_msg("%s: %d", bad[i].what, status);
+        if (refocus_renderer_memory(&params) != 0)
+            fail_msg("memory of %s is not 0", bad[i].what);
+    }
+    struct refocus_renderer *renderer;
+    assert_int_equal(refocus_renderer_create(&renderer, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_null(renderer);
+    assert_int_equal(refocus_renderer_memory(NULL), 0);
+    const struct refocus_renderer_params good = refocus_renderer_params_default(W, H, 5);
+    assert_int_equal(refocus_renderer_create(NULL, &good), REFOCUS_ERR_ARGUMENT);
+    refocus_renderer_destroy(NULL);
+    refocus_renderer_destroy(&renderer);
+    refocus_cancel(NULL);
+}
+
+static void bad_settings(void **state)
+{
+    const struct bad bad[] = {
+        BAD(refocus_render_params, struct_size, 0), BAD(refocus_render_params, struct_size, 8), BAD(refocus_render_params, method, 3),
+        BAD(refocus_render_params, method, UINT32_MAX), BAD(refocus_render_params, focus_disparity, -0.01f),
+        BAD(refocus_render_params, focus_disparity, 1.01f), BAD(refocus_render_params, focus_disparity, NAN),
+        BAD(refocus_render_params, max_blur_radius, -1), BAD(refocus_render_params, max_blur_radius, 5.01f),
+        BAD(refocus_render_params, max_blur_radius, NAN), BAD(refocus_render_params, rays, 0), BAD(refocus_render_params, rays, -2),
+        BAD(refocus_render_params, rays, 1025), BAD(refocus_render_params, rays, INT32_MAX), BAD(refocus_render_params, blend, 3),
+        BAD(refocus_render_params, sigma, 0.99f), BAD(refocus_render_params, sigma, -1), BAD(refocus_render_params, sigma, NAN),
+        BAD(refocus_render_params, iterations, 0), BAD(refocus_render_params, iterations, 65), BAD(refocus_render_params, iterations, -1),
+        BAD(refocus_render_params, mirror, 2), BAD(refocus_render_params, background, 2), BAD(refocus_render_params, prefilter, 2),
+        BAD(refocus_render_params, reserved, 1), BAD(refocus_render_params, region_x, -1), BAD(refocus_render_params, region_x, 1),
+        BAD(refocus_render_params, region_y, 1), BAD(refocus_render_params, region_width, W), BAD(refocus_render_params, region_height, H),
+        BAD(refocus_render_params, region_width, -1)};
+    struct picture p = picture_make(W, H, 1);
+    struct refocus_renderer *renderer = prepared(&p, 5, 1);
+    uint8_t out[3 * W * H];
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+
+    (void)state;
+    memset(out, 0x5a, sizeof out);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+        int status;
+
+        spoil(&params, &bad[i]);
+        status = refocus_render(renderer, &params, &image);
+        if (status != REFOCUS_ERR_ARGUMENT)
+            fail_msg("%s: %d", bad[i].what, status);
+    }
+    /* Regions that reach over the side. */
+    static const int region[][4] = {{1, 0, W, H},  {0, 1, W, H},           {W, 0, 1, 1},
+                                    {0, H, 1, 1},  {0, 0, W + 1, H},       {0, 0, W, H + 1},
+                                    {0, 0, 0, H},  {INT32_MAX, 0, W, H},   {-1, 0, W, H},
+                                    {5, 5, INT32_MAX, INT32_MAX}};
+    for (size_t i = 0; i < sizeof region / sizeof region[0]; i++) {
+        struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+
+        params.region_x = region[i][0], params.region_y = region[i][1];
+        params.region_width = region[i][2], params.region_height = region[i][3];
+        if (refocus_render(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT)
+            fail_msg("region %d %d %d %d is not refused", region[i][0], region[i][1],
+                     region[i][2], region[i][3]);
+    }
+    const struct refocus_render_params good = refocus_render_params_default(0.5f, 5);
+    assert_int_equal(refocus_render(renderer, NULL, &image), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_render(renderer, &good, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_render(NULL, &good, &image), REFOCUS_ERR_ARGUMENT);
+    for (size_t i = 0; i < sizeof out; i++)
+        assert_int_equal(out[i], 0x5a);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* Pictures in and out. */
+static void bad_pictures(void **state)
+{
+    const struct bad bad[] = {
+        BAD(refocus_image, format, 0), BAD(refocus_image, format, 99), BAD(refocus_image, width, 0), BAD(refocus_image, width, -W),
+        BAD(refocus_image, height, 0), BAD(refocus_image, height, INT32_MIN), BAD(refocus_image, plane[0], NULL),
+        BAD(refocus_image, stride[0], 3 * W - 1), BAD(refocus_image, stride[0], -(3 * W - 1)),
+        BAD(refocus_image, stride[0], 0)};
+    struct picture p = picture_make(W, H, 1);
+    struct refocus_renderer *renderer = prepared(&p, 5, 1);
+    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    const struct refocus_disparity disparity = picture_disparity(&p);
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct refocus_image image = picture_image(&p);
+
+        spoil(&image, &bad[i]);
+        if (refocus_render(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT)
+            fail_msg("out: %s is not refused", bad[i].what);
+    }
+    struct refocus_image other = picture_image(&p);
+    other.width--;
+    assert_int_equal(refocus_render(renderer, &params, &other), REFOCUS_ERR_ARGUMENT);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct refocus_image image = picture_image(&p);
+
+        assert_int_equal(refocus_prepare(renderer, &(struct refocus_image){0}, &disparity),
+                         REFOCUS_ERR_ARGUMENT);
+        spoil(&image, &bad[i]);
+        if (refocus_prepare(renderer, &image, &disparity) != REFOCUS_ERR_ARGUMENT)
+            fail_msg("photo: %s is not refused", bad[i].what);
+        other = picture_image(&p);
+        assert_int_equal(refocus_render(renderer, &params, &other), REFOCUS_ERR_STATE);
+    }
+    assert_int_equal(refocus_prepare(NULL, &other, &disparity), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_prepare(renderer, NULL, &disparity), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_prepare(renderer, &other, NULL), REFOCUS_ERR_ARGUMENT);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+static void bad_disparities(void **state)
+{
+    const struct bad bad[] = {
+        BAD(refocus_disparity, bits, 0), BAD(refocus_disparity, bits, 32), BAD(refocus_disparity, bits, 12),
+        BAD(refocus_disparity, width, 0), BAD(refocus_disparity, height, -1), BAD(refocus_disparity, width, 65536),
+        BAD(refocus_disparity, samples, NULL), BAD(refocus_disparity, samples, odd_address()),
+        BAD(refocus_disparity, stride, 2 * W - 2), BAD(refocus_disparity, stride, 2 * W + 1)};
+    struct picture p = picture_make(W, H, 1);
+    const struct refocus_image photo = picture_image(&p);
+    struct refocus_renderer *renderer = prepared(&p, 5, 1);
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct refocus_disparity disparity = picture_disparity(&p);
+
+        spoil(&disparity, &bad[i]);
+        if (refocus_prepare(renderer, &photo, &disparity) != REFOCUS_ERR_ARGUMENT)
+            fail_msg("disparity: %s is not refused", bad[i].what);
+    }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* Larger than the renderer was made for; nothing prepared yet; views. */
+static void order_and_size(void **state)
+{
+    struct picture p = picture_make(W, H, 1);
+    const struct refocus_image photo = picture_image(&p);
+    const struct refocus_disparity disparity = picture_disparity(&p);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(W - 1, H, 5);
+    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    struct refocus_renderer *renderer;
+    uint16_t view[W * H];
+
+    (void)state;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_render(renderer, &params, &photo), REFOCUS_ERR_STATE);
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view, 2 * W),
+                     REFOCUS_ERR_STATE);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_ERR_SIZE);
+    assert_int_equal(refocus_render(renderer, &params, &photo), REFOCUS_ERR_STATE);
+    refocus_renderer_destroy(&renderer);
+
+    renderer = prepared(&p, 5, 1);
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, view, 2 * W),
+                     REFOCUS_ERR_STATE);
+    assert_int_equal(refocus_get_view(renderer, 2, view, 2 * W), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, NULL, 2 * W),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view, 2 * W - 2),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view, 2 * W), 0);
+    assert_memory_equal(view, p.disparity, sizeof view);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+static void names(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
+        assert_non_null(refocus_method_name(i));
+        assert_non_null(refocus_method_summary(i));
+    }
+    assert_string_equal(refocus_method_name(REFOCUS_METHOD_SEARCH), "search");
+    assert_null(refocus_method_name(REFOCUS_METHOD_COUNT));
+    assert_null(refocus_method_summary(UINT32_MAX));
+    assert_string_equal(refocus_cpu_name(REFOCUS_CPU_AVX2), "avx2");
+    assert_null(refocus_cpu_name(REFOCUS_CPU_AVX2 + 1));
+    assert_string_equal(refocus_version(), REFOCUS_VERSION_STRING);
+    for (int i = -20; i < 3; i++)
+        assert_true(strlen(refocus_strerror(i)) > 0);
+    assert_int_equal(refocus_format_bytes(REFOCUS_FORMAT_BGR8), 3);
+    assert_int_equal(refocus_format_bytes(REFOCUS_FORMAT_BGRA8), 4);
+    assert_int_equal(refocus_format_bytes(77), 0);
+}
+
+static void bad_apertures(void **state)
+{
+    static const uint8_t closed[4], open[4] = {255, 255, 255, 255};
+    struct refocus_aperture *a = (struct refocus_aperture *)closed;
+    struct refocus_ray rays[8];
+
+    (void)state;
+#define REFUSED(call) do { assert_int_equal(call, REFOCUS_ERR_ARGUMENT); } while (0)
+    REFUSED(refocus_aperture_create_disc(NULL));
+    REFUSED(refocus_aperture_create_polygon(&a, 2, 0));
+    assert_null(a);
+    REFUSED(refocus_aperture_create_polygon(&a, 17, 0));
+    REFUSED(refocus_aperture_create_polygon(&a, 6, (double)NAN));
+    REFUSED(refocus_aperture_create_polygon(&a, 6, (double)INFINITY));
+    REFUSED(refocus_aperture_create_mask(&a, closed, 2, 2, 2));
+    REFUSED(refocus_aperture_create_mask(&a, NULL, 2, 2, 2));
+    REFUSED(refocus_aperture_create_mask(&a, open, 0, 2, 2));
+    REFUSED(refocus_aperture_create_mask(&a, open, 2, -1, 2));
+    REFUSED(refocus_aperture_create_mask(&a, open, 256, 1, 256));
+    REFUSED(refocus_aperture_create_mask(&a, open, 2, 2, 1));
+    assert_null(a);
+    assert_int_equal(refocus_aperture_create_disc(&a), REFOCUS_OK);
+    REFUSED(refocus_aperture_rays(a, 0, rays));
+    REFUSED(refocus_aperture_rays(a, REFOCUS_MAX_RAYS + 1, rays));
+    REFUSED(refocus_aperture_rays(a, 8, NULL));
+    REFUSED(refocus_aperture_full_rays(a, 0, 8, rays));
+    REFUSED(refocus_aperture_full_rays(a, 127.5, 8, rays));
+    REFUSED(refocus_aperture_full_rays(a, (double)NAN, 8, rays));
+    REFUSED(refocus_aperture_full_rays(a, 5, -1, rays));
+    refocus_aperture_destroy(&a);
+    assert_null(a);
+    refocus_aperture_destroy(&a);
+    refocus_aperture_destroy(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_limits),      cmocka_unit_test(bad_settings),
+        cmocka_unit_test(bad_pictures),    cmocka_unit_test(bad_disparities),
+        cmocka_unit_test(order_and_size),  cmocka_unit_test(names),
+        cmocka_unit_test(bad_apertures)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,247 @@
+/* What the renderer takes from its allocator: as much as it says, at creation only.
+ *
+ * This program is linked with --wrap=malloc and so on, so that it also sees a call that
+ * goes past the allocator. */
+#include "pictures.h"
+
+static int wrapped_calls; /* of malloc, calloc, realloc, aligned_alloc, posix_memalign */
+
+void *__real_malloc(size_t size);
+void *__wrap_malloc(size_t size);
+void *__real_calloc(size_t n, size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__real_realloc(void *memory, size_t size);
+void *__wrap_realloc(void *memory, size_t size);
+void *__real_aligned_alloc(size_t align, size_t size);
+void *__wrap_aligned_alloc(size_t align, size_t size);
+int __real_posix_memalign(void **memory, size_t align, size_t size);
+int __wrap_posix_memalign(void **memory, size_t align, size_t size);
+
+void *__wrap_malloc(size_t size)
+{
+    __atomic_add_fetch(&wrapped_calls, 1, __ATOMIC_RELAXED);
+    return __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t n, size_t size)
+{
+    __atomic_add_fetch(&wrapped_calls, 1, __ATOMIC_RELAXED);
+    return __real_calloc(n, size);
+}
+
+void *__wrap_realloc(void *memory, size_t size)
+{
+    __atomic_add_fetch(&wrapped_calls, 1, __ATOMIC_RELAXED);
+    return __real_realloc(memory, size);
+}
+
+void *__wrap_aligned_alloc(size_t align, size_t size)
+{
+    __atomic_add_fetch(&wrapped_calls, 1, __ATOMIC_RELAXED);
+    return __real_aligned_alloc(align, size);
+}
+
+int __wrap_posix_memalign(void **memory, size_t align, size_t size)
+{
+    __atomic_add_fetch(&wrapped_calls, 1, __ATOMIC_RELAXED);
+    return __real_posix_memalign(memory, align, size);
+}
+
+/* An allocator that counts, and fails once. */
+struct counter {
+    uint64_t bytes; /* ever taken */
+    int calls;
+    int held;       /* not yet released */
+    int fail_at;    /* the call that gets NULL; < 0: none */
+};
+
+static void *count_allocate(void *user, size_t size)
+{
+    struct counter *counter = user;
+
+    if (counter->calls++ == counter->fail_at)
+        return NULL;
+    counter->bytes += size;
+    counter->held++;
+    return __real_malloc(size);
+}
+
+static void count_release(void *user, void *memory)
+{
+    struct counter *counter = user;
+
+    counter->held -= memory != NULL;
+    free(memory);
+}
+
+static struct refocus_renderer_params counted(struct counter *counter, int width, int height,
+                                              float blur, int threads)
+{
+    struct refocus_renderer_params params =
+        refocus_renderer_params_default(width, height, blur);
+
+    memset(counter, 0, sizeof *counter);
+    counter->fail_at = -1;
+    params.allocator.allocate = count_allocate;
+    params.allocator.release = count_release;
+    params.allocator.user = counter;
+    params.threads = threads;
+    return params;
+}
+
+static void every_failure(void **state)
+{
+    struct counter counter;
+    struct refocus_renderer_params params = counted(&counter, 100, 70, 12, 2);
+    struct refocus_renderer *renderer;
+    int calls;
+
+    (void)state;
+    assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_OK);
+    calls = counter.calls;
+    assert_true(calls > 0);
+    refocus_renderer_destroy(&renderer);
+    assert_null(renderer);
+    assert_int_equal(counter.held, 0);
+    for (int i = 0; i < calls; i++) {
+        params = counted(&counter, 100, 70, 12, 2);
+        counter.fail_at = i;
+        renderer = (struct refocus_renderer *)&counter;
+        assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_ERR_MEMORY);
+        assert_null(renderer);
+        assert_int_equal(counter.held, 0);
+    }
+}
+
+/* render.h: 22 (W + 2P + 47)(H + 2P + 16) + 6 (W + 16)(H + 16) + 2^20, P = ceil(K) + 2 */
+static double stated(int width, int height, float blur)
+{
+    const double p = 2 * (ceil((double)blur) + 2);
+
+    return 22 * (width + p + 47) * (height + p + 16) + 6.0 * (width + 16) * (height + 16) +
+           1048576.0;
+}
+
+static void formula(void **state)
+{
+    static const int sides[][2] = {{1, 1},     {1, 65535},  {65535, 1},  {16, 16}, {17, 33},
+                                   {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
+    static const float blurs[] = {0, 0.5f, 1, 20, 40.25f, 127};
+    static const int threads[] = {1, 2, 8, 64};
+
+    (void)state;
+    for (int s = 0; s < 9; s++) {
+        for (int k = 0; k < 6; k++) {
+            for (int t = 0; t < 4; t++) {
+                struct counter counter;
+                const struct refocus_renderer_params params =
+                    counted(&counter, sides[s][0], sides[s][1], blurs[k], threads[t]);
+                const uint64_t bytes = refocus_renderer_memory(&params);
+                const double most = stated(sides[s][0], sides[s][1], blurs[k]);
+
+                if (bytes == 0 || (double)bytes > most)
+                    fail_msg("%d x %d, K = %g, %d threads: says %llu bytes, header %.0f",
+                             sides[s][0], sides[s][1], (double)blurs[k], threads[t],
+                             (unsigned long long)bytes, most);
+            }
+        }
+    }
+}
+
+static void says_what_it_takes(void **state)
+{
+    static const int sides[][2] = {{1, 1}, {1, 65535}, {65535, 1}, {17, 33}, {720, 540}};
+    static const float blurs[] = {0, 7.5f, 127};
+
+    (void)state;
+    for (int s = 0; s < 5; s++) {
+        for (int k = 0; k < 3; k++) {
+            struct counter counter;
+            struct refocus_renderer_params params =
+                counted(&counter, sides[s][0], sides[s][1], blurs[k], 2);
+            const uint64_t bytes = refocus_renderer_memory(&params);
+            struct refocus_renderer_info info;
+            struct refocus_renderer *renderer;
+
+            assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_OK);
+            if (counter.bytes > bytes)
+                fail_msg("%d x %d, K = %g: says %llu bytes, takes %llu", sides[s][0],
+                         sides[s][1], (double)blurs[k], (unsigned long long)bytes,
+                         (unsigned long long)counter.bytes);
+            refocus_renderer_get_info(renderer, &info);
+            assert_int_equal(info.memory, counter.bytes);
+            refocus_renderer_destroy(&renderer);
+
+            params.max_memory = bytes - 1;
+            assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_ERR_SIZE);
+            assert_null(renderer);
+            params.max_memory = bytes;
+            assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_OK);
+            refocus_renderer_destroy(&renderer);
+            assert_int_equal(counter.held, 0);
+        }
+    }
+}
+
+/* The largest picture of all is refused or made, but its size does not overflow. */
+static void largest(void **state)
+{
+    struct counter counter;
+    struct refocus_renderer_params params = counted(&counter, 65535, 65535, 127, 1);
+    struct refocus_renderer *renderer;
+    const uint64_t bytes = refocus_renderer_memory(&params);
+
+    (void)state;
+    assert_true((double)bytes <= stated(65535, 65535, 127));
+    assert_true((double)bytes > 10.0 * 65535 * 65535);
+    counter.fail_at = 0;
+    const int status = refocus_renderer_create(&renderer, &params);
+    assert_true(status == REFOCUS_ERR_MEMORY || status == REFOCUS_ERR_SIZE);
+    assert_null(renderer);
+}
+
+static void nothing_while_rendering(void **state)
+{
+    struct picture p = picture_make(120, 90, 9);
+    const struct refocus_image photo = picture_image(&p);
+    const struct refocus_disparity disparity = picture_disparity(&p);
+    uint8_t small[6] = {0, 50, 100, 150, 200, 250};
+    const struct refocus_disparity coarse = {8, 3, 2, small, 3};
+    struct counter counter;
+    const struct refocus_renderer_params limits = counted(&counter, 120, 90, 10, 2);
+    struct refocus_renderer *renderer;
+    uint8_t *out = malloc(3 * 120 * 90);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 120, 90, 360);
+
+    (void)state;
+    assert_non_null(out);
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    const int calls = counter.calls;
+    for (int i = 0; i < style_count; i++) {
+        struct refocus_aperture *aperture = style_aperture(&styles[i]);
+        struct refocus_render_params params = style_params(&styles[i], 0.3f, 10);
+        const int before = wrapped_calls;
+
+        params.aperture = aperture;
+        assert_int_equal(refocus_prepare(renderer, &photo, i % 2 ? &coarse : &disparity), 0);
+        assert_int_equal(refocus_render(renderer, &params, &image), 0);
+        if (wrapped_calls != before || counter.calls != calls)
+            fail_msg("%s: %d calls of malloc, %d of the allocator", styles[i].name,
+                     wrapped_calls - before, counter.calls - calls);
+        refocus_aperture_destroy(&aperture);
+    }
+    refocus_renderer_destroy(&renderer);
+    assert_int_equal(counter.held, 0);
+    free(out);
+    picture_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_failure),      cmocka_unit_test(formula),
+        cmocka_unit_test(says_what_it_takes), cmocka_unit_test(largest),
+        cmocka_unit_test(nothing_while_rendering)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Reads meson-logs/testlog.json, one object a line.
+
+usage: results.py LOG            prints 'PASSED FAILED SKIPPED'; names what did not pass
+                                 on standard error
+       results.py LOG --digest   prints what the test 'digest' printed
+"""
+import json
+import sys
+
+PASSED = {"OK", "EXPECTEDFAIL"}
+
+
+def reason(test):
+    """The line in which a test says why it was skipped."""
+    for line in (test.get("stdout") or "").splitlines() + (test.get("stderr") or "").splitlines():
+        if "skip" in line.lower():
+            return line.strip()
+    return "no reason given"
+
+
+def main():
+    with open(sys.argv[1], encoding="utf-8") as log:
+        tests = [json.loads(line) for line in log if line.strip()]
+    if sys.argv[2:] == ["--digest"]:
+        for test in tests:
+            if test["name"].split(" / ")[-1].split(":")[-1] == "digest":
+                sys.stdout.write(test.get("stdout") or "")
+        return
+    passed = failed = skipped = 0
+    for test in tests:
+        if test["result"] in PASSED:
+            passed += 1
+        elif test["result"] == "SKIP":
+            skipped += 1
+            print(f"    SKIPPED {test['name']}: {reason(test)}", file=sys.stderr)
+        else:
+            failed += 1
+            print(f"    FAILED  {test['name']}: {test['result']}", file=sys.stderr)
+            for line in (test.get("stdout", "") + test.get("stderr", "")).splitlines()[-25:]:
+                print(f"            {line}", file=sys.stderr)
+    print(passed, failed, skipped)
+
+
+if __name__ == "__main__":
+    main()

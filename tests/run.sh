@@ -1,0 +1,188 @@
+#!/usr/bin/env bash
+# usage: tests/run.sh [--quick | --long]
+#
+# Builds and tests everything on Debian 12, installing what is missing. The last line is
+# 'N passed, N failed, N skipped', the sum over all builds; the exit status is 1 when
+# anything failed.
+#   --quick  one build with gcc and its tests
+#   --long   also lets each fuzz target search for a minute
+# Builds are kept in $REFOCUS_BUILDS (build-tests in the source folder) and reused.
+set -u -o pipefail
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+builds=${REFOCUS_BUILDS:-$top/build-tests}
+fuzz_seconds=${REFOCUS_FUZZ_SECONDS:-60}
+mode=standard
+case ${1-} in
+    '') ;;
+    --quick) mode=quick ;;
+    --long) mode=long ;;
+    *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; [ "$1" = --help ]; exit $(($? * 2)) ;;
+esac
+. "$top/tests/packages.sh"
+passed=0 failed=0 skipped=0
+mkdir -p "$builds"
+
+finish() {
+    echo "$passed passed, $failed failed, $skipped skipped"
+    [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
+    exit
+}
+
+say() { printf '== %s  (%s)\n' "$1" "$(date +%H:%M:%S)"; }
+
+# skip STAGE WHY
+skip() {
+    printf '    SKIPPED %s: %s\n' "$1" "$2"
+    skipped=$((skipped + 1))
+}
+
+# fail WHAT [LOG]
+fail() {
+    printf '    FAILED  %s\n' "$1"
+    [ -z "${2-}" ] || tail -n 40 "$2" | sed 's/^/            /'
+    failed=$((failed + 1))
+}
+
+# build STAGE MESON_ARGUMENTS...: sets up anew or again, and compiles
+build() {
+    local dir=$builds/$1 log=$builds/$1.log again=()
+    shift
+    [ ! -e "$dir/build.ninja" ] || again=(--reconfigure)
+    if ! meson setup "${again[@]}" "$dir" "$top" "$@" >"$log" 2>&1; then
+        rm -rf "$dir"
+        meson setup "$dir" "$top" "$@" >"$log" 2>&1 || { fail "${dir##*/}: meson setup" "$log"; return 1; }
+    fi
+    ninja -C "$dir" >>"$log" 2>&1 || { fail "${dir##*/}: compiling" "$log"; return 1; }
+    if grep -q 'warning:' "$log"; then
+        grep 'warning:' "$log" | sort -u | head -n 20 >"$log.warnings"
+        fail "${dir##*/}: the compiler warns" "$log.warnings"
+    fi
+}
+
+# run STAGE MESON_TEST_ARGUMENTS...: runs tests and adds up their results
+run() {
+    local dir=$builds/$1 p f s
+    shift
+    rm -f "$dir"/meson-logs/testlog*.json
+    "${wrap[@]}" meson test -C "$dir" --no-rebuild --print-errorlogs "$@" \
+        >"$dir/tests.log" 2>&1
+    set -- "$dir"/meson-logs/testlog*.json
+    if [ ! -s "$1" ] || ! read -r p f s < <(python3 "$top/tests/results.py" "$1" 2>"$dir/tests.txt")
+    then
+        fail "${dir##*/}: no test results" "$dir/tests.log"
+        return
+    fi
+    cat "$dir/tests.txt"
+    printf '    %d passed, %d failed, %d skipped in %s\n' "$p" "$f" "$s" "${dir##*/}"
+    passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+    python3 "$top/tests/results.py" "$1" --digest >"$dir/digest"
+}
+wrap=()
+
+# same_bytes STAGE: its pictures against those of the gcc build
+same_bytes() {
+    if [ ! -s "$builds/$1/digest" ]; then
+        fail "$1: no digest of its pictures"
+    elif cmp -s "$builds/gcc/digest" "$builds/$1/digest"; then
+        echo "    same pictures as gcc: $1"
+        passed=$((passed + 1))
+    else
+        diff "$builds/gcc/digest" "$builds/$1/digest" >"$builds/$1/digest.diff"
+        fail "$1: other pictures than gcc" "$builds/$1/digest.diff"
+    fi
+}
+
+gcc_stage() {
+    say 'gcc, release: all tests'
+    CC=gcc CXX=g++ build gcc --buildtype=release && run gcc
+}
+
+clang_stage() {
+    say 'clang, release: all tests, the same pictures as gcc'
+    need_packages clang || { skip clang 'no clang'; return; }
+    CC=clang CXX=clang++ build clang --buildtype=release || return
+    run clang
+    same_bytes clang
+}
+
+minimal_stage() {
+    say 'every optional feature off: the core alone'
+    CC=gcc CXX=g++ build minimal --buildtype=release -Djpeg=disabled -Dpng=disabled -Dxmp=disabled \
+        -Dheic=disabled -Dtools=disabled || return
+    run minimal
+    same_bytes minimal
+}
+
+# A finding must end the program, and the reports name lines.
+memory_stage() {
+    say 'address and undefined behaviour sanitizers: all tests'
+    CC=gcc CXX=g++ build asan --buildtype=debugoptimized -Db_sanitize=address,undefined \
+        -Db_lundef=false -Dc_args=-fno-sanitize-recover=all || return
+    ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
+        run asan --timeout-multiplier 5
+}
+
+thread_stage() {
+    say 'thread sanitizer: the tests with threads'
+    CC=gcc CXX=g++ build tsan --buildtype=debugoptimized -Db_sanitize=thread -Db_lundef=false \
+        || return
+    # gcc 12's run time does not know kernels that place memory more randomly.
+    if setarch -R true 2>/dev/null; then
+        wrap=(setarch -R)
+    fi
+    TSAN_OPTIONS=halt_on_error=1 run tsan --suite threads --timeout-multiplier 5
+    wrap=()
+}
+
+# cross_stage STAGE ARCH PACKAGE
+cross_stage() {
+    say "$1 by cross compiler, emulated: the core's tests, the same pictures as gcc"
+    need_packages qemu-user "$3" || { skip "$1" "no $3 or qemu-user"; return; }
+    "$top/tests/cross/cmocka.sh" "$2" "$builds/cmocka-$2" >"$builds/cmocka-$2.log" 2>&1 ||
+        { skip "$1" "no cmocka for $2, see $builds/cmocka-$2.log"; return; }
+    build "$1" --buildtype=release --cross-file "$top/tests/cross/$1.ini" \
+        --cross-file "$builds/cmocka-$2/cmocka.ini" -Djpeg=disabled -Dpng=disabled \
+        -Dxmp=disabled -Dheic=disabled -Dtools=disabled || return
+    run "$1" --timeout-multiplier 10
+    same_bytes "$1"
+}
+
+fuzz_stage() {
+    local target name
+    say 'fuzz targets: their corpora again'
+    need_packages clang libclang-rt-dev || { skip fuzz 'no clang with libFuzzer'; return; }
+    CC=clang CXX=clang++ build fuzz --buildtype=debugoptimized -Dfuzz=true \
+        -Db_sanitize=address,undefined -Db_lundef=false -Dexamples=false \
+        "-Dc_args=-fsanitize=fuzzer-no-link -fno-sanitize-recover=all" || return
+    run fuzz --suite fuzz --timeout-multiplier 5
+    [ "$mode" = long ] || return
+    for target in $(find "$builds/fuzz/tests/fuzz" -name 'fuzz-*' -type f -perm -u+x | sort); do
+        name=${target##*/fuzz-}
+        say "fuzz target $name: $fuzz_seconds s"
+        mkdir -p "$builds/fuzz/found/$name"
+        if (cd "$builds/fuzz/found" && "$target" -max_total_time="$fuzz_seconds" -print_final_stats=1 \
+                -rss_limit_mb=2048 -timeout=20 "$name" "$top/tests/fuzz/corpus/$name" \
+                >"$name.log" 2>&1); then
+            passed=$((passed + 1))
+        else
+            fail "fuzz target $name" "$builds/fuzz/found/$name.log"
+        fi
+    done
+}
+
+need_packages meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-dev ||
+    { fail 'tools to build with are missing'; finish; }
+need_packages libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
+    skip 'picture files and the refocus command' 'their libraries are missing'
+
+gcc_stage
+if [ "$mode" != quick ]; then
+    clang_stage
+    minimal_stage
+    memory_stage
+    thread_stage
+    cross_stage aarch64 arm64 g++-aarch64-linux-gnu
+    cross_stage armv7 armhf g++-arm-linux-gnueabihf
+    fuzz_stage
+fi
+finish
