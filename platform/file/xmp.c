@@ -73,8 +73,9 @@ static void append(struct parsing *parsing, const char *text, size_t size)
     char *value = xmp->value[parsing->key];
 
     if (length + size + 1 > parsing->room) {
-        const size_t room = (length + size + 1) * 2;
-        int status = rf_check_bytes(parsing->read, length + size, "its XMP");
+        /* The text lies in memory already, so that length + size cannot overflow. */
+        const size_t room = length + size + 1 + length / 2;
+        int status = rf_check_bytes(parsing->read, room, "its XMP");
 
         if (status == REFOCUS_OK) {
             value = realloc(value, room);
