@@ -51,6 +51,17 @@ static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_byte
                          (uint64_t)raster->channels);
 }
 
+/* Some cameras leave a few bytes too many before a marker: every decoder skips them. More
+ * are a sign that the decoder lost its way earlier. */
+static bool few_bytes_too_many(const char *words)
+{
+    static const char before[] = "Corrupt JPEG data: ";
+    const char *const end = strstr(words, " extraneous bytes");
+
+    return strncmp(words, before, sizeof before - 1) == 0 && end &&
+           end - words <= (ptrdiff_t)sizeof before + 1; /* two digits */
+}
+
 static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
                        struct rf_raster *raster)
 {
@@ -60,8 +71,7 @@ static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_byte
                                raster->width, (int)rf_raster_stride(raster),
                                raster->height, format, flags);
 
-    /* Some cameras leave a few bytes too many before a marker: every decoder skips them. */
-    if (failed && strstr(tjGetErrorStr2(jpeg), "extraneous bytes")) {
+    if (failed && few_bytes_too_many(tjGetErrorStr2(jpeg))) {
         flags &= ~TJFLAG_STOPONWARNING;
         failed = tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels,
                                raster->width, (int)rf_raster_stride(raster),

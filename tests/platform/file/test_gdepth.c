@@ -75,6 +75,22 @@ static void gdepth_range_inverse(void **state)
     refocus_photo_free(&photo);
 }
 
+static void unit_overrules_the_file(void **state)
+{
+    struct refocus_photo *photo =
+        read_depth(make_gdepth(small_gdepth(), 0), "disparity", REFOCUS_OK);
+
+    (void)state;
+    /* Turned round, the range is the same. */
+    assert_true(photo->depth.value_near == 255 && photo->depth.value_far == 0);
+    assert_true(photo->depth.near_m == 0.5 && photo->depth.far_m == 8);
+    refocus_photo_free(&photo);
+    photo = read_depth(make_gdepth(small_gdepth(), 0), "mm", REFOCUS_OK);
+    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_true(photo->depth.near_m == 0 && photo->depth.far_m == 0);
+    refocus_photo_free(&photo);
+}
+
 static void gdepth_range_linear(void **state)
 {
     const struct gdepth gdepth = {.format = "RangeLinear",
@@ -204,6 +220,15 @@ static void extended_damaged(void **state)
         }
     }
     read_photo(jpeg, REFOCUS_ERR_FORMAT);
+    /* Two chunks at one place and none at another: the sizes still add up. */
+    jpeg = make_gdepth_extended(small_gdepth(), 100, 1, -1);
+    for (size_t i = 0; i + 80 < jpeg.size; i++) {
+        if (memcmp(jpeg.data + i, "http://ns.adobe.com/xmp/extension/", 34) == 0 &&
+            memcmp(jpeg.data + i + 35 + 36, "\0\0\0\144", 4) == 0) {
+            jpeg.data[i + 35 + 39] = 0;
+        }
+    }
+    read_photo(jpeg, REFOCUS_ERR_FORMAT);
     /* Another GUID, and a length that is not true. */
     for (int change = 0; change < 3; change++) {
         jpeg = make_gdepth_extended(small_gdepth(), 100, 1, -1);
@@ -223,6 +248,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orientation_of_photo_and_depth),
         cmocka_unit_test(gdepth_range_inverse),
+        cmocka_unit_test(unit_overrules_the_file),
         cmocka_unit_test(gdepth_range_linear),
         cmocka_unit_test(gdepth_payload_jpeg_without_range),
         cmocka_unit_test(gdepth_units_absent_are_told),

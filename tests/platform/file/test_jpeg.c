@@ -120,6 +120,30 @@ static void exif_without_sense(void **state)
     refocus_photo_free(&photo);
 }
 
+/* Some cameras leave a byte or two before the end; damage inside is an error. */
+static void bytes_too_many(void **state)
+{
+    struct bytes jpeg = make_jpeg(64, 64, false, false);
+    struct refocus_photo *photo;
+
+    (void)state;
+    jpeg.size -= 2;
+    bytes_add(&jpeg, "UUUUUUUUUUUU\xff\xd9", 14);
+    photo = read_photo(jpeg, REFOCUS_OK);
+    assert_in_range(pixel_at(&photo->image, 5, 5)[0], 245, 255);
+    refocus_photo_free(&photo);
+    jpeg = make_jpeg(64, 64, false, false);
+    jpeg.size -= 2;
+    for (int i = 0; i < 120; i++) {
+        bytes_add(&jpeg, "U", 1);
+    }
+    bytes_add(&jpeg, "\xff\xd9", 2);
+    read_photo(jpeg, REFOCUS_ERR_FORMAT);
+    jpeg = make_jpeg(64, 64, false, false);
+    memset(jpeg.data + jpeg.size - 40, 0, 20);
+    read_photo(jpeg, REFOCUS_ERR_FORMAT);
+}
+
 static void grey_jpeg_is_depth(void **state)
 {
     struct refocus_photo *photo =
@@ -141,6 +165,7 @@ int main(void)
         cmocka_unit_test(icc_in_chunks),
         cmocka_unit_test(exif_facts),
         cmocka_unit_test(exif_without_sense),
+        cmocka_unit_test(bytes_too_many),
         cmocka_unit_test(grey_jpeg_is_depth),
     };
 
