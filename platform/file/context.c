@@ -125,8 +125,8 @@ size_t rf_raster_stride(const struct rf_raster *raster)
 int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster)
 {
     const size_t bytes = (size_t)raster->channels * rf_sample_bytes(raster->sample);
-    const int status = rf_check_size(read, (uint64_t)raster->width,
-                                     (uint64_t)raster->height, bytes);
+    const int status =
+        rf_check_size(read, (uint64_t)raster->width, (uint64_t)raster->height, bytes);
 
     raster->pixels = NULL;
     if (status != REFOCUS_OK) {

@@ -1,5 +1,6 @@
-/* EXIF: a TIFF structure of one main directory and one for the camera's settings. Only these
- * two are ever followed, so that no chain of offsets, circular or not, can be long. */
+/* EXIF: a TIFF structure of one main directory and one for the camera's settings. Only
+ * these two are ever followed, so that no chain of offsets, circular or not, can be
+ * long. */
 #include "internal.h"
 
 #include <stdio.h>
@@ -34,7 +35,8 @@ static uint32_t get16(const struct tiff *tiff, size_t at)
 {
     const uint8_t *const b = tiff->data + at;
 
-    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1]) : (uint32_t)(b[1] << 8 | b[0]);
+    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1])
+                            : (uint32_t)(b[1] << 8 | b[0]);
 }
 
 static uint32_t get32(const struct tiff *tiff, size_t at)

@@ -1,5 +1,6 @@
-/* The rotation and mirroring that a HEIF container states for an item. libheif applies them
- * but does not tell them. ISO/IEC 23008-12, 6.5.10, 6.5.12 and 9.3; ISO/IEC 14496-12. */
+/* The rotation and mirroring that a HEIF container states for an item. libheif applies
+ * them but does not tell them. ISO/IEC 23008-12, 6.5.10, 6.5.12 and 9.3; ISO/IEC
+ * 14496-12. */
 #include "internal.h"
 
 #include <string.h>
@@ -72,7 +73,8 @@ struct turn {
     int right_x, right_y, down_x, down_y;
 };
 
-static void apply_property(struct turn *turn, struct rf_bytes properties, uint32_t index)
+static void apply_property(struct turn *turn, struct rf_bytes properties,
+                           uint32_t index)
 {
     const struct turn old = *turn;
     struct box box = {.type = ""};
@@ -137,8 +139,8 @@ static void apply_associations(struct turn *turn, struct rf_bytes ipma,
 static int orientation_of(struct turn turn)
 {
     static const struct turn turns[9] = {
-        {0, 0, 0, 0},   {1, 0, 0, 1}, {-1, 0, 0, 1},  {-1, 0, 0, -1}, {1, 0, 0, -1},
-        {0, 1, 1, 0},   {0, -1, 1, 0}, {0, -1, -1, 0}, {0, 1, -1, 0},
+        {0, 0, 0, 0}, {1, 0, 0, 1},  {-1, 0, 0, 1},  {-1, 0, 0, -1}, {1, 0, 0, -1},
+        {0, 1, 1, 0}, {0, -1, 1, 0}, {0, -1, -1, 0}, {0, 1, -1, 0},
     };
 
     for (int orientation = 1; orientation <= 8; orientation++) {

@@ -44,8 +44,8 @@ static const char *read_exponent(const char *text, int *exponent)
     return text;
 }
 
-/* value * 10^exponent. Dividing by an exact power of ten rounds once; powers so small that
- * doubles have few digits for them are taken in two halves. */
+/* value * 10^exponent. Dividing by an exact power of ten rounds once; powers so small
+ * that doubles have few digits for them are taken in two halves. */
 static double scale(double value, int exponent)
 {
     if (value == 0.0) {

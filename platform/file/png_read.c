@@ -22,8 +22,8 @@ static void on_error(png_structp png, png_const_charp words)
     struct reader *const reader = png_get_error_ptr(png);
 
     if (reader->status == REFOCUS_OK) {
-        reader->status = rf_fail(reader->read->reason, REFOCUS_ERR_FORMAT,
-                                 "damaged PNG: %s", words);
+        reader->status =
+            rf_fail(reader->read->reason, REFOCUS_ERR_FORMAT, "damaged PNG: %s", words);
     }
     png_longjmp(png, 1);
 }
@@ -150,7 +150,8 @@ static void read_extras(struct reader *reader)
 static bool run(struct reader *reader)
 {
     const struct refocus_read_limits *const limits = &reader->read->limits;
-    const uint64_t chunk = limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
+    const uint64_t chunk =
+        limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
     int status;
 
     if (setjmp(png_jmpbuf(reader->png))) {

@@ -59,7 +59,7 @@ unsigned pattern(int x, int y, int c, unsigned max)
            (max + 1);
 }
 
-/* PNG ----------------------------------------------------------------------------- */
+/* PNG ----------------------------------------------------------------- */
 
 static uint32_t crc32_of(const uint8_t *data, size_t size)
 {
@@ -165,7 +165,7 @@ struct bytes make_png(int width, int height, int type, int bits)
     return png;
 }
 
-/* EXIF ---------------------------------------------------------------------------- */
+/* EXIF ---------------------------------------------------------------- */
 
 struct tiff {
     struct bytes block;
@@ -223,7 +223,7 @@ struct bytes make_exif(bool big_endian, int orientation)
     return tiff.block;
 }
 
-/* HEIF ---------------------------------------------------------------------------- */
+/* HEIF ---------------------------------------------------------------- */
 
 static void add_box(struct bytes *to, const char *type, struct bytes content)
 {
@@ -232,7 +232,8 @@ static void add_box(struct bytes *to, const char *type, struct bytes content)
     bytes_join(to, content);
 }
 
-struct bytes make_heif_boxes(const struct heif_property *properties, int count, bool large)
+struct bytes make_heif_boxes(const struct heif_property *properties, int count,
+                             bool large)
 {
     struct bytes file = {NULL, 0}, meta = {NULL, 0}, iprp = {NULL, 0}, ipco = {NULL, 0};
     struct bytes ipma = {NULL, 0}, pitm = {NULL, 0};
@@ -248,7 +249,8 @@ struct bytes make_heif_boxes(const struct heif_property *properties, int count, 
         bytes_number(&ipma, (uint64_t)item, large ? 4 : 2, true);
         bytes_number(&ipma, (uint64_t)own, 1, true);
         for (int i = 1; i <= own; i++) {
-            bytes_number(&ipma, (uint64_t)i | (large ? 0x8000 : 0x80), large ? 2 : 1, true);
+            bytes_number(&ipma, (uint64_t)i | (large ? 0x8000 : 0x80), large ? 2 : 1,
+                         true);
         }
     }
     for (int i = 0; i < count; i++) {
@@ -265,7 +267,7 @@ struct bytes make_heif_boxes(const struct heif_property *properties, int count, 
     return file;
 }
 
-/* Text ---------------------------------------------------------------------------- */
+/* Text ---------------------------------------------------------------- */
 
 struct bytes base64(const void *data, size_t size)
 {
@@ -293,16 +295,17 @@ struct bytes make_xmp(const char *attributes)
 {
     struct bytes xmp = {NULL, 0};
 
-    bytes_text(&xmp,
-               "<?xpacket begin=\"\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>"
-               "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf="
-               "\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description "
-               "rdf:about=\"\" xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\" "
-               "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
-               "xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\" "
-               "xmlns:apdi=\"http://ns.apple.com/pixeldatainfo/1.0/\" "
-               "xmlns:depthData=\"http://ns.apple.com/depthData/1.0/\" "
-               "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" ");
+    bytes_text(
+        &xmp,
+        "<?xpacket begin=\"\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>"
+        "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf="
+        "\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description "
+        "rdf:about=\"\" xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\" "
+        "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
+        "xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\" "
+        "xmlns:apdi=\"http://ns.apple.com/pixeldatainfo/1.0/\" "
+        "xmlns:depthData=\"http://ns.apple.com/depthData/1.0/\" "
+        "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" ");
     bytes_text(&xmp, attributes);
     bytes_text(&xmp, "/></rdf:RDF></x:xmpmeta><?xpacket end=\"w\"?>  \n");
     return xmp;

@@ -1,5 +1,5 @@
-/* Small files for tests and fuzz seeds, put together byte by byte and without the library
- * under test. */
+/* Small files for tests and fuzz seeds, put together byte by byte and without the
+ * library under test. */
 #ifndef RF_TEST_MAKE_H
 #define RF_TEST_MAKE_H
 
@@ -32,7 +32,8 @@ struct bytes make_png(int width, int height, int type, int bits);
 void png_chunk(struct bytes *png, const char *type, const void *data, size_t size);
 
 /* JPEG with four coloured quarters: red, green / blue, white; or grey quarters
- * 32, 96 / 160, 224. Sides in multiples of 16 keep the quarters exact but for rounding. */
+ * 32, 96 / 160, 224. Sides in multiples of 16 keep the quarters exact but for rounding.
+ */
 struct bytes make_jpeg(int width, int height, bool grey, bool progressive);
 /* A segment right behind SOI. */
 void jpeg_insert(struct bytes *jpeg, int marker, const char *signature,
@@ -44,8 +45,8 @@ void jpeg_insert_xmp(struct bytes *jpeg, const char *xmp);
  * sides 640 and 480, a thumbnail directory. */
 struct bytes make_exif(bool big_endian, int orientation);
 
-/* The boxes of a HEIF file with one item, 1, whose properties are ispe and then the given
- * ones: "irot" with an angle, "imir" with an axis. Nothing to decode. */
+/* The boxes of a HEIF file with one item, 1, whose properties are ispe and then the
+ * given ones: "irot" with an angle, "imir" with an axis. Nothing to decode. */
 struct heif_property {
     const char *type;
     int value;
@@ -65,14 +66,15 @@ extern const char test_guid[33];
 
 /* A phone's photo: main JPEG, GDepth in the standard packet. NULL stands for absent. */
 struct gdepth {
-    const char *format;      /* RangeInverse or RangeLinear */
-    const char *extra;       /* more attributes */
-    struct bytes depth;      /* PNG or JPEG; freed */
-    struct bytes original;   /* GImage; freed; empty: none */
+    const char *format;    /* RangeInverse or RangeLinear */
+    const char *extra;     /* more attributes */
+    struct bytes depth;    /* PNG or JPEG; freed */
+    struct bytes original; /* GImage; freed; empty: none */
 };
 struct bytes make_gdepth(struct gdepth gdepth, int orientation);
 /* The same with depth and original in an extended packet. */
-struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, int skip);
+struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step,
+                                  int skip);
 
 /* A JPEG with others behind it, as MPF lists them. Parts are freed. */
 struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count,

@@ -1,5 +1,5 @@
-/* The photos of the project's developers, which are not part of it: the environment variable
- * REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
+/* The photos of the project's developers, which are not part of it: the environment
+ * variable REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
 #ifndef RF_TEST_PHOTOS_H
 #define RF_TEST_PHOTOS_H
 
@@ -44,8 +44,8 @@ static inline struct refocus_photo *depth_of(const char *name, const char *unit)
     return photo;
 }
 
-static inline void assert_sizes(const struct refocus_photo *photo, int width, int height,
-                         int depth_width, int depth_height)
+static inline void assert_sizes(const struct refocus_photo *photo, int width,
+                                int height, int depth_width, int depth_height)
 {
     assert_int_equal(photo->image.width, width);
     assert_int_equal(photo->image.height, height);
@@ -54,7 +54,7 @@ static inline void assert_sizes(const struct refocus_photo *photo, int width, in
 }
 
 static inline void assert_samples(const struct refocus_depth_map *map, unsigned least,
-                           unsigned greatest)
+                                  unsigned greatest)
 {
     unsigned low = ~0u, high = 0;
 

@@ -56,7 +56,8 @@ static void orientation_of_photo_and_depth(void **state)
 
 static void gdepth_range_inverse(void **state)
 {
-    struct refocus_photo *photo = read_photo(make_gdepth(small_gdepth(), 0), REFOCUS_OK);
+    struct refocus_photo *photo =
+        read_photo(make_gdepth(small_gdepth(), 0), REFOCUS_OK);
 
     (void)state;
     assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
@@ -97,7 +98,8 @@ static void gdepth_range_linear(void **state)
                                   .extra = "GDepth:Near=\"500\" GDepth:Far=\"3500\" "
                                            "GDepth:Units=\"mm\"",
                                   .depth = make_png(6, 4, 0, 16)};
-    const struct gdepth without = {.format = "RangeLinear", .depth = make_png(6, 4, 0, 8)};
+    const struct gdepth without = {.format = "RangeLinear",
+                                   .depth = make_png(6, 4, 0, 8)};
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
     (void)state;
@@ -146,13 +148,17 @@ static void gdepth_damaged(void **state)
         {.format = "RangeInverse", .extra = "GDepth:Data=\"\""},
         {.format = "RangeInverse", .extra = "GDepth:Data=\"AAAA\""},
         {.format = "RangeInverse", .depth = make_png(2, 2, 2, 8)},
-        {.format = "RangeInverse", .extra = "GDepth:Near=\"2\" GDepth:Far=\"1\"",
+        {.format = "RangeInverse",
+         .extra = "GDepth:Near=\"2\" GDepth:Far=\"1\"",
          .depth = make_png(2, 2, 0, 8)},
-        {.format = "RangeInverse", .extra = "GDepth:Near=\"two\" GDepth:Far=\"3\"",
+        {.format = "RangeInverse",
+         .extra = "GDepth:Near=\"two\" GDepth:Far=\"3\"",
          .depth = make_png(2, 2, 0, 8)},
-        {.format = "RangeInverse", .extra = "GFocus:FocalPointX=\"\"",
+        {.format = "RangeInverse",
+         .extra = "GFocus:FocalPointX=\"\"",
          .depth = make_png(2, 2, 0, 8)},
-        {.format = "RangeInverse", .depth = make_png(2, 2, 0, 8),
+        {.format = "RangeInverse",
+         .depth = make_png(2, 2, 0, 8),
          .original = bytes_copy("no picture", 10)},
     };
 

@@ -62,7 +62,8 @@ static void icc_in_chunks(void **state)
     memcpy(profile + 16, "RGB ", 4);
     memcpy(profile + 36, "acsp", 4);
     /* jpeg_insert() puts each before the last: they come in reverse order. */
-    photo = read_photo(plain_with_icc((struct bytes){profile, 300}, 70, -1), REFOCUS_OK);
+    photo =
+        read_photo(plain_with_icc((struct bytes){profile, 300}, 70, -1), REFOCUS_OK);
     assert_int_equal(photo->icc.size, 300);
     assert_memory_equal(photo->icc.data, profile, 300);
     refocus_photo_free(&photo);
@@ -71,7 +72,8 @@ static void icc_in_chunks(void **state)
     assert_true(has_evidence(photo, "ICC"));
     refocus_photo_free(&photo);
     memcpy(profile + 16, "GRAY", 4);
-    photo = read_photo(plain_with_icc((struct bytes){profile, 300}, 300, -1), REFOCUS_OK);
+    photo =
+        read_photo(plain_with_icc((struct bytes){profile, 300}, 300, -1), REFOCUS_OK);
     assert_null(photo->icc.data);
     refocus_photo_free(&photo);
 }
@@ -162,10 +164,8 @@ int main(void)
 #ifdef RF_HAVE_PNG
         cmocka_unit_test(orientation_of_png),
 #endif
-        cmocka_unit_test(icc_in_chunks),
-        cmocka_unit_test(exif_facts),
-        cmocka_unit_test(exif_without_sense),
-        cmocka_unit_test(bytes_too_many),
+        cmocka_unit_test(icc_in_chunks),      cmocka_unit_test(exif_facts),
+        cmocka_unit_test(exif_without_sense), cmocka_unit_test(bytes_too_many),
         cmocka_unit_test(grey_jpeg_is_depth),
     };
 

@@ -1,6 +1,6 @@
-/* Every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no crash, and
- * nothing kept. The linker sends the library's calls here; libpng and expat take theirs
- * from the library. */
+/* Every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no
+ * crash, and nothing kept. The linker sends the library's calls here; libpng and expat
+ * take theirs from the library. */
 #include "photos.h"
 #include "samples.h"
 
@@ -62,10 +62,10 @@ static int read_one(const struct sample *sample, bool depth, bool *photo_made)
     struct refocus_photo *photo = NULL;
     struct refocus_reason reason;
     const int status =
-        depth ? refocus_depth_read_memory(&photo, sample->bytes.data, sample->bytes.size,
-                                          NULL, 0, 0, NULL, &reason)
-              : refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size,
-                                          NULL, &reason);
+        depth ? refocus_depth_read_memory(&photo, sample->bytes.data,
+                                          sample->bytes.size, NULL, 0, 0, NULL, &reason)
+              : refocus_photo_read_memory(&photo, sample->bytes.data,
+                                          sample->bytes.size, NULL, &reason);
 
     *photo_made = photo != NULL;
     refocus_photo_free(&photo);
@@ -154,12 +154,13 @@ static int write_one(const char *path, long fail)
 
 static void writers(void **state)
 {
-    static const char *const endings[] = {".ppm", ".pgm", ".pfm",
+    static const char *const endings[] = {
+        ".ppm", ".pgm", ".pfm",
 #ifdef RF_HAVE_PNG
-                                          ".png",
+        ".png",
 #endif
 #ifdef RF_HAVE_JPEG
-                                          ".jpg",
+        ".jpg",
 #endif
     };
 

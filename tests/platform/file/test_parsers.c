@@ -10,13 +10,21 @@ static void numbers(void **state)
         const char *text;
         double value;
     } good[] = {
-        {"0", 0},          {"-0.5", -0.5},       {" +12 ", 12},       {"1e3", 1000},
-        {"2.5E-3", 0.0025}, {".5", 0.5},         {"5.", 5},           {"18.849538803100586", 18.849538803100586},
+        {"0", 0},
+        {"-0.5", -0.5},
+        {" +12 ", 12},
+        {"1e3", 1000},
+        {"2.5E-3", 0.0025},
+        {".5", 0.5},
+        {"5.", 5},
+        {"18.849538803100586", 18.849538803100586},
         {"123456789012345678901234567890", 123456789012345678901234567890.0},
-        {"0.000000000000000000000000000001", 1e-30}, {"0e99999", 0},
+        {"0.000000000000000000000000000001", 1e-30},
+        {"0e99999", 0},
     };
-    static const char *const bad[] = {"",    " ",    ".",   "-",    "e5",    "1,5", "0x10",
-                                      "nan", "inf", "1 2", "1e999", "--1", "1.2.3"};
+    static const char *const bad[] = {"",      " ",    ".",    "-",   "e5",
+                                      "1,5",   "0x10", "nan",  "inf", "1 2",
+                                      "1e999", "--1",  "1.2.3"};
     double value;
 
     (void)state;
@@ -59,8 +67,8 @@ static void base64_text(void **state)
 /* Directories that point at themselves, at each other and outside. */
 static void exif_offsets(void **state)
 {
-    static const uint32_t places[] = {0, 1, 7, 8, 62, 100, 171, 176, 177, 0x7fffffff,
-                                      0xfffffffe, 0xffffffff};
+    static const uint32_t places[] = {
+        0, 1, 7, 8, 62, 100, 171, 176, 177, 0x7fffffff, 0xfffffffe, 0xffffffff};
     struct rf_exif exif;
 
     (void)state;
@@ -161,14 +169,16 @@ static void heif_orientations(void **state)
             struct bytes file =
                 make_heif_boxes(cases[i].properties, cases[i].count, large);
 
-            assert_int_equal(rf_heif_orientation((struct rf_bytes){file.data, file.size}, 0),
-                             cases[i].orientation);
-            assert_int_equal(rf_heif_orientation((struct rf_bytes){file.data, file.size}, 2),
-                             1);
+            assert_int_equal(
+                rf_heif_orientation((struct rf_bytes){file.data, file.size}, 0),
+                cases[i].orientation);
+            assert_int_equal(
+                rf_heif_orientation((struct rf_bytes){file.data, file.size}, 2), 1);
             for (size_t size = 0; size < file.size; size++) {
                 uint8_t *const exact = malloc(size ? size : 1);
                 memcpy(exact, file.data, size);
-                assert_int_equal(rf_heif_orientation((struct rf_bytes){exact, size}, 1), 1);
+                assert_int_equal(rf_heif_orientation((struct rf_bytes){exact, size}, 1),
+                                 1);
                 free(exact);
             }
             bytes_free(&file);
@@ -179,10 +189,10 @@ static void heif_orientations(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers),          cmocka_unit_test(base64_text),
-        cmocka_unit_test(exif_offsets),     cmocka_unit_test(exif_texts_are_clean),
-        cmocka_unit_test(heif_orientations),
-        cmocka_unit_test(mpf_bounds),       cmocka_unit_test(disparity_ranges),
+        cmocka_unit_test(numbers),           cmocka_unit_test(base64_text),
+        cmocka_unit_test(exif_offsets),      cmocka_unit_test(exif_texts_are_clean),
+        cmocka_unit_test(heif_orientations), cmocka_unit_test(mpf_bounds),
+        cmocka_unit_test(disparity_ranges),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

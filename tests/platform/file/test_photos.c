@@ -1,5 +1,5 @@
-/* Photos that nobody of this project made. They are not part of it: the environment variable
- * REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
+/* Photos that nobody of this project made. They are not part of it: the environment
+ * variable REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
 #include "photos.h"
 
 #include <math.h>
@@ -24,7 +24,8 @@ static void lens_blur_photo(void **state)
     assert_true(fabs(photo->info.focus_distance - 26.517597) < 1e-9);
     assert_true(fabs(photo->info.blur_at_infinity - 0.00796752) < 1e-9);
     assert_string_equal(photo->info.camera, "Motorola XT912");
-    /* The focus point lies on the flower, nearer than the map's middle: polarity holds. */
+    /* The focus point lies on the flower, nearer than the map's middle: polarity holds.
+     */
     assert_true(sample_at(&photo->depth, (int)(photo->info.focus_x * 1536),
                           (int)(photo->info.focus_y * 2048)) < 155);
     refocus_photo_free(&photo);
@@ -52,7 +53,8 @@ static void apple_jpeg(void **state)
 
 static void triples(void **state)
 {
-    struct refocus_photo *depth = depth_of("lens-blur-triples/hut-depth.jpg", "inverse");
+    struct refocus_photo *depth =
+        depth_of("lens-blur-triples/hut-depth.jpg", "inverse");
     struct refocus_photo *photo = photo_of("lens-blur-triples/hut-alternative.jpg");
 
     (void)state;
@@ -115,7 +117,8 @@ static void stereo_truth(void **state)
 
 static void light_field_truth(void **state)
 {
-    struct refocus_photo *depth = depth_of("light-field/antinous/gt_disp_lowres.pfm", NULL);
+    struct refocus_photo *depth =
+        depth_of("light-field/antinous/gt_disp_lowres.pfm", NULL);
     double low = INFINITY, high = -INFINITY;
 
     (void)state;
@@ -149,7 +152,8 @@ static void heic_depth(void **state)
     refocus_photo_free(&photo);
 }
 
-/* The container's rotation by 90 degrees anticlockwise: photo and depth follow, once. */
+/* The container's rotation by 90 degrees anticlockwise: photo and depth follow, once.
+ */
 static void heic_turned(void **state)
 {
     struct refocus_photo *straight = photo_of("phone/apple-heic-pug.heic"), *turned;

@@ -1,5 +1,5 @@
-/* "Thread-safe" says the header: readers and writers in many threads at once, for the thread
- * sanitizer to watch, each with the result of one alone. */
+/* "Thread-safe" says the header: readers and writers in many threads at once, for the
+ * thread sanitizer to watch, each with the result of one alone. */
 #include "check.h"
 #include "samples.h"
 
@@ -35,7 +35,8 @@ static unsigned read_sample(const struct sample *sample)
     struct refocus_reason reason;
     unsigned sum;
 
-    refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL, &reason);
+    refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL,
+                              &reason);
     sum = digest(photo);
     refocus_photo_free(&photo);
     return sum;
