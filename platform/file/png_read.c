@@ -75,9 +75,8 @@ static void choose_samples(struct reader *reader)
     } else if (type == PNG_COLOR_TYPE_GRAY && bits < 8) {
         png_set_expand_gray_1_2_4_to_8(png);
     }
-    if (type & PNG_COLOR_MASK_ALPHA) {
-        png_set_strip_alpha(png);
-    }
+    /* Palettes bring theirs with them. */
+    png_set_strip_alpha(png);
     if (bits == 16 && *(const uint8_t *)&one == 1) {
         png_set_swap(png);
     }

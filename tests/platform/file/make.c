@@ -133,6 +133,7 @@ struct bytes make_png_raw(int width, int height, int type, int bits,
             palette[i] = (uint8_t)(i / 3);
         }
         png_chunk(&png, "PLTE", palette, sizeof palette);
+        png_chunk(&png, "tRNS", "\0\200", 2);
     }
     for (int y = 0; y < height; y++) {
         bytes_number(&rows, 0, 1, true);

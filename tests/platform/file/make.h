@@ -23,8 +23,9 @@ struct bytes bytes_copy(const void *data, size_t size);
 /* A picture whose every sample differs from its neighbours: channel c of (x, y). */
 unsigned pattern(int x, int y, int c, unsigned max);
 
-/* PNG, not compressed. Types: 0 grey, 2 RGB, 3 palette of 256 greys, 4 grey + alpha,
- * 6 RGBA. samples: rows as PNG stores them. exif, icc: put in when not NULL. */
+/* PNG, not compressed. Types: 0 grey, 2 RGB, 3 palette of 256 greys, two transparent, 4
+ * grey + alpha, 6 RGBA. samples: rows as PNG stores them. exif, icc: put in when not
+ * NULL. */
 struct bytes make_png_raw(int width, int height, int type, int bits,
                           const uint8_t *samples, const struct bytes *exif);
 /* The same with the pattern. */

@@ -126,6 +126,27 @@ static void gdepth_payload_jpeg_without_range(void **state)
     refocus_photo_free(&photo);
 }
 
+/* Phones write the map as RGB or RGBA with equal channels. */
+static void gdepth_payload_in_colour_form(void **state)
+{
+    static const uint8_t rgb[12] = {9, 9, 9, 80, 80, 80, 7, 7, 7, 200, 200, 200};
+    static const uint8_t rgba[16] = {9, 9, 9, 255, 80,  80,  80,  255,
+                                     7, 7, 7, 255, 200, 200, 200, 255};
+
+    (void)state;
+    for (int alpha = 0; alpha < 2; alpha++) {
+        const struct gdepth gdepth = {
+            .format = "RangeInverse",
+            .depth = make_png_raw(2, 2, alpha ? 6 : 2, 8, alpha ? rgba : rgb, NULL)};
+        struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
+
+        assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U8);
+        assert_int_equal(sample_at(&photo->depth, 1, 0), 80);
+        assert_int_equal(sample_at(&photo->depth, 1, 1), 200);
+        refocus_photo_free(&photo);
+    }
+}
+
 static void gdepth_units_absent_are_told(void **state)
 {
     const struct gdepth gdepth = {.format = "RangeInverse",
@@ -257,6 +278,7 @@ int main(void)
         cmocka_unit_test(unit_overrules_the_file),
         cmocka_unit_test(gdepth_range_linear),
         cmocka_unit_test(gdepth_payload_jpeg_without_range),
+        cmocka_unit_test(gdepth_payload_in_colour_form),
         cmocka_unit_test(gdepth_units_absent_are_told),
         cmocka_unit_test(gdepth_damaged),
         cmocka_unit_test(original_replaces_a_blurred_picture),
