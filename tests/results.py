@@ -3,7 +3,7 @@
 
 usage: results.py LOG            prints 'PASSED FAILED SKIPPED'; names what did not pass
                                  on standard error
-       results.py LOG --digest   prints what the test 'digest' printed
+       results.py LOG --digest   prints the hashes of the test 'digest'
 """
 import json
 import sys
@@ -25,7 +25,8 @@ def main():
     if sys.argv[2:] == ["--digest"]:
         for test in tests:
             if test["name"].split(" / ")[-1].split(":")[-1] == "digest":
-                sys.stdout.write(test.get("stdout") or "")
+                lines = (test.get("stdout") or "").splitlines()
+                print("\n".join(line for line in lines if line.startswith("digest ")))
         return
     passed = failed = skipped = 0
     for test in tests:
