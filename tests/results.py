@@ -19,6 +19,13 @@ def reason(test):
     return "no reason given"
 
 
+def skipped_parts(test):
+    """What a test that passed says it left out, each once."""
+    text = (test.get("stdout") or "") + "\n" + (test.get("stderr") or "")
+    return sorted({line[line.index("SKIP"):].strip() for line in text.splitlines()
+                   if "SKIP:" in line or "[  SKIPPED ]" in line})
+
+
 def main():
     with open(sys.argv[1], encoding="utf-8") as log:
         tests = [json.loads(line) for line in log if line.strip()]
@@ -32,6 +39,8 @@ def main():
     for test in tests:
         if test["result"] in PASSED:
             passed += 1
+            for line in skipped_parts(test):
+                print(f"    SKIPPED in {test['name']}: {line}", file=sys.stderr)
         elif test["result"] == "SKIP":
             skipped += 1
             print(f"    SKIPPED {test['name']}: {reason(test)}", file=sys.stderr)
