@@ -2,9 +2,8 @@
 
 #include <string.h>
 
-/* Q7.8 pixels. The cone falls by 2/3 pixel a pixel: a third deeper than anything can be
- * seen through, so that mixed pixels along the edge do not end up as sources. */
-enum { STEP = 171, DIAGONAL = 241, HALF = 128, SURFACE = 256 };
+/* Q7.8 pixels. The cone falls by half a pixel a pixel. */
+enum { STEP = 128, DIAGONAL = 181, HALF = 128 };
 
 static int max(int a, int b)
 {
@@ -62,8 +61,7 @@ static struct rf_level base_level(const struct refocus_renderer *r)
     };
 }
 
-/* A parent is the mean of those of its four children that are within one pixel of blur
- * of the farthest known one: what fills a gap must come from behind. */
+/* A parent is the mean of those of its four children that are known. */
 static void push(const struct rf_level *fine, ptrdiff_t fine_stride, struct rf_level *coarse)
 {
     static const uint32_t share[5] = {0, 65536, 32768, 21845, 16384};
@@ -72,33 +70,22 @@ static void push(const struct rf_level *fine, ptrdiff_t fine_stride, struct rf_l
         for (int x = 0; x < coarse->width; x++) {
             const size_t at = (size_t)y * coarse->width + x;
             uint32_t sum[3] = {0, 0, 0}, n = 0;
-            int farthest = RF_NO_BLUR, blur = 0;
-            ptrdiff_t child[4];
-            int children = 0;
+            int blur = 0;
 
             for (int j = 0; j < 2; j++) {
                 for (int i = 0; i < 2; i++) {
-                    if (2 * x + i >= fine->width || 2 * y + j >= fine->height)
+                    const ptrdiff_t child = (2 * y + j) * fine_stride + 2 * x + i;
+
+                    if (2 * x + i >= fine->width || 2 * y + j >= fine->height ||
+                        fine->blur[child] == RF_NO_BLUR)
                         continue;
-                    child[children] = (2 * y + j) * fine_stride + 2 * x + i;
-                    farthest = max(farthest, fine->blur[child[children++]]);
+                    n++;
+                    blur += fine->blur[child];
+                    for (int c = 0; c < 3; c++)
+                        sum[c] += fine->light[c][child];
                 }
             }
-            if (farthest == RF_NO_BLUR) {
-                coarse->blur[at] = RF_NO_BLUR;
-                continue;
-            }
-            for (int i = 0; i < children; i++) {
-                const int s = fine->blur[child[i]];
-
-                if (s == RF_NO_BLUR || s < farthest - SURFACE)
-                    continue;
-                n++;
-                blur += s;
-                for (int c = 0; c < 3; c++)
-                    sum[c] += fine->light[c][child[i]];
-            }
-            coarse->blur[at] = (int16_t)(blur / (int)n);
+            coarse->blur[at] = (int16_t)(n ? blur / (int)n : RF_NO_BLUR);
             for (int c = 0; c < 3; c++)
                 coarse->light[c][at] = (uint16_t)((sum[c] * share[n] + 32768) >> 16);
         }

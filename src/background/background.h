@@ -14,11 +14,12 @@
  *
  * Mark: p is foreground where some q lies farther behind than it is away,
  *
- *     max over q of (s(q) - 2/3 |p - q|) > s(p) + 1/2 pixel,
+ *     max over q of (s(q) - |p - q| / 2) > s(p) + 1/2 pixel,
  *
  * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and
- * sqrt 2. (Slope 1 would be what can be seen through; 2/3 keeps the mixed pixels beside it
- * out of the sources.) Fill: marked pixels take light and blur by push-pull from the rest.
+ * sqrt 2. Slope 1 would mark what can be seen through; slope 1/2 marks twice as deep, so that
+ * what stays behind as a source on the foreground's side is always the farther one.
+ * Fill: marked pixels take light and blur by push-pull from the rest.
  */
 void rf_background(struct refocus_renderer *r);
 
