@@ -53,6 +53,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
                             const struct refocus_renderer_params *params)
 {
     struct refocus_renderer_params own;
+    struct rf_kernels kernels;
     struct refocus_renderer *r;
     uint64_t size;
     void *block;
@@ -63,7 +64,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     *renderer = NULL;
     if (!read_params(&own, params))
         return REFOCUS_ERR_ARGUMENT;
-    if (own.cpu != REFOCUS_CPU_AUTO && own.cpu != REFOCUS_CPU_C)
+    if (!rf_kernels_select(&kernels, &own.cpu))
         return REFOCUS_ERR_UNSUPPORTED;
     size = rf_layout_size(&own);
     if (size > PTRDIFF_MAX || (own.max_memory && size > own.max_memory))
@@ -78,7 +79,8 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->log = own.log;
     r->block = block;
     r->memory = size;
-    r->cpu = REFOCUS_CPU_C;
+    r->cpu = own.cpu;
+    r->kernels = kernels;
     r->max_width = own.max_width;
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;

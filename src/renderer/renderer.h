@@ -9,10 +9,10 @@
 #include <refocus/render.h>
 
 #include "colour/transfer.h"
+#include "kernels/kernels.h"
 #include "support/pool.h"
 
 enum {
-    RF_TILE = 16,     /* tiles are RF_TILE x RF_TILE pixels */
     RF_BINS = 256,    /* of signed blur in a tile */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
     RF_RAY_CLASSES = 7,
@@ -52,7 +52,8 @@ struct refocus_renderer {
     struct refocus_log log;
     void *block;
     uint64_t memory;
-    uint32_t cpu;
+    uint32_t cpu; /* enum refocus_cpu, never AUTO */
+    struct rf_kernels kernels;
     int max_width, max_height;
     float max_blur_radius;
 
