@@ -31,7 +31,7 @@ void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
     for (int tx = 0; tx < r->tiles_x; tx++) {
         const int x0 = tx * RF_TILE;
         const int x1 = x0 + RF_TILE < r->width ? x0 + RF_TILE : r->width;
-        struct rf_bins bins = {{0}};
+        struct rf_bins bins = {{0}, INT16_MAX, INT16_MIN};
 
         for (int y = ty * RF_TILE; y < y1; y++) {
             const int16_t *s = r->front.blur + y * r->stride;
@@ -40,6 +40,8 @@ void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
                 const int bin = bin_of(scale, s[x]);
 
                 bins.word[bin / 64] |= UINT64_C(1) << (bin % 64);
+                bins.least = s[x] < bins.least ? s[x] : bins.least;
+                bins.most = s[x] > bins.most ? s[x] : bins.most;
             }
         }
         r->bins[(size_t)ty * r->tiles_x + tx] = bins;
@@ -71,13 +73,34 @@ static int gap_of(int n)
     return n ? (n - 1) * RF_TILE + 1 : 0;
 }
 
+/* Add a set; of what was cleared from it, the extremes are those of the bins left. */
+static void merge(struct rf_bins *to, const struct rf_bins *from, struct rf_bin_scale scale)
+{
+    int first = 0, last = RF_BINS - 1, least, most;
+
+    while (first < RF_BINS && !has(from, first))
+        first++;
+    if (first == RF_BINS)
+        return;
+    while (!has(from, last))
+        last--;
+    least = edge_of(scale, first);
+    most = edge_of(scale, last + 1) - 1;
+    least = from->least > least ? from->least : least;
+    most = from->most < most ? from->most : most;
+    to->least = (int16_t)(least < to->least ? least : to->least);
+    to->most = (int16_t)(most > to->most ? most : to->most);
+    for (int k = 0; k < RF_BINS / 64; k++)
+        to->word[k] |= from->word[k];
+}
+
 /* Bins that reach tile (tx, ty) and all bins that stand in the window around it. */
 static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx,
                     int ty, bool square, struct rf_bins *reach, struct rf_bins *window)
 {
     const int most = (r->pad - 2 + RF_TILE - 1) / RF_TILE;
 
-    memset(reach, 0, sizeof *reach);
+    *reach = (struct rf_bins){{0}, INT16_MAX, INT16_MIN};
     memset(window, 0, sizeof *window);
     for (int j = -most; j <= most; j++) {
         if (ty + j < 0 || ty + j >= r->tiles_y)
@@ -101,8 +124,7 @@ static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale,
 
                 clear(&bins, bin_of(scale, -s + (1 << scale.shift)), bin_of(scale, s));
             }
-            for (int k = 0; k < RF_BINS / 64; k++)
-                reach->word[k] |= bins.word[k];
+            merge(reach, &bins, scale);
         }
     }
 }
@@ -140,7 +162,9 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             if (has(bins, b))
                 last = b;
         high = edge_of(scale, last + 1) - 1;
-        centre = (low + high + 1) / 2;
+        low = low < bins->least ? bins->least : low;
+        high = high > bins->most ? bins->most : high;
+        centre = low + (high - low + 1) / 2; /* exact for a single blur */
         plan->sharp = false;
         if (-low > plan->reach)
             plan->reach = -low;
@@ -165,5 +189,5 @@ void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, i
 
     collect(r, scale, tx, ty, square, &reach, &window);
     cover(&reach, scale, plan);
-    plan->uniform = plan->slabs == 1 && !memcmp(&reach, &window, sizeof reach);
+    plan->uniform = plan->slabs == 1 && !memcmp(reach.word, window.word, sizeof reach.word);
 }
