@@ -42,9 +42,10 @@ struct rf_level {
     int16_t *blur; /* RF_NO_BLUR: nothing known here */
 };
 
-/* Occupied bins of signed blur, a bit each, nearest first. */
+/* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
+    int16_t least, most; /* Q7.8 */
 };
 
 struct refocus_renderer {
