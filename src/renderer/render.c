@@ -115,7 +115,7 @@ static void smooth_band(void *context, int band, int worker)
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
     rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
-                      rf_band_start(band), rf_band_end(r, band));
+                      band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
