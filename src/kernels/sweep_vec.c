@@ -134,4 +134,5 @@ static void RF_VEC(rf_sweep)(uint32_t sum[3][RF_TILE * RF_TILE],
 void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
 {
     kernels->sweep = RF_VEC(rf_sweep);
+    RF_VEC(rf_rows_use)(kernels);
 }

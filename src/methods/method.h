@@ -69,6 +69,9 @@ const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach
 /* Means of a tile into the output picture. */
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);
 
+void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
+                     uint16_t mean[3][RF_TILE * RF_TILE]);
+
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 

@@ -60,14 +60,14 @@ static void set_offsets(int32_t offset[RF_RAY_CHUNK], const struct refocus_ray *
 }
 
 /* Rays come in runs of equal weight; a run is summed plainly and weighted once. Sums of
- * a run, 65,025 rays of Q12 light at the most, stay below 2^28. */
+ * a run, 65,025 rays of Q12 light at the most, stay below 2^28. The sums of a set that is one
+ * run are left in `run`; others are added up in `sums`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct rf_ray_set *set, ptrdiff_t origin, int behind,
-                       struct rf_sums *sums)
+                       uint32_t run[3][LANES], struct rf_sums *sums)
 {
     const struct refocus_renderer *r = f->r;
     int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
-    uint32_t run[3][LANES];
     struct rf_sweep_job job = {
         .blur = r->front.blur + origin,
         .stride = r->stride,
@@ -81,9 +81,8 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     for (int c = 0; c < 3; c++) {
         job.light[c] = r->smooth[c] + origin;
         job.behind[c] = r->behind.light[c] + origin;
+        memset(run[c], 0, sizeof run[c]);
     }
-    memset(sums, 0, sizeof *sums);
-    memset(run, 0, sizeof run);
     for (int n = 0; n < set->count; n += job.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
@@ -95,11 +94,10 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
             set_offsets(offset[k], ray, job.rays, plan->slab[k].centre, r->stride);
         set_offsets(offset[plan->slabs], ray, job.rays, behind, r->stride);
         r->kernels.sweep(run, &job);
-        if (n + job.rays == set->count || ray[job.rays].weight != ray->weight)
+        if (!set->equal &&
+            (n + job.rays == set->count || ray[job.rays].weight != ray->weight))
             add_run(run, ray->weight, sums);
     }
-    for (int i = 0; i < LANES; i++)
-        sums->weight[i] = set->total_weight;
 }
 
 static void sweep_weighted(const struct rf_frame *f, const struct rf_tile_plan *plan,
@@ -108,7 +106,6 @@ static void sweep_weighted(const struct rf_frame *f, const struct rf_tile_plan *
 {
     uint16_t is_free[LANES];
 
-    memset(sums, 0, sizeof *sums);
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
 
@@ -131,7 +128,6 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     const int behind = r->behind.blur[origin + RF_TILE / 2 * (r->stride + 1)];
     const struct rf_ray_set *set;
     struct rf_tile_plan plan;
-    struct rf_sums sums;
 
     (void)worker;
     rf_plan_tile(r, f->scale, tx, ty, f->aperture->shape == RF_SHAPE_MASK, &plan);
@@ -140,9 +136,27 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         return;
     }
     set = rf_rays_for(r, plan.reach);
-    if (f->weighted)
-        sweep_weighted(f, &plan, set, origin, behind, &sums);
-    else
-        sweep_rays(f, &plan, set, origin, behind, &sums);
-    rf_encode_tile(f, rect, &sums);
+    if (set->equal && !f->weighted) {
+        const uint32_t scale = rf_mean_scale((uint64_t)set->count);
+        uint16_t mean[3][LANES];
+        uint32_t run[3][LANES];
+
+        sweep_rays(f, &plan, set, origin, behind, run, NULL);
+        for (int c = 0; c < 3; c++)
+            r->kernels.means(mean[c], run[c], scale, LANES);
+        rf_encode_means(f, rect, mean);
+    } else {
+        struct rf_sums sums;
+        uint32_t run[3][LANES];
+
+        memset(&sums, 0, sizeof sums);
+        if (f->weighted) {
+            sweep_weighted(f, &plan, set, origin, behind, &sums);
+        } else {
+            sweep_rays(f, &plan, set, origin, behind, run, &sums);
+            for (int i = 0; i < LANES; i++)
+                sums.weight[i] = set->total_weight;
+        }
+        rf_encode_tile(f, rect, &sums);
+    }
 }

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "renderer/layout.h"
 
@@ -38,15 +37,6 @@ uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params)
     struct refocus_renderer_params own;
 
     return read_params(&own, params) ? rf_layout_size(&own) : 0;
-}
-
-static int threads_for(const struct refocus_renderer_params *params)
-{
-    long n = params->threads;
-
-    if (n == 0)
-        n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
 }
 
 int refocus_renderer_create(struct refocus_renderer **renderer,
@@ -88,7 +78,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
     atomic_init(&r->run, RF_RUN_IDLE);
-    status = rf_pool_start(&r->pool, threads_for(&own), &r->run);
+    status = rf_pool_start(&r->pool, rf_threads_for(&own), &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);
         return status;

@@ -93,27 +93,28 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
-}
-
-static void smooth_band(void *context, int band, int worker)
-{
-    const struct rf_frame *f = context;
-
-    (void)worker;
-    rf_prefilter_rows(f->r, f->prefilter_above, rf_band_start(band),
-                      rf_band_end(f->r, band));
     rf_bin_tiles(f->r, f->scale, band);
 }
 
-static void extend_behind_band(void *context, int band, int worker)
+/* The pre-filter in bands, and beside it the dilation in both directions. */
+static void smooth_item(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
-    const int y0 = rf_band_start(band), y1 = rf_band_end(f->r, band);
+    const int band = item - 2;
 
-    (void)worker;
-    for (int c = 0; c < 3; c++)
-        rf_extend_rows(f->r, f->r->behind.light[c], y0, y1);
-    rf_extend_rows(f->r, f->r->behind.blur, y0, y1);
+    if (band < 0)
+        rf_background_dilate(f->r, item == 1);
+    else
+        rf_prefilter_rows(f->r, f->prefilter_above, rf_scratch(f->r, worker),
+                          rf_band_start(band), rf_band_end(f->r, band));
+}
+
+static void mark_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+                            rf_band_end(f->r, band));
 }
 
 static int larger(int a, int b)
@@ -183,11 +184,10 @@ static void run_passes(struct rf_frame *f)
     rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
     if (f->params->max_blur_radius > 0)
         rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
-    if (layers)
-        rf_pool_run(&r->pool, smooth_band, f, rf_bands(r));
-    if (layers && !rf_cancelled(r)) {
-        rf_background(r);
-        rf_pool_run(&r->pool, extend_behind_band, f, rf_bands(r));
+    if (layers) {
+        rf_pool_run(&r->pool, smooth_item, f, 2 + rf_bands(r));
+        rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
+        rf_background_fill(r);
     }
     rf_pool_run(&r->pool, tile_item, f, f->count_tx * f->count_ty);
 }

@@ -24,6 +24,7 @@ struct rf_ray_set {
     struct refocus_ray *ray;
     int count;
     uint64_t total_weight;
+    bool equal; /* all rays weigh the same */
 };
 
 /* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
@@ -33,14 +34,13 @@ struct rf_layer {
     int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
 };
 
-/* A level of the background pyramid, without padding. */
+/* A level of the background pyramid, without padding but with an even stride. */
 struct rf_level {
     int width, height;
+    ptrdiff_t stride;
     uint16_t *light[3];
     int16_t *blur; /* RF_NO_BLUR: nothing known here */
 };
-
-enum { RF_NO_BLUR = INT16_MIN };
 
 /* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
 struct rf_bins {
@@ -78,6 +78,7 @@ struct refocus_renderer {
     int levels;
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
+    uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
     bool blurred;         /* front.blur is valid */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
@@ -92,5 +93,16 @@ struct refocus_renderer {
     int set_rays;
     float set_blur;
 };
+
+/* A worker's scratch: two rows of the largest picture with the margins of spread_row. */
+static inline uint64_t rf_scratch_size(int max_width)
+{
+    return 2 * ((uint64_t)max_width + 2 * RF_SPREAD_MARGIN);
+}
+
+static inline uint16_t *rf_scratch(const struct refocus_renderer *r, int worker)
+{
+    return r->scratch + (size_t)worker * rf_scratch_size(r->max_width);
+}
 
 #endif

@@ -24,27 +24,46 @@ static int edge_of(struct rf_bin_scale scale, int bin)
     return (bin - scale.focus) * (1 << scale.shift) - HALF;
 }
 
+/* Flags of bins, a byte each, to bits. */
+static struct rf_bins pack(const uint8_t flag[RF_BINS], int16_t least, int16_t most)
+{
+    struct rf_bins bins = {{0}, least, most};
+
+    for (int i = 0; i < RF_BINS; i++)
+        bins.word[i / 64] |= (uint64_t)flag[i] << (i % 64);
+    return bins;
+}
+
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
 {
     const int y1 = (ty + 1) * RF_TILE < r->height ? (ty + 1) * RF_TILE : r->height;
 
     for (int tx = 0; tx < r->tiles_x; tx++) {
-        const int x0 = tx * RF_TILE;
-        const int x1 = x0 + RF_TILE < r->width ? x0 + RF_TILE : r->width;
-        struct rf_bins bins = {{0}, INT16_MAX, INT16_MIN};
+        struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+        const ptrdiff_t x0 = (ptrdiff_t)tx * RF_TILE; /* the border repeats the last pixel */
+        int16_t least = INT16_MAX, most = INT16_MIN;
+        uint8_t flag[RF_BINS] = {0};
 
         for (int y = ty * RF_TILE; y < y1; y++) {
-            const int16_t *s = r->front.blur + y * r->stride;
+            const int16_t *s = r->front.blur + y * r->stride + x0;
 
-            for (int x = x0; x < x1; x++) {
-                const int bin = bin_of(scale, s[x]);
-
-                bins.word[bin / 64] |= UINT64_C(1) << (bin % 64);
-                bins.least = s[x] < bins.least ? s[x] : bins.least;
-                bins.most = s[x] > bins.most ? s[x] : bins.most;
+            for (int x = 0; x < RF_TILE; x++) {
+                least = s[x] < least ? s[x] : least;
+                most = s[x] > most ? s[x] : most;
             }
         }
-        r->bins[(size_t)ty * r->tiles_x + tx] = bins;
+        if (bin_of(scale, least) == bin_of(scale, most)) {
+            *bins = (struct rf_bins){{0}, least, most};
+            bins->word[bin_of(scale, least) / 64] = UINT64_C(1) << bin_of(scale, least) % 64;
+            continue;
+        }
+        for (int y = ty * RF_TILE; y < y1; y++) {
+            const int16_t *s = r->front.blur + y * r->stride + x0;
+
+            for (int x = 0; x < RF_TILE; x++)
+                flag[bin_of(scale, s[x])] = 1;
+        }
+        *bins = pack(flag, least, most);
     }
 }
 
@@ -76,14 +95,16 @@ static int gap_of(int n)
 /* Add a set; of what was cleared from it, the extremes are those of the bins left. */
 static void merge(struct rf_bins *to, const struct rf_bins *from, struct rf_bin_scale scale)
 {
-    int first = 0, last = RF_BINS - 1, least, most;
+    int first = 0, last = RF_BINS / 64 - 1, least, most;
 
-    while (first < RF_BINS && !has(from, first))
+    while (first < RF_BINS / 64 && !from->word[first])
         first++;
-    if (first == RF_BINS)
+    if (first == RF_BINS / 64)
         return;
-    while (!has(from, last))
+    while (!from->word[last])
         last--;
+    first = 64 * first + __builtin_ctzll(from->word[first]);
+    last = 64 * last + 63 - __builtin_clzll(from->word[last]);
     least = edge_of(scale, first);
     most = edge_of(scale, last + 1) - 1;
     least = from->least > least ? from->least : least;

@@ -1,5 +1,5 @@
-/* Writes the seeds: make_corpus tests/fuzz/file/corpus. Run after a change of make.c; needs
- * a build with all formats. */
+/* Writes the seeds: make_corpus tests/fuzz/file/corpus. Run after a change of make.c;
+ * needs a build with all formats. */
 #include "samples.h"
 
 #include <stdio.h>
@@ -69,9 +69,21 @@ static void seed_mpf(void)
 {
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct bytes part = make_auxiliary("disparity", NULL);
-        struct bytes file = make_mpf(make_jpeg(16, 16, false, false), &part, 1, big_endian);
+        struct bytes file =
+            make_mpf(make_jpeg(16, 16, false, false), &part, 1, big_endian);
 
         seed("mpf", big_endian ? "high" : "low", file.data + 10, 82);
+        bytes_free(&file);
+    }
+}
+
+static void seed_heif_boxes(void)
+{
+    static const struct heif_property both[] = {{"irot", 1}, {"imir", 0}};
+
+    for (int large = 0; large < 2; large++) {
+        struct bytes file = make_heif_boxes(both, 2, large);
+        seed("heif_boxes", large ? "large" : "small", file.data, file.size);
         bytes_free(&file);
     }
 }
@@ -115,6 +127,7 @@ int main(int count, char **arguments)
     seed_samples();
     seed_exif();
     seed_mpf();
+    seed_heif_boxes();
     seed_xmp();
     seed_text("number", "decimal", " -12.5e-3 ");
     seed_text("number", "long", "123456789012345678901234567890.000000000000000000001");

@@ -1,7 +1,7 @@
-/* Every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no crash, and
- * nothing kept. The linker sends the library's calls here; libpng and expat take theirs
- * from the library. */
-#include "check.h"
+/* Every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no
+ * crash, and nothing kept. The linker sends the library's calls here; libpng and expat
+ * take theirs from the library. */
+#include "photos.h"
 #include "samples.h"
 
 #include <errno.h>
@@ -62,10 +62,10 @@ static int read_one(const struct sample *sample, bool depth, bool *photo_made)
     struct refocus_photo *photo = NULL;
     struct refocus_reason reason;
     const int status =
-        depth ? refocus_depth_read_memory(&photo, sample->bytes.data, sample->bytes.size,
-                                          NULL, 0, 0, NULL, &reason)
-              : refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size,
-                                          NULL, &reason);
+        depth ? refocus_depth_read_memory(&photo, sample->bytes.data,
+                                          sample->bytes.size, NULL, 0, 0, NULL, &reason)
+              : refocus_photo_read_memory(&photo, sample->bytes.data,
+                                          sample->bytes.size, NULL, &reason);
 
     *photo_made = photo != NULL;
     refocus_photo_free(&photo);
@@ -112,6 +112,23 @@ static void readers(void **state)
     free_samples(samples, count);
 }
 
+#ifdef RF_HAVE_HEIC
+/* libheif's own memory is not ours to refuse; this is what heic.c asks for. */
+static void heic(void **state)
+{
+    struct sample sample = {.name = "heic"};
+
+    (void)state;
+    if (!find_photos()) {
+        print_message("SKIPPED: no photos in %s\n", photos_folder);
+        skip();
+    }
+    sample.bytes = load("phone/apple-heic-pug.heic");
+    fail_each_in(&sample, true);
+    bytes_free(&sample.bytes);
+}
+#endif
+
 static int write_one(const char *path, long fail)
 {
     uint8_t pixels[12 * 3] = {0};
@@ -137,12 +154,13 @@ static int write_one(const char *path, long fail)
 
 static void writers(void **state)
 {
-    static const char *const endings[] = {".ppm", ".pgm", ".pfm",
+    static const char *const endings[] = {
+        ".ppm", ".pgm", ".pfm",
 #ifdef RF_HAVE_PNG
-                                          ".png",
+        ".png",
 #endif
 #ifdef RF_HAVE_JPEG
-                                          ".jpg",
+        ".jpg",
 #endif
     };
 
@@ -203,6 +221,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(readers),
+#ifdef RF_HAVE_HEIC
+        cmocka_unit_test(heic),
+#endif
         cmocka_unit_test(writers),
         cmocka_unit_test(files),
     };
