@@ -25,9 +25,9 @@ static int edge_of(struct rf_bin_scale scale, int bin)
 }
 
 /* Flags of bins, a byte each, to bits. */
-static struct rf_bins pack(const uint8_t flag[RF_BINS], int16_t least, int16_t most)
+static struct rf_bins pack(const uint8_t flag[RF_BINS])
 {
-    struct rf_bins bins = {{0}, least, most};
+    struct rf_bins bins = {.word = {0}};
 
     for (int i = 0; i < RF_BINS; i++)
         bins.word[i / 64] |= (uint64_t)flag[i] << (i % 64);
@@ -53,17 +53,19 @@ void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
             }
         }
         if (bin_of(scale, least) == bin_of(scale, most)) {
-            *bins = (struct rf_bins){{0}, least, most};
+            memset(bins, 0, sizeof *bins);
             bins->word[bin_of(scale, least) / 64] = UINT64_C(1) << bin_of(scale, least) % 64;
-            continue;
-        }
-        for (int y = ty * RF_TILE; y < y1; y++) {
-            const int16_t *s = r->front.blur + y * r->stride + x0;
+        } else {
+            for (int y = ty * RF_TILE; y < y1; y++) {
+                const int16_t *s = r->front.blur + y * r->stride + x0;
 
-            for (int x = 0; x < RF_TILE; x++)
-                flag[bin_of(scale, s[x])] = 1;
+                for (int x = 0; x < RF_TILE; x++)
+                    flag[bin_of(scale, s[x])] = 1;
+            }
+            *bins = pack(flag);
         }
-        *bins = pack(flag, least, most);
+        bins->least = least;
+        bins->most = most;
     }
 }
 
@@ -92,27 +94,17 @@ static int gap_of(int n)
     return n ? (n - 1) * RF_TILE + 1 : 0;
 }
 
-/* Add a set; of what was cleared from it, the extremes are those of the bins left. */
-static void merge(struct rf_bins *to, const struct rf_bins *from, struct rf_bin_scale scale)
+/* Drop the bins of blurs below s: a pixel g away is met only if |s| >= g - 1. */
+static void drop_short(struct rf_bins *bins, struct rf_bin_scale scale, int s)
 {
-    int first = 0, last = RF_BINS / 64 - 1, least, most;
+    const int first = bin_of(scale, -s + (1 << scale.shift)), end = bin_of(scale, s);
+    const int low = edge_of(scale, first), high = edge_of(scale, end);
 
-    while (first < RF_BINS / 64 && !from->word[first])
-        first++;
-    if (first == RF_BINS / 64)
-        return;
-    while (!from->word[last])
-        last--;
-    first = 64 * first + __builtin_ctzll(from->word[first]);
-    last = 64 * last + 63 - __builtin_clzll(from->word[last]);
-    least = edge_of(scale, first);
-    most = edge_of(scale, last + 1) - 1;
-    least = from->least > least ? from->least : least;
-    most = from->most < most ? from->most : most;
-    to->least = (int16_t)(least < to->least ? least : to->least);
-    to->most = (int16_t)(most > to->most ? most : to->most);
-    for (int k = 0; k < RF_BINS / 64; k++)
-        to->word[k] |= from->word[k];
+    clear(bins, first, end);
+    if (bins->least >= low && bins->least < high)
+        bins->least = (int16_t)high;
+    if (bins->most >= low && bins->most < high)
+        bins->most = (int16_t)(low - 1);
 }
 
 /* Bins that reach tile (tx, ty) and all bins that stand in the window around it. */
@@ -121,8 +113,7 @@ static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale,
 {
     const int most = (r->pad - 2 + RF_TILE - 1) / RF_TILE;
 
-    *reach = (struct rf_bins){{0}, INT16_MAX, INT16_MIN};
-    memset(window, 0, sizeof *window);
+    *reach = *window = (struct rf_bins){{0}, INT16_MAX, INT16_MIN};
     for (int j = -most; j <= most; j++) {
         if (ty + j < 0 || ty + j >= r->tiles_y)
             continue;
@@ -139,13 +130,12 @@ static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale,
             if (!square)
                 while (least * least < gx * gx + gy * gy)
                     least++;
-            /* a pixel `least` away is met only if |s| >= least - 1 */
-            if (least > 1) {
-                const int s = (least - 1) * 256;
-
-                clear(&bins, bin_of(scale, -s + (1 << scale.shift)), bin_of(scale, s));
-            }
-            merge(reach, &bins, scale);
+            if (least > 1)
+                drop_short(&bins, scale, (least - 1) * 256);
+            for (int k = 0; k < RF_BINS / 64; k++)
+                reach->word[k] |= bins.word[k];
+            reach->least = bins.least < reach->least ? bins.least : reach->least;
+            reach->most = bins.most > reach->most ? bins.most : reach->most;
         }
     }
 }
