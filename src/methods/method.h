@@ -30,7 +30,8 @@ struct rf_frame {
     struct rf_bin_scale scale;
     struct rf_rect region;  /* of the picture; out covers just this */
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
-    int prefilter_above;    /* |s| from which rays lie far apart, Q7.8 */
+    int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
+    int prefilter_step;     /* the one that is being made */
     bool weighted;          /* eq. 5 weights differ from 1 */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };

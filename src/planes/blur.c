@@ -19,28 +19,30 @@ void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int 
     rf_extend_rows(r, r->front.blur, y0, y1);
 }
 
-void rf_prefilter_rows(struct refocus_renderer *r, int least, uint16_t *scratch, int y0,
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
+                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int y0,
                        int y1)
 {
-    const ptrdiff_t stride = r->stride;
-    uint16_t *const row = scratch + 1;
+    const ptrdiff_t down = step * r->stride;
+    uint16_t *const row = scratch + step;
 
     for (int y = y0; y < y1; y++) {
-        const int16_t *s = r->front.blur + y * stride;
+        const ptrdiff_t at = y * r->stride;
+        const int16_t *s = r->front.blur + at;
 
         for (int c = 0; c < 3; c++) {
-            const uint16_t *light = r->front.light[c] + y * stride;
-            uint16_t *out = r->smooth[c] + y * stride;
+            const uint16_t *from = in[c] + at - step;
 
             if (least == INT16_MAX) {
-                memcpy(out, light, (size_t)r->width * 2);
+                memcpy(out[c] + at, in[c] + at, (size_t)r->width * 2);
                 continue;
             }
-            r->kernels.smooth3(row - 1, light - 1 - stride, light - 1, light - 1 + stride,
-                               s - 1 - stride, s - 1, s - 1 + stride, least, r->width + 2);
-            r->kernels.smooth3(out, row - 1, row, row + 1, s - 1, s, s + 1, least, r->width);
+            r->kernels.smooth3(row - step, from - down, from, from + down, s - step - down,
+                               s - step, s - step + down, least, r->width + 2 * step);
+            r->kernels.smooth3(out[c] + at, row - step, row, row + step, s - step, s, s + step,
+                               least, r->width);
         }
     }
     for (int c = 0; c < 3; c++)
-        rf_extend_rows(r, r->smooth[c], y0, y1);
+        rf_extend_rows(r, out[c], y0, y1);
 }
