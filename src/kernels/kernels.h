@@ -28,9 +28,9 @@
 enum { RF_RAY_CHUNK = 64 };
 
 struct rf_sweep_job {
-    const int16_t *blur;
-    const uint16_t *light[3], *behind[3];
-    ptrdiff_t stride;
+    const int16_t *blur;     /* light is in the three planes after it, pitch apart */
+    const uint16_t *behind;  /* the first of three planes */
+    ptrdiff_t stride, pitch; /* elements */
     int rays;                                /* at most RF_RAY_CHUNK */
     int slabs;
     const struct rf_slab *slab;

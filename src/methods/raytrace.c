@@ -97,7 +97,7 @@ static int make_steps(const struct rf_frame *f, double u, double v, struct step 
 
 static const uint16_t *disparity_at(const struct refocus_renderer *r, int x, int y)
 {
-    return r->disparity + (size_t)y * r->width + x;
+    return r->disparity + y * r->stride + x;
 }
 
 /* The front-most hit of a ray of pixel (x, y); false: it meets nothing. */

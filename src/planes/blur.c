@@ -15,7 +15,7 @@ void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int 
 {
     for (int y = y0; y < y1; y++)
         r->kernels.signed_blur(r->front.blur + y * r->stride,
-                               r->disparity + (size_t)y * r->width, focus, r->width);
+                               r->disparity + y * r->stride, focus, r->width);
     rf_extend_rows(r, r->front.blur, y0, y1);
 }
 

@@ -74,7 +74,6 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->max_width = own.max_width;
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;
-    r->pad = rf_padding_for(own.max_blur_radius);
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
     atomic_init(&r->run, RF_RUN_IDLE);

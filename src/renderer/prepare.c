@@ -54,7 +54,6 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         return REFOCUS_ERR_SIZE;
     r->width = photo->width;
     r->height = photo->height;
-    r->stride = rf_stride_for(photo->width, r->pad);
     r->tiles_x = (r->width + RF_TILE - 1) / RF_TILE;
     r->tiles_y = (r->height + RF_TILE - 1) / RF_TILE;
     r->levels = rf_pyramid(r->level, r->width, r->height);

@@ -13,7 +13,7 @@
 #include "support/pool.h"
 
 enum {
-    RF_BINS = 256,    /* of signed blur in a tile */
+    RF_GROUP = 4,     /* planes that lie together */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
     RF_RAY_CLASSES = 7,
     RF_FULL_RAYS = 255 * 255,
@@ -65,9 +65,10 @@ struct refocus_renderer {
     bool prepared;
     int width, height;
     int pad;            /* pixels beyond each side that may be read */
-    ptrdiff_t stride;   /* elements, of all padded planes */
+    ptrdiff_t stride;   /* elements from row to row, of all padded planes */
+    ptrdiff_t pitch;    /* elements between the planes of a group; see layout.c */
     uint32_t blend;     /* that the light planes are in */
-    uint16_t *disparity;
+    uint16_t *disparity; /* padded, its border is not set */
     uint8_t *alpha;     /* unpadded, width a row */
     struct rf_layer front;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
