@@ -82,9 +82,9 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     22 (W + 2P + 47) (H + 2P + 16) + 6 (W + 16) (H + 16) + 2^20,  P = ceil(K) + 2
+ *     22 (W + 2P + 47) (H + 2P + 16) + 6 (W + 16) (H + 16) + 4 T (W + 512) + 2^20
  *
- * is never exceeded. @return 0 if a parameter is out of its range. Thread-safe.
+ * with P = ceil(K) + 2 and T threads is never exceeded. @return 0 if a parameter is out of its range. Thread-safe.
  */
 REFOCUS_API uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params);
 

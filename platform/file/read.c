@@ -64,6 +64,7 @@ int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char 
 {
     int status;
 
+    (void)raster; /* unused without JPEG and PNG */
     switch (rf_sniff(part)) {
     case RF_CONTAINER_JPEG:
         status = rf_jpeg_decode(read, part, raster);

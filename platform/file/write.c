@@ -57,6 +57,7 @@ static int write_rows(const char *path, enum ending ending, const struct rf_rows
     struct rf_store store;
     int status = check_encoder(ending, reason);
 
+    (void)options; /* unused without JPEG and PNG */
     if (status == REFOCUS_OK) {
         status = rf_store_open(&store, path, reason);
     }

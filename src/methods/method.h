@@ -30,7 +30,8 @@ struct rf_frame {
     struct rf_bin_scale scale;
     struct rf_rect region;  /* of the picture; out covers just this */
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
-    int prefilter_above;    /* |s| from which rays lie far apart, Q7.8 */
+    int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
+    int prefilter_step;     /* the one that is being made */
     bool weighted;          /* eq. 5 weights differ from 1 */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
@@ -68,6 +69,9 @@ const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach
 
 /* Means of a tile into the output picture. */
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);
+
+void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
+                     uint16_t mean[3][RF_TILE * RF_TILE]);
 
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);

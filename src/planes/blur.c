@@ -1,6 +1,7 @@
 #include "planes/planes.h"
 
 #include <math.h>
+#include <string.h>
 
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
 {
@@ -12,59 +13,36 @@ struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
 
 void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1)
 {
-    const int df = focus.disparity;
-    const uint32_t radius = focus.radius;
-
-    for (int y = y0; y < y1; y++) {
-        const uint16_t *restrict d = r->disparity + (size_t)y * r->width;
-        int16_t *restrict s = r->front.blur + y * r->stride;
-
-        for (int x = 0; x < r->width; x++) {
-            const uint32_t distance = (uint32_t)(d[x] > df ? d[x] - df : df - d[x]);
-            const int blur = (int)((distance * radius + (1 << 15)) >> 16);
-
-            s[x] = (int16_t)(d[x] > df ? -blur : blur);
-        }
-    }
+    for (int y = y0; y < y1; y++)
+        r->kernels.signed_blur(r->front.blur + y * r->stride,
+                               r->disparity + (size_t)y * r->width, focus, r->width);
     rf_extend_rows(r, r->front.blur, y0, y1);
 }
 
-void rf_prefilter_rows(struct refocus_renderer *r, int least, int y0, int y1)
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
+                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int y0,
+                       int y1)
 {
-    /* 65536 / n rounded: exact for sums of n equal Q12 values */
-    static const uint32_t share[10] = {0,     65536, 32768, 21845, 16384,
-                                       13107, 10923, 9362,  8192,  7282};
-    const ptrdiff_t stride = r->stride;
+    const ptrdiff_t down = step * r->stride;
+    uint16_t *const row = scratch + step;
 
     for (int y = y0; y < y1; y++) {
-        const int16_t *s = r->front.blur + y * stride;
+        const ptrdiff_t at = y * r->stride;
+        const int16_t *s = r->front.blur + at;
 
-        for (int x = 0; x < r->width; x++) {
-            const ptrdiff_t at = y * stride + x;
-            const int middle = s[x];
-            uint32_t sum[3] = {0, 0, 0}, n = 0;
+        for (int c = 0; c < 3; c++) {
+            const uint16_t *from = in[c] + at - step;
 
-            if (middle <= least && -middle <= least) {
-                for (int c = 0; c < 3; c++)
-                    r->smooth[c][at] = r->front.light[c][at];
+            if (least == INT16_MAX) {
+                memcpy(out[c] + at, in[c] + at, (size_t)r->width * 2);
                 continue;
             }
-            for (int j = -1; j <= 1; j++) {
-                for (int i = -1; i <= 1; i++) {
-                    const ptrdiff_t near_by = at + j * stride + i;
-                    const int apart = r->front.blur[near_by] - middle;
-
-                    if (apart > 256 || apart < -256)
-                        continue;
-                    n++;
-                    for (int c = 0; c < 3; c++)
-                        sum[c] += r->front.light[c][near_by];
-                }
-            }
-            for (int c = 0; c < 3; c++)
-                r->smooth[c][at] = (uint16_t)((sum[c] * share[n] + 32768) >> 16);
+            r->kernels.smooth3(row - step, from - down, from, from + down, s - step - down,
+                               s - step, s - step + down, least, r->width + 2 * step);
+            r->kernels.smooth3(out[c] + at, row - step, row, row + step, s - step, s, s + step,
+                               least, r->width);
         }
     }
     for (int c = 0; c < 3; c++)
-        rf_extend_rows(r, r->smooth[c], y0, y1);
+        rf_extend_rows(r, out[c], y0, y1);
 }

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "support/arena.h"
 
@@ -20,9 +21,18 @@ ptrdiff_t rf_stride_for(int width, int pad)
     return ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
 }
 
+int rf_threads_for(const struct refocus_renderer_params *params)
+{
+    long n = params->threads;
+
+    if (n == 0)
+        n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
+}
+
 static void take_level(struct rf_arena *arena, struct rf_level *level, int width, int height)
 {
-    const uint64_t pixels = (uint64_t)width * height;
+    const uint64_t pixels = (uint64_t)(width + 1) * height;
 
     for (int c = 0; c < 3; c++)
         level->light[c] = rf_arena_take(arena, pixels, 2);
@@ -47,6 +57,7 @@ int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height)
         height = (height + 1) / 2;
         level[levels].width = width;
         level[levels].height = height;
+        level[levels].stride = (width + 1) & ~1;
         levels++;
     }
     return levels;
@@ -66,6 +77,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
                            (uint64_t)((h + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
     const int levels = rf_pyramid(level, w, h);
+    const int threads = rf_threads_for(params);
 
     for (int c = 0; c < 3; c++) {
         r->front.light[c] = take_plane(arena, elements, origin);
@@ -82,6 +94,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     }
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
+    r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
 }
 

@@ -31,6 +31,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
         r->set[0].count =
             refocus_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, next);
         r->set[0].total_weight = total_weight(&r->set[0]);
+        r->set[0].equal = next[0].weight == next[r->set[0].count - 1].weight;
         sets = 1;
     } else {
         for (int i = 0; i < RF_RAY_CLASSES; i++) {
@@ -41,6 +42,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
             set->count = own ? rays : class_rays[i];
             refocus_aperture_rays(aperture, set->count, next);
             set->total_weight = total_weight(set);
+            set->equal = true;
             next += set->count;
             if (own)
                 break;

@@ -9,10 +9,10 @@
 #include <refocus/render.h>
 
 #include "colour/transfer.h"
+#include "kernels/kernels.h"
 #include "support/pool.h"
 
 enum {
-    RF_TILE = 16,     /* tiles are RF_TILE x RF_TILE pixels */
     RF_BINS = 256,    /* of signed blur in a tile */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
     RF_RAY_CLASSES = 7,
@@ -24,6 +24,7 @@ struct rf_ray_set {
     struct refocus_ray *ray;
     int count;
     uint64_t total_weight;
+    bool equal; /* all rays weigh the same */
 };
 
 /* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
@@ -33,18 +34,18 @@ struct rf_layer {
     int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
 };
 
-/* A level of the background pyramid, without padding. */
+/* A level of the background pyramid, without padding but with an even stride. */
 struct rf_level {
     int width, height;
+    ptrdiff_t stride;
     uint16_t *light[3];
     int16_t *blur; /* RF_NO_BLUR: nothing known here */
 };
 
-enum { RF_NO_BLUR = INT16_MIN };
-
-/* Occupied bins of signed blur, a bit each, nearest first. */
+/* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
+    int16_t least, most; /* Q7.8 */
 };
 
 struct refocus_renderer {
@@ -52,7 +53,8 @@ struct refocus_renderer {
     struct refocus_log log;
     void *block;
     uint64_t memory;
-    uint32_t cpu;
+    uint32_t cpu; /* enum refocus_cpu, never AUTO */
+    struct rf_kernels kernels;
     int max_width, max_height;
     float max_blur_radius;
 
@@ -76,6 +78,7 @@ struct refocus_renderer {
     int levels;
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
+    uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
     bool blurred;         /* front.blur is valid */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
@@ -90,5 +93,16 @@ struct refocus_renderer {
     int set_rays;
     float set_blur;
 };
+
+/* A worker's scratch: two rows of the largest picture with the margins of spread_row. */
+static inline uint64_t rf_scratch_size(int max_width)
+{
+    return 2 * ((uint64_t)max_width + 2 * RF_SPREAD_MARGIN);
+}
+
+static inline uint16_t *rf_scratch(const struct refocus_renderer *r, int worker)
+{
+    return r->scratch + (size_t)worker * rf_scratch_size(r->max_width);
+}
 
 #endif
