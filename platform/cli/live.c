@@ -350,11 +350,16 @@ static json_t *stage_json(const struct live_stage *stage)
                      stage->worst_recovery_ms);
 }
 
-/* Of the time that frames are worked on: that which is not preparing and rendering. */
+static double mean(const struct live_stage *stage)
+{
+    return stage->times.count ? stage->times.sum_ms / (double)stage->times.count : 0;
+}
+
+/* Of the time that a frame is worked on: that which is not preparing and rendering it. */
 static double outside_rendering(const struct live *live)
 {
-    const double inside = live->prepare.times.sum_ms + live->render.times.sum_ms;
-    const double outside = live->capture.times.sum_ms + live->output.times.sum_ms;
+    const double inside = mean(&live->prepare) + mean(&live->render);
+    const double outside = mean(&live->capture) + mean(&live->output);
 
     return inside + outside > 0 ? outside / (inside + outside) : 0;
 }
