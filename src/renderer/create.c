@@ -29,7 +29,8 @@ static bool read_params(struct refocus_renderer_params *own,
            own->max_height >= 1 && own->max_height <= REFOCUS_MAX_SIDE &&
            own->max_blur_radius >= 0 && own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS &&
            own->threads >= 0 && own->threads <= RF_MAX_THREADS &&
-           own->cpu <= REFOCUS_CPU_AVX2 &&
+           own->cpu <= REFOCUS_CPU_AVX2 && (own->methods & ~REFOCUS_METHODS_ALL) == 0 &&
+           own->reserved == 0 &&
            !own->allocator.allocate == !own->allocator.release;
 }
 
@@ -40,7 +41,7 @@ uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params)
     return read_params(&own, params) ? rf_layout_size(&own) : 0;
 }
 
-static int threads_for(const struct refocus_renderer_params *params)
+int rf_threads_for(const struct refocus_renderer_params *params)
 {
     long n = params->threads;
 
@@ -83,10 +84,16 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;
     r->pad = rf_padding_for(own.max_blur_radius);
+    r->methods = own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    r->work_owner = RF_NO_METHOD;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
     atomic_init(&r->run, RF_RUN_IDLE);
-    status = rf_pool_start(&r->pool, threads_for(&own), &r->run);
+    status = rf_pool_start(&r->pool, rf_threads_for(&own), &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);
         return status;
