@@ -46,7 +46,7 @@ static void every_grey(void **state)
         memcpy(flat.disparity, deep.disparity, sizeof(uint16_t) * W * H);
         renderer = prepared(&flat, 5, 1);
         for (int i = 0; i < 24; i++) {
-            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0};
+            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0, 0, 0};
 
             style.blend = (uint32_t)i % 3;
             style.sigma = sigmas[i / 3];
@@ -75,6 +75,8 @@ static void no_blur(void **state)
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
         render_style(renderer, &p, &styles[s], 0.5f, 0, out);
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
+        if (styles[s].leaks == 2) /* fields and stars are not of depth */
+            continue;
         render_style(renderer, &p, &styles[s], 0.5f, 0.98f, out); /* r <= 0.49 */
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
     }
@@ -99,6 +101,8 @@ static void sharp_half(void **state)
     for (int s = 0; s < style_count; s++) {
         int changed = 0;
 
+        if (styles[s].leaks)
+            continue;
         render_style(renderer, &p, &styles[s], 1, K, out);
         for (int i = 0; i < W * H; i++) {
             const int same = !memcmp(out + 3 * i, p.rgb + 3 * i, 3);
@@ -126,9 +130,14 @@ static void blurred_before_sharp(void **state)
         p.disparity[i] = i % W < W / 2 ? 65535 : 0;
     renderer = prepared(&p, K, 2);
     for (int s = 0; s < style_count; s++) {
+        /* heat goes as far as a Gaussian does */
+        const int reach = styles[s].method == REFOCUS_METHOD_DIFFUSION ? 3 * K / 2 + 5 : K + 2;
+
+        if (styles[s].leaks == 2)
+            continue;
         render_style(renderer, &p, &styles[s], 0, K, out);
         for (int i = 0; i < W * H; i++) {
-            if (i % W > W / 2 + K + 2 && memcmp(out + 3 * i, p.rgb + 3 * i, 3))
+            if (i % W > W / 2 + reach && memcmp(out + 3 * i, p.rgb + 3 * i, 3))
                 fail_msg("%s: (%d, %d) is in focus and changed", styles[s].name, i % W, i / W);
         }
     }
