@@ -86,12 +86,12 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     22 (W + 2P + 47) (H + 2P + 16) + 6 (W + 16) (H + 16) + 2^20,  P = ceil(K) + 2
+ *     24 (W + 2P + 79) (H + 2P + 16) + 5 (W + 16) (H + 16) + 4 T (W + 512) + 2^20
  *
- * is never exceeded. On top of it comes the most that one of params->methods needs,
- * T the number of threads:
+ * with P = ceil(K) + 2 and T threads is never exceeded. On top of it comes the most that one
+ * of params->methods needs:
  *
- *     lightfield    1300 (W + 2P + 64) T + 2^12
+ *     lightfield    1200 (W + 2P + 64) T + 2^12
  *     scatter       32 W H + 3 (4 P + 80) P^2 + 2^16
  *     foveated      96 (W + 16) (H + 16) + 2^18
  *     interpolated  48 (W + 16) (H + 16) + 4 (W + H + 16) T + 2^16
@@ -198,6 +198,8 @@ struct refocus_render_params {
     uint32_t blend;         /**< enum refocus_blend */
     float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
                                  eq. 5: >= 1; INFINITY = plain average */
+    float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 4
+                                 times white */
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
     uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
     uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
@@ -262,6 +264,7 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
     params.max_blur_radius = max_blur_radius;
     params.rays = 64;
     params.sigma = (float)1e30;
+    params.highlight_gain = 1;
     params.iterations = 2;
     params.prefilter = 1;
     params.cell = 2;

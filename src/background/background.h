@@ -1,16 +1,8 @@
 /* background.h: what is behind the foreground.
  *
  * A blurred foreground lets through what is behind its edge. One picture does not show
- * that, so a second layer is made up: pixels that could be seen through are replaced by
- * what is farther away beside them.
- */
-#ifndef RF_BACKGROUND_H
-#define RF_BACKGROUND_H
-
-#include "renderer/renderer.h"
-
-/*
- * Fill r->behind from r->front.blur and r->smooth.
+ * that, so a second layer, r->behind, is made up: pixels that could be seen through are
+ * replaced by what is beside them and farther away.
  *
  * Mark: p is foreground where some q lies farther behind than it is away,
  *
@@ -18,9 +10,24 @@
  *
  * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and
  * sqrt 2. Slope 1 would mark what can be seen through; slope 1/2 marks twice as deep, so that
- * what stays behind as a source on the foreground's side is always the farther one.
- * Fill: marked pixels take light and blur by push-pull from the rest.
+ * the sources nearest to what is seen lie on the far side. Fill: marked pixels take light
+ * and blur by push-pull from the rest, in a pyramid.
+ *
+ * The steps, in this order; rows may be shared out within a step.
  */
-void rf_background(struct refocus_renderer *r);
+#ifndef RF_BACKGROUND_H
+#define RF_BACKGROUND_H
+
+#include "renderer/renderer.h"
+
+/* The dilation but for its steps along rows: from above, and from below. Both directions
+ * may run at once. Uses the planes r->behind.light[0] and [1]. */
+void rf_background_dilate(struct refocus_renderer *r, bool upwards);
+
+/* The steps along rows, and the mark; copies r->smooth. */
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1);
+
+/* Push-pull, and the border. */
+void rf_background_fill(struct refocus_renderer *r);
 
 #endif

@@ -88,7 +88,7 @@ static double field_radius(const struct work *work, int x, int y)
     const struct refocus_render_params *p = work->f->params;
     const struct refocus_renderer *r = work->f->r;
     const double K = p->max_blur_radius;
-    const double d = r->disparity[(size_t)y * (size_t)r->width + (size_t)x] / 65535.0;
+    const double d = r->disparity[y * r->stride + x] / 65535.0;
     const double fx = (x + 0.5) / r->width - p->field_x;
     const double fy = ((y + 0.5) / r->height - p->field_y) * r->height / r->width;
     const double fd = d - p->field_disparity;
@@ -130,13 +130,13 @@ static void split_layers(struct work *work)
 {
     const struct refocus_renderer *r = work->f->r;
     const int layers = work->f->params->layers, apart = 256 / (2 * layers);
-    const size_t pixels = (size_t)r->width * (size_t)r->height;
     uint32_t count[256] = {0};
     bool cut[257] = {false}; /* cut[i]: a layer begins at bin i */
     uint8_t number[256];
 
-    for (size_t i = 0; i < pixels; i++)
-        count[r->disparity[i] >> 8]++;
+    for (int y = 0; y < r->height; y++)
+        for (int x = 0; x < r->width; x++)
+            count[r->disparity[y * r->stride + x] >> 8]++;
     for (int n = 1; n < layers; n++) {
         uint64_t least = UINT64_MAX;
         int best = 0;
@@ -161,8 +161,10 @@ static void split_layers(struct work *work)
         n += cut[i];
         number[i] = (uint8_t)n;
     }
-    for (size_t i = 0; i < pixels; i++)
-        work->member[i] = number[r->disparity[i] >> 8];
+    for (int y = 0; y < r->height; y++)
+        for (int x = 0; x < r->width; x++)
+            work->member[(size_t)y * (size_t)r->width + (size_t)x] =
+                number[r->disparity[y * r->stride + x] >> 8];
 }
 
 static void extrapolate_row(void *context, int item, int worker)

@@ -320,7 +320,7 @@ static double attention(const struct work *work, int x, int y)
     const struct refocus_renderer *r = work->f->r;
     const double dx = x - work->centre_x, dy = y - work->centre_y;
     const double beyond = sqrt(dx * dx + dy * dy) - work->radius;
-    const double d = r->disparity[(size_t)y * (size_t)r->width + (size_t)x] / 65535.0;
+    const double d = r->disparity[y * r->stride + x] / 65535.0;
     const double deeper = fabs(d - p->focus_disparity) - p->attention_depth;
     double share = beyond <= 0 ? 1 : beyond < work->margin ? 1 - beyond / work->margin : 0;
 

@@ -15,7 +15,7 @@ static void gather(const struct rf_frame *f, int x, int y, struct rf_sums *sums)
     const struct refocus_renderer *r = f->r;
     const ptrdiff_t p = y * r->stride + x;
     const int s = r->front.blur[p], i = y % RF_TILE * RF_TILE + x % RF_TILE;
-    const struct rf_ray_set *set = rf_rays_for(r, abs(s));
+    const struct rf_ray_set *set = rf_rays_for(r, abs(s), false);
     uint64_t light[3] = {0, 0, 0}, weight = 0;
 
     for (int n = 0; n < set->count; n++) {

@@ -213,7 +213,7 @@ static void write_row(void *context, int item, int worker)
     (void)worker;
     for (int x = f->region.x0; x < f->region.x1; x++) {
         const ptrdiff_t at = y * r->stride + x;
-        const uint32_t d = r->disparity[(size_t)y * (size_t)r->width + (size_t)x];
+        const uint32_t d = r->disparity[y * r->stride + x];
         const int blurriness = work->table[(d * (RF_BLURRINESS_SIZE - 1) + 32767) / 65535];
         const double b = blurriness * 2 / 255.0, w = rf_weight_of(f, r->front.light, at);
         double sum[CHANNELS] = {0, 0, 0, 0};

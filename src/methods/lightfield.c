@@ -16,13 +16,13 @@
 enum { BAND = 32, HOLE = INT16_MAX };
 
 struct band {
-    int16_t *seen; /* BAND rows of r->stride: signed blur of the nearest, or HOLE */
+    int16_t *seen; /* signed blur of the nearest, or HOLE */
     uint64_t *light[3], *weight;
 };
 
-static void lay_out(struct band *band, int width, ptrdiff_t stride, struct rf_arena *arena)
+static void lay_out(struct band *band, int width, struct rf_arena *arena)
 {
-    band->seen = rf_arena_take(arena, (uint64_t)stride * BAND, sizeof *band->seen);
+    band->seen = rf_arena_take(arena, (uint64_t)width * BAND, sizeof *band->seen);
     for (int c = 0; c < 3; c++)
         band->light[c] = rf_arena_take(arena, (uint64_t)width * BAND, sizeof(uint64_t));
     band->weight = rf_arena_take(arena, (uint64_t)width * BAND, sizeof(uint64_t));
@@ -33,7 +33,7 @@ static uint64_t band_bytes(const struct rf_limits *limits)
     struct rf_arena arena = {NULL, 0};
     struct band band;
 
-    lay_out(&band, limits->width, limits->width + 2 * limits->pad + 2 * RF_TILE + 32, &arena);
+    lay_out(&band, limits->width, &arena);
     return arena.used;
 }
 
@@ -64,16 +64,19 @@ static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0
     const int xa = rf_offset(ray->u, near_s), xb = rf_offset(ray->u, far_s);
     const int ya = rf_offset(ray->v, near_s), yb = rf_offset(ray->v, far_s);
 
-    for (ptrdiff_t i = 0; i < (y1 - y0) * r->stride; i++)
+    for (ptrdiff_t i = 0; i < (ptrdiff_t)(y1 - y0) * r->width; i++)
         band->seen[i] = HOLE;
     for (int y = y0 + lesser(ya, yb); y < y1 + greater(ya, yb); y++) {
         const int16_t *s = r->front.blur + y * r->stride;
 
         for (int x = lesser(xa, xb); x < r->width + greater(xa, xb); x++) {
             const int px = x - rf_offset(ray->u, s[x]), py = y - rf_offset(ray->v, s[x]);
-            int16_t *seen = &band->seen[(py - y0) * r->stride + px];
+            int16_t *seen;
 
-            if (py >= y0 && py < y1 && px >= 0 && px < r->width && s[x] < *seen)
+            if (py < y0 || py >= y1 || px < 0 || px >= r->width)
+                continue;
+            seen = &band->seen[(ptrdiff_t)(py - y0) * r->width + px];
+            if (s[x] < *seen)
                 *seen = s[x];
         }
     }
@@ -94,7 +97,7 @@ static void add_row(const struct rf_frame *f, const struct refocus_ray *ray, int
                     struct band *band)
 {
     const struct refocus_renderer *r = f->r;
-    const int16_t *seen = band->seen + row * r->stride;
+    const int16_t *seen = band->seen + row * r->width;
 
     for (int x = 0; x < r->width;) {
         int end = x, from = x;
@@ -124,12 +127,12 @@ static void do_band(void *context, int item, int worker)
     const struct refocus_renderer *r = f->r;
     const struct rf_limits limits = rf_limits_of(r);
     struct rf_arena arena = {r->work + (size_t)worker * band_bytes(&limits), 0};
-    const struct rf_ray_set *set = &r->set[r->sets - 1];
+    const struct rf_ray_set *set = &r->set[r->preset];
     const int y0 = f->region.y0 + item * BAND;
     const int y1 = lesser(y0 + BAND, f->region.y1);
     struct band band;
 
-    lay_out(&band, r->width, r->stride, &arena);
+    lay_out(&band, r->width, &arena);
     for (int c = 0; c < 3; c++)
         memset(band.light[c], 0, sizeof(uint64_t) * BAND * (size_t)r->width);
     memset(band.weight, 0, sizeof(uint64_t) * BAND * (size_t)r->width);

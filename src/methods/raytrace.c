@@ -11,7 +11,7 @@
 
 void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    const struct rf_ray_set *set = &f->r->set[f->r->sets - 1];
+    const struct rf_ray_set *set = &f->r->set[f->r->preset];
     const double K = f->params->max_blur_radius;
     struct rf_exact_sums sums;
     struct rf_path path;

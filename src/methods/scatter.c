@@ -124,7 +124,7 @@ static uint32_t weight_of(const struct work *work, int x, int y)
     const struct rf_frame *f = work->f;
     const struct refocus_renderer *r = f->r;
     const uint32_t w = rf_weight_of(f, r->front.light, y * r->stride + x);
-    const uint32_t z = work->attenuation[r->disparity[(size_t)y * r->width + x] >> 8];
+    const uint32_t z = work->attenuation[r->disparity[y * r->stride + x] >> 8];
 
     if (!f->weighted)
         return z;

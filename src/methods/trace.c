@@ -102,7 +102,7 @@ void rf_path_of(const struct rf_frame *f, double u, double v, struct rf_path *pa
 
         step->dx = (int16_t)(steep ? other : k);
         step->dy = (int16_t)(steep ? k : other);
-        step->offset = (ptrdiff_t)step->dy * f->r->width + step->dx;
+        step->offset = (ptrdiff_t)step->dy * f->r->stride + step->dx;
         path->steps += hit_range(k / major * length, length * K, df, step);
     }
 }
@@ -111,7 +111,7 @@ void rf_path_of(const struct rf_frame *f, double u, double v, struct rf_path *pa
 static bool trace(const struct refocus_renderer *r, const struct rf_path *path, int x, int y,
                   int *qx, int *qy)
 {
-    const uint16_t *p = r->disparity + (size_t)y * r->width + x;
+    const uint16_t *p = r->disparity + y * r->stride + x;
     const bool inside = x >= r->pad && y >= r->pad && x < r->width - r->pad &&
                         y < r->height - r->pad;
 
@@ -120,7 +120,7 @@ static bool trace(const struct refocus_renderer *r, const struct rf_path *path, 
         const int tx = inside ? x + step->dx : clamp(x + step->dx, r->width - 1);
         const int ty = inside ? y + step->dy : clamp(y + step->dy, r->height - 1);
         const uint16_t d = inside ? p[step->offset]
-                                  : r->disparity[(size_t)ty * r->width + tx];
+                                  : r->disparity[ty * r->stride + tx];
 
         if ((uint16_t)(d - step->low) <= step->width) {
             *qx = tx;
@@ -135,7 +135,7 @@ static bool trace(const struct refocus_renderer *r, const struct rf_path *path, 
 static void mirror(const struct rf_frame *f, const struct rf_path *path, int x, int y,
                    int *qx, int *qy)
 {
-    const double d = f->r->disparity[(size_t)y * f->r->width + x] / 65535.0;
+    const double d = f->r->disparity[y * f->r->stride + x] / 65535.0;
     const double s = f->params->max_blur_radius * (f->params->focus_disparity - d);
 
     *qx = clamp((int)floor(x - path->u * s + 0.5), f->r->width - 1);

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "renderer/layout.h"
 
@@ -41,19 +40,11 @@ uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params)
     return read_params(&own, params) ? rf_layout_size(&own) : 0;
 }
 
-int rf_threads_for(const struct refocus_renderer_params *params)
-{
-    long n = params->threads;
-
-    if (n == 0)
-        n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
-}
-
 int refocus_renderer_create(struct refocus_renderer **renderer,
                             const struct refocus_renderer_params *params)
 {
     struct refocus_renderer_params own;
+    struct rf_kernels kernels;
     struct refocus_renderer *r;
     uint64_t size;
     void *block;
@@ -64,7 +55,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     *renderer = NULL;
     if (!read_params(&own, params))
         return REFOCUS_ERR_ARGUMENT;
-    if (own.cpu != REFOCUS_CPU_AUTO && own.cpu != REFOCUS_CPU_C)
+    if (!rf_kernels_select(&kernels, &own.cpu))
         return REFOCUS_ERR_UNSUPPORTED;
     size = rf_layout_size(&own);
     if (size > PTRDIFF_MAX || (own.max_memory && size > own.max_memory))
@@ -79,11 +70,11 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->log = own.log;
     r->block = block;
     r->memory = size;
-    r->cpu = REFOCUS_CPU_C;
+    r->cpu = own.cpu;
+    r->kernels = kernels;
     r->max_width = own.max_width;
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;
-    r->pad = rf_padding_for(own.max_blur_radius);
     r->methods = own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |

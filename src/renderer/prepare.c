@@ -39,14 +39,13 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
-    r->prepared = r->blurred = false;
+    r->prepared = r->blurred = r->highlights_found = false;
     if (!rf_good_image(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
     r->width = photo->width;
     r->height = photo->height;
-    r->stride = rf_stride_for(photo->width, r->pad);
     r->tiles_x = (r->width + RF_TILE - 1) / RF_TILE;
     r->tiles_y = (r->height + RF_TILE - 1) / RF_TILE;
     r->levels = rf_pyramid(r->level, r->width, r->height);

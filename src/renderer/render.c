@@ -103,27 +103,47 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_bin_tiles(f->r, f->scale, band);
+}
+
+static void dilate_item(void *context, int upwards, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_background_dilate(f->r, upwards);
 }
 
 static void smooth_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    const int i = f->prefilter_step;
+    /* from the photo to r->smooth, and from there by way of the background's planes, which
+     * are not in use yet */
+    uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
+    uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
-    (void)worker;
-    rf_prefilter_rows(f->r, f->prefilter_above, rf_band_start(band),
-                      rf_band_end(f->r, band));
-    rf_bin_tiles(f->r, f->scale, band);
+    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
+                      band);
 }
 
-static void extend_behind_band(void *context, int band, int worker)
+/* All three steps or the first alone, so that the result is in r->smooth. */
+static void prefilter(struct rf_frame *f)
+{
+    const int largest = f->focus.radius;
+    const int steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1;
+
+    for (f->prefilter_step = 0; f->prefilter_step < steps; f->prefilter_step++)
+        rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
+}
+
+static void mark_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
-    const int y0 = rf_band_start(band), y1 = rf_band_end(f->r, band);
 
-    (void)worker;
-    for (int c = 0; c < 3; c++)
-        rf_extend_rows(f->r, f->r->behind.light[c], y0, y1);
-    rf_extend_rows(f->r, f->r->behind.blur, y0, y1);
+    rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+                            rf_band_end(f->r, band));
 }
 
 static int larger(int a, int b)
@@ -170,6 +190,37 @@ static void set_weights(struct rf_frame *f)
     r->weight_blend = r->blend;
 }
 
+static void prefilter_with_highlights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    const float gain = f->params->highlight_gain;
+
+    if (gain > 1) {
+        if (!r->highlights_found)
+            rf_find_highlights(r);
+        rf_mark_highlights(r);
+        rf_add_highlights(r, gain, 1);
+    }
+    prefilter(f);
+    if (gain > 1)
+        rf_add_highlights(r, gain, -1);
+}
+
+/* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. */
+static void set_prefilter(struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+
+    for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
+        const double gap = 1.5 * (1 << i);
+        const double above = 256 * gap * sqrt(p->rays / 3.14159265358979);
+
+        f->prefilter_above[i] = INT16_MAX;
+        if (p->prefilter && p->rays != REFOCUS_RAYS_FULL && above < INT16_MAX)
+            f->prefilter_above[i] = (int)above;
+    }
+}
+
 static void run_passes(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
@@ -184,6 +235,7 @@ static void run_passes(struct rf_frame *f)
             return;
         }
         r->blend = f->params->blend;
+        r->highlights_found = false;
     }
     set_weights(f);
     if (method->exact) {
@@ -192,12 +244,13 @@ static void run_passes(struct rf_frame *f)
     }
     rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
     if (f->params->max_blur_radius > 0)
-        rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
-    if (layers)
-        rf_pool_run(&r->pool, smooth_band, f, rf_bands(r));
-    if (layers && !rf_cancelled(r)) {
-        rf_background(r);
-        rf_pool_run(&r->pool, extend_behind_band, f, rf_bands(r));
+        rf_make_rays(r, f->aperture, f->params->rays,
+                     f->params->highlight_gain > 1, f->params->max_blur_radius);
+    if (layers) {
+        prefilter_with_highlights(f);
+        rf_pool_run(&r->pool, dilate_item, f, 2);
+        rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
+        rf_background_fill(r);
     }
     if (method->frame && f->params->max_blur_radius > 0) {
         if (!rf_cancelled(r))
@@ -226,10 +279,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     f.first_ty = f.region.y0 / RF_TILE;
     f.count_tx = (f.region.x1 - 1) / RF_TILE - f.first_tx + 1;
     f.count_ty = (f.region.y1 - 1) / RF_TILE - f.first_ty + 1;
-    f.prefilter_above = INT16_MAX;
-    if (params->prefilter && params->rays != REFOCUS_RAYS_FULL)
-        /* rays of a set of N are s sqrt(pi / N) apart: from 1.5 pixels on */
-        f.prefilter_above = (int)floor(256 * 1.5 * sqrt(params->rays / 3.14159265358979));
+    set_prefilter(&f);
     rf_run_begin(r);
     r->blurred = false;
     run_passes(&f);

@@ -107,10 +107,12 @@ struct picture picture_make(int width, int height, uint32_t seed)
     uint32_t state = seed;
 
     draw_slope(&p, &state);
-    for (int i = 0; i < 4; i++)
-        draw_ball(&p, (int)(noise(&state) % (uint32_t)width),
-                  (int)(noise(&state) % (uint32_t)height), 1 + width / 9,
-                  24000 + 9000 * i, &state);
+    for (int i = 0; i < 4; i++) {
+        const int x = (int)(noise(&state) % (uint32_t)width);
+        const int y = (int)(noise(&state) % (uint32_t)height);
+
+        draw_ball(&p, x, y, 1 + width / 9, 24000 + 9000 * i, &state);
+    }
     for (int y = 0; y < height; y++) {
         const int x = width / 4 + y / 3;
 

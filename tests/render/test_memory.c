@@ -113,13 +113,13 @@ static void every_failure(void **state)
     }
 }
 
-/* render.h: 22 (W + 2P + 47)(H + 2P + 16) + 6 (W + 16)(H + 16) + 2^20, P = ceil(K) + 2 */
-static double stated(int width, int height, float blur)
+/* render.h: 24 (W + 2P + 79)(H + 2P + 16) + 5 (W + 16)(H + 16) + 4 T (W + 512) + 2^20 */
+static double stated(int width, int height, float blur, int threads)
 {
     const double p = 2 * (ceil((double)blur) + 2);
 
-    return 22 * (width + p + 47) * (height + p + 16) + 6.0 * (width + 16) * (height + 16) +
-           1048576.0;
+    return 24 * (width + p + 79) * (height + p + 16) + 5.0 * (width + 16) * (height + 16) +
+           4.0 * threads * (width + 512) + 1048576.0;
 }
 
 static void formula(void **state)
@@ -137,7 +137,7 @@ static void formula(void **state)
                 const struct refocus_renderer_params params =
                     counted(&counter, sides[s][0], sides[s][1], blurs[k], threads[t]);
                 const uint64_t bytes = refocus_renderer_memory(&params);
-                const double most = stated(sides[s][0], sides[s][1], blurs[k]);
+                const double most = stated(sides[s][0], sides[s][1], blurs[k], threads[t]);
 
                 if (bytes == 0 || (double)bytes > most)
                     fail_msg("%d x %d, K = %g, %d threads: says %llu bytes, header %.0f",
@@ -155,7 +155,7 @@ static double extra(uint32_t method, int width, int height, float blur, int thre
 
     switch (method) {
     case REFOCUS_METHOD_LIGHTFIELD:
-        return 1300 * (w + 2 * p + 64) * t + 4096;
+        return 1200 * (w + 2 * p + 64) * t + 4096;
     case REFOCUS_METHOD_SCATTER:
         return 32 * w * h + 3 * (4 * p + 80) * p * p + 65536;
     case REFOCUS_METHOD_DIFFUSION:
@@ -237,7 +237,7 @@ static void largest(void **state)
     const uint64_t bytes = refocus_renderer_memory(&params);
 
     (void)state;
-    assert_true((double)bytes <= stated(65535, 65535, 127));
+    assert_true((double)bytes <= stated(65535, 65535, 127, 1));
     assert_true((double)bytes > 10.0 * 65535 * 65535);
     counter.fail_at = 0;
     const int status = refocus_renderer_create(&renderer, &params);
