@@ -3,7 +3,7 @@
 
 usage: results.py LOG            prints 'PASSED FAILED SKIPPED'; names what did not pass
                                  on standard error
-       results.py LOG --digest   prints what the test 'digest' printed
+       results.py LOG --digest   prints the hashes of the test 'digest'
 """
 import json
 import sys
@@ -19,18 +19,28 @@ def reason(test):
     return "no reason given"
 
 
+def skipped_parts(test):
+    """What a test that passed says it left out, each once."""
+    text = (test.get("stdout") or "") + "\n" + (test.get("stderr") or "")
+    return sorted({line[line.index("SKIP"):].strip() for line in text.splitlines()
+                   if "SKIP:" in line or "[  SKIPPED ]" in line})
+
+
 def main():
     with open(sys.argv[1], encoding="utf-8") as log:
         tests = [json.loads(line) for line in log if line.strip()]
     if sys.argv[2:] == ["--digest"]:
         for test in tests:
             if test["name"].split(" / ")[-1].split(":")[-1] == "digest":
-                sys.stdout.write(test.get("stdout") or "")
+                lines = (test.get("stdout") or "").splitlines()
+                print("\n".join(line for line in lines if line.startswith("digest ")))
         return
     passed = failed = skipped = 0
     for test in tests:
         if test["result"] in PASSED:
             passed += 1
+            for line in skipped_parts(test):
+                print(f"    SKIPPED in {test['name']}: {line}", file=sys.stderr)
         elif test["result"] == "SKIP":
             skipped += 1
             print(f"    SKIPPED {test['name']}: {reason(test)}", file=sys.stderr)

@@ -172,7 +172,7 @@ fuzz_stage() {
     need_packages clang libclang-rt-dev || { skip fuzz 'no clang with libFuzzer'; return; }
     CC=clang CXX=clang++ build fuzz --buildtype=debugoptimized -Dfuzz=true \
         -Db_sanitize=address,undefined -Db_lundef=false -Dexamples=false \
-        "-Dc_args=-fsanitize=fuzzer-no-link -fno-sanitize-recover=all" || return
+        -Dc_args=-fno-sanitize-recover=all || return
     run fuzz --suite fuzz --timeout-multiplier 5
     [ "$mode" = long ] || return
     for target in $(find "$builds/fuzz/tests/fuzz" -name 'fuzz-*' -type f -perm -u+x | sort); do
@@ -180,7 +180,8 @@ fuzz_stage() {
         say "fuzz target $name: $fuzz_seconds s"
         mkdir -p "$builds/fuzz/found/$name"
         if (cd "$builds/fuzz/found" && "$target" -max_total_time="$fuzz_seconds" -print_final_stats=1 \
-                -rss_limit_mb=2048 -timeout=20 "$name" "$top/tests/fuzz/corpus/$name" \
+                -rss_limit_mb=2048 -timeout=20 "$name" \
+                "$top/tests/fuzz/${name%%-*}/corpus/${name#*-}" \
                 >"$name.log" 2>&1); then
             passed=$((passed + 1))
         else

@@ -170,6 +170,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
 
     params.threads = (int32_t)settings->threads;
     params.cpu = (uint32_t)settings->cpu;
+    params.methods = REFOCUS_METHOD_BIT(engine->params.method);
     engine->params.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;
@@ -177,6 +178,9 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
         return report_failure(EXIT_FAILED, "--cpu",
                               "this processor or build has no %s; give auto",
                               refocus_cpu_name(params.cpu));
+    if (status == REFOCUS_ERR_THREAD)
+        return report_failure(EXIT_FAILED, "--threads", "%s; give fewer",
+                              refocus_strerror(status));
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name,
                               "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a smaller "
@@ -205,6 +209,35 @@ int engine_prepare(struct engine *engine, const struct refocus_image *photo,
     return EXIT_DONE;
 }
 
+/* Render whole, or, where that is slow and somebody watches, in strips of rows. The progress
+ * goes from begin by share. */
+static int render_once(struct engine *engine, const struct refocus_image *out, double begin,
+                       double share)
+{
+    enum { STRIPS = 20 };
+    const bool strips = report_is_watched() && out->height >= STRIPS &&
+                        engine->params.method == REFOCUS_METHOD_RAYTRACE;
+    const int count = strips ? STRIPS : 1;
+    int status = REFOCUS_OK;
+
+    for (int i = 0; i < count && status == REFOCUS_OK; i++) {
+        const int y0 = (int)((int64_t)out->height * i / count);
+        const int y1 = (int)((int64_t)out->height * (i + 1) / count);
+        struct refocus_render_params params = engine->params;
+        struct refocus_image strip = *out;
+
+        report_progress("rendering", begin + share * i / count);
+        if (interrupt_came())
+            return REFOCUS_ERR_CANCELLED;
+        params.region_y += y0;
+        params.region_width = strip.width;
+        params.region_height = strip.height = y1 - y0;
+        strip.plane[0] += y0 * strip.stride[0];
+        status = refocus_render(engine->renderer, &params, &strip);
+    }
+    return status;
+}
+
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
 {
     double *times = malloc((size_t)repeat * sizeof *times);
@@ -213,12 +246,9 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
     if (!times)
         return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
     for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
-        double start;
+        const double start = report_clock_ms();
 
-        report_progress("rendering", 0.3 + 0.6 * i / repeat);
-        start = report_clock_ms();
-        status = interrupt_came() ? REFOCUS_ERR_CANCELLED
-                                  : refocus_render(engine->renderer, &engine->params, out);
+        status = render_once(engine, out, 0.3 + 0.6 * i / repeat, 0.6 / repeat);
         times[i] = report_clock_ms() - start;
     }
     if (status == REFOCUS_OK)

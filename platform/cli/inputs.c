@@ -168,6 +168,11 @@ static bool range_is_known(const struct input *input)
     return input->report.near_m > 0 && input->report.far_m > input->report.near_m;
 }
 
+static double larger_side(const struct refocus_image *image)
+{
+    return image->width > image->height ? image->width : image->height;
+}
+
 /* The lens of --f-number; see the help of LENS_OPTIONS for what stands in for what. */
 static bool choose_lens(const struct input *input, const struct lens_settings *settings,
                         struct refocus_lens *lens)
@@ -179,7 +184,7 @@ static bool choose_lens(const struct input *input, const struct lens_settings *s
         lens->focal_length_mm = settings->focal_length;
         lens->sensor_width_mm = given(settings->sensor_width)
                                     ? settings->sensor_width
-                                    : 36 * width / (width > height ? width : height);
+                                    : 36 * width / larger_side(&input->photo->image);
         return true;
     }
     /* 35 mm terms compare diagonals: that of 36 x 24 mm with the picture's. */
@@ -200,7 +205,8 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
         return EXIT_DONE;
     }
     if (!given(settings->f_number)) {
-        *blur = (image->width > image->height ? image->width : image->height) / 36.0;
+        /* That of 50 mm at f/1.4 on full frame, from 1.25 m to far away. */
+        *blur = larger_side(image) / 50.0;
         if (*blur > REFOCUS_MAX_BLUR_RADIUS)
             *blur = REFOCUS_MAX_BLUR_RADIUS;
         return EXIT_DONE;
@@ -214,13 +220,15 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
                               "--f-number needs a focal length, which it does not say; give "
                               "--focal-length and --sensor-width, or --blur");
     *blur = refocus_max_blur_radius(&lens, &range, image->width);
-    if (!(*blur <= REFOCUS_MAX_BLUR_RADIUS))
-        return report_failure(
-            EXIT_WRONG, "--f-number",
-            "f/%g blurs by %.0f pixels, %d is the most; give f/%.2g or more",
-            lens.f_number, *blur, (int)REFOCUS_MAX_BLUR_RADIUS,
-            0.005 + refocus_f_number_of_blur(&lens, &range, image->width,
-                                             REFOCUS_MAX_BLUR_RADIUS) * 1.01);
+    if (!(*blur <= REFOCUS_MAX_BLUR_RADIUS)) {
+        const double least = refocus_f_number_of_blur(&lens, &range, image->width,
+                                                      REFOCUS_MAX_BLUR_RADIUS);
+
+        return report_failure(EXIT_WRONG, "--f-number",
+                              "f/%g blurs by %.0f pixels, %d is the most; give f/%g or more",
+                              lens.f_number, *blur, (int)REFOCUS_MAX_BLUR_RADIUS,
+                              ceil(least * 100 + 1e-6) / 100);
+    }
     return EXIT_DONE;
 }
 

@@ -86,7 +86,7 @@ struct lens_settings {
      .least = 0,                                                                            \
      .greatest = REFOCUS_MAX_BLUR_RADIUS,                                                   \
      .help = "blur radius in pixels of disparity 0 when 1 is in focus; without it and "     \
-             "--f-number: 1/36 of the larger side, at most 127"}
+             "--f-number: 1/50 of the larger side, at most 127"}
 #define LENS_OPTIONS(type, member)                                                          \
     {.kind = OPTION_NUMBER,                                                                 \
      .name = "--f-number",                                                                  \

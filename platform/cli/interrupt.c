@@ -9,6 +9,8 @@
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static struct refocus_renderer *watched; /* these three under the lock */
 static bool came, held;
+static pthread_t thread;
+static bool started;
 
 /* SIGINT and SIGTERM, but for those that the caller has the process ignore, as nohup and
  * shells do for work in the background. */
@@ -66,19 +68,24 @@ static void *wait_for_signals(void *argument)
     }
 }
 
-bool interrupt_start(void)
+void interrupt_start(void)
 {
-    pthread_t thread;
     sigset_t set;
 
     choose_signals(&set);
     pthread_sigmask(SIG_BLOCK, &set, NULL);
-    if (pthread_create(&thread, NULL, wait_for_signals, NULL) != 0) {
+    started = pthread_create(&thread, NULL, wait_for_signals, NULL) == 0;
+    if (!started)
         pthread_sigmask(SIG_UNBLOCK, &set, NULL);
-        return false;
-    }
-    pthread_detach(thread);
-    return true;
+}
+
+void interrupt_stop(void)
+{
+    if (!started)
+        return;
+    pthread_cancel(thread); /* waiting for a signal is where that takes effect */
+    pthread_join(thread, NULL);
+    started = false;
 }
 
 void interrupt_watch(struct refocus_renderer *renderer)

@@ -5,9 +5,10 @@
 #include <stdbool.h>
 #include <refocus/render.h>
 
-/* Before any thread is started. Returns false when no thread can be had; then a signal ends
- * the process as it would without this. */
-bool interrupt_start(void);
+/* Before any other thread is started. When no thread can be had a signal ends the process as
+ * it would without this. */
+void interrupt_start(void);
+void interrupt_stop(void);
 
 /* The renderer that a signal cancels, or NULL for none any more. */
 void interrupt_watch(struct refocus_renderer *renderer);

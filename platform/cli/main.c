@@ -67,8 +67,11 @@ int main(int argc, char **argv)
     for (int i = 0; i < COMMANDS; i++) {
         if (strcmp(argv[1], commands[i]->name) != 0)
             continue;
-        interrupt_start(); /* without it a signal ends the process at once */
-        return commands[i]->run(argc - 1, argv + 1);
+
+        interrupt_start();
+        const int status = commands[i]->run(argc - 1, argv + 1);
+        interrupt_stop();
+        return status;
     }
     return unknown(argv[1]);
 }

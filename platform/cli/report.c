@@ -45,11 +45,16 @@ int report_end_output(void)
     return EXIT_DONE;
 }
 
+bool report_is_watched(void)
+{
+    return isatty(STDERR_FILENO);
+}
+
 void report_progress(const char *doing, double done)
 {
     const int full = (int)(done * BAR_WIDTH + 0.5);
 
-    if (!isatty(STDERR_FILENO))
+    if (!report_is_watched())
         return;
     fprintf(stderr, "\r[");
     for (int i = 0; i < BAR_WIDTH; i++)

@@ -23,6 +23,7 @@ int report_end_output(void);
  * whole, 0 to 1, is behind. report_failure() and report_progress_end() wipe it. */
 void report_progress(const char *doing, double done);
 void report_progress_end(void);
+bool report_is_watched(void); /* whether there is such a terminal */
 
 /* Milliseconds of a clock that only moves forwards. */
 double report_clock_ms(void);

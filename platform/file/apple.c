@@ -1,5 +1,6 @@
-/* Apple's portrait JPEG: behind the main picture lie others, found by MPF. The one whose own
- * XMP says "disparity" is the depth; HDR gain map and portrait matte look alike but are not. */
+/* Apple's portrait JPEG: behind the main picture lie others, found by MPF. The one
+ * whose own XMP says "disparity" is the depth; HDR gain map and portrait matte look
+ * alike but are not. */
 #include "internal.h"
 
 #include <math.h>
@@ -85,13 +86,14 @@ static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary,
         map->meaning = REFOCUS_DEPTH_DISTANCE;
         map->metres_per_unit = (high - low) / (code_high - code_low);
         map->metres_at_zero = low - code_low * map->metres_per_unit;
-        rf_note(read->info, "Apple: distances from %g to %g m, bright is far", low, high);
+        rf_note(read->info, "Apple: distances from %g to %g m, bright is far", low,
+                high);
         return REFOCUS_OK;
     }
     if (has_low && has_high) {
         rf_depth_from_disparity(map, code_low, code_high, low, high);
-        rf_note(read->info, "Apple: disparity from %g to %g per metre, bright is near", low,
-                high);
+        rf_note(read->info, "Apple: disparity from %g to %g per metre, bright is near",
+                low, high);
     } else {
         rf_depth_from_disparity(map, code_low, code_high, 0.0, 0.0);
         rf_note(read->info, "Apple: disparity without a range, bright is near");
@@ -181,19 +183,20 @@ int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mp
         const uint64_t end = begin + mpf.image[i].size;
 
         if (end > file.size && file.size > main_end) {
-            return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                           "damaged: it ends before image %d of those it announces; copy "
-                           "it again",
-                           i + 1);
+            return rf_fail(
+                read->reason, REFOCUS_ERR_FORMAT,
+                "damaged: it ends before image %d of those it announces; copy "
+                "it again",
+                i + 1);
         }
         if (begin < main_end || end > file.size || begin == end) {
             /* An editor that kept the index and dropped or moved the images. */
-            rf_note(read->info, "MPF: image %d is not where the index says, passed over",
-                    i + 1);
+            rf_note(read->info,
+                    "MPF: image %d is not where the index says, passed over", i + 1);
             continue;
         }
-        status = read_image(read,
-                            (struct rf_bytes){file.data + begin, mpf.image[i].size}, i + 1);
+        status = read_image(
+            read, (struct rf_bytes){file.data + begin, mpf.image[i].size}, i + 1);
     }
     return status;
 }

@@ -1,7 +1,8 @@
 /* Base64, RFC 4648, decoded where it stands. */
 #include "internal.h"
 
-/* 0 to 63; 64 for '='; 65 for blanks, which are skipped; 66 for what does not belong. */
+/* 0 to 63; 64 for '='; 65 for blanks, which are skipped; 66 for what does not belong.
+ */
 static int value_of(char c)
 {
     if (c >= 'A' && c <= 'Z') {

@@ -7,15 +7,19 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One line of printable text, whatever bytes of a file got into it. */
+void rf_clean_text(char *text)
+{
+    for (; *text; text++) {
+        if (*text < 0x20 || *text > 0x7e) {
+            *text = '?';
+        }
+    }
+}
+
 static void write_line(char *line, size_t size, const char *format, va_list arguments)
 {
     vsnprintf(line, size, format, arguments);
-    for (char *c = line; *c; c++) {
-        if ((unsigned char)*c < 0x20 || *c == 0x7f) {
-            *c = '?';
-        }
-    }
+    rf_clean_text(line);
 }
 
 int rf_fail(struct refocus_reason *reason, int status, const char *format, ...)
@@ -121,8 +125,8 @@ size_t rf_raster_stride(const struct rf_raster *raster)
 int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster)
 {
     const size_t bytes = (size_t)raster->channels * rf_sample_bytes(raster->sample);
-    const int status = rf_check_size(read, (uint64_t)raster->width,
-                                     (uint64_t)raster->height, bytes);
+    const int status =
+        rf_check_size(read, (uint64_t)raster->width, (uint64_t)raster->height, bytes);
 
     raster->pixels = NULL;
     if (status != REFOCUS_OK) {

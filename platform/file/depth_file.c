@@ -18,7 +18,8 @@ static double metres_in(const char *unit)
     if (strcmp(unit, "mm") == 0) {
         return 0.001;
     }
-    if (length < 3 || length - 2 >= sizeof number || strcmp(unit + length - 2, "/m") != 0) {
+    if (length < 3 || length - 2 >= sizeof number ||
+        strcmp(unit + length - 2, "/m") != 0) {
         return 0.0;
     }
     memcpy(number, unit, length - 2);
@@ -91,7 +92,8 @@ int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit)
     if (!map || !unit) {
         return REFOCUS_ERR_ARGUMENT;
     }
-    return rf_depth_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
+    return rf_depth_unit(map, unit,
+                         map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
 }
 
 static int check_range(double near_m, double far_m, struct refocus_reason *reason)
@@ -166,9 +168,9 @@ static int apply_unit(struct rf_read *read, const char *unit, double max_value)
     return REFOCUS_OK;
 }
 
-int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, size_t size,
-                              const char *unit, double near_m, double far_m,
-                              const struct refocus_read_limits *limits,
+int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
+                              size_t size, const char *unit, double near_m,
+                              double far_m, const struct refocus_read_limits *limits,
                               struct refocus_reason *reason)
 {
     struct refocus_depth_map probe = {.sample = REFOCUS_SAMPLE_U8};
@@ -185,7 +187,8 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
     }
     *depth = NULL;
     status = check_range(near_m, far_m, reason);
-    if (status == REFOCUS_OK && unit && rf_depth_unit(&probe, unit, 255.0) != REFOCUS_OK) {
+    if (status == REFOCUS_OK && unit &&
+        rf_depth_unit(&probe, unit, 255.0) != REFOCUS_OK) {
         status = rf_fail(reason, REFOCUS_ERR_ARGUMENT,
                          "the depth unit is none of disparity, inverse, m, mm, or a "
                          "number per metre such as 5000/m");
@@ -223,7 +226,8 @@ int refocus_depth_read(struct refocus_photo **depth, const char *path, const cha
                        const struct refocus_read_limits *limits,
                        struct refocus_reason *reason)
 {
-    const uint64_t max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
+    const uint64_t max_bytes =
+        limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
     struct refocus_reason unused;
     struct refocus_blob file;
     int status;

@@ -1,5 +1,6 @@
-/* EXIF: a TIFF structure of one main directory and one for the camera's settings. Only these
- * two are ever followed, so that no chain of offsets, circular or not, can be long. */
+/* EXIF: a TIFF structure of one main directory and one for the camera's settings. Only
+ * these two are ever followed, so that no chain of offsets, circular or not, can be
+ * long. */
 #include "internal.h"
 
 #include <stdio.h>
@@ -34,7 +35,8 @@ static uint32_t get16(const struct tiff *tiff, size_t at)
 {
     const uint8_t *const b = tiff->data + at;
 
-    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1]) : (uint32_t)(b[1] << 8 | b[0]);
+    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1])
+                            : (uint32_t)(b[1] << 8 | b[0]);
 }
 
 static uint32_t get32(const struct tiff *tiff, size_t at)
@@ -108,13 +110,13 @@ static void get_text(const struct tiff *tiff, const struct entry *entry, char *t
         return;
     }
     for (; n < entry->count && n + 1 < size && tiff->data[entry->value + n]; n++) {
-        const uint8_t c = tiff->data[entry->value + n];
-        text[n] = (char)(c < 0x20 || c == 0x7f ? '?' : c);
+        text[n] = (char)tiff->data[entry->value + n];
     }
     while (n > 0 && text[n - 1] == ' ') {
         n--;
     }
     text[n] = '\0';
+    rf_clean_text(text);
 }
 
 /* Most models repeat the make: "Canon" and "Canon EOS R5". */

@@ -36,9 +36,11 @@ static int read_range(const struct rf_read *read, const struct rf_xmp *xmp,
     bool has_near, has_far;
     int status;
 
-    status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_NEAR, "GDepth:Near", &has_near, near_m);
+    status =
+        rf_xmp_number(read, xmp, RF_XMP_DEPTH_NEAR, "GDepth:Near", &has_near, near_m);
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_FAR, "GDepth:Far", &has_far, far_m);
+        status =
+            rf_xmp_number(read, xmp, RF_XMP_DEPTH_FAR, "GDepth:Far", &has_far, far_m);
     }
     if (status != REFOCUS_OK) {
         return status;
@@ -58,7 +60,8 @@ static int read_range(const struct rf_read *read, const struct rf_xmp *xmp,
         rf_note(read->info, "GDepth: Near %g, Far %g without a unit: taken for metres",
                 *near_m, *far_m);
     } else if (*unit != 1.0 || strcmp(units, "m") == 0) {
-        rf_note(read->info, "GDepth: Near %g %s, Far %g %s", *near_m, units, *far_m, units);
+        rf_note(read->info, "GDepth: Near %g %s, Far %g %s", *near_m, units, *far_m,
+                units);
     } else {
         rf_note(read->info, "GDepth: Near %g, Far %g in \"%.40s\": taken for metres",
                 *near_m, *far_m, units);
@@ -97,11 +100,13 @@ static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp, double *u
         map->meaning = REFOCUS_DEPTH_DISTANCE;
         map->metres_at_zero = near_m;
         map->metres_per_unit = (far_m - near_m) / max;
-        rf_note(read->info, "GDepth: RangeLinear: linear in z, 0 is near, %g is far", max);
+        rf_note(read->info, "GDepth: RangeLinear: linear in z, 0 is near, %g is far",
+                max);
         return REFOCUS_OK;
     }
-    return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                   "damaged: its GDepth:Format is neither RangeInverse nor RangeLinear");
+    return rf_fail(
+        read->reason, REFOCUS_ERR_FORMAT,
+        "damaged: its GDepth:Format is neither RangeInverse nor RangeLinear");
 }
 
 /* Base64 text of a property to a picture; the text is used up. */
@@ -125,7 +130,8 @@ static int decode_data(struct rf_read *read, struct rf_xmp *xmp, enum rf_xmp_key
 static int read_samples(struct rf_read *read, struct rf_xmp *xmp)
 {
     const char *const mime = xmp->value[RF_XMP_DEPTH_MIME];
-    int status = decode_data(read, xmp, RF_XMP_DEPTH_DATA, "GDepth:Data", &read->samples);
+    int status =
+        decode_data(read, xmp, RF_XMP_DEPTH_DATA, "GDepth:Data", &read->samples);
 
     if (status == REFOCUS_OK) {
         status = rf_raster_to_grey(read, &read->samples);
@@ -152,7 +158,8 @@ static int read_focus(struct rf_read *read, const struct rf_xmp *xmp, double uni
 
     status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_X, "GFocus:FocalPointX", &has_x, &x);
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_Y, "GFocus:FocalPointY", &has_y, &y);
+        status =
+            rf_xmp_number(read, xmp, RF_XMP_FOCUS_Y, "GFocus:FocalPointY", &has_y, &y);
     }
     if (status == REFOCUS_OK) {
         status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_DISTANCE, "GFocus:FocalDistance",
@@ -172,7 +179,8 @@ static int read_focus(struct rf_read *read, const struct rf_xmp *xmp, double uni
     return status;
 }
 
-/* The main picture is the phone's blurred result unless GFocus says that it has no blur. */
+/* The main picture is the phone's blurred result unless GFocus says that it has no
+ * blur. */
 static int read_original(struct rf_read *read, struct rf_xmp *xmp)
 {
     int status;
@@ -181,7 +189,8 @@ static int read_original(struct rf_read *read, struct rf_xmp *xmp)
         return REFOCUS_OK;
     }
     if (xmp->value[RF_XMP_FOCUS_BLUR] && read->info->blur_at_infinity == 0.0) {
-        rf_note(read->info, "GImage: original passed over, the main picture has no blur");
+        rf_note(read->info,
+                "GImage: original passed over, the main picture has no blur");
         return REFOCUS_OK;
     }
     status = decode_data(read, xmp, RF_XMP_IMAGE_DATA, "GImage:Data", &read->image);

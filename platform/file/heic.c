@@ -8,6 +8,7 @@
 
 struct heic {
     struct rf_read *read;
+    struct rf_bytes file;
     struct heif_context *context;
     struct heif_image_handle *primary;
     struct heif_decoding_options *options;
@@ -45,7 +46,8 @@ static int copy_plane(struct rf_read *read, const struct heif_image *image,
     status = rf_raster_alloc(read, raster);
     for (int32_t y = 0; status == REFOCUS_OK && y < raster->height; y++) {
         const size_t bytes = rf_raster_stride(raster);
-        memcpy(raster->pixels + (size_t)y * bytes, plane + (ptrdiff_t)y * stride, bytes);
+        memcpy(raster->pixels + (size_t)y * bytes, plane + (ptrdiff_t)y * stride,
+               bytes);
     }
     return status;
 }
@@ -64,10 +66,9 @@ static int decode(struct heic *heic, struct heif_image_handle *handle, bool colo
     if (status != REFOCUS_OK) {
         return status;
     }
-    error = heif_decode_image(handle, &image,
-                              colour ? heif_colorspace_RGB : heif_colorspace_undefined,
-                              colour ? heif_chroma_interleaved_RGB : heif_chroma_undefined,
-                              heic->options);
+    error = heif_decode_image(
+        handle, &image, colour ? heif_colorspace_RGB : heif_colorspace_undefined,
+        colour ? heif_chroma_interleaved_RGB : heif_chroma_undefined, heic->options);
     if (error.code != heif_error_Ok) {
         return fail_heif(read, error);
     }
@@ -95,10 +96,12 @@ static bool has_disparity(const struct heif_depth_representation_info *about)
 static bool has_distance(const struct heif_depth_representation_info *about)
 {
     return about->has_z_near && about->has_z_far && isfinite(about->z_near) &&
-           isfinite(about->z_far) && about->z_near > 0.0 && about->z_near < about->z_far;
+           isfinite(about->z_far) && about->z_near > 0.0 &&
+           about->z_near < about->z_far;
 }
 
-/* ISO/IEC 23008-2, depth representation information. False when it does not say enough. */
+/* ISO/IEC 23008-2, depth representation information. False when it does not say enough.
+ */
 static bool set_meaning(struct rf_read *read,
                         const struct heif_depth_representation_info *about)
 {
@@ -114,7 +117,8 @@ static bool set_meaning(struct rf_read *read,
                     about->d_min, about->d_max);
         } else {
             rf_depth_from_disparity(map, 0.0, max, 0.0, 0.0);
-            rf_note(read->info, "HEIC: uniform disparity without a range, bright is near");
+            rf_note(read->info,
+                    "HEIC: uniform disparity without a range, bright is near");
         }
         return true;
     case heif_depth_representation_type_uniform_inverse_Z:
@@ -135,8 +139,8 @@ static bool set_meaning(struct rf_read *read,
         map->metres_per_unit = (about->z_far - about->z_near) / max;
         map->near_m = about->z_near;
         map->far_m = about->z_far;
-        rf_note(read->info, "HEIC: uniform z from %g to %g m, bright is far", map->near_m,
-                map->far_m);
+        rf_note(read->info, "HEIC: uniform z from %g to %g m, bright is far",
+                map->near_m, map->far_m);
         return true;
     default:
         return false;
@@ -165,12 +169,17 @@ static int take_depth(struct heic *heic, heif_item_id item,
             read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8);
     if (set_meaning(read, about)) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_HEIF;
+        if (rf_heif_orientation(heic->file, item) == 1) {
+            /* Then libheif has not turned it: it lies as the main picture was stored.
+             */
+            status = rf_raster_orient(read, &read->samples, read->info->orientation);
+        }
     } else {
         rf_note(read->info, "HEIC: what its samples mean is not said in a known way: "
                             "passed over");
         rf_raster_free(&read->samples);
     }
-    return REFOCUS_OK;
+    return status;
 }
 
 static int read_depth(struct heic *heic)
@@ -200,7 +209,8 @@ static void note_auxiliaries(struct heic *heic)
 {
     enum { MOST = 8 };
     heif_item_id items[MOST];
-    const int filter = LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH | LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA;
+    const int filter =
+        LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH | LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA;
     const int count = heif_image_handle_get_list_of_auxiliary_image_IDs(
         heic->primary, filter, items, MOST);
 
@@ -232,8 +242,8 @@ static int read_exif(struct heic *heic)
     uint8_t *block;
     int status;
 
-    if (heif_image_handle_get_list_of_metadata_block_IDs(heic->primary, "Exif", &item, 1) <
-        1) {
+    if (heif_image_handle_get_list_of_metadata_block_IDs(heic->primary, "Exif", &item,
+                                                         1) < 1) {
         return REFOCUS_OK;
     }
     size = heif_image_handle_get_metadata_size(heic->primary, item);
@@ -245,8 +255,10 @@ static int read_exif(struct heic *heic)
     if (!block) {
         return rf_fail_memory(read->reason);
     }
-    if (heif_image_handle_get_metadata(heic->primary, item, block).code == heif_error_Ok) {
-        /* ISO/IEC 23008-12, A.2.1: where the TIFF header is, counted from behind this. */
+    if (heif_image_handle_get_metadata(heic->primary, item, block).code ==
+        heif_error_Ok) {
+        /* ISO/IEC 23008-12, A.2.1: where the TIFF header is, counted from behind this.
+         */
         skip = (size_t)block[0] << 24 | (size_t)block[1] << 16 | (size_t)block[2] << 8 |
                block[3];
         if (skip < size - 4) {
@@ -285,20 +297,21 @@ static int read_icc(struct heic *heic)
     return rf_icc_take(read, &profile);
 }
 
-/* Which of the eight orientations has been applied: EXIF's word, when sizes agree. */
 static void say_orientation(struct heic *heic)
 {
     struct refocus_photo_info *const info = heic->read->info;
-    const int width = heif_image_handle_get_width(heic->primary);
 
     info->stored_width = heif_image_handle_get_ispe_width(heic->primary);
     info->stored_height = heif_image_handle_get_ispe_height(heic->primary);
-    rf_note(info, "HEIC: %d x %d stored, %d x %d upright by the container's own rotation",
-            (int)info->stored_width, (int)info->stored_height, width,
-            heif_image_handle_get_height(heic->primary));
+    info->orientation = rf_heif_orientation(heic->file, 0);
+    if (info->orientation != 1) {
+        rf_note(info,
+                "HEIC: the container's orientation %d is applied to photo and depth",
+                info->orientation);
+    }
 }
 
-static int run(struct heic *heic, struct rf_bytes file)
+static int run(struct heic *heic)
 {
     struct rf_read *const read = heic->read;
     struct heif_error error;
@@ -310,8 +323,8 @@ static int run(struct heic *heic, struct rf_bytes file)
     heif_context_set_max_decoding_threads(heic->context, 0);
     heic->options->strict_decoding = 1;
     heic->options->convert_hdr_to_8bit = 1;
-    error = heif_context_read_from_memory_without_copy(heic->context, file.data, file.size,
-                                                       NULL);
+    error = heif_context_read_from_memory_without_copy(heic->context, heic->file.data,
+                                                       heic->file.size, NULL);
     if (error.code == heif_error_Ok) {
         error = heif_context_get_primary_image_handle(heic->context, &heic->primary);
     }
@@ -335,14 +348,13 @@ static int run(struct heic *heic, struct rf_bytes file)
 
 int rf_read_heic(struct rf_read *read, struct rf_bytes file)
 {
-    struct heic heic = {.read = read};
+    struct heic heic = {.read = read, .file = file};
     int status;
 
     memcpy(read->info->container, "HEIC", 5);
     heic.context = heif_context_alloc();
     heic.options = heif_decoding_options_alloc();
-    status = heic.context && heic.options ? run(&heic, file)
-                                          : rf_fail_memory(read->reason);
+    status = heic.context && heic.options ? run(&heic) : rf_fail_memory(read->reason);
     if (heic.primary) {
         heif_image_handle_release(heic.primary);
     }

@@ -25,10 +25,10 @@ struct rf_bytes {
 struct rf_raster {
     uint8_t *pixels; /* owned; top row first; NULL when there is none */
     int32_t width, height;
-    int32_t channels;    /* 1 or 3 */
-    uint32_t sample;     /* enum refocus_sample; F32 only with one channel */
-    uint32_t max_value;  /* code of white; 0 for F32 */
-    bool lossy;          /* from a JPEG: equal channels may differ by a little */
+    int32_t channels;   /* 1 or 3 */
+    uint32_t sample;    /* enum refocus_sample; F32 only with one channel */
+    uint32_t max_value; /* code of white; 0 for F32 */
+    bool lossy;         /* from a JPEG: equal channels may differ by a little */
 };
 
 /* The public photo and what is freed with it, whatever the caller did to the fields. */
@@ -41,16 +41,16 @@ struct rf_photo {
 struct rf_read {
     struct refocus_read_limits limits; /* no zeros */
     struct refocus_reason *reason;     /* never NULL */
-    bool picture_always;     /* false: the main picture only when there is no depth */
+    bool picture_always; /* false: the main picture only when there is no depth */
     struct refocus_photo_info *info;
-    struct refocus_blob exif, icc; /* owned */
-    struct rf_raster image;        /* as stored */
-    struct rf_raster samples;      /* depth, as stored */
+    struct refocus_blob exif, icc;  /* owned */
+    struct rf_raster image;         /* as stored */
+    struct rf_raster samples;       /* depth, as stored */
     struct refocus_depth_map depth; /* meaning, values and range of the samples */
-    int orientation; /* 1 to 8, to be applied to image and samples */
+    int orientation;                /* 1 to 8, to be applied to image and samples */
 };
 
-/* context.c: words, limits, memory ------------------------------------------------ */
+/* context.c: words, limits, memory ------------------------------------ */
 
 /* Put words into the reason; returns the status, so that errors are one line. */
 int rf_fail(struct refocus_reason *reason, int status, const char *format, ...)
@@ -60,10 +60,13 @@ int rf_fail_memory(struct refocus_reason *reason);
 int rf_fail_errno(struct refocus_reason *reason, int error, const char *what);
 /* Add a line of evidence; what does not fit any more is dropped. */
 void rf_note(struct refocus_photo_info *info, const char *format, ...) RF_PRINTF(2, 3);
+/* Files may hold anything: only printable ASCII gets out, which no terminal obeys and
+ * every JSON writer takes. char may be signed or not: both ends are checked. */
+void rf_clean_text(char *text);
 /* Bytes of one sample of enum refocus_sample. */
 size_t rf_sample_bytes(uint32_t sample);
-/* Bytes of one pixel of enum refocus_format; 0 for an unknown one. This library does not
- * link the core for it. */
+/* Bytes of one pixel of enum refocus_format; 0 for an unknown one. This library does
+ * not link the core for it. */
 int rf_format_bytes(uint32_t format);
 /* Sizes are checked here and nowhere else, in 64 bits and before memory is asked for:
  * sides 1 to REFOCUS_MAX_SIDE, pixels and bytes within the limits. */
@@ -75,12 +78,12 @@ int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster);
 void rf_raster_free(struct rf_raster *raster);
 size_t rf_raster_stride(const struct rf_raster *raster);
 
-/* number.c: decimal numbers without the locale --------------------------------------- */
+/* number.c: decimal numbers without the locale ------------------------ */
 
 /* The whole text, blanks around it allowed, as a finite number. */
 bool rf_parse_number(const char *text, double *value);
 
-/* raster.c: from stored samples to what the library works with ----------------------- */
+/* raster.c: from stored samples to what the library works with -------- */
 
 int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster);
 /* One channel from equal ones; REFOCUS_ERR_NO_DEPTH when they are not. */
@@ -90,7 +93,7 @@ int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster,
                      int orientation);
 void rf_orient_point(double *x, double *y, int orientation);
 
-/* load.c, store.c: whole files ------------------------------------------------------- */
+/* load.c, store.c: whole files ---------------------------------------- */
 
 int rf_load(const char *path, uint64_t max_bytes, struct refocus_reason *reason,
             struct refocus_blob *blob);
@@ -107,7 +110,7 @@ void rf_store_write(struct rf_store *store, const void *bytes, size_t size);
 /* Move into place when status is REFOCUS_OK and all was written, else remove. */
 int rf_store_close(struct rf_store *store, int status, struct refocus_reason *reason);
 
-/* Formats ----------------------------------------------------------------------------- */
+/* Formats ------------------------------------------------------------- */
 
 enum rf_container {
     RF_CONTAINER_UNKNOWN,
@@ -151,7 +154,7 @@ int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
                   const struct refocus_write_options *options,
                   struct refocus_reason *reason);
 
-/* exif.c ------------------------------------------------------------------------------ */
+/* exif.c -------------------------------------------------------------- */
 
 struct rf_exif {
     int orientation; /* 1 to 8; 1 when there is none */
@@ -166,7 +169,11 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient);
 /* An ICC profile for RGB is taken over; any other would be wrong for the RGB8 photo. */
 int rf_icc_take(struct rf_read *read, struct refocus_blob *profile);
 
-/* JPEG structure ---------------------------------------------------------------------- */
+/* heif_boxes.c: EXIF's number for the rotation and mirroring of an item; item 0 is the
+ * main picture. 1 when the container states none. */
+int rf_heif_orientation(struct rf_bytes file, uint32_t item);
+
+/* JPEG structure ------------------------------------------------------ */
 
 enum rf_jpeg_step { RF_JPEG_SEGMENT, RF_JPEG_END, RF_JPEG_DAMAGED };
 struct rf_jpeg_walk {
@@ -191,7 +198,8 @@ extern const char rf_jpeg_mpf_signature[4];
 /* mpf.c: images that follow the main one in a file (CIPA DC-007) */
 enum { RF_MPF_MAX = 32 };
 struct rf_mpf_image {
-    uint64_t offset; /* from the begin of the MPF segment's TIFF header; 0: the main one */
+    uint64_t
+        offset; /* from the begin of the MPF segment's TIFF header; 0: the main one */
     uint64_t size;
 };
 struct rf_mpf {
@@ -200,7 +208,7 @@ struct rf_mpf {
 };
 bool rf_mpf_parse(struct rf_bytes tiff, struct rf_mpf *mpf);
 
-/* XMP --------------------------------------------------------------------------------- */
+/* XMP ----------------------------------------------------------------- */
 
 enum rf_xmp_key {
     RF_XMP_EXTENDED, /* xmpNote:HasExtendedXMP */
@@ -230,9 +238,10 @@ struct rf_xmp {
     char *value[RF_XMP_KEYS];
     size_t length[RF_XMP_KEYS];
 };
-/* Add a packet's properties; the first value of each stays. On an error the struct holds
- * what was read and is freed as ever. */
-int rf_xmp_parse(const struct rf_read *read, struct rf_bytes packet, struct rf_xmp *xmp);
+/* Add a packet's properties; the first value of each stays. On an error the struct
+ * holds what was read and is freed as ever. */
+int rf_xmp_parse(const struct rf_read *read, struct rf_bytes packet,
+                 struct rf_xmp *xmp);
 void rf_xmp_free(struct rf_xmp *xmp);
 /* A number; false when the property is absent. A property that is no number fails. */
 int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp,

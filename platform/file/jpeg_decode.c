@@ -11,7 +11,8 @@ static int fail_jpeg(const struct rf_read *read, tjhandle jpeg)
                    tjGetErrorStr2(jpeg));
 }
 
-/* TurboJPEG fills up what is missing with grey; the end of the picture must be there. */
+/* TurboJPEG fills up what is missing with grey; the end of the picture must be there.
+ */
 static bool is_whole(struct rf_bytes file)
 {
     struct rf_jpeg_walk walk;
@@ -31,7 +32,8 @@ static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_byte
 {
     int width = 0, height = 0, sampling = -1, space = -1;
 
-    /* It refuses rare chroma samplings here although it decodes them: judge by the rest. */
+    /* It refuses rare chroma samplings here although it decodes them: judge by the
+     * rest. */
     tjDecompressHeader3(jpeg, file.data, (unsigned long)file.size, &width, &height,
                         &sampling, &space);
     if (width < 1 || height < 1 || space < 0) {
@@ -51,22 +53,33 @@ static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_byte
                          (uint64_t)raster->channels);
 }
 
+/* Some cameras leave a few bytes too many before a marker: every decoder skips them.
+ * More are a sign that the decoder lost its way earlier. */
+static bool few_bytes_too_many(const char *words)
+{
+    static const char before[] = "Corrupt JPEG data: ";
+    const char *const end = strstr(words, " extraneous bytes");
+
+    return strncmp(words, before, sizeof before - 1) == 0 && end &&
+           end - words <= (ptrdiff_t)sizeof before + 1; /* two digits */
+}
+
 static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
                        struct rf_raster *raster)
 {
     const int format = raster->channels == 1 ? TJPF_GRAY : TJPF_RGB;
     int flags = TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS | TJFLAG_STOPONWARNING;
-    int failed = tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels,
-                               raster->width, (int)rf_raster_stride(raster),
-                               raster->height, format, flags);
+    int failed = tjDecompress2(
+        jpeg, file.data, (unsigned long)file.size, raster->pixels, raster->width,
+        (int)rf_raster_stride(raster), raster->height, format, flags);
 
-    /* Some cameras leave a few bytes too many before a marker: every decoder skips them. */
-    if (failed && strstr(tjGetErrorStr2(jpeg), "extraneous bytes")) {
+    if (failed && few_bytes_too_many(tjGetErrorStr2(jpeg))) {
         flags &= ~TJFLAG_STOPONWARNING;
-        failed = tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels,
-                               raster->width, (int)rf_raster_stride(raster),
-                               raster->height, format, flags) != 0 &&
-                 tjGetErrorCode(jpeg) != TJERR_WARNING;
+        failed =
+            tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels,
+                          raster->width, (int)rf_raster_stride(raster), raster->height,
+                          format, flags) != 0 &&
+            tjGetErrorCode(jpeg) != TJERR_WARNING;
     }
     return failed ? fail_jpeg(read, jpeg) : REFOCUS_OK;
 }
@@ -79,8 +92,9 @@ int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file,
 
     memset(raster, 0, sizeof *raster);
     if (file.size > ULONG_MAX || !is_whole(file)) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged JPEG: it ends in the middle of the picture; copy it again");
+        return rf_fail(
+            read->reason, REFOCUS_ERR_FORMAT,
+            "damaged JPEG: it ends in the middle of the picture; copy it again");
     }
     jpeg = tjInitDecompress();
     if (!jpeg) {

@@ -40,8 +40,9 @@ static void take_segment(struct parts *parts, int marker, struct rf_bytes segmen
         if (!parts->exif.data &&
             rf_jpeg_after(segment, rf_jpeg_exif_signature, 6, &rest)) {
             parts->exif = rest;
-        } else if (!parts->xmp.data && rf_jpeg_after(segment, rf_jpeg_xmp_signature,
-                                                     sizeof rf_jpeg_xmp_signature, &rest)) {
+        } else if (!parts->xmp.data &&
+                   rf_jpeg_after(segment, rf_jpeg_xmp_signature,
+                                 sizeof rf_jpeg_xmp_signature, &rest)) {
             parts->xmp = rest;
         }
     } else if (marker == MARKER_APP2) {
@@ -132,7 +133,8 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     status = rf_xmp_extended(read, file, xmp->value[RF_XMP_EXTENDED],
                              xmp->length[RF_XMP_EXTENDED], &extended);
     if (status == REFOCUS_OK) {
-        status = rf_xmp_parse(read, (struct rf_bytes){extended.data, extended.size}, xmp);
+        status =
+            rf_xmp_parse(read, (struct rf_bytes){extended.data, extended.size}, xmp);
     }
     free(extended.data);
     return status;
@@ -177,8 +179,9 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
 
     memcpy(read->info->container, "JPEG", 5);
     if (!find_parts(file, &parts)) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged JPEG: it ends in the middle of the picture; copy it again");
+        return rf_fail(
+            read->reason, REFOCUS_ERR_FORMAT,
+            "damaged JPEG: it ends in the middle of the picture; copy it again");
     }
     status = rf_exif_take(read, parts.exif, true);
     if (status == REFOCUS_OK) {
@@ -190,8 +193,8 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
     /* rf_read_gdepth() may have put the all-in-focus original there already. */
     if (status == REFOCUS_OK && !read->image.pixels &&
         (read->picture_always || !read->samples.pixels)) {
-        status = rf_jpeg_decode(read, (struct rf_bytes){file.data, parts.end},
-                                &read->image);
+        status =
+            rf_jpeg_decode(read, (struct rf_bytes){file.data, parts.end}, &read->image);
     }
     return status;
 }

@@ -6,7 +6,7 @@
 #include <turbojpeg.h>
 
 enum {
-    SEGMENT_MAX = 65533, /* payload of a segment: 65535 less its own length */
+    SEGMENT_MAX = 65533,   /* payload of a segment: 65535 less its own length */
     JPEG_SIDE_MAX = 65500, /* of libjpeg */
     ICC_CHUNK = SEGMENT_MAX - 14,
     DEFAULT_QUALITY = 95,
@@ -49,7 +49,8 @@ static void write_icc(struct rf_store *store, const struct refocus_blob *icc,
     count = (icc->size + ICC_CHUNK - 1) / ICC_CHUNK;
     if (count > 255) {
         rf_fail(reason, REFOCUS_OK,
-                "ICC profile of %zu bytes does not fit into a JPEG: left out", icc->size);
+                "ICC profile of %zu bytes does not fit into a JPEG: left out",
+                icc->size);
         return;
     }
     for (size_t i = 0; i < count; i++) {
@@ -85,13 +86,13 @@ static int compress(tjhandle jpeg, const struct rf_rows *rows, int quality,
     const ptrdiff_t step = flipped ? -rows->stride : rows->stride;
     const uint8_t *const first =
         flipped ? rows->top + (rows->height - 1) * rows->stride : rows->top;
-    /* Chroma is halved where it does not show: 4:4:4 keeps coloured edges from 90 up. */
+    /* Chroma is halved where it does not show: 4:4:4 keeps coloured edges from 90 up.
+     */
     const int sampling = quality >= 90 ? TJSAMP_444 : TJSAMP_420;
 
-    return tjCompress2(jpeg, first, rows->width,
-                       rows->height == 1 ? 0 : (int)step, rows->height,
-                       pixel_format(rows->format), bytes, size, sampling, quality,
-                       TJFLAG_ACCURATEDCT | (flipped ? TJFLAG_BOTTOMUP : 0));
+    return tjCompress2(jpeg, first, rows->width, rows->height == 1 ? 0 : (int)step,
+                       rows->height, pixel_format(rows->format), bytes, size, sampling,
+                       quality, TJFLAG_ACCURATEDCT | (flipped ? TJFLAG_BOTTOMUP : 0));
 }
 
 /* Where the segments of ours belong: behind SOI and JFIF. */
@@ -110,7 +111,8 @@ int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
                   const struct refocus_write_options *options,
                   struct refocus_reason *reason)
 {
-    const int quality = options && options->quality ? options->quality : DEFAULT_QUALITY;
+    const int quality =
+        options && options->quality ? options->quality : DEFAULT_QUALITY;
     unsigned char *bytes = NULL;
     unsigned long size = 0;
     int status = REFOCUS_OK;
@@ -118,7 +120,8 @@ int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
 
     if (rows->width > JPEG_SIDE_MAX || rows->height > JPEG_SIDE_MAX) {
         return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                       "a JPEG has at most %d pixels a side; write a PNG", JPEG_SIDE_MAX);
+                       "a JPEG has at most %d pixels a side; write a PNG",
+                       JPEG_SIDE_MAX);
     }
     if (rows->height > 1 && (rows->stride > INT_MAX || rows->stride < -INT_MAX)) {
         return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,

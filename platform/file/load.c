@@ -1,4 +1,5 @@
-/* A whole file into memory. Not mapped: a file that shrinks meanwhile would end in SIGBUS. */
+/* A whole file into memory. Not mapped: a file that shrinks meanwhile would end in
+ * SIGBUS. */
 #include "internal.h"
 
 #include <errno.h>

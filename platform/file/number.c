@@ -44,6 +44,22 @@ static const char *read_exponent(const char *text, int *exponent)
     return text;
 }
 
+/* value * 10^exponent. Dividing by an exact power of ten rounds once; powers so small
+ * that doubles have few digits for them are taken in two halves. */
+static double scale(double value, int exponent)
+{
+    if (value == 0.0) {
+        return 0.0;
+    }
+    if (exponent < 0 && exponent >= -22) {
+        return value / pow(10.0, -exponent);
+    }
+    if (exponent < -290) {
+        return value * pow(10.0, -290) * pow(10.0, exponent + 290);
+    }
+    return value * pow(10.0, exponent);
+}
+
 bool rf_parse_number(const char *text, double *value)
 {
     uint64_t mantissa = 0;
@@ -72,12 +88,7 @@ bool rf_parse_number(const char *text, double *value)
     if (*skip_blanks(text) != '\0') {
         return false;
     }
-    /* Dividing by an exact power of ten rounds once, multiplying by 1e-n twice. */
-    *value = exponent < 0 && exponent >= -22 ? (double)mantissa / pow(10.0, -exponent)
-                                             : (double)mantissa * pow(10.0, exponent);
-    if (mantissa == 0) {
-        *value = 0.0;
-    }
+    *value = scale((double)mantissa, exponent);
     if (negative) {
         *value = -*value;
     }

@@ -33,8 +33,9 @@ static bool scan_side(struct rf_bytes file, size_t *position, uint64_t *side)
     char word[32];
     double value;
 
-    if (!scan_word(file, position, word, sizeof word) || !rf_parse_number(word, &value) ||
-        value < 0 || value > 4294967295.0 || value != floor(value)) {
+    if (!scan_word(file, position, word, sizeof word) ||
+        !rf_parse_number(word, &value) || value < 0 || value > 4294967295.0 ||
+        value != floor(value)) {
         return false;
     }
     *side = (uint64_t)value;
@@ -43,11 +44,10 @@ static bool scan_side(struct rf_bytes file, size_t *position, uint64_t *side)
 
 static float load_float(const uint8_t *b, bool little_endian)
 {
-    const uint32_t bits = little_endian
-                              ? (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 |
-                                    (uint32_t)b[1] << 8 | b[0]
-                              : (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 |
-                                    (uint32_t)b[2] << 8 | b[3];
+    const uint32_t bits =
+        little_endian
+            ? (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0]
+            : (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
     float value;
 
     memcpy(&value, &bits, 4);
@@ -93,7 +93,8 @@ int rf_read_pfm(struct rf_read *read, struct rf_bytes file)
     }
     stride = (size_t)width * 4;
     for (size_t y = 0; y < height; y++) {
-        const uint8_t *const from = file.data + position + 1 + (height - 1 - y) * stride;
+        const uint8_t *const from =
+            file.data + position + 1 + (height - 1 - y) * stride;
         float *const to = (float *)(void *)(raster->pixels + y * stride);
         for (size_t x = 0; x < width; x++) {
             to[x] = load_float(from + 4 * x, scale < 0);

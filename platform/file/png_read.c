@@ -22,8 +22,8 @@ static void on_error(png_structp png, png_const_charp words)
     struct reader *const reader = png_get_error_ptr(png);
 
     if (reader->status == REFOCUS_OK) {
-        reader->status = rf_fail(reader->read->reason, REFOCUS_ERR_FORMAT,
-                                 "damaged PNG: %s", words);
+        reader->status =
+            rf_fail(reader->read->reason, REFOCUS_ERR_FORMAT, "damaged PNG: %s", words);
     }
     png_longjmp(png, 1);
 }
@@ -75,9 +75,8 @@ static void choose_samples(struct reader *reader)
     } else if (type == PNG_COLOR_TYPE_GRAY && bits < 8) {
         png_set_expand_gray_1_2_4_to_8(png);
     }
-    if (type & PNG_COLOR_MASK_ALPHA) {
-        png_set_strip_alpha(png);
-    }
+    /* Palettes bring theirs with them. */
+    png_set_strip_alpha(png);
     if (bits == 16 && *(const uint8_t *)&one == 1) {
         png_set_swap(png);
     }
@@ -150,7 +149,8 @@ static void read_extras(struct reader *reader)
 static bool run(struct reader *reader)
 {
     const struct refocus_read_limits *const limits = &reader->read->limits;
-    const uint64_t chunk = limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
+    const uint64_t chunk =
+        limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
     int status;
 
     if (setjmp(png_jmpbuf(reader->png))) {
@@ -213,6 +213,10 @@ int rf_read_png(struct rf_read *read, struct rf_bytes file)
 
     memcpy(read->info->container, "PNG", 4);
     status = rf_png_decode(read, file, &read->image, &exif, &icc);
+    /* IHDR comes first: its colour type is byte 25 of the file. */
+    if (status == REFOCUS_OK && file.data[25] & PNG_COLOR_MASK_ALPHA) {
+        rf_note(read->info, "PNG: transparency is dropped");
+    }
     if (status == REFOCUS_OK) {
         status = rf_exif_take(read, (struct rf_bytes){exif.data, exif.size}, true);
     }

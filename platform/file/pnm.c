@@ -57,20 +57,22 @@ static int fail_short(const struct rf_read *read)
                    "damaged: it ends in the middle of the picture; copy it again");
 }
 
-static int scan_header(struct rf_read *read, struct scan *scan, struct rf_raster *raster,
-                       bool raw)
+static int scan_header(struct rf_read *read, struct scan *scan,
+                       struct rf_raster *raster, bool raw)
 {
     uint64_t width, height, max;
     int status;
 
     if (!scan_number(scan, &width) || !scan_number(scan, &height) ||
         !scan_number(scan, &max) || max < 1 || max > 65535) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged: its PNM header holds no width, height and greatest value");
+        return rf_fail(
+            read->reason, REFOCUS_ERR_FORMAT,
+            "damaged: its PNM header holds no width, height and greatest value");
     }
     raster->sample = max > 255 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
     raster->max_value = (uint32_t)max;
-    status = rf_check_size(read, width, height, (uint64_t)raster->channels * (max > 255 ? 2 : 1));
+    status = rf_check_size(read, width, height,
+                           (uint64_t)raster->channels * (max > 255 ? 2 : 1));
     if (status != REFOCUS_OK) {
         return status;
     }
@@ -115,7 +117,8 @@ static int scan_raw(struct rf_read *read, struct scan *scan, struct rf_raster *r
     }
     status = rf_raster_alloc(read, raster);
     for (size_t i = 0; status == REFOCUS_OK && i < count; i++, from += bytes) {
-        const uint32_t value = bytes == 1 ? from[0] : (uint32_t)(from[0] << 8 | from[1]);
+        const uint32_t value =
+            bytes == 1 ? from[0] : (uint32_t)(from[0] << 8 | from[1]);
         if (value > raster->max_value) {
             return fail_value(read);
         }

@@ -3,8 +3,9 @@
 
 static uint32_t load_sample(const uint8_t *pixels, uint32_t sample, size_t index)
 {
-    return sample == REFOCUS_SAMPLE_U8 ? pixels[index]
-                                       : ((const uint16_t *)(const void *)pixels)[index];
+    return sample == REFOCUS_SAMPLE_U8
+               ? pixels[index]
+               : ((const uint16_t *)(const void *)pixels)[index];
 }
 
 int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
@@ -37,8 +38,8 @@ int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
     return REFOCUS_OK;
 }
 
-/* JPEG stores brightness and colour apart: grey that went through colour differs by a few
- * levels between its channels (11 at most in the files at hand). */
+/* JPEG stores brightness and colour apart: grey that went through colour differs by a
+ * few levels between its channels (11 at most in the files at hand). */
 enum { LOSSY_GREY = 24 };
 
 int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster)

@@ -64,6 +64,7 @@ int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char 
 {
     int status;
 
+    (void)raster; /* unused without JPEG and PNG */
     switch (rf_sniff(part)) {
     case RF_CONTAINER_JPEG:
         status = rf_jpeg_decode(read, part, raster);
@@ -111,7 +112,8 @@ static int read_container(struct rf_read *read, struct rf_bytes file)
 
 static void set_limits(struct rf_read *read, const struct refocus_read_limits *limits)
 {
-    read->limits.max_pixels = limits && limits->max_pixels ? limits->max_pixels : 1u << 28;
+    read->limits.max_pixels =
+        limits && limits->max_pixels ? limits->max_pixels : 1u << 28;
     read->limits.max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
 }
 
@@ -206,8 +208,8 @@ int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
     return status;
 }
 
-int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes, size_t size,
-                              const struct refocus_read_limits *limits,
+int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
+                              size_t size, const struct refocus_read_limits *limits,
                               struct refocus_reason *reason)
 {
     struct refocus_reason unused;

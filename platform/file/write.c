@@ -4,7 +4,14 @@
 #include <string.h>
 #include <strings.h>
 
-enum ending { ENDING_UNKNOWN, ENDING_JPEG, ENDING_PNG, ENDING_PPM, ENDING_PGM, ENDING_PFM };
+enum ending {
+    ENDING_UNKNOWN,
+    ENDING_JPEG,
+    ENDING_PNG,
+    ENDING_PPM,
+    ENDING_PGM,
+    ENDING_PFM
+};
 
 static enum ending find_ending(const char *path)
 {
@@ -50,6 +57,7 @@ static int write_rows(const char *path, enum ending ending, const struct rf_rows
     struct rf_store store;
     int status = check_encoder(ending, reason);
 
+    (void)options; /* unused without JPEG and PNG */
     if (status == REFOCUS_OK) {
         status = rf_store_open(&store, path, reason);
     }
@@ -99,9 +107,10 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     }
     ending = find_ending(path);
     if (ending != ENDING_JPEG && ending != ENDING_PNG && ending != ENDING_PPM) {
-        return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                       "a picture is written as .jpg, .jpeg, .png or .ppm; end the name "
-                       "in one of them");
+        return rf_fail(
+            reason, REFOCUS_ERR_UNSUPPORTED,
+            "a picture is written as .jpg, .jpeg, .png or .ppm; end the name "
+            "in one of them");
     }
     rows.top = image->plane[0];
     rows.stride = image->stride[0];
@@ -111,8 +120,8 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     return write_rows(path, ending, &rows, options, reason);
 }
 
-int refocus_gray16_write(const char *path, const uint16_t *samples, int width, int height,
-                         ptrdiff_t stride, struct refocus_reason *reason)
+int refocus_gray16_write(const char *path, const uint16_t *samples, int width,
+                         int height, ptrdiff_t stride, struct refocus_reason *reason)
 {
     struct refocus_reason unused;
     struct rf_rows rows;
@@ -121,13 +130,15 @@ int refocus_gray16_write(const char *path, const uint16_t *samples, int width, i
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
     if (!path || !samples || stride % 2 != 0 || !fits(width, height, stride, 2)) {
-        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "the samples are out of their range");
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
+                       "the samples are out of their range");
     }
     ending = find_ending(path);
     if (ending != ENDING_PNG && ending != ENDING_PGM && ending != ENDING_PFM) {
-        return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                       "a depth map is written as .png, .pgm or .pfm; end the name in one "
-                       "of them");
+        return rf_fail(
+            reason, REFOCUS_ERR_UNSUPPORTED,
+            "a depth map is written as .png, .pgm or .pfm; end the name in one "
+            "of them");
     }
     rows.top = (const uint8_t *)samples;
     rows.stride = stride;

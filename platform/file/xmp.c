@@ -1,4 +1,5 @@
-/* XMP by expat: the few properties that say what is depth, as attributes or elements. */
+/* XMP by expat: the few properties that say what is depth, as attributes or elements.
+ */
 #include "internal.h"
 
 #include <errno.h>
@@ -7,11 +8,11 @@
 #include <string.h>
 
 /* expat puts this between namespace and name; it is in no URI. */
-#define SEPARATOR "|"
-#define DEPTH "http://ns.google.com/photos/1.0/depthmap/" SEPARATOR
-#define IMAGE "http://ns.google.com/photos/1.0/image/" SEPARATOR
-#define FOCUS "http://ns.google.com/photos/1.0/focus/" SEPARATOR
-#define APPLE "http://ns.apple.com/pixeldatainfo/1.0/" SEPARATOR
+#define SEPARATOR   "|"
+#define DEPTH       "http://ns.google.com/photos/1.0/depthmap/" SEPARATOR
+#define IMAGE       "http://ns.google.com/photos/1.0/image/" SEPARATOR
+#define FOCUS       "http://ns.google.com/photos/1.0/focus/" SEPARATOR
+#define APPLE       "http://ns.apple.com/pixeldatainfo/1.0/" SEPARATOR
 #define APPLE_DEPTH "http://ns.apple.com/depthData/1.0/" SEPARATOR
 
 static const char *const names[RF_XMP_KEYS] = {
@@ -73,8 +74,9 @@ static void append(struct parsing *parsing, const char *text, size_t size)
     char *value = xmp->value[parsing->key];
 
     if (length + size + 1 > parsing->room) {
-        const size_t room = (length + size + 1) * 2;
-        int status = rf_check_bytes(parsing->read, length + size, "its XMP");
+        /* The text lies in memory already, so that length + size cannot overflow. */
+        const size_t room = length + size + 1 + length / 2;
+        int status = rf_check_bytes(parsing->read, room, "its XMP");
 
         if (status == REFOCUS_OK) {
             value = realloc(value, room);
@@ -99,7 +101,8 @@ static void begin_value(struct parsing *parsing, int key)
     parsing->room = 0;
 }
 
-static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **attributes)
+static void XMLCALL on_start(void *user, const XML_Char *name,
+                             const XML_Char **attributes)
 {
     struct parsing *const parsing = user;
     int key;
@@ -117,7 +120,8 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
     }
     parsing->key = RF_XMP_KEYS;
     key = find_key(name);
-    if (key != RF_XMP_KEYS && !parsing->xmp->value[key] && parsing->status == REFOCUS_OK) {
+    if (key != RF_XMP_KEYS && !parsing->xmp->value[key] &&
+        parsing->status == REFOCUS_OK) {
         begin_value(parsing, key);
         append(parsing, "", 0);
     }
@@ -167,7 +171,8 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
         packet.size--;
     }
     while (packet.size > 0 && parsing->status == REFOCUS_OK) {
-        /* In steps: expat takes an int, and doubles its buffer up to what one step needs. */
+        /* In steps: expat takes an int, and doubles its buffer up to what one step
+         * needs. */
         const size_t step = packet.size < INT_MAX / 2 ? packet.size : INT_MAX / 2;
         if (XML_Parse(parsing->parser, (const char *)packet.data, (int)step,
                       step == packet.size) == XML_STATUS_ERROR) {
@@ -179,8 +184,8 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
     if (parsing->status != REFOCUS_OK) {
         return parsing->status;
     }
-    /* expat takes some failed allocations for an unbound prefix, or goes on without what
-     * it had no room for; malloc() itself says so in errno. */
+    /* expat takes some failed allocations for an unbound prefix, or goes on without
+     * what it had no room for; malloc() itself says so in errno. */
     error = XML_GetErrorCode(parsing->parser);
     if (error == XML_ERROR_NO_MEMORY || errno == ENOMEM) {
         return rf_fail_memory(parsing->read->reason);

@@ -1,5 +1,5 @@
-/* Extended XMP: a packet too large for one segment, in chunks that name the packet's GUID,
- * its length and their place in it. XMP specification part 3, 1.1.3.1. */
+/* Extended XMP: a packet too large for one segment, in chunks that name the packet's
+ * GUID, its length and their place in it. XMP specification part 3, 1.1.3.1. */
 #include "internal.h"
 
 #include <string.h>
@@ -44,10 +44,11 @@ static bool next_chunk(struct rf_jpeg_walk *walk, const char *guid, struct chunk
 
 static int fail_chunks(const struct rf_read *read, const char *why)
 {
-    return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                   "damaged: its extended XMP, which holds the depth, %s; copy the file "
-                   "again from the phone",
-                   why);
+    return rf_fail(
+        read->reason, REFOCUS_ERR_FORMAT,
+        "damaged: its extended XMP, which holds the depth, %s; copy the file "
+        "again from the phone",
+        why);
 }
 
 struct place {

@@ -2,170 +2,176 @@
 
 #include <string.h>
 
-/* Q7.8 pixels. The cone falls by 2/3 pixel a pixel: a third deeper than anything can be
- * seen through, so that mixed pixels along the edge do not end up as sources. */
-enum { STEP = 171, DIAGONAL = 241, HALF = 128, SURFACE = 256 };
+#include "planes/planes.h"
+#include "renderer/bands.h"
 
-static int max(int a, int b)
+/* Dilated values are s + 2^15, so that 0 lies below all of them. */
+static void bias_row(const struct refocus_renderer *r, uint16_t *m, int y)
 {
-    return a > b ? a : b;
+    const int16_t *s = r->front.blur + y * r->stride;
+
+    for (int x = 0; x < r->width; x++)
+        m[x] = (uint16_t)((uint16_t)s[x] ^ 0x8000);
+    m[-1] = m[r->width] = 0;
 }
 
-/* One direction of the two-pass distance transform: row y from the row before it (above
- * going down, below going up), then along the row. */
-static void dilate_row(int16_t *m, const int16_t *before, int width, bool forward)
+/* Steps straight and diagonally from above, into one plane, or from below, into another. */
+void rf_background_dilate(struct refocus_renderer *r, bool upwards)
 {
-    if (before) {
-        for (int x = 0; x < width; x++) {
-            int v = max(m[x], before[x] - STEP);
+    const int first = upwards ? r->height - 1 : 0, step = upwards ? -1 : 1;
+    uint16_t *row = r->behind.light[upwards] + first * r->stride;
 
-            if (x > 0)
-                v = max(v, before[x - 1] - DIAGONAL);
-            if (x + 1 < width)
-                v = max(v, before[x + 1] - DIAGONAL);
-            m[x] = (int16_t)v;
-        }
+    for (int i = 0; i < r->height; i++, row += step * r->stride) {
+        bias_row(r, row, first + i * step);
+        if (i > 0)
+            r->kernels.dilate_from(row, row - step * r->stride, r->width);
     }
-    if (forward)
-        for (int x = 1; x < width; x++)
-            m[x] = (int16_t)max(m[x], m[x - 1] - STEP);
-    else
-        for (int x = width - 2; x >= 0; x--)
-            m[x] = (int16_t)max(m[x], m[x + 1] - STEP);
 }
 
-static void dilate(const struct refocus_renderer *r, int16_t *m)
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1)
 {
-    for (int y = 0; y < r->height; y++) {
-        int16_t *row = m + y * r->stride;
+    const int w = r->width;
+    uint16_t *row = scratch + RF_SPREAD_MARGIN;
+    uint16_t *spare = row + w + 2 * RF_SPREAD_MARGIN;
+    const int reach = 2 * r->pad; /* blurs differ by K at most, the cone by half a pixel */
 
-        memcpy(row, r->front.blur + y * r->stride, (size_t)r->width * 2);
-        dilate_row(row, y ? row - r->stride : NULL, r->width, true);
-        dilate_row(row, NULL, r->width, false);
-    }
-    for (int y = r->height - 2; y >= 0; y--) {
-        int16_t *row = m + y * r->stride;
+    for (int y = y0; y < y1; y++) {
+        const ptrdiff_t at = y * r->stride;
+        const uint16_t *down = r->behind.light[0] + at, *up = r->behind.light[1] + at;
+        const uint16_t *dilated;
 
-        dilate_row(row, row + r->stride, r->width, true);
-        dilate_row(row, NULL, r->width, false);
+        for (int x = 0; x < w; x++)
+            row[x] = down[x] > up[x] ? down[x] : up[x];
+        dilated = r->kernels.spread_row(row, spare, reach, w);
+        r->kernels.mark(r->behind.blur + at, r->front.blur + at, dilated, w);
+        r->behind.blur[at + w] = RF_NO_BLUR; /* a column more if the width is odd */
+        for (int c = 0; c < 3; c++)
+            memcpy(r->behind.light[c] + at, r->smooth[c] + at, (size_t)w * 2);
     }
 }
 
 /* Level 0 of the pyramid is the padded layer itself. */
-static struct rf_level base_level(const struct refocus_renderer *r)
+static struct rf_level level_of(const struct refocus_renderer *r, int i)
 {
+    if (i > 0)
+        return r->level[i - 1];
     return (struct rf_level){
         .width = r->width,
         .height = r->height,
+        .stride = r->stride,
         .light = {r->behind.light[0], r->behind.light[1], r->behind.light[2]},
         .blur = r->behind.blur,
     };
 }
 
-/* A parent is the mean of those of its four children that are within one pixel of blur
- * of the farthest known one: what fills a gap must come from behind. */
-static void push(const struct rf_level *fine, ptrdiff_t fine_stride, struct rf_level *coarse)
+static void push_rows(struct refocus_renderer *r, int i, int y0, int y1)
 {
-    static const uint32_t share[5] = {0, 65536, 32768, 21845, 16384};
+    const struct rf_level fine = level_of(r, i), coarse = level_of(r, i + 1);
 
-    for (int y = 0; y < coarse->height; y++) {
-        for (int x = 0; x < coarse->width; x++) {
-            const size_t at = (size_t)y * coarse->width + x;
-            uint32_t sum[3] = {0, 0, 0}, n = 0;
-            int farthest = RF_NO_BLUR, blur = 0;
-            ptrdiff_t child[4];
-            int children = 0;
+    for (int y = y0; y < y1; y++) {
+        const ptrdiff_t at = y * coarse.stride, a = 2 * y * fine.stride;
+        const ptrdiff_t b = 2 * y + 1 < fine.height ? a + fine.stride : a;
+        uint16_t *const out[3] = {coarse.light[0] + at, coarse.light[1] + at,
+                                  coarse.light[2] + at};
+        const uint16_t *const upper[3] = {fine.light[0] + a, fine.light[1] + a,
+                                          fine.light[2] + a};
+        const uint16_t *const lower[3] = {fine.light[0] + b, fine.light[1] + b,
+                                          fine.light[2] + b};
 
-            for (int j = 0; j < 2; j++) {
-                for (int i = 0; i < 2; i++) {
-                    if (2 * x + i >= fine->width || 2 * y + j >= fine->height)
-                        continue;
-                    child[children] = (2 * y + j) * fine_stride + 2 * x + i;
-                    farthest = max(farthest, fine->blur[child[children++]]);
-                }
-            }
-            if (farthest == RF_NO_BLUR) {
-                coarse->blur[at] = RF_NO_BLUR;
-                continue;
-            }
-            for (int i = 0; i < children; i++) {
-                const int s = fine->blur[child[i]];
-
-                if (s == RF_NO_BLUR || s < farthest - SURFACE)
-                    continue;
-                n++;
-                blur += s;
-                for (int c = 0; c < 3; c++)
-                    sum[c] += fine->light[c][child[i]];
-            }
-            coarse->blur[at] = (int16_t)(blur / (int)n);
-            for (int c = 0; c < 3; c++)
-                coarse->light[c][at] = (uint16_t)((sum[c] * share[n] + 32768) >> 16);
-        }
+        r->kernels.push(out, coarse.blur + at, upper, lower, fine.blur + a, fine.blur + b,
+                        coarse.width);
+        if (coarse.width % 2)
+            coarse.blur[at + coarse.width] = RF_NO_BLUR;
     }
 }
 
-/* Unknown pixels take their parents' values, weighted 9, 3, 3, 1 by nearness. */
-static void pull(struct rf_level *fine, ptrdiff_t fine_stride, const struct rf_level *coarse)
+static bool all_known(const int16_t *blur, int n)
 {
-    for (int y = 0; y < fine->height; y++) {
-        for (int x = 0; x < fine->width; x++) {
-            const ptrdiff_t at = y * fine_stride + x;
-            int px, py, ox, oy, blur;
-            size_t p[4];
+    int16_t least = 0;
 
-            if (fine->blur[at] != RF_NO_BLUR)
-                continue;
-            px = x / 2;
-            py = y / 2;
-            ox = x & 1 ? px + 1 : px - 1;
-            oy = y & 1 ? py + 1 : py - 1;
-            ox = ox < 0 || ox >= coarse->width ? px : ox;
-            oy = oy < 0 || oy >= coarse->height ? py : oy;
-            p[0] = (size_t)py * coarse->width + px;
-            p[1] = (size_t)py * coarse->width + ox;
-            p[2] = (size_t)oy * coarse->width + px;
-            p[3] = (size_t)oy * coarse->width + ox;
-            blur = 9 * coarse->blur[p[0]] + 3 * coarse->blur[p[1]] +
-                   3 * coarse->blur[p[2]] + coarse->blur[p[3]] + 8;
-            fine->blur[at] = (int16_t)(blur >> 4);
-            for (int c = 0; c < 3; c++) {
-                const uint16_t *light = coarse->light[c];
+    for (int x = 0; x < n; x++)
+        least = blur[x] < least ? blur[x] : least;
+    return least != RF_NO_BLUR;
+}
 
-                fine->light[c][at] = (uint16_t)((9 * light[p[0]] + 3 * light[p[1]] +
-                                                 3 * light[p[2]] + light[p[3]] + 8) >> 4);
-            }
-        }
+static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int y0,
+                             int y1)
+{
+    const struct rf_level fine = level_of(r, i), coarse = level_of(r, i + 1);
+
+    for (int y = y0; y < y1; y++) {
+        const int near_y = y / 2;
+        int far_y = y % 2 ? near_y + 1 : near_y - 1;
+        const ptrdiff_t at = y * fine.stride;
+
+        if (all_known(fine.blur + at, fine.width))
+            continue;
+        if (far_y < 0 || far_y >= coarse.height)
+            far_y = near_y;
+        for (int c = 0; c < 3; c++)
+            r->kernels.pull(fine.light[c] + at, fine.blur + at,
+                            coarse.light[c] + near_y * coarse.stride,
+                            coarse.light[c] + far_y * coarse.stride, scratch, coarse.width);
+        r->kernels.pull_blur(fine.blur + at, coarse.blur + near_y * coarse.stride,
+                             coarse.width);
     }
 }
 
-static void mark(const struct refocus_renderer *r, const int16_t *m)
+struct fill {
+    struct refocus_renderer *r;
+    int level;
+};
+
+enum { BAND = 16, SMALL = 64 }; /* rows; levels that are not worth sharing out */
+
+static int end_of(int band, int height)
 {
-    for (int y = 0; y < r->height; y++) {
-        const ptrdiff_t at = y * r->stride;
+    return (band + 1) * BAND < height ? (band + 1) * BAND : height;
+}
 
-        for (int x = 0; x < r->width; x++) {
-            const int s = r->front.blur[at + x];
-            const bool foreground = m[at + x] > s + HALF;
+static void push_item(void *context, int band, int worker)
+{
+    const struct fill *fill = context;
 
-            r->behind.blur[at + x] = (int16_t)(foreground ? RF_NO_BLUR : s);
-            for (int c = 0; c < 3; c++)
-                r->behind.light[c][at + x] = r->smooth[c][at + x];
-        }
+    (void)worker;
+    push_rows(fill->r, fill->level, band * BAND,
+                            end_of(band, level_of(fill->r, fill->level + 1).height));
+}
+
+static void pull_item(void *context, int band, int worker)
+{
+    const struct fill *fill = context;
+    struct refocus_renderer *r = fill->r;
+    const int y0 = band * BAND, y1 = end_of(band, level_of(r, fill->level).height);
+
+    pull_rows(r, fill->level, rf_scratch(r, worker), y0, y1);
+    if (fill->level == 0) {
+        for (int c = 0; c < 3; c++)
+            rf_extend_rows(r, r->behind.light[c], y0, y1);
+        rf_extend_rows(r, r->behind.blur, y0, y1);
     }
 }
 
-void rf_background(struct refocus_renderer *r)
+static void run(struct fill *fill, rf_work_fn *work, int height)
 {
-    int16_t *m = r->behind.blur; /* read for a pixel before it is written */
-    struct rf_level base = base_level(r);
+    const int bands = (height + BAND - 1) / BAND;
 
-    dilate(r, m);
-    mark(r, m);
-    for (int i = 0; i < r->levels; i++)
-        push(i ? &r->level[i - 1] : &base, i ? r->level[i - 1].width : r->stride,
-             &r->level[i]);
-    for (int i = r->levels - 1; i >= 0; i--)
-        pull(i ? &r->level[i - 1] : &base, i ? r->level[i - 1].width : r->stride,
-             &r->level[i]);
+    if (height > SMALL)
+        rf_pool_run(&fill->r->pool, work, fill, bands);
+    else
+        for (int band = 0; band < bands; band++)
+            work(fill, band, 0);
+}
+
+void rf_background_fill(struct refocus_renderer *r)
+{
+    struct fill fill = {r, 0};
+
+    for (fill.level = 0; fill.level < r->levels; fill.level++)
+        run(&fill, push_item, level_of(r, fill.level + 1).height);
+    for (fill.level = r->levels - 1; fill.level >= 0; fill.level--)
+        run(&fill, pull_item, level_of(r, fill.level).height);
+    if (r->levels == 0) /* a picture of one pixel: nothing is unknown */
+        for (int c = 0; c < 4; c++)
+            rf_extend_rows(r, c < 3 ? (void *)r->behind.light[c] : r->behind.blur, 0, 1);
 }

@@ -1,25 +1,33 @@
 /* background.h: what is behind the foreground.
  *
  * A blurred foreground lets through what is behind its edge. One picture does not show
- * that, so a second layer is made up: pixels that could be seen through are replaced by
- * what is farther away beside them.
+ * that, so a second layer, r->behind, is made up: pixels that could be seen through are
+ * replaced by what is beside them and farther away.
+ *
+ * Mark: p is foreground where some q lies farther behind than it is away,
+ *
+ *     max over q of (s(q) - |p - q| / 2) > s(p) + 1/2 pixel,
+ *
+ * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and
+ * sqrt 2. Slope 1 would mark what can be seen through; slope 1/2 marks twice as deep, so that
+ * the sources nearest to what is seen lie on the far side. Fill: marked pixels take light
+ * and blur by push-pull from the rest, in a pyramid.
+ *
+ * The steps, in this order; rows may be shared out within a step.
  */
 #ifndef RF_BACKGROUND_H
 #define RF_BACKGROUND_H
 
 #include "renderer/renderer.h"
 
-/*
- * Fill r->behind from r->front.blur and r->smooth.
- *
- * Mark: p is foreground where some q lies farther behind than it is away,
- *
- *     max over q of (s(q) - 2/3 |p - q|) > s(p) + 1/2 pixel,
- *
- * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and
- * sqrt 2. (Slope 1 would be what can be seen through; 2/3 keeps the mixed pixels beside it
- * out of the sources.) Fill: marked pixels take light and blur by push-pull from the rest.
- */
-void rf_background(struct refocus_renderer *r);
+/* The dilation but for its steps along rows: from above, and from below. Both directions
+ * may run at once. Uses the planes r->behind.light[0] and [1]. */
+void rf_background_dilate(struct refocus_renderer *r, bool upwards);
+
+/* The steps along rows, and the mark; copies r->smooth. */
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1);
+
+/* Push-pull, and the border. */
+void rf_background_fill(struct refocus_renderer *r);
 
 #endif

@@ -116,7 +116,7 @@ void rf_upsample_rows(struct refocus_renderer *r, const struct refocus_disparity
 
     for (int y = y0; y < y1; y++) {
         const struct taps down = taps_at(y, r->height, map->height);
-        uint16_t *out = r->disparity + (size_t)y * r->width;
+        uint16_t *out = r->disparity + y * r->stride;
 
         for (int x = 0; x < r->width; x++) {
             const struct taps across = taps_at(x, r->width, map->width);

@@ -16,58 +16,7 @@
 
 enum { LANES = RF_TILE * RF_TILE };
 
-/* The pixels of a tile. Sums of up to 65,025 rays of Q12 light stay below 2^28. */
-struct lanes {
-    uint16_t free[LANES]; /* 0xffff: this pixel's ray has met nothing yet */
-    uint32_t light[3][LANES];
-};
-
-/* Light of one layer at an offset, for free pixels whose ray meets it there. */
-static void add_hits(const struct rf_frame *f, const struct rf_slab *slab, ptrdiff_t from,
-                     struct lanes *lanes)
-{
-    const struct refocus_renderer *r = f->r;
-
-    for (int y = 0; y < RF_TILE; y++) {
-        const ptrdiff_t at = from + y * r->stride;
-        const int16_t *restrict s = r->front.blur + at;
-        const uint16_t *restrict red = r->smooth[0] + at;
-        const uint16_t *restrict green = r->smooth[1] + at;
-        const uint16_t *restrict blue = r->smooth[2] + at;
-        uint16_t *restrict is_free = lanes->free + y * RF_TILE;
-        uint32_t *restrict sum0 = lanes->light[0] + y * RF_TILE;
-        uint32_t *restrict sum1 = lanes->light[1] + y * RF_TILE;
-        uint32_t *restrict sum2 = lanes->light[2] + y * RF_TILE;
-
-        for (int x = 0; x < RF_TILE; x++) {
-            const uint16_t above = (uint16_t)(s[x] - slab->low);
-            const uint16_t hit = above <= slab->width ? is_free[x] : 0;
-
-            is_free[x] &= (uint16_t)~hit;
-            sum0[x] += red[x] & hit;
-            sum1[x] += green[x] & hit;
-            sum2[x] += blue[x] & hit;
-        }
-    }
-}
-
-static void add_behind(const struct rf_frame *f, ptrdiff_t from, struct lanes *lanes)
-{
-    const struct refocus_renderer *r = f->r;
-
-    for (int c = 0; c < 3; c++) {
-        for (int y = 0; y < RF_TILE; y++) {
-            const uint16_t *restrict light = r->behind.light[c] + from + y * r->stride;
-            const uint16_t *restrict is_free = lanes->free + y * RF_TILE;
-            uint32_t *restrict sum = lanes->light[c] + y * RF_TILE;
-
-            for (int x = 0; x < RF_TILE; x++)
-                sum[x] += light[x] & is_free[x];
-        }
-    }
-}
-
-/* As above with eq. 5's weights: each pixel counts w times. */
+/* Hits with eq. 5's weights: each pixel counts w times. Slab NULL: whatever is there. */
 static void weigh_hits(const struct rf_frame *f, uint16_t *const light[3],
                        const struct rf_slab *slab, ptrdiff_t from, uint32_t ray_weight,
                        uint16_t *is_free, struct rf_sums *sums)
@@ -93,38 +42,61 @@ static ptrdiff_t shifted(const struct rf_frame *f, ptrdiff_t origin,
     return origin + rf_offset(ray->v, blur) * f->r->stride + rf_offset(ray->u, blur);
 }
 
-static void add_lanes(const struct lanes *lanes, uint64_t weight, struct rf_sums *sums)
+static void add_run(uint32_t run[3][LANES], uint64_t weight, struct rf_sums *sums)
 {
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         for (int i = 0; i < LANES; i++)
-            sums->light[c][i] += weight * lanes->light[c][i];
+            sums->light[c][i] += weight * run[c][i];
+        memset(run[c], 0, sizeof run[c]);
+    }
 }
 
-/* Rays come in runs of equal weight; a run is summed plainly and weighted once. */
+/* Offsets of some rays at the centre of a slab, in elements of the planes. */
+static void set_offsets(int32_t offset[RF_RAY_CHUNK], const struct refocus_ray *ray, int rays,
+                        int blur, ptrdiff_t stride)
+{
+    for (int n = 0; n < rays; n++)
+        offset[n] = rf_offset(ray[n].v, blur) * (int32_t)stride + rf_offset(ray[n].u, blur);
+}
+
+/* Rays come in runs of equal weight; a run is summed plainly and weighted once. Sums of
+ * a run, 65,025 rays of Q12 light at the most, stay below 2^28. The sums of a set that is one
+ * run are left in `run`; others are added up in `sums`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct rf_ray_set *set, ptrdiff_t origin, int behind,
-                       struct rf_sums *sums)
+                       uint32_t run[3][LANES], struct rf_sums *sums)
 {
-    struct lanes lanes;
+    const struct refocus_renderer *r = f->r;
+    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    struct rf_sweep_job job = {
+        .blur = r->front.blur + origin,
+        .behind = r->behind.light[0] + origin,
+        .stride = r->stride,
+        .pitch = r->pitch,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])offset,
+        .see_behind = !plan->uniform,
+        .uniform = plan->uniform,
+        .bright = f->params->highlight_gain > 1,
+    };
 
-    memset(sums, 0, sizeof *sums);
-    memset(&lanes, 0, sizeof lanes);
-    for (int n = 0; n < set->count; n++) {
+    memset(run, 0, 3 * sizeof run[0]);
+    for (int n = 0; n < set->count; n += job.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        memset(lanes.free, 0xff, sizeof lanes.free);
-        for (int i = 0; i < plan->slabs; i++)
-            add_hits(f, &plan->slab[i], shifted(f, origin, ray, plan->slab[i].centre),
-                     &lanes);
-        if (!plan->uniform)
-            add_behind(f, shifted(f, origin, ray, behind), &lanes);
-        if (n + 1 == set->count || ray[1].weight != ray->weight) {
-            add_lanes(&lanes, ray->weight, sums);
-            memset(&lanes, 0, sizeof lanes);
-        }
+        job.rays = 1;
+        while (job.rays < RF_RAY_CHUNK && n + job.rays < set->count &&
+               ray[job.rays].weight == ray->weight)
+            job.rays++;
+        for (int k = 0; k < plan->slabs; k++)
+            set_offsets(offset[k], ray, job.rays, plan->slab[k].centre, r->stride);
+        set_offsets(offset[plan->slabs], ray, job.rays, behind, r->stride);
+        r->kernels.sweep(run, &job);
+        if (!set->equal &&
+            (n + job.rays == set->count || ray[job.rays].weight != ray->weight))
+            add_run(run, ray->weight, sums);
     }
-    for (int i = 0; i < LANES; i++)
-        sums->weight[i] = set->total_weight;
 }
 
 static void sweep_weighted(const struct rf_frame *f, const struct rf_tile_plan *plan,
@@ -133,7 +105,6 @@ static void sweep_weighted(const struct rf_frame *f, const struct rf_tile_plan *
 {
     uint16_t is_free[LANES];
 
-    memset(sums, 0, sizeof *sums);
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
 
@@ -156,7 +127,6 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     const int behind = r->behind.blur[origin + RF_TILE / 2 * (r->stride + 1)];
     const struct rf_ray_set *set;
     struct rf_tile_plan plan;
-    struct rf_sums sums;
 
     (void)worker;
     rf_plan_tile(r, f->scale, tx, ty, f->aperture->shape == RF_SHAPE_MASK, &plan);
@@ -164,10 +134,28 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_copy_tile(f, rect);
         return;
     }
-    set = rf_rays_for(r, plan.reach);
-    if (f->weighted)
-        sweep_weighted(f, &plan, set, origin, behind, &sums);
-    else
-        sweep_rays(f, &plan, set, origin, behind, &sums);
-    rf_encode_tile(f, rect, &sums);
+    set = rf_rays_for(r, plan.reach, plan.lamp);
+    if (set->equal && !f->weighted) {
+        const uint32_t scale = rf_mean_scale((uint64_t)set->count);
+        uint16_t mean[3][LANES];
+        uint32_t run[3][LANES];
+
+        sweep_rays(f, &plan, set, origin, behind, run, NULL);
+        for (int c = 0; c < 3; c++)
+            r->kernels.means(mean[c], run[c], scale, LANES);
+        rf_encode_means(f, rect, mean);
+    } else {
+        struct rf_sums sums;
+        uint32_t run[3][LANES];
+
+        memset(&sums, 0, sizeof sums);
+        if (f->weighted) {
+            sweep_weighted(f, &plan, set, origin, behind, &sums);
+        } else {
+            sweep_rays(f, &plan, set, origin, behind, run, &sums);
+            for (int i = 0; i < LANES; i++)
+                sums.weight[i] = set->total_weight;
+        }
+        rf_encode_tile(f, rect, &sums);
+    }
 }

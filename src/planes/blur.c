@@ -1,6 +1,7 @@
 #include "planes/planes.h"
 
 #include <math.h>
+#include <string.h>
 
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
 {
@@ -12,59 +13,58 @@ struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
 
 void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1)
 {
-    const int df = focus.disparity;
-    const uint32_t radius = focus.radius;
-
-    for (int y = y0; y < y1; y++) {
-        const uint16_t *restrict d = r->disparity + (size_t)y * r->width;
-        int16_t *restrict s = r->front.blur + y * r->stride;
-
-        for (int x = 0; x < r->width; x++) {
-            const uint32_t distance = (uint32_t)(d[x] > df ? d[x] - df : df - d[x]);
-            const int blur = (int)((distance * radius + (1 << 15)) >> 16);
-
-            s[x] = (int16_t)(d[x] > df ? -blur : blur);
-        }
-    }
+    for (int y = y0; y < y1; y++)
+        r->kernels.signed_blur(r->front.blur + y * r->stride,
+                               r->disparity + y * r->stride, focus, r->width);
     rf_extend_rows(r, r->front.blur, y0, y1);
 }
 
-void rf_prefilter_rows(struct refocus_renderer *r, int least, int y0, int y1)
+/* Whether a tile holds blurs above `least`. */
+static bool is_wide(const struct refocus_renderer *r, int tx, int ty, int least)
 {
-    /* 65536 / n rounded: exact for sums of n equal Q12 values */
-    static const uint32_t share[10] = {0,     65536, 32768, 21845, 16384,
-                                       13107, 10923, 9362,  8192,  7282};
-    const ptrdiff_t stride = r->stride;
+    const struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
 
-    for (int y = y0; y < y1; y++) {
-        const int16_t *s = r->front.blur + y * stride;
+    return bins->most > least || -bins->least > least;
+}
 
-        for (int x = 0; x < r->width; x++) {
-            const ptrdiff_t at = y * stride + x;
-            const int middle = s[x];
-            uint32_t sum[3] = {0, 0, 0}, n = 0;
+/* n columns of a row of one plane, from `at` on. */
+static void smooth_run(const struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
+                       ptrdiff_t at, int step, int least, uint16_t *scratch, int n)
+{
+    const ptrdiff_t down = step * r->stride;
+    const uint16_t *from = in + at - step;
+    const int16_t *s = r->front.blur + at;
+    uint16_t *const row = scratch + step;
 
-            if (middle <= least && -middle <= least) {
-                for (int c = 0; c < 3; c++)
-                    r->smooth[c][at] = r->front.light[c][at];
-                continue;
+    r->kernels.smooth3(row - step, from - down, from, from + down, s - step - down, s - step,
+                       s - step + down, least, n + 2 * step);
+    r->kernels.smooth3(out + at, row - step, row, row + step, s - step, s, s + step, least, n);
+}
+
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
+                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty)
+{
+    const int y0 = ty * RF_TILE, y1 = y0 + RF_TILE < r->height ? y0 + RF_TILE : r->height;
+
+    for (int tx = 0, end; tx < r->tiles_x; tx = end) {
+        const bool wide = is_wide(r, tx, ty, least);
+        const int x0 = tx * RF_TILE;
+        int n;
+
+        for (end = tx + 1; end < r->tiles_x && is_wide(r, end, ty, least) == wide;)
+            end++;
+        n = (end * RF_TILE < r->width ? end * RF_TILE : r->width) - x0;
+        for (int y = y0; y < y1; y++) {
+            const ptrdiff_t at = y * r->stride + x0;
+
+            for (int c = 0; c < 3; c++) {
+                if (wide)
+                    smooth_run(r, out[c], in[c], at, step, least, scratch, n);
+                else
+                    memcpy(out[c] + at, in[c] + at, (size_t)n * 2);
             }
-            for (int j = -1; j <= 1; j++) {
-                for (int i = -1; i <= 1; i++) {
-                    const ptrdiff_t near_by = at + j * stride + i;
-                    const int apart = r->front.blur[near_by] - middle;
-
-                    if (apart > 256 || apart < -256)
-                        continue;
-                    n++;
-                    for (int c = 0; c < 3; c++)
-                        sum[c] += r->front.light[c][near_by];
-                }
-            }
-            for (int c = 0; c < 3; c++)
-                r->smooth[c][at] = (uint16_t)((sum[c] * share[n] + 32768) >> 16);
         }
     }
     for (int c = 0; c < 3; c++)
-        rf_extend_rows(r, r->smooth[c], y0, y1);
+        rf_extend_rows(r, out[c], y0, y1);
 }

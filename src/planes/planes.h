@@ -18,25 +18,22 @@ void rf_reblend_rows(struct refocus_renderer *r, uint32_t blend, int y0, int y1)
 void rf_disparity_rows(struct refocus_renderer *r, const struct refocus_disparity *map,
                        int y0, int y1);
 
-/* Focus and blur in fixed point. */
-struct rf_focus {
-    uint16_t disparity; /* df, Q16 with 65535 = 1 */
-    uint16_t radius;    /* K in Q8.8, scaled by 65536 / 65535 */
-};
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 
-/*
- * Signed blur: s = K (df - d), Yang et al. 2016, eq. 4. Q7.8 pixels, rounded half up in
- * magnitude; within 1/256 pixel of the real value. The border is extended.
- */
+/* Signed blur, eq. 4, and its border. */
 void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1);
 
 /*
- * Pre-filter: where |s| is above `least` (Q7.8), the mean of those pixels of the 3x3
- * neighbourhood that are within one pixel of blur of its middle; the light as it is
- * elsewhere. Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart.
+ * One step of the pre-filter for a row of tiles, whose bins are known: where |s| is above `least` (Q7.8), the mean of three rows, then
+ * of three columns, `step` pixels apart, of those pixels that are within one pixel of blur of
+ * the middle one; the light as it is elsewhere. Borders are extended.
+ *
+ * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 1 closes gaps from
+ * 1.5 pixels on; steps of 2 and 4 after it close those twice and four times as wide.
  */
-void rf_prefilter_rows(struct refocus_renderer *r, int least, int y0, int y1);
+enum { RF_PREFILTER_STEPS = 3 };
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
+                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty);
 
 /* Extend rows y0..y1-1 of a padded plane of 16-bit values beyond its sides, and the first
  * and the last row of the picture above and below it. */

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "renderer/layout.h"
 
@@ -29,7 +28,8 @@ static bool read_params(struct refocus_renderer_params *own,
            own->max_height >= 1 && own->max_height <= REFOCUS_MAX_SIDE &&
            own->max_blur_radius >= 0 && own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS &&
            own->threads >= 0 && own->threads <= RF_MAX_THREADS &&
-           own->cpu <= REFOCUS_CPU_AVX2 &&
+           own->cpu <= REFOCUS_CPU_AVX2 && (own->methods & ~REFOCUS_METHODS_ALL) == 0 &&
+           own->reserved == 0 &&
            !own->allocator.allocate == !own->allocator.release;
 }
 
@@ -40,19 +40,11 @@ uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params)
     return read_params(&own, params) ? rf_layout_size(&own) : 0;
 }
 
-static int threads_for(const struct refocus_renderer_params *params)
-{
-    long n = params->threads;
-
-    if (n == 0)
-        n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
-}
-
 int refocus_renderer_create(struct refocus_renderer **renderer,
                             const struct refocus_renderer_params *params)
 {
     struct refocus_renderer_params own;
+    struct rf_kernels kernels;
     struct refocus_renderer *r;
     uint64_t size;
     void *block;
@@ -63,7 +55,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     *renderer = NULL;
     if (!read_params(&own, params))
         return REFOCUS_ERR_ARGUMENT;
-    if (own.cpu != REFOCUS_CPU_AUTO && own.cpu != REFOCUS_CPU_C)
+    if (!rf_kernels_select(&kernels, &own.cpu))
         return REFOCUS_ERR_UNSUPPORTED;
     size = rf_layout_size(&own);
     if (size > PTRDIFF_MAX || (own.max_memory && size > own.max_memory))
@@ -78,15 +70,21 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->log = own.log;
     r->block = block;
     r->memory = size;
-    r->cpu = REFOCUS_CPU_C;
+    r->cpu = own.cpu;
+    r->kernels = kernels;
     r->max_width = own.max_width;
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;
-    r->pad = rf_padding_for(own.max_blur_radius);
+    r->methods = own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    r->work_owner = RF_NO_METHOD;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
     atomic_init(&r->run, RF_RUN_IDLE);
-    status = rf_pool_start(&r->pool, threads_for(&own), &r->run);
+    status = rf_pool_start(&r->pool, rf_threads_for(&own), &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);
         return status;

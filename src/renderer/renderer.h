@@ -9,21 +9,26 @@
 #include <refocus/render.h>
 
 #include "colour/transfer.h"
+#include "highlights/highlights.h"
+#include "highlights/rims.h"
+#include "kernels/kernels.h"
 #include "support/pool.h"
 
 enum {
-    RF_TILE = 16,     /* tiles are RF_TILE x RF_TILE pixels */
-    RF_BINS = 256,    /* of signed blur in a tile */
+    RF_GROUP = 4,     /* planes that lie together */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
-    RF_RAY_CLASSES = 7,
+    RF_RAY_CLASSES = 12, /* a preset's own set and smaller ones; denser ones for lamps */
     RF_FULL_RAYS = 255 * 255,
 };
+
+#define RF_NO_METHOD UINT32_MAX
 
 /* Rays and runs of equal weight among them. */
 struct rf_ray_set {
     struct refocus_ray *ray;
     int count;
     uint64_t total_weight;
+    bool equal; /* all rays weigh the same */
 };
 
 /* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
@@ -33,18 +38,19 @@ struct rf_layer {
     int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
 };
 
-/* A level of the background pyramid, without padding. */
+/* A level of the background pyramid, without padding but with an even stride. */
 struct rf_level {
     int width, height;
+    ptrdiff_t stride;
     uint16_t *light[3];
     int16_t *blur; /* RF_NO_BLUR: nothing known here */
 };
 
-enum { RF_NO_BLUR = INT16_MIN };
-
-/* Occupied bins of signed blur, a bit each, nearest first. */
+/* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
+    int16_t least, most; /* Q7.8 */
+    int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
 };
 
 struct refocus_renderer {
@@ -52,7 +58,8 @@ struct refocus_renderer {
     struct refocus_log log;
     void *block;
     uint64_t memory;
-    uint32_t cpu;
+    uint32_t cpu; /* enum refocus_cpu, never AUTO */
+    struct rf_kernels kernels;
     int max_width, max_height;
     float max_blur_radius;
 
@@ -63,12 +70,18 @@ struct refocus_renderer {
     bool prepared;
     int width, height;
     int pad;            /* pixels beyond each side that may be read */
-    ptrdiff_t stride;   /* elements, of all padded planes */
+    ptrdiff_t stride;   /* elements from row to row, of all padded planes */
+    ptrdiff_t pitch;    /* elements between the planes of a group; see layout.c */
     uint32_t blend;     /* that the light planes are in */
-    uint16_t *disparity;
+    uint16_t *disparity; /* padded, its border is not set */
     uint8_t *alpha;     /* unpadded, width a row */
     struct rf_layer front;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
+    struct rf_highlight *highlight; /* of the photo in this blend, once they are found */
+    uint64_t highlights;
+    bool highlights_found;
+    struct rf_rim *rim; /* of the photo */
+    uint64_t rims;
 
     /* Of the last lens setting. */
     struct rf_layer behind; /* the background layer */
@@ -76,6 +89,7 @@ struct refocus_renderer {
     int levels;
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
+    uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
     bool blurred;         /* front.blur is valid */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
@@ -83,12 +97,29 @@ struct refocus_renderer {
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 
+    uint8_t *work;       /* memory of the methods that work on whole frames, one at a time */
+    uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
+    uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
+
     struct refocus_ray *rays;    /* memory of all sets */
     struct rf_ray_set set[RF_RAY_CLASSES];
     int sets;               /* how many are filled, 0: none yet */
+    int preset;             /* the one that has as many rays as were asked for */
     uint64_t set_aperture;  /* what they were made for */
     int set_rays;
+    bool set_denser;
     float set_blur;
 };
+
+/* A worker's scratch: two rows of the largest picture with the margins of spread_row. */
+static inline uint64_t rf_scratch_size(int max_width)
+{
+    return 2 * ((uint64_t)max_width + 2 * RF_SPREAD_MARGIN);
+}
+
+static inline uint16_t *rf_scratch(const struct refocus_renderer *r, int worker)
+{
+    return r->scratch + (size_t)worker * rf_scratch_size(r->max_width);
+}
 
 #endif

@@ -24,26 +24,61 @@ static int edge_of(struct rf_bin_scale scale, int bin)
     return (bin - scale.focus) * (1 << scale.shift) - HALF;
 }
 
+/* Flags of bins, a byte each, to bits. */
+static struct rf_bins pack(const uint8_t flag[RF_BINS])
+{
+    struct rf_bins bins = {.word = {0}};
+
+    for (int i = 0; i < RF_BINS; i++)
+        bins.word[i / 64] |= (uint64_t)flag[i] << (i % 64);
+    return bins;
+}
+
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
 {
     const int y1 = (ty + 1) * RF_TILE < r->height ? (ty + 1) * RF_TILE : r->height;
 
     for (int tx = 0; tx < r->tiles_x; tx++) {
-        const int x0 = tx * RF_TILE;
-        const int x1 = x0 + RF_TILE < r->width ? x0 + RF_TILE : r->width;
-        struct rf_bins bins = {{0}};
+        struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+        const ptrdiff_t x0 = (ptrdiff_t)tx * RF_TILE; /* the border repeats the last pixel */
+        int16_t least = INT16_MAX, most = INT16_MIN;
+        uint8_t flag[RF_BINS] = {0};
 
         for (int y = ty * RF_TILE; y < y1; y++) {
-            const int16_t *s = r->front.blur + y * r->stride;
+            const int16_t *s = r->front.blur + y * r->stride + x0;
 
-            for (int x = x0; x < x1; x++) {
-                const int bin = bin_of(scale, s[x]);
-
-                bins.word[bin / 64] |= UINT64_C(1) << (bin % 64);
+            for (int x = 0; x < RF_TILE; x++) {
+                least = s[x] < least ? s[x] : least;
+                most = s[x] > most ? s[x] : most;
             }
         }
-        r->bins[(size_t)ty * r->tiles_x + tx] = bins;
+        if (bin_of(scale, least) == bin_of(scale, most)) {
+            memset(bins, 0, sizeof *bins);
+            bins->word[bin_of(scale, least) / 64] = UINT64_C(1) << bin_of(scale, least) % 64;
+        } else {
+            for (int y = ty * RF_TILE; y < y1; y++) {
+                const int16_t *s = r->front.blur + y * r->stride + x0;
+
+                for (int x = 0; x < RF_TILE; x++)
+                    flag[bin_of(scale, s[x])] = 1;
+            }
+            *bins = pack(flag);
+        }
+        bins->least = least;
+        bins->most = most;
+        bins->lamp = 0;
     }
+}
+
+void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                int16_t blur)
+{
+    struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+    const int bin = bin_of(scale, blur);
+
+    bins->word[bin / 64] |= UINT64_C(1) << bin % 64;
+    bins->least = blur < bins->least ? blur : bins->least;
+    bins->most = blur > bins->most ? blur : bins->most;
 }
 
 static bool has(const struct rf_bins *bins, int bin)
@@ -71,14 +106,26 @@ static int gap_of(int n)
     return n ? (n - 1) * RF_TILE + 1 : 0;
 }
 
+/* Drop the bins of blurs below s: a pixel g away is met only if |s| >= g - 1. */
+static void drop_short(struct rf_bins *bins, struct rf_bin_scale scale, int s)
+{
+    const int first = bin_of(scale, -s + (1 << scale.shift)), end = bin_of(scale, s);
+    const int low = edge_of(scale, first), high = edge_of(scale, end);
+
+    clear(bins, first, end);
+    if (bins->least >= low && bins->least < high)
+        bins->least = (int16_t)high;
+    if (bins->most >= low && bins->most < high)
+        bins->most = (int16_t)(low - 1);
+}
+
 /* Bins that reach tile (tx, ty) and all bins that stand in the window around it. */
 static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx,
                     int ty, bool square, struct rf_bins *reach, struct rf_bins *window)
 {
     const int most = (r->pad - 2 + RF_TILE - 1) / RF_TILE;
 
-    memset(reach, 0, sizeof *reach);
-    memset(window, 0, sizeof *window);
+    *reach = *window = (struct rf_bins){{0}, INT16_MAX, INT16_MIN, 0};
     for (int j = -most; j <= most; j++) {
         if (ty + j < 0 || ty + j >= r->tiles_y)
             continue;
@@ -95,14 +142,14 @@ static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale,
             if (!square)
                 while (least * least < gx * gx + gy * gy)
                     least++;
-            /* a pixel `least` away is met only if |s| >= least - 1 */
-            if (least > 1) {
-                const int s = (least - 1) * 256;
-
-                clear(&bins, bin_of(scale, -s + (1 << scale.shift)), bin_of(scale, s));
-            }
+            if (bins.lamp > reach->lamp && bins.lamp >= (least - 1) * 256)
+                reach->lamp = bins.lamp;
+            if (least > 1)
+                drop_short(&bins, scale, (least - 1) * 256);
             for (int k = 0; k < RF_BINS / 64; k++)
                 reach->word[k] |= bins.word[k];
+            reach->least = bins.least < reach->least ? bins.least : reach->least;
+            reach->most = bins.most > reach->most ? bins.most : reach->most;
         }
     }
 }
@@ -140,7 +187,9 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             if (has(bins, b))
                 last = b;
         high = edge_of(scale, last + 1) - 1;
-        centre = (low + high + 1) / 2;
+        low = low < bins->least ? bins->least : low;
+        high = high > bins->most ? bins->most : high;
+        centre = low + (high - low + 1) / 2; /* exact for a single blur */
         plan->sharp = false;
         if (-low > plan->reach)
             plan->reach = -low;
@@ -165,5 +214,6 @@ void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, i
 
     collect(r, scale, tx, ty, square, &reach, &window);
     cover(&reach, scale, plan);
-    plan->uniform = plan->slabs == 1 && !memcmp(&reach, &window, sizeof reach);
+    plan->lamp = reach.lamp > 0;
+    plan->uniform = plan->slabs == 1 && !memcmp(reach.word, window.word, sizeof reach.word);
 }

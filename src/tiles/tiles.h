@@ -3,6 +3,7 @@
 #define RF_TILES_H
 
 #include "renderer/renderer.h"
+#include "tiles/slab.h"
 
 /*
  * Bins of signed blur: a quarter pixel wide up to K = 31.5, then half, then whole pixels.
@@ -16,25 +17,23 @@ struct rf_bin_scale {
 };
 struct rf_bin_scale rf_bin_scale_of(float max_blur_radius);
 
-/* A range of signed blur that is met at one offset: ray u sees it at round(u centre). */
-struct rf_slab {
-    int16_t low;    /* a pixel of blur s is hit if 0 <= s - low <= width */
-    uint16_t width;
-    int16_t centre; /* Q7.8 */
-};
-
 enum { RF_MAX_SLABS = RF_BINS };
 
 struct rf_tile_plan {
     int slabs;
     int reach; /* largest |s| that reaches the tile, Q7.8 */
     bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
+    bool lamp;    /* a highlight is in reach */
     bool uniform; /* one slab holds all blurs in reach: every ray hits at once */
     struct rf_slab slab[RF_MAX_SLABS];
 };
 
 /* Bins of the tiles of row ty. */
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);
+
+/* One more blur in a tile. */
+void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                int16_t blur);
 
 /* Everything the rays of a tile need. `square`: the aperture reaches beyond the unit
  * circle, so that distances count by the larger axis. */

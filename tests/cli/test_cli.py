@@ -5,6 +5,7 @@ import json
 import os
 import pty
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -368,7 +369,7 @@ class Results(Case):
         def blur(*more):
             return self.reports(*self.render(*more))['blur']
 
-        self.assertAlmostEqual(blur(), W / 36, 5)
+        self.assertAlmostEqual(blur(), W / 50, 5)
         lens = ('--near', '0.5', '--far', '4', '--f-number', '8', '--focal-length', '50')
         expected = 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4)
         self.assertAlmostEqual(blur(*lens), expected, 5)
@@ -597,6 +598,64 @@ class Failures(Case):
         return 'text.pgm'
 
 
+class Extremes(Case):
+    METHODS = ('sweep', 'search', 'raytrace')
+
+    def test_one_pixel(self):
+        pictures.ppm('one.ppm', 1, 1, lambda x, y: (7, 77, 177))
+        pictures.pgm('one.pgm', 1, 1, lambda x, y: 9)
+        for method in self.METHODS:
+            for depth in ('one.pgm', 'depth.pgm'):
+                self.succeeds('render', 'one.ppm', '--depth', depth, '--blur', '127', '-o',
+                              'out.ppm', '--method', method)
+                self.same(pictures.read_pnm('out.ppm'), pictures.read_pnm('one.ppm'))
+            self.succeeds(*self.render('--depth', 'one.pgm', '--method', method))
+        for view in ('depth', 'blur'):
+            self.succeeds('render', 'one.ppm', '--depth', 'one.pgm', '-o', 'out.ppm', '--view',
+                          view)
+
+    def test_longest_side(self):
+        pictures.ppm('long.ppm', 65535, 1, lambda x, y: (x & 255, 7, x >> 8))
+        pictures.pgm('long.pgm', 65535, 1, lambda x, y: x // 300)
+        pictures.pgm('tall.pgm', 1, 65535, lambda x, y: x // 300)
+        for depth in ('long.pgm', 'tall.pgm'):
+            report = self.reports('render', 'long.ppm', '--depth', depth, '--blur', '5', '-o',
+                                  'out.png')
+            self.assertEqual((report['width'], report['height']), (65535, 1))
+        self.succeeds('render', 'long.ppm', '--depth', 'long.pgm', '--view', 'depth', '-o',
+                      'out.png')
+
+    def test_absurd_size(self):
+        with open('huge.ppm', 'wb') as file:
+            file.write(b'P6\n65535 65535\n255\n')
+        self.fails(1, re.compile('^refocus: huge.ppm: .*limit'), 'info', 'huge.ppm')
+
+    def test_little_memory(self):
+        """Whatever allocation fails: a line, and no file."""
+        def limit(kib):
+            return lambda: resource.setrlimit(resource.RLIMIT_AS, (kib << 10, kib << 10))
+
+        least = next((kib for kib in range(8000, 200000, 2000) if subprocess.run(
+            [REFOCUS, '--version'], preexec_fn=limit(kib), stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL).returncode == 0), None)
+        if not least:
+            self.skipTest('a sanitizer takes more address space than that')
+        pictures.png('black.png', 1500, 1000, [bytes(4500)] * 1000)
+        codes = set()
+        for more in range(0, 80000, 5000):
+            out = 'out%d.png' % more
+            result = self.run_it('render', 'black.png', '--depth', 'depth.pgm', '--blur', '9',
+                                 '--threads', '1', '--rays', '8', '-o', out,
+                                 preexec_fn=limit(least + more))
+            codes.add(result.returncode)
+            self.assertEqual(os.path.exists(out), result.returncode == 0)
+            if result.returncode != 0:
+                self.assertRegex(result.stderr, r'^refocus: .*: .*\n$')
+                self.assertEqual(result.stderr.count('\n'), 1)
+        self.assertIn(1, codes)
+        self.assertTrue(codes <= {0, 1}, codes)
+
+
 class Running(Case):
     def interrupt(self, number):
         pictures.ppm('large.ppm', 640, 480, lambda x, y: (x & 255, y & 255, 7))
@@ -619,9 +678,9 @@ class Running(Case):
     def test_terminate(self):
         self.interrupt(signal.SIGTERM)
 
-    def test_progress_on_a_terminal(self):
+    def on_a_terminal(self, *arguments):
         terminal, other = pty.openpty()
-        process = subprocess.Popen([REFOCUS, *self.render()], stderr=other)
+        process = subprocess.Popen([REFOCUS, *arguments], stderr=other)
         os.close(other)
         text = b''
         try:
@@ -631,9 +690,23 @@ class Running(Case):
             pass
         os.close(terminal)
         self.assertEqual(process.wait(), 0)
+        return text
+
+    def test_progress_on_a_terminal(self):
+        text = self.on_a_terminal(*self.render())
         for word in (b'reading', b'preparing', b'rendering', b'writing', b' % '):
             self.assertIn(word, text)
         self.assertTrue(text.endswith(b'\r\x1b[K'), text)
+
+    def test_slow_methods_progress_by_strips(self):
+        """And the picture is the same."""
+        slow = self.render('--method', 'raytrace', '--focus', '1', '--blur', '7')
+        for region in ((), ('--region', '5,3,30,27')):
+            self.succeeds(*slow, *region)
+            whole = pictures.read_pnm('out.ppm')
+            text = self.on_a_terminal(*slow, *region)
+            self.assertGreater(text.count(b'rendering'), 10)
+            self.same(pictures.read_pnm('out.ppm'), whole, region)
 
 
 class Photos(Case):

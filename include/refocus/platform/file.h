@@ -61,9 +61,9 @@ struct refocus_photo_info {
     double focus_x, focus_y;      /**< GFocus FocalPoint, 0..1 of the upright picture; -1: none */
     double focus_distance;        /**< GFocus FocalDistance, unit of the depth range */
     double blur_at_infinity;      /**< GFocus BlurAtInfinity, of the larger picture side */
-    char camera[96];              /**< EXIF make and model */
+    char camera[96];              /**< EXIF make and model, printable ASCII */
     /** What was found and why it is believed, a line each: containers, parts passed over
-     *  (gain map, portrait matte, thumbnails), units, polarity. */
+     *  (gain map, portrait matte), units, polarity. Printable ASCII, never a position. */
     char evidence[REFOCUS_INFO_LINES][REFOCUS_INFO_LENGTH];
     int32_t evidence_count;
 };
@@ -73,8 +73,10 @@ struct refocus_photo {
     struct refocus_image image;     /**< RGB8; plane[0] NULL in a pure depth file */
     struct refocus_depth_map depth; /**< samples NULL when the file carries none */
     struct refocus_photo_info info;
-    struct refocus_blob exif; /**< TIFF block without "Exif\0\0", orientation made 1 */
-    struct refocus_blob icc;  /**< ICC profile */
+    /** TIFF block without "Exif\0\0", made true for the upright photo: orientation 1, width
+     *  and height exchanged when it lay on its side, the old thumbnail unlinked. */
+    struct refocus_blob exif;
+    struct refocus_blob icc; /**< ICC profile, when it is one for RGB */
 };
 
 /**
@@ -82,6 +84,11 @@ struct refocus_photo {
  *
  * EXIF orientation is applied to photo and depth alike. Depth comes from GDepth (standard or
  * extended XMP), Apple's MPF disparity, or a HEIC auxiliary depth image.
+ *
+ * Memory at the most, while reading: the file, 8 times the XMP in it, 9 bytes a pixel of the
+ * photo, 9 bytes a sample of the depth, and 128 KiB; and what the decoding libraries take
+ * for themselves, which is much for progressive JPEG and HEIC (some 6 bytes a pixel).
+ * The limits are checked before memory is asked for.
  *
  * @param photo   receives a new object, or NULL on an error; ended by refocus_photo_free()
  * @param limits  NULL for the defaults
@@ -134,7 +141,7 @@ REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char
 /** What goes into a file beside the pixels. Zeros: nothing. */
 struct refocus_write_options {
     int32_t quality;                /**< JPEG, 1 to 100; 0 = 95 */
-    const struct refocus_blob *exif; /**< TIFF block; NULL = none */
+    const struct refocus_blob *exif; /**< TIFF block; NULL = none. PPM takes neither */
     const struct refocus_blob *icc;  /**< NULL = none */
 };
 
@@ -142,8 +149,12 @@ struct refocus_write_options {
  * Write an 8-bit picture; the end of the name says how: .jpg .jpeg .png .ppm.
  *
  * The file is written beside its place under a temporary name and moved there when whole: on an
- * error what was there before is untouched and nothing partial is left.
+ * error what was there before is untouched and nothing partial is left. Alpha is kept in PNG
+ * and dropped elsewhere.
  *
+ * @param reason  receives words on an error and, on success, what had to be left out: EXIF of
+ *                more than 65,527 bytes does not fit into a JPEG, a damaged ICC profile
+ *                is not taken by PNG; else empty. May be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (an ending it does not
  *         know), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Thread-safe.
  */

@@ -50,12 +50,13 @@ static inline struct refocus_photo *read_photo_at(struct bytes bytes, int expect
 }
 
 static inline struct refocus_photo *read_depth_at(struct bytes bytes, const char *unit,
-                                                  int expected, const char *file, int line)
+                                                  int expected, const char *file,
+                                                  int line)
 {
     struct refocus_photo *photo = (struct refocus_photo *)1;
     struct refocus_reason reason;
-    const int status = refocus_depth_read_memory(&photo, bytes.data, bytes.size, unit, 0, 0,
-                                                 NULL, &reason);
+    const int status = refocus_depth_read_memory(&photo, bytes.data, bytes.size, unit,
+                                                 0, 0, NULL, &reason);
 
     bytes_free(&bytes);
     check_status(status, expected, reason.text, file, line);
@@ -66,7 +67,7 @@ static inline struct refocus_photo *read_depth_at(struct bytes bytes, const char
 }
 
 #define read_photo(bytes, expected) read_photo_at(bytes, expected, __FILE__, __LINE__)
-#define read_depth(bytes, unit, expected) \
+#define read_depth(bytes, unit, expected)                                              \
     read_depth_at(bytes, unit, expected, __FILE__, __LINE__)
 
 static inline unsigned sample_at(const struct refocus_depth_map *map, int x, int y)
@@ -96,6 +97,23 @@ static inline int near_to(double a, double b)
     return a - b <= 1e-9 * size && b - a <= 1e-9 * size;
 }
 #define assert_near(a, b) assert_true(near_to(a, b))
+
+/* EXIF 2.3, tag 274: which side of the upright picture row 0 and column 0 lie on. */
+static const struct {
+    char row, column; /* t, b, l, r */
+} upright_sides[9] = {{0, 0},     {'t', 'l'}, {'t', 'r'}, {'b', 'r'}, {'b', 'l'},
+                      {'l', 't'}, {'r', 't'}, {'r', 'b'}, {'l', 'b'}};
+
+/* Where the stored pixel (column, row) of a w x h picture lies in the upright one. */
+static inline void upright_place(int orientation, int w, int h, int column, int row,
+                                 int *x, int *y)
+{
+    const char r = upright_sides[orientation].row,
+               c = upright_sides[orientation].column;
+
+    *x = c == 'l' ? column : c == 'r' ? w - 1 - column : r == 'l' ? row : h - 1 - row;
+    *y = r == 't' ? row : r == 'b' ? h - 1 - row : c == 't' ? column : w - 1 - column;
+}
 
 /* True when a line of evidence holds the text. */
 static inline int has_evidence(const struct refocus_photo *photo, const char *text)

@@ -4,19 +4,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Room goes up in powers of two: a file may be put together byte by byte. */
+static size_t room_for(size_t size)
+{
+    size_t room = 64;
+
+    while (room < size + 1) {
+        room *= 2;
+    }
+    return room;
+}
+
 void bytes_add(struct bytes *bytes, const void *data, size_t size)
 {
-    uint8_t *const grown = realloc(bytes->data, bytes->size + size + 1);
+    const size_t room = room_for(bytes->size + size);
 
-    if (!grown) {
-        exit(99);
+    if (!bytes->data || room != room_for(bytes->size)) {
+        uint8_t *const grown = realloc(bytes->data, room);
+        if (!grown) {
+            exit(99);
+        }
+        bytes->data = grown;
     }
     if (size > 0) {
-        memcpy(grown + bytes->size, data, size);
+        memcpy(bytes->data + bytes->size, data, size);
     }
-    bytes->data = grown;
     bytes->size += size;
-    grown[bytes->size] = 0;
+    bytes->data[bytes->size] = 0;
 }
 
 void bytes_text(struct bytes *bytes, const char *text)
@@ -59,7 +73,7 @@ unsigned pattern(int x, int y, int c, unsigned max)
            (max + 1);
 }
 
-/* PNG ----------------------------------------------------------------------------- */
+/* PNG ----------------------------------------------------------------- */
 
 static uint32_t crc32_of(const uint8_t *data, size_t size)
 {
@@ -133,6 +147,7 @@ struct bytes make_png_raw(int width, int height, int type, int bits,
             palette[i] = (uint8_t)(i / 3);
         }
         png_chunk(&png, "PLTE", palette, sizeof palette);
+        png_chunk(&png, "tRNS", "\0\200", 2);
     }
     for (int y = 0; y < height; y++) {
         bytes_number(&rows, 0, 1, true);
@@ -165,7 +180,7 @@ struct bytes make_png(int width, int height, int type, int bits)
     return png;
 }
 
-/* EXIF ---------------------------------------------------------------------------- */
+/* EXIF ---------------------------------------------------------------- */
 
 struct tiff {
     struct bytes block;
@@ -223,7 +238,51 @@ struct bytes make_exif(bool big_endian, int orientation)
     return tiff.block;
 }
 
-/* Text ---------------------------------------------------------------------------- */
+/* HEIF ---------------------------------------------------------------- */
+
+static void add_box(struct bytes *to, const char *type, struct bytes content)
+{
+    bytes_number(to, content.size + 8, 4, true);
+    bytes_add(to, type, 4);
+    bytes_join(to, content);
+}
+
+struct bytes make_heif_boxes(const struct heif_property *properties, int count,
+                             bool large)
+{
+    struct bytes file = {NULL, 0}, meta = {NULL, 0}, iprp = {NULL, 0}, ipco = {NULL, 0};
+    struct bytes ipma = {NULL, 0}, pitm = {NULL, 0};
+
+    /* large: 32-bit item numbers and 15-bit indices */
+    bytes_number(&pitm, large ? 1u << 24 : 0, 4, true);
+    bytes_number(&pitm, 1, large ? 4 : 2, true);
+    add_box(&ipco, "ispe", bytes_copy("\0\0\0\0\0\0\0\2\0\0\0\1", 12));
+    bytes_number(&ipma, large ? 1u << 24 | 1 : 0, 4, true);
+    bytes_number(&ipma, 2, 4, true);
+    for (int item = 2; item >= 1; item--) {
+        const int own = item == 1 ? count + 1 : 1;
+        bytes_number(&ipma, (uint64_t)item, large ? 4 : 2, true);
+        bytes_number(&ipma, (uint64_t)own, 1, true);
+        for (int i = 1; i <= own; i++) {
+            bytes_number(&ipma, (uint64_t)i | (large ? 0x8000 : 0x80), large ? 2 : 1,
+                         true);
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        const uint8_t value = (uint8_t)properties[i].value;
+        add_box(&ipco, properties[i].type, bytes_copy(&value, 1));
+    }
+    add_box(&iprp, "ipco", ipco);
+    add_box(&iprp, "ipma", ipma);
+    bytes_number(&meta, 0, 4, true);
+    add_box(&meta, "pitm", pitm);
+    add_box(&meta, "iprp", iprp);
+    add_box(&file, "ftyp", bytes_copy("heic\0\0\0\0mif1", 12));
+    add_box(&file, "meta", meta);
+    return file;
+}
+
+/* Text ---------------------------------------------------------------- */
 
 struct bytes base64(const void *data, size_t size)
 {
@@ -251,16 +310,17 @@ struct bytes make_xmp(const char *attributes)
 {
     struct bytes xmp = {NULL, 0};
 
-    bytes_text(&xmp,
-               "<?xpacket begin=\"\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>"
-               "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf="
-               "\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description "
-               "rdf:about=\"\" xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\" "
-               "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
-               "xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\" "
-               "xmlns:apdi=\"http://ns.apple.com/pixeldatainfo/1.0/\" "
-               "xmlns:depthData=\"http://ns.apple.com/depthData/1.0/\" "
-               "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" ");
+    bytes_text(
+        &xmp,
+        "<?xpacket begin=\"\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>"
+        "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf="
+        "\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description "
+        "rdf:about=\"\" xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\" "
+        "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
+        "xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\" "
+        "xmlns:apdi=\"http://ns.apple.com/pixeldatainfo/1.0/\" "
+        "xmlns:depthData=\"http://ns.apple.com/depthData/1.0/\" "
+        "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" ");
     bytes_text(&xmp, attributes);
     bytes_text(&xmp, "/></rdf:RDF></x:xmpmeta><?xpacket end=\"w\"?>  \n");
     return xmp;

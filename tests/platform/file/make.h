@@ -1,5 +1,5 @@
-/* Small files for tests and fuzz seeds, put together byte by byte and without the library
- * under test. */
+/* Small files for tests and fuzz seeds, put together byte by byte and without the
+ * library under test. */
 #ifndef RF_TEST_MAKE_H
 #define RF_TEST_MAKE_H
 
@@ -23,8 +23,9 @@ struct bytes bytes_copy(const void *data, size_t size);
 /* A picture whose every sample differs from its neighbours: channel c of (x, y). */
 unsigned pattern(int x, int y, int c, unsigned max);
 
-/* PNG, not compressed. Types: 0 grey, 2 RGB, 3 palette of 256 greys, 4 grey + alpha,
- * 6 RGBA. samples: rows as PNG stores them. exif, icc: put in when not NULL. */
+/* PNG, not compressed. Types: 0 grey, 2 RGB, 3 palette of 256 greys, two transparent, 4
+ * grey + alpha, 6 RGBA. samples: rows as PNG stores them. exif, icc: put in when not
+ * NULL. */
 struct bytes make_png_raw(int width, int height, int type, int bits,
                           const uint8_t *samples, const struct bytes *exif);
 /* The same with the pattern. */
@@ -32,7 +33,8 @@ struct bytes make_png(int width, int height, int type, int bits);
 void png_chunk(struct bytes *png, const char *type, const void *data, size_t size);
 
 /* JPEG with four coloured quarters: red, green / blue, white; or grey quarters
- * 32, 96 / 160, 224. Sides in multiples of 16 keep the quarters exact but for rounding. */
+ * 32, 96 / 160, 224. Sides in multiples of 16 keep the quarters exact but for rounding.
+ */
 struct bytes make_jpeg(int width, int height, bool grey, bool progressive);
 /* A segment right behind SOI. */
 void jpeg_insert(struct bytes *jpeg, int marker, const char *signature,
@@ -43,6 +45,15 @@ void jpeg_insert_xmp(struct bytes *jpeg, const char *xmp);
 /* TIFF block: orientation, Make "Maker", Model "Model X", 50.5 mm, 75 mm, f/1.8, pixel
  * sides 640 and 480, a thumbnail directory. */
 struct bytes make_exif(bool big_endian, int orientation);
+
+/* The boxes of a HEIF file with one item, 1, whose properties are ispe and then the
+ * given ones: "irot" with an angle, "imir" with an axis. Nothing to decode. */
+struct heif_property {
+    const char *type;
+    int value;
+};
+struct bytes make_heif_boxes(const struct heif_property *properties, int count,
+                             bool large);
 
 struct bytes base64(const void *data, size_t size); /* NUL-terminated */
 
@@ -56,14 +67,15 @@ extern const char test_guid[33];
 
 /* A phone's photo: main JPEG, GDepth in the standard packet. NULL stands for absent. */
 struct gdepth {
-    const char *format;      /* RangeInverse or RangeLinear */
-    const char *extra;       /* more attributes */
-    struct bytes depth;      /* PNG or JPEG; freed */
-    struct bytes original;   /* GImage; freed; empty: none */
+    const char *format;    /* RangeInverse or RangeLinear */
+    const char *extra;     /* more attributes */
+    struct bytes depth;    /* PNG or JPEG; freed */
+    struct bytes original; /* GImage; freed; empty: none */
 };
 struct bytes make_gdepth(struct gdepth gdepth, int orientation);
 /* The same with depth and original in an extended packet. */
-struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, int skip);
+struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step,
+                                  int skip);
 
 /* A JPEG with others behind it, as MPF lists them. Parts are freed. */
 struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count,

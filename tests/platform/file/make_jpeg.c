@@ -35,8 +35,8 @@ struct bytes make_jpeg(int width, int height, bool grey, bool progressive)
     unsigned long size = 0;
 
     fill(pixels, width, height, grey);
-    if (tjCompress2(compressor, pixels, width, 0, height, grey ? TJPF_GRAY : TJPF_RGB, &out,
-                    &size, grey ? TJSAMP_GRAY : TJSAMP_444, 95,
+    if (tjCompress2(compressor, pixels, width, 0, height, grey ? TJPF_GRAY : TJPF_RGB,
+                    &out, &size, grey ? TJSAMP_GRAY : TJSAMP_444, 95,
                     progressive ? TJFLAG_PROGRESSIVE : 0) != 0) {
         exit(98);
     }
@@ -139,7 +139,8 @@ struct bytes make_gdepth(struct gdepth gdepth, int orientation)
     return jpeg;
 }
 
-struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, int skip)
+struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step,
+                                  int skip)
 {
     struct bytes jpeg = make_jpeg(48, 32, false, false);
     struct bytes text = {NULL, 0}, data = {NULL, 0}, xmp;

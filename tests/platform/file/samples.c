@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-static void put(struct sample *samples, int *count, const char *name, struct bytes bytes,
-                bool photo, bool depth)
+static void put(struct sample *samples, int *count, const char *name,
+                struct bytes bytes, bool photo, bool depth)
 {
     const struct sample sample = {name, bytes, photo, depth, 0, false};
 
@@ -70,7 +70,8 @@ static void put_phone(struct sample *samples, int *count)
                                       .depth = make_jpeg(16, 16, true, false)};
     struct bytes parts[2] = {
         make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL),
-        make_auxiliary("disparity", "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\"")};
+        make_auxiliary("disparity",
+                       "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\"")};
     const size_t last = parts[0].size + parts[1].size;
 
     put(samples, count, "linear.jpg", make_gdepth(jpeg_depth, 8), true, true);
@@ -84,8 +85,8 @@ static void put_phone(struct sample *samples, int *count)
                  "GFocus:FocalPointX=\"0.5\" GFocus:FocalPointY=\"0.25\" ",
         .depth = make_png(4, 3, 0, 8),
         .original = make_png(3, 2, 2, 8)};
-    put(samples, count, "extended.jpg", make_gdepth_extended(png_depth, 100, 23, -1), true,
-        true);
+    put(samples, count, "extended.jpg", make_gdepth_extended(png_depth, 100, 23, -1),
+        true, true);
 #endif
 }
 #endif

@@ -1,4 +1,5 @@
-/* One small file of every kind that the readers tell apart, for tests that damage them. */
+/* One small file of every kind that the readers tell apart, for tests that damage them.
+ */
 #ifndef RF_TEST_SAMPLES_H
 #define RF_TEST_SAMPLES_H
 
@@ -8,8 +9,8 @@ struct sample {
     const char *name;
     struct bytes bytes;
     bool photo, depth; /* which of the two readings takes it whole */
-    size_t whole_at; /* cut here it is whole as well; 0: nowhere */
-    bool loose_end;  /* its last bytes may be cut and it still makes sense */
+    size_t whole_at;   /* cut here it is whole as well; 0: nowhere */
+    bool loose_end;    /* its last bytes may be cut and it still makes sense */
 };
 
 enum { SAMPLES_MAX = 24 };

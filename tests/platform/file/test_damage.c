@@ -1,5 +1,6 @@
-/* Every sample cut at every byte and with every byte changed: an error or a whole photo,
- * never a crash. The copies end where the memory ends, for the sanitizers to see. */
+/* Every sample cut at every byte and with every byte changed: an error or a whole
+ * photo, never a crash. The copies end where the memory ends, for the sanitizers to
+ * see. */
 #include "check.h"
 #include "samples.h"
 
@@ -11,8 +12,9 @@ static int read_exact(const uint8_t *bytes, size_t size, bool depth,
     int status;
 
     memcpy(copy, bytes, size);
-    status = depth ? refocus_depth_read_memory(&photo, copy, size, NULL, 0, 0, NULL, reason)
-                   : refocus_photo_read_memory(&photo, copy, size, NULL, reason);
+    status =
+        depth ? refocus_depth_read_memory(&photo, copy, size, NULL, 0, 0, NULL, reason)
+              : refocus_photo_read_memory(&photo, copy, size, NULL, reason);
     free(copy);
     if ((status == REFOCUS_OK) != (photo != NULL) ||
         (status != REFOCUS_OK && reason->text[0] == '\0')) {

@@ -67,9 +67,20 @@ static void pgm_white_is_its_greatest_value(void **state)
 static void pnm_damaged(void **state)
 {
     static const char *const bad[] = {
-        "P6", "P6\n", "P6 2 2", "P6 2 2 255", "P6 2 2 255 x", "P6 0 2 255 ", "P6 2 -2 255 ",
-        "P6 2 2 0 xxxxxxxxxxxx", "P6 2 2 65536 xxxxxxxxxxxxxxxxxxxxxxxxxx",
-        "P2 1 1 5 6", "P2 2 1 5 1", "P2 1 1 5 x", "P5 1 1 10 \377", "P6 2 2 255 xxxxxxxxxxx",
+        "P6",
+        "P6\n",
+        "P6 2 2",
+        "P6 2 2 255",
+        "P6 2 2 255 x",
+        "P6 0 2 255 ",
+        "P6 2 -2 255 ",
+        "P6 2 2 0 xxxxxxxxxxxx",
+        "P6 2 2 65536 xxxxxxxxxxxxxxxxxxxxxxxxxx",
+        "P2 1 1 5 6",
+        "P2 2 1 5 1",
+        "P2 1 1 5 x",
+        "P5 1 1 10 \377",
+        "P6 2 2 255 xxxxxxxxxxx",
     };
 
     (void)state;
@@ -116,14 +127,16 @@ static void pfm_both_byte_orders(void **state)
 
 static void pfm_units(void **state)
 {
-    struct refocus_photo *photo = read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
+    struct refocus_photo *photo =
+        read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
 
     (void)state;
     assert_true(photo->depth.value_near == -1.5 && photo->depth.value_far == 100.0);
     refocus_photo_free(&photo);
     photo = read_depth(make_pfm(false, "Pf"), "m", REFOCUS_OK);
     assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_true(photo->depth.metres_per_unit == 1.0 && photo->depth.metres_at_zero == 0.0);
+    assert_true(photo->depth.metres_per_unit == 1.0 &&
+                photo->depth.metres_at_zero == 0.0);
     refocus_photo_free(&photo);
 }
 
@@ -144,8 +157,9 @@ static void pfm_refused(void **state)
 
 static void unit_words(void **state)
 {
-    static const char *const bad[] = {"",    "M",     "cm",       "m/m",  "/m", "0/m",
-                                      "-1/m", "1e999/m", "5000/mm", "5000", "nan/m", "inf/m"};
+    static const char *const bad[] = {"",        "M",    "cm",    "m/m",
+                                      "/m",      "0/m",  "-1/m",  "1e999/m",
+                                      "5000/mm", "5000", "nan/m", "inf/m"};
     struct refocus_depth_map map = {.sample = REFOCUS_SAMPLE_U8};
 
     (void)state;
@@ -172,14 +186,14 @@ static void unit_words(void **state)
 
 static void range_overrules(void **state)
 {
-    static const double bad[][2] = {{-1, 0}, {0, -1}, {2, 1}, {1, 1}, {NAN, 0}, {0, NAN},
-                                    {INFINITY, 0}};
+    static const double bad[][2] = {{-1, 0},  {0, -1},  {2, 1},       {1, 1},
+                                    {NAN, 0}, {0, NAN}, {INFINITY, 0}};
     struct bytes file = text_file("P5\n1 1\n255\n\1");
     struct refocus_photo *photo;
 
     (void)state;
-    assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, "disparity",
-                                               0.5, INFINITY, NULL, NULL),
+    assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size,
+                                               "disparity", 0.5, INFINITY, NULL, NULL),
                      REFOCUS_OK);
     assert_true(photo->depth.near_m == 0.5 && isinf(photo->depth.far_m));
     refocus_photo_free(&photo);
@@ -244,7 +258,8 @@ static void png_kinds(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const int type = kinds[i][0], bits = kinds[i][1];
-        struct refocus_photo *photo = read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
+        struct refocus_photo *photo =
+            read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
 
         assert_string_equal(photo->info.container, "PNG");
         assert_int_equal(photo->image.width, 7);
@@ -252,7 +267,8 @@ static void png_kinds(void **state)
             for (int x = 0; x < 7; x++) {
                 for (int c = 0; c < 3; c++) {
                     const unsigned max = bits == 16 ? 65535 : 255;
-                    const unsigned v = pattern(x, y, type & 2 && type != 3 ? c : 0, max);
+                    const unsigned v =
+                        pattern(x, y, type & 2 && type != 3 ? c : 0, max);
                     assert_int_equal(pixel_at(&photo->image, x, y)[c],
                                      (v * 255 + max / 2) / max);
                 }
@@ -265,8 +281,8 @@ static void png_kinds(void **state)
 static void png_small_samples(void **state)
 {
     /* 5 pixels of 2 bits: 0 1 2 3 0 */
-    struct refocus_photo *photo =
-        read_photo(make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
+    struct refocus_photo *photo = read_photo(
+        make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
 
     (void)state;
     assert_int_equal(pixel_at(&photo->image, 1, 0)[0], 85);
@@ -276,7 +292,8 @@ static void png_small_samples(void **state)
 
 static void png_depth(void **state)
 {
-    struct refocus_photo *photo = read_depth(make_png(6, 4, 0, 16), "5000/m", REFOCUS_OK);
+    struct refocus_photo *photo =
+        read_depth(make_png(6, 4, 0, 16), "5000/m", REFOCUS_OK);
     uint8_t grey_rgb[2 * 3 * 2];
 
     (void)state;

@@ -95,7 +95,8 @@ static struct refocus_photo *read_back(const char *path)
 
 static void lossless(const char *name)
 {
-    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8; format++) {
+    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8;
+         format++) {
         for (int flipped = 0; flipped < 2; flipped++) {
             struct picture picture = make_picture(format, 13, 9, flipped);
             struct refocus_reason reason;
@@ -271,10 +272,12 @@ static void jpeg_formats_and_quality(void **state)
     long size[2] = {0, 0};
 
     (void)state;
-    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8; format++) {
+    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8;
+         format++) {
         uint8_t pixels[32 * 32 * 4];
         const int bytes = format >= REFOCUS_FORMAT_RGBA8 ? 4 : 3;
-        const bool swap = format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
+        const bool swap =
+            format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
         struct refocus_image image;
         struct refocus_photo *photo;
 
@@ -285,7 +288,8 @@ static void jpeg_formats_and_quality(void **state)
             p[swap ? 0 : 2] = 90;
         }
         /* Bottom-up: what was above is below. */
-        image = refocus_image_packed(format, pixels + 31 * 32 * bytes, 32, 32, -32 * bytes);
+        image =
+            refocus_image_packed(format, pixels + 31 * 32 * bytes, 32, 32, -32 * bytes);
         assert_int_equal(refocus_image_write(in_folder("j.jpg"), &image, NULL, NULL),
                          REFOCUS_OK);
         photo = read_back(in_folder("j.jpg"));
@@ -374,7 +378,8 @@ static void full_disk(const char *name)
     files = count_files();
     signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &before);
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1000, before.rlim_max}), 0);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1000, before.rlim_max}),
+                     0);
     status = refocus_image_write(in_folder(name), &picture.image, NULL, &reason);
     setrlimit(RLIMIT_FSIZE, &before);
     check_status(status, REFOCUS_ERR_IO, reason.text, __FILE__, __LINE__);
@@ -417,8 +422,9 @@ static void umask_is_honoured(void **state)
 
     (void)state;
     unlink(in_folder("u.ppm"));
-    assert_int_equal(refocus_image_write(in_folder("u.ppm"), &picture.image, NULL, NULL),
-                     REFOCUS_OK);
+    assert_int_equal(
+        refocus_image_write(in_folder("u.ppm"), &picture.image, NULL, NULL),
+        REFOCUS_OK);
     umask(before);
     assert_int_equal(stat(in_folder("u.ppm"), &facts), 0);
     assert_int_equal(facts.st_mode & 0777, 0640);

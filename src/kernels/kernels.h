@@ -1,0 +1,133 @@
+/* kernels.h: the compute loops and their contracts.
+ *
+ * NAME.c is the reference, as plain as the contract, always built. NAME_vec.c computes
+ * the same bits with the operations of simd/vec.h. Files named rows_*.c are plain C written
+ * for the compiler's vectoriser; they are compiled once more for each instruction set.
+ */
+#ifndef RF_KERNELS_H
+#define RF_KERNELS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tiles/slab.h"
+
+/*
+ * sweep: rays of one tile of RF_TILE x RF_TILE pixels.
+ *
+ *     for each ray n and pixel p of the tile:
+ *         for k = 0 .. slabs - 1:
+ *             q = p + offset[k][n]
+ *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
+ *                 sum += light[q]; next ray
+ *         if see_behind: sum += behind[p + offset[slabs][n]]
+ *
+ * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the tile's first pixel.
+ */
+enum { RF_RAY_CHUNK = 64 };
+
+struct rf_sweep_job {
+    const int16_t *blur;     /* light is in the three planes after it, pitch apart */
+    const uint16_t *behind;  /* the first of three planes */
+    ptrdiff_t stride, pitch; /* elements */
+    int rays;                                /* at most RF_RAY_CHUNK */
+    int slabs;
+    const struct rf_slab *slab;
+    const int32_t (*offset)[RF_RAY_CHUNK];   /* [slabs + 1], of elements */
+    bool see_behind;
+    bool uniform; /* slabs == 1, and whatever is looked at is in it */
+    bool bright;  /* highlights are in the light */
+};
+typedef void rf_sweep_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_sweep_job *job);
+
+/* Focus and blur in fixed point. */
+struct rf_focus {
+    uint16_t disparity; /* df, Q16 with 65535 = 1 */
+    uint16_t radius;    /* K in Q8.8, scaled by 65536 / 65535 */
+};
+
+/*
+ * signed_blur: s = K (df - d), Yang et al. 2016, eq. 4. Q7.8 pixels, rounded half up in
+ * magnitude; within 1/256 pixel of the real value.
+ */
+typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
+                               struct rf_focus focus, int n);
+
+/*
+ * smooth3: where |blur| > least, the mean of a pixel and those of its two neighbours whose
+ * blur is within one pixel (256) of its own; the pixel itself elsewhere. Q12, half up.
+ */
+typedef void rf_smooth3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
+                           const uint16_t *after, const int16_t *blur_before,
+                           const int16_t *blur, const int16_t *blur_after, int least, int n);
+
+/* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
+enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
+
+/* What no blur is: an unknown pixel of the background. */
+enum { RF_NO_BLUR = INT16_MIN };
+
+/*
+ * spread_row: grey dilation of a row by the cone to both sides, of values up to 2 `reach`
+ * half pixels apart. Values are s + 2^15. Returns where the result is, row or spare; both are
+ * n long, with RF_SPREAD_MARGIN elements before and after them that are overwritten.
+ */
+enum { RF_SPREAD_MARGIN = 256 };
+typedef uint16_t *rf_spread_row_fn(uint16_t *row, uint16_t *spare, int reach, int n);
+
+/* dilate_from: the cone from the three nearest pixels of the row before or after, whose
+ * elements -1 and n are read. Values are s + 2^15. */
+typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int n);
+
+/* mark: the blur of pixels that are not foreground, RF_NO_BLUR of those whose dilated value
+ * is more than half a pixel above their own. `dilated` is s + 2^15. */
+typedef void rf_mark_fn(int16_t *behind, const int16_t *blur, const uint16_t *dilated, int n);
+
+/* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
+ * farthest blur; RF_NO_BLUR if none is known. */
+typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur,
+                        const uint16_t *const upper[3], const uint16_t *const lower[3],
+                        const int16_t *blur0, const int16_t *blur1, int n);
+
+/* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
+ * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their parent's blur. */
+typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
+                        const uint16_t *far_row, uint16_t *mixed, int pairs);
+typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
+
+/* means: Q14 means of sums of N Q12 values, (4 sum + N / 2) / N within 1/1000, with
+ * scale = rf_mean_scale(N). */
+typedef void rf_means_fn(uint16_t *mean, const uint32_t *sum, uint32_t scale, int n);
+static inline uint32_t rf_mean_scale(uint64_t rays)
+{
+    const uint64_t scale = ((UINT64_C(1) << 32) + rays / 2) / rays;
+
+    return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
+}
+
+struct rf_kernels {
+    rf_sweep_fn *sweep;
+    rf_signed_blur_fn *signed_blur;
+    rf_smooth3_fn *smooth3;
+    rf_spread_row_fn *spread_row;
+    rf_dilate_from_fn *dilate_from;
+    rf_mark_fn *mark;
+    rf_push_fn *push;
+    rf_pull_fn *pull;
+    rf_pull_blur_fn *pull_blur;
+    rf_means_fn *means;
+};
+
+/* The best kernels of an instruction set, enum refocus_cpu; false: this processor or build does
+ * not have it. AUTO chooses; *cpu is what it chose. */
+bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
+
+rf_sweep_fn rf_sweep_c;
+
+/* Each set overwrites what it does better. */
+typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
+rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
+rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
+
+#endif

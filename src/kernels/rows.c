@@ -1,0 +1,199 @@
+/* rows.c: loops over rows, written for the compiler's vectoriser.
+ *
+ * Compiled once as plain C and once for each instruction set, with RF_VEC_SET as its name: no
+ * branch and no table look-up in the inner loops, conditions as masks, 16-bit lanes.
+ */
+#include "kernels/kernels.h"
+#include "simd/vec.h"
+
+#include <string.h>
+
+static inline uint16_t max16(uint16_t a, uint16_t b)
+{
+    return a > b ? a : b;
+}
+
+static inline uint16_t less(uint16_t a, uint16_t b) /* a - b, not below 0 */
+{
+    return (uint16_t)(a > b ? a - b : 0);
+}
+
+static void RF_VEC(rf_signed_blur)(int16_t *restrict blur, const uint16_t *restrict disparity,
+                            struct rf_focus focus, int n)
+{
+    const uint16_t df = focus.disparity;
+    const uint32_t radius = focus.radius;
+
+    for (int x = 0; x < n; x++) {
+        const uint16_t d = disparity[x];
+        const uint16_t distance = (uint16_t)(d > df ? d - df : df - d);
+        const uint16_t r = (uint16_t)((distance * radius + (1 << 15)) >> 16);
+
+        blur[x] = (int16_t)(d > df ? -r : r);
+    }
+}
+
+/* Mean of three of which at least the middle counts, for Q12 values: rounded half up. */
+static inline uint16_t mean3(uint16_t a, uint16_t b, uint16_t c, uint16_t use_a, uint16_t use_c)
+{
+    const uint16_t two = (uint16_t)(use_a ^ use_c), three = (uint16_t)(use_a & use_c);
+    const uint16_t sum = (uint16_t)(b + (a & use_a) + (c & use_c));
+    const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
+    /* (s + 1) * 21846 >> 16 is (s + 1) / 3 rounded down for s below 2^15 */
+    const uint16_t third = (uint16_t)(((uint32_t)(uint16_t)(sum + 1) * 21846) >> 16);
+
+    return (uint16_t)((sum & ~(two | three)) | (half & two) | (third & three));
+}
+
+static inline uint16_t within_pixel(int16_t a, int16_t b)
+{
+    return (uint16_t)((uint16_t)(a - b + 256) <= 512 ? 0xffff : 0);
+}
+
+static inline uint16_t above(int16_t s, uint16_t least) /* |s| > least */
+{
+    return (uint16_t)((uint16_t)(s < 0 ? -s : s) > least ? 0xffff : 0);
+}
+
+static void RF_VEC(rf_smooth3)(uint16_t *restrict out, const uint16_t *restrict before,
+                        const uint16_t *restrict row, const uint16_t *restrict after,
+                        const int16_t *restrict blur_before, const int16_t *restrict blur,
+                        const int16_t *restrict blur_after, int least, int n)
+{
+    const uint16_t from = (uint16_t)least;
+
+    for (int x = 0; x < n; x++) {
+        const uint16_t wide = above(blur[x], from);
+        const uint16_t use_a = (uint16_t)(wide & within_pixel(blur_before[x], blur[x]));
+        const uint16_t use_c = (uint16_t)(wide & within_pixel(blur_after[x], blur[x]));
+
+        out[x] = mean3(before[x], row[x], after[x], use_a, use_c);
+    }
+}
+
+static void spread(uint16_t *restrict out, const uint16_t *restrict in, int step, uint16_t fall,
+                   int n)
+{
+    for (int x = 0; x < n; x++)
+        out[x] = max16(in[x], max16(less(in[x - step], fall), less(in[x + step], fall)));
+}
+
+static uint16_t *RF_VEC(rf_spread_row)(uint16_t *row, uint16_t *spare, int reach, int n)
+{
+    for (int step = 1, sum = 0; sum < reach; sum += step, step *= 2) {
+        uint16_t *const last = row;
+
+        memset(row - step, 0, (size_t)step * 2);
+        memset(row + n, 0, (size_t)step * 2);
+        spread(spare, row, step, (uint16_t)(step * RF_CONE_STEP), n);
+        row = spare;
+        spare = last;
+    }
+    return row;
+}
+
+static void RF_VEC(rf_dilate_from)(uint16_t *restrict row, const uint16_t *restrict before, int n)
+{
+    for (int x = 0; x < n; x++) {
+        const uint16_t slant = max16(less(before[x - 1], RF_CONE_DIAGONAL),
+                                     less(before[x + 1], RF_CONE_DIAGONAL));
+
+        row[x] = max16(row[x], max16(slant, less(before[x], RF_CONE_STEP)));
+    }
+}
+
+static void RF_VEC(rf_mark)(int16_t *restrict behind, const int16_t *restrict blur,
+                     const uint16_t *restrict dilated, int n)
+{
+    for (int x = 0; x < n; x++) {
+        const uint16_t s = (uint16_t)((uint16_t)blur[x] ^ 0x8000);
+        const uint16_t foreground = (uint16_t)(less(dilated[x], s) > 128 ? 0xffff : 0);
+
+        behind[x] = (int16_t)((foreground & 0x8000) | (~foreground & (uint16_t)blur[x]));
+    }
+}
+
+static inline uint16_t known(int16_t blur)
+{
+    return (uint16_t)(blur != RF_NO_BLUR ? 0xffff : 0);
+}
+
+static inline int16_t farther(int16_t a, int16_t b)
+{
+    return a > b ? a : b;
+}
+
+static void RF_VEC(rf_push)(uint16_t *const out[3], int16_t *restrict out_blur,
+                     const uint16_t *const upper[3], const uint16_t *const lower[3],
+                     const int16_t *restrict blur0, const int16_t *restrict blur1, int n)
+{
+    for (int c = 0; c < 3; c++) {
+        uint16_t *restrict to = out[c];
+        const uint16_t *restrict a = upper[c], *restrict b = lower[c];
+
+        for (int x = 0; x < n; x++) {
+            const uint16_t k0 = known(blur0[2 * x]), k1 = known(blur0[2 * x + 1]);
+            const uint16_t k2 = known(blur1[2 * x]), k3 = known(blur1[2 * x + 1]);
+            const uint16_t count = (uint16_t)-(uint16_t)(k0 + k1 + k2 + k3);
+            const uint16_t sum = (uint16_t)((a[2 * x] & k0) + (a[2 * x + 1] & k1) +
+                                            (b[2 * x] & k2) + (b[2 * x + 1] & k3));
+            const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
+            const uint16_t third =
+                (uint16_t)(((uint32_t)(uint16_t)(sum + 1) * 21846) >> 16);
+            const uint16_t quarter = (uint16_t)((uint16_t)(sum + 2) >> 2);
+
+            to[x] = count == 4 ? quarter : count == 3 ? third : count == 2 ? half : sum;
+        }
+    }
+    for (int x = 0; x < n; x++)
+        out_blur[x] = farther(farther(blur0[2 * x], blur0[2 * x + 1]),
+                              farther(blur1[2 * x], blur1[2 * x + 1]));
+}
+
+static void RF_VEC(rf_pull)(uint16_t *restrict out, const int16_t *restrict out_blur,
+                     const uint16_t *restrict near_row, const uint16_t *restrict far_row,
+                     uint16_t *restrict mixed, int pairs)
+{
+    mixed++; /* mixed[-1] and mixed[pairs] repeat the ends */
+    for (int x = 0; x < pairs; x++)
+        mixed[x] = (uint16_t)((uint16_t)(3 * near_row[x] + far_row[x] + 2) >> 2);
+    mixed[-1] = mixed[0];
+    mixed[pairs] = mixed[pairs - 1];
+    for (int x = 0; x < pairs; x++) {
+        const uint16_t even = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x - 1] + 2) >> 2);
+        const uint16_t odd = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x + 1] + 2) >> 2);
+        const uint16_t keep0 = known(out_blur[2 * x]), keep1 = known(out_blur[2 * x + 1]);
+
+        out[2 * x] = (uint16_t)((out[2 * x] & keep0) | (even & ~keep0));
+        out[2 * x + 1] = (uint16_t)((out[2 * x + 1] & keep1) | (odd & ~keep1));
+    }
+}
+
+static void RF_VEC(rf_pull_blur)(int16_t *restrict out, const int16_t *restrict near_row, int pairs)
+{
+    for (int x = 0; x < pairs; x++) {
+        out[2 * x] = out[2 * x] == RF_NO_BLUR ? near_row[x] : out[2 * x];
+        out[2 * x + 1] = out[2 * x + 1] == RF_NO_BLUR ? near_row[x] : out[2 * x + 1];
+    }
+}
+
+/* (4 sum + N / 2) / N by a multiplication; see rf_mean_scale(). */
+static void RF_VEC(rf_means)(uint16_t *restrict mean, const uint32_t *restrict sum, uint32_t scale,
+                      int n)
+{
+    for (int i = 0; i < n; i++)
+        mean[i] = (uint16_t)(((uint64_t)sum[i] * scale + (UINT64_C(1) << 29)) >> 30);
+}
+
+void RF_VEC(rf_rows_use)(struct rf_kernels *kernels)
+{
+    kernels->signed_blur = RF_VEC(rf_signed_blur);
+    kernels->smooth3 = RF_VEC(rf_smooth3);
+    kernels->spread_row = RF_VEC(rf_spread_row);
+    kernels->dilate_from = RF_VEC(rf_dilate_from);
+    kernels->mark = RF_VEC(rf_mark);
+    kernels->push = RF_VEC(rf_push);
+    kernels->pull = RF_VEC(rf_pull);
+    kernels->pull_blur = RF_VEC(rf_pull_blur);
+    kernels->means = RF_VEC(rf_means);
+}

@@ -1,0 +1,59 @@
+#include "kernels/kernels.h"
+
+#include <refocus/render.h>
+
+#if defined(__arm__)
+#include <asm/hwcap.h>
+#include <sys/auxv.h>
+#endif
+
+static bool has(uint32_t cpu)
+{
+    switch (cpu) {
+    case REFOCUS_CPU_C:
+        return true;
+#if defined(RF_WITH_NEON) && defined(__aarch64__)
+    case REFOCUS_CPU_NEON:
+        return true;
+#elif defined(RF_WITH_NEON)
+    case REFOCUS_CPU_NEON:
+        return (getauxval(AT_HWCAP) & HWCAP_NEON) != 0;
+#endif
+#if defined(RF_WITH_SSE41)
+    case REFOCUS_CPU_SSE41:
+        return __builtin_cpu_supports("sse4.1");
+#endif
+#if defined(RF_WITH_AVX2)
+    case REFOCUS_CPU_AVX2:
+        return __builtin_cpu_supports("avx2");
+#endif
+    }
+    return false;
+}
+
+bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
+{
+    static const uint32_t best_first[] = {REFOCUS_CPU_AVX2, REFOCUS_CPU_SSE41,
+                                          REFOCUS_CPU_NEON, REFOCUS_CPU_C};
+
+    for (int i = 0; *cpu == REFOCUS_CPU_AUTO; i++)
+        if (has(best_first[i]))
+            *cpu = best_first[i];
+    if (!has(*cpu))
+        return false;
+    kernels->sweep = rf_sweep_c;
+    rf_rows_use_c(kernels);
+#if defined(RF_WITH_NEON)
+    if (*cpu == REFOCUS_CPU_NEON)
+        rf_kernels_use_neon(kernels);
+#endif
+#if defined(RF_WITH_SSE41)
+    if (*cpu == REFOCUS_CPU_SSE41)
+        rf_kernels_use_sse41(kernels);
+#endif
+#if defined(RF_WITH_AVX2)
+    if (*cpu == REFOCUS_CPU_AVX2)
+        rf_kernels_use_avx2(kernels);
+#endif
+    return true;
+}

@@ -1,0 +1,31 @@
+/* vec.h: the vector operations that kernels are written on, with their meaning in C.
+ *
+ * A kernel in NAME_vec.c is compiled once for each instruction set, with RF_VEC_SET
+ * defined as its name; RF_VEC(f) is then f_NAME. A vector holds VEC_U16 lanes.
+ *
+ *     vec_u16_load(p)         lane i = p[i], any alignment of whole elements
+ *     vec_u16_store(p, v)     p[i] = lane i
+ *     vec_u16_set(x)          every lane = x
+ *     vec_u16_add(a, b)       (uint16_t)(a + b)
+ *     vec_u16_sub(a, b)       (uint16_t)(a - b)
+ *     vec_u16_and(a, b)       a & b
+ *     vec_u16_without(a, b)   a & ~b
+ *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
+ *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
+ */
+#ifndef RF_VEC_H
+#define RF_VEC_H
+
+#define RF_VEC_PASTE(name, set)  name##_##set
+#define RF_VEC_EXPAND(name, set) RF_VEC_PASTE(name, set)
+#define RF_VEC(name)             RF_VEC_EXPAND(name, RF_VEC_SET)
+
+#if defined(RF_VEC_AVX2)
+#include "simd/vec_avx2.h"
+#elif defined(RF_VEC_SSE41)
+#include "simd/vec_sse41.h"
+#elif defined(RF_VEC_NEON)
+#include "simd/vec_neon.h"
+#endif
+
+#endif

@@ -1,0 +1,57 @@
+/* vec_neon.h: the vector operations of vec.h on NEON, AArch64 and ARMv7 alike. */
+#ifndef RF_VEC_NEON_H
+#define RF_VEC_NEON_H
+
+#include <arm_neon.h>
+#include <stdint.h>
+
+enum { VEC_U16 = 8 };
+typedef uint16x8_t vec_u16;
+
+static inline vec_u16 vec_u16_load(const void *p)
+{
+    return vld1q_u16((const uint16_t *)p);
+}
+
+static inline void vec_u16_store(void *p, vec_u16 v)
+{
+    vst1q_u16((uint16_t *)p, v);
+}
+
+static inline vec_u16 vec_u16_set(uint16_t x)
+{
+    return vdupq_n_u16(x);
+}
+
+static inline vec_u16 vec_u16_add(vec_u16 a, vec_u16 b)
+{
+    return vaddq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_sub(vec_u16 a, vec_u16 b)
+{
+    return vsubq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_and(vec_u16 a, vec_u16 b)
+{
+    return vandq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
+{
+    return vbicq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_at_most(vec_u16 a, vec_u16 b)
+{
+    return vcleq_u16(a, b);
+}
+
+static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
+{
+    vst1q_u32(sum, vaddw_u16(vld1q_u32(sum), vget_low_u16(v)));
+    vst1q_u32(sum + 4, vaddw_u16(vld1q_u32(sum + 4), vget_high_u16(v)));
+}
+
+#endif

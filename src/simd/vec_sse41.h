@@ -1,0 +1,60 @@
+/* vec_sse41.h: the vector operations of vec.h on 128-bit registers of x86. */
+#ifndef RF_VEC_SSE41_H
+#define RF_VEC_SSE41_H
+
+#include <smmintrin.h>
+#include <stdint.h>
+
+enum { VEC_U16 = 8 };
+typedef __m128i vec_u16;
+
+static inline vec_u16 vec_u16_load(const void *p)
+{
+    return _mm_loadu_si128((const __m128i *)p);
+}
+
+static inline void vec_u16_store(void *p, vec_u16 v)
+{
+    _mm_storeu_si128((__m128i *)p, v);
+}
+
+static inline vec_u16 vec_u16_set(uint16_t x)
+{
+    return _mm_set1_epi16((int16_t)x);
+}
+
+static inline vec_u16 vec_u16_add(vec_u16 a, vec_u16 b)
+{
+    return _mm_add_epi16(a, b);
+}
+
+static inline vec_u16 vec_u16_sub(vec_u16 a, vec_u16 b)
+{
+    return _mm_sub_epi16(a, b);
+}
+
+static inline vec_u16 vec_u16_and(vec_u16 a, vec_u16 b)
+{
+    return _mm_and_si128(a, b);
+}
+
+static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
+{
+    return _mm_andnot_si128(b, a);
+}
+
+static inline vec_u16 vec_u16_at_most(vec_u16 a, vec_u16 b)
+{
+    return _mm_cmpeq_epi16(_mm_min_epu16(a, b), a);
+}
+
+static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
+{
+    const __m128i zero = _mm_setzero_si128();
+    __m128i *low = (__m128i *)sum, *high = (__m128i *)(sum + 4);
+
+    _mm_storeu_si128(low, _mm_add_epi32(_mm_loadu_si128(low), _mm_unpacklo_epi16(v, zero)));
+    _mm_storeu_si128(high, _mm_add_epi32(_mm_loadu_si128(high), _mm_unpackhi_epi16(v, zero)));
+}
+
+#endif

@@ -1,0 +1,14 @@
+#include "fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const struct rf_bytes file = {data, size};
+
+    for (uint32_t item = 0; item < 3; item++) {
+        const int orientation = rf_heif_orientation(file, item);
+        if (orientation < 1 || orientation > 8) {
+            abort();
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,14 @@
+#include "fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const struct rf_bytes file = {data, size};
+    struct fuzz_reading reading;
+
+    if (rf_sniff(file) == RF_CONTAINER_PFM) {
+        fuzz_begin(&reading);
+        rf_read_pfm(&reading.read, file);
+        fuzz_end(&reading);
+    }
+    return 0;
+}

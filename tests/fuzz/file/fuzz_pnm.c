@@ -1,0 +1,17 @@
+#include "fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const struct rf_bytes file = {data, size};
+    struct fuzz_reading reading;
+
+    if (rf_sniff(file) == RF_CONTAINER_PNM) {
+        fuzz_begin(&reading);
+        if (rf_read_pnm(&reading.read, file) == REFOCUS_OK &&
+            rf_raster_to_rgb8(&reading.read, &reading.read.image) != REFOCUS_OK) {
+            abort(); /* the limits leave room for it */
+        }
+        fuzz_end(&reading);
+    }
+    return 0;
+}

@@ -1,0 +1,136 @@
+/* Writes the seeds: make_corpus tests/fuzz/file/corpus. Run after a change of make.c;
+ * needs a build with all formats. */
+#include "samples.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *root;
+
+static void seed(const char *target, const char *name, const void *data, size_t size)
+{
+    char path[1024];
+    FILE *file;
+
+    snprintf(path, sizeof path, "%s/%s", root, target);
+    mkdir(path, 0777);
+    snprintf(path, sizeof path, "%s/%s/%s", root, target, name);
+    file = fopen(path, "wb");
+    if (!file || fwrite(data, 1, size, file) != size || fclose(file) != 0) {
+        perror(path);
+        exit(1);
+    }
+}
+
+static void seed_text(const char *target, const char *name, const char *text)
+{
+    seed(target, name, text, strlen(text));
+}
+
+static void seed_samples(void)
+{
+    struct sample samples[SAMPLES_MAX];
+    const int count = make_samples(samples);
+
+    for (int i = 0; i < count; i++) {
+        const struct bytes *const b = &samples[i].bytes;
+        struct bytes depth = {NULL, 0};
+
+        seed("photo", samples[i].name, b->data, b->size);
+        bytes_number(&depth, (uint64_t)i * 43 % 256, 1, true);
+        bytes_add(&depth, b->data, b->size);
+        seed("depth", samples[i].name, depth.data, depth.size);
+        bytes_free(&depth);
+        if (strncmp(b->data ? (const char *)b->data : "", "Pf", 2) == 0) {
+            seed("pfm", samples[i].name, b->data, b->size);
+        } else if (b->data[0] == 'P') {
+            seed("pnm", samples[i].name, b->data, b->size);
+        } else if (strcmp(samples[i].name, "extended.jpg") == 0) {
+            seed("xmp_extended", samples[i].name, b->data, b->size);
+        }
+    }
+    free_samples(samples, count);
+}
+
+static void seed_exif(void)
+{
+    struct bytes low = make_exif(false, 6), high = make_exif(true, 3);
+
+    seed("exif", "low", low.data, low.size);
+    seed("exif", "high", high.data, high.size);
+    bytes_free(&low);
+    bytes_free(&high);
+}
+
+/* The MPF directory of a JPEG begins 10 bytes behind its begin, see make_mpf(). */
+static void seed_mpf(void)
+{
+    for (int big_endian = 0; big_endian < 2; big_endian++) {
+        struct bytes part = make_auxiliary("disparity", NULL);
+        struct bytes file =
+            make_mpf(make_jpeg(16, 16, false, false), &part, 1, big_endian);
+
+        seed("mpf", big_endian ? "high" : "low", file.data + 10, 82);
+        bytes_free(&file);
+    }
+}
+
+static void seed_heif_boxes(void)
+{
+    static const struct heif_property both[] = {{"irot", 1}, {"imir", 0}};
+
+    for (int large = 0; large < 2; large++) {
+        struct bytes file = make_heif_boxes(both, 2, large);
+        seed("heif_boxes", large ? "large" : "small", file.data, file.size);
+        bytes_free(&file);
+    }
+}
+
+static void seed_xmp(void)
+{
+    static const char apple[] =
+        "<x xmlns:a=\"http://ns.apple.com/pixeldatainfo/1.0/\"><a:AuxiliaryImageType>"
+        "disparity</a:AuxiliaryImageType><a:FloatMinValue>0.25</a:FloatMinValue></x>";
+    const char *const formats[] = {"RangeInverse", "RangeLinear"};
+
+    for (int i = 0; i < 2; i++) {
+        struct bytes png = make_png(2, 2, 0, 8), data = base64(png.data, png.size);
+        struct bytes text = {NULL, 0}, xmp;
+
+        bytes_text(&text, "GDepth:Format=\"");
+        bytes_text(&text, formats[i]);
+        bytes_text(&text, "\" GDepth:Near=\"1\" GDepth:Far=\"5e1\" GDepth:Units=\"mm\" "
+                          "GFocus:FocalPointX=\".5\" GFocus:FocalPointY=\"1\" "
+                          "GDepth:Data=\"");
+        bytes_text(&text, (const char *)data.data);
+        bytes_text(&text, "\"");
+        xmp = make_xmp((const char *)text.data);
+        seed("xmp", formats[i], xmp.data, xmp.size);
+        bytes_free(&png);
+        bytes_free(&data);
+        bytes_free(&text);
+        bytes_free(&xmp);
+    }
+    seed("xmp", "elements", apple, sizeof apple - 1);
+}
+
+int main(int count, char **arguments)
+{
+    if (count != 2) {
+        fprintf(stderr, "usage: make_corpus FOLDER\n");
+        return 2;
+    }
+    root = arguments[1];
+    mkdir(root, 0777);
+    seed_samples();
+    seed_exif();
+    seed_mpf();
+    seed_heif_boxes();
+    seed_xmp();
+    seed_text("number", "decimal", " -12.5e-3 ");
+    seed_text("number", "long", "123456789012345678901234567890.000000000000000000001");
+    seed_text("number", "base64", "QUJD RA==");
+    return 0;
+}

@@ -1,0 +1,134 @@
+/* Apple's depth behind the main picture, and XMP that means harm. */
+#include "check.h"
+
+#include <math.h>
+
+#define APPLE_RANGE                                                                    \
+    "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\" apdi:IntMinValue=\"0\" "     \
+    "apdi:IntMaxValue=\"255\" depthData:Accuracy=\"relative\""
+
+static void apple_disparity(void **state)
+{
+    (void)state;
+    for (int big_endian = 0; big_endian < 2; big_endian++) {
+        struct bytes main_jpeg = make_jpeg(64, 32, false, false);
+        struct bytes parts[3] = {
+            make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL),
+            make_auxiliary("urn:com:apple:photo:2018:aux:portraiteffectsmatte", NULL),
+            make_auxiliary("disparity", APPLE_RANGE)};
+        struct refocus_photo *photo;
+
+        jpeg_insert_exif(&main_jpeg, make_exif(true, 6));
+        photo = read_photo(make_mpf(main_jpeg, parts, 3, big_endian), REFOCUS_OK);
+        assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_APPLE_MPF);
+        assert_int_equal(photo->depth.width, 16);
+        assert_int_equal(photo->depth.height, 32);
+        assert_in_range(sample_at(&photo->depth, 15, 0), 28, 36);
+        assert_in_range(sample_at(&photo->depth, 0, 31), 220, 228);
+        assert_true(photo->depth.value_near == 255 && photo->depth.value_far == 0);
+        assert_near(photo->depth.near_m, 0.25);
+        assert_near(photo->depth.far_m, 4.0);
+        assert_true(has_evidence(photo, "hdrgainmap"));
+        assert_true(has_evidence(photo, "portraiteffectsmatte"));
+        refocus_photo_free(&photo);
+    }
+}
+
+static void apple_gain_map_is_no_depth(void **state)
+{
+    struct bytes part = make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL);
+    struct bytes file = make_mpf(make_jpeg(32, 32, false, false), &part, 1, true);
+    struct refocus_photo *photo =
+        read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
+
+    (void)state;
+    assert_null(photo->depth.samples);
+    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_NONE);
+    assert_true(has_evidence(photo, "it is no depth"));
+    refocus_photo_free(&photo);
+    read_depth(file, NULL, REFOCUS_ERR_NO_DEPTH);
+}
+
+static struct refocus_photo *apple_with(const char *type, const char *extra,
+                                        int expected)
+{
+    struct bytes part = make_auxiliary(type, extra);
+
+    return read_photo(make_mpf(make_jpeg(32, 32, false, false), &part, 1, true),
+                      expected);
+}
+
+static void apple_ranges(void **state)
+{
+    struct refocus_photo *photo;
+
+    (void)state;
+    photo = apple_with(
+        "disparity", "apdi:FloatMinValue=\"-1\" apdi:FloatMaxValue=\"4\"", REFOCUS_OK);
+    assert_near(photo->depth.value_far, 51); /* where disparity is 0 */
+    assert_true(isinf(photo->depth.far_m) && photo->depth.near_m == 0.25);
+    refocus_photo_free(&photo);
+    photo = apple_with("disparity", NULL, REFOCUS_OK);
+    assert_true(photo->depth.near_m == 0 && photo->depth.value_near == 255);
+    refocus_photo_free(&photo);
+    photo = apple_with("depth", APPLE_RANGE, REFOCUS_OK);
+    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_near(photo->depth.metres_at_zero, 0.25);
+    assert_near(photo->depth.metres_per_unit, 3.75 / 255);
+    refocus_photo_free(&photo);
+    apple_with("depth", NULL, REFOCUS_ERR_FORMAT);
+    apple_with("disparity", "apdi:FloatMinValue=\"4\" apdi:FloatMaxValue=\"4\"",
+               REFOCUS_ERR_FORMAT);
+    apple_with("disparity", "apdi:IntMinValue=\"9\" apdi:IntMaxValue=\"9\"",
+               REFOCUS_ERR_FORMAT);
+    apple_with("disparity", "apdi:FloatMinValue=\"x\"", REFOCUS_ERR_FORMAT);
+}
+
+static void mpf_index_of_another_file(void **state)
+{
+    struct bytes part = make_auxiliary("disparity", APPLE_RANGE);
+    struct bytes file = make_mpf(make_jpeg(32, 32, false, false), &part, 1, true);
+    const size_t main_size = file.size - part.size;
+    struct refocus_photo *photo;
+
+    (void)state;
+    /* An editor dropped the image and left the index. */
+    photo = read_photo(bytes_copy(file.data, main_size), REFOCUS_OK);
+    assert_null(photo->depth.samples);
+    assert_true(has_evidence(photo, "not where the index says"));
+    refocus_photo_free(&photo);
+    /* The file was cut. */
+    read_photo(bytes_copy(file.data, main_size + 1), REFOCUS_ERR_FORMAT);
+    file.size--;
+    read_photo(file, REFOCUS_ERR_FORMAT);
+}
+
+static void xmp_hostile(void **state)
+{
+    static const char *const entities =
+        "<?xml version=\"1.0\"?><!DOCTYPE x [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b "
+        "\"&a;&a;&a;&a;&a;&a;&a;&a;\"><!ENTITY c \"&b;&b;&b;&b;&b;&b;&b;\">]>"
+        "<x xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\">&c;</x>";
+    struct bytes jpeg = make_jpeg(16, 16, false, false);
+    struct refocus_photo *photo;
+
+    (void)state;
+    jpeg_insert_xmp(&jpeg, entities);
+    read_photo(jpeg, REFOCUS_ERR_FORMAT);
+    jpeg = make_jpeg(16, 16, false, false);
+    jpeg_insert_xmp(&jpeg, "<x><broken");
+    photo = read_photo(jpeg, REFOCUS_OK);
+    assert_true(has_evidence(photo, "XMP: damaged"));
+    refocus_photo_free(&photo);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(apple_disparity), cmocka_unit_test(apple_gain_map_is_no_depth),
+        cmocka_unit_test(apple_ranges),    cmocka_unit_test(mpf_index_of_another_file),
+        cmocka_unit_test(xmp_hostile),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,199 @@
+/* The library's own small parsers, on what files hold and on what they should not. */
+#include "check.h"
+#include "internal.h"
+
+#include <math.h>
+
+static void numbers(void **state)
+{
+    static const struct {
+        const char *text;
+        double value;
+    } good[] = {
+        {"0", 0},
+        {"-0.5", -0.5},
+        {" +12 ", 12},
+        {"1e3", 1000},
+        {"2.5E-3", 0.0025},
+        {".5", 0.5},
+        {"5.", 5},
+        {"18.849538803100586", 18.849538803100586},
+        {"123456789012345678901234567890", 123456789012345678901234567890.0},
+        {"0.000000000000000000000000000001", 1e-30},
+        {"0e99999", 0},
+    };
+    static const char *const bad[] = {"",      " ",    ".",    "-",   "e5",
+                                      "1,5",   "0x10", "nan",  "inf", "1 2",
+                                      "1e999", "--1",  "1.2.3"};
+    double value;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        assert_true(rf_parse_number(good[i].text, &value));
+        assert_true(fabs(value - good[i].value) <= 1e-15 * fabs(good[i].value));
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_false(rf_parse_number(bad[i], &value));
+    }
+}
+
+static void base64_text(void **state)
+{
+    static const char *const bad[] = {"A", "AAAAA", "A*AA", "AA=A", "====A", "AA-_"};
+    uint8_t bytes[256];
+    char text[400];
+
+    (void)state;
+    for (int i = 0; i < 256; i++) {
+        bytes[i] = (uint8_t)(i * 89);
+    }
+    for (size_t size = 0; size <= 256; size++) {
+        struct bytes coded = base64(bytes, size);
+        assert_int_equal(rf_base64_decode((char *)coded.data, coded.size), size);
+        if (size > 0) {
+            assert_memory_equal(coded.data, bytes, size);
+        }
+        bytes_free(&coded);
+    }
+    strcpy(text, " QU\r\nJD\tRA ");
+    assert_int_equal(rf_base64_decode(text, strlen(text)), 4);
+    assert_memory_equal(text, "ABCD", 4);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        strcpy(text, bad[i]);
+        assert_true(rf_base64_decode(text, strlen(text)) == (size_t)-1);
+    }
+}
+
+/* Directories that point at themselves, at each other and outside. */
+static void exif_offsets(void **state)
+{
+    static const uint32_t places[] = {
+        0, 1, 7, 8, 62, 100, 171, 176, 177, 0x7fffffff, 0xfffffffe, 0xffffffff};
+    struct rf_exif exif;
+
+    (void)state;
+    for (int big_endian = 0; big_endian < 2; big_endian++) {
+        for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+            /* Where the first directory and the settings' directory are said to be. */
+            static const size_t fields[] = {4, 8 + 2 + 36 + 8};
+            for (int field = 0; field < 2; field++) {
+                struct bytes block = make_exif(big_endian, 6);
+                struct bytes offset = {NULL, 0};
+                uint8_t *const exact = malloc(block.size);
+
+                bytes_number(&offset, places[i], 4, big_endian);
+                memcpy(block.data + fields[field], offset.data, 4);
+                memcpy(exact, block.data, block.size);
+                rf_exif_parse(exact, block.size, &exif);
+                assert_in_range(exif.orientation, 1, 8);
+                free(exact);
+                bytes_free(&offset);
+                bytes_free(&block);
+            }
+        }
+    }
+}
+
+static void exif_texts_are_clean(void **state)
+{
+    struct bytes block = make_exif(true, 1);
+    struct rf_exif exif;
+
+    (void)state;
+    block.data[128 + 1] = '\n';
+    assert_true(rf_exif_parse(block.data, block.size, &exif));
+    assert_string_equal(exif.camera, "M?ker Model X");
+    bytes_free(&block);
+    block = make_exif(true, 1);
+    memcpy(block.data + 128 + 6, "Maker 2", 7);
+    assert_true(rf_exif_parse(block.data, block.size, &exif));
+    assert_string_equal(exif.camera, "Maker 2");
+    bytes_free(&block);
+}
+
+static void mpf_bounds(void **state)
+{
+    struct bytes tiff = {NULL, 0};
+    struct rf_mpf mpf;
+
+    (void)state;
+    bytes_add(&tiff, "MM\0*\0\0\0\10\0\1\260\2\0\7\0\0\0\40\0\0\0\32\0\0\0\0", 26);
+    bytes_add(&tiff, "\0\3\0\0\0\0\1\0\0\0\0\0\0\0\0\0", 16);
+    bytes_add(&tiff, "\0\0\0\0\0\0\0\5\0\0\1\2\0\0\0\0", 16);
+    assert_true(rf_mpf_parse((struct rf_bytes){tiff.data, tiff.size}, &mpf));
+    assert_int_equal(mpf.count, 2);
+    assert_int_equal(mpf.image[0].size, 256);
+    assert_int_equal(mpf.image[1].size, 5);
+    assert_int_equal(mpf.image[1].offset, 258);
+    for (size_t size = 0; size < tiff.size; size++) {
+        assert_false(rf_mpf_parse((struct rf_bytes){tiff.data, size}, &mpf));
+    }
+    bytes_free(&tiff);
+}
+
+/* Depth that reaches beyond infinity: d = 0 is at infinity. */
+static void disparity_ranges(void **state)
+{
+    struct refocus_depth_map map = {0};
+
+    (void)state;
+    rf_depth_from_disparity(&map, 0, 255, 0.5, 2);
+    assert_true(map.near_m == 0.5 && map.far_m == 2 && map.value_far == 0);
+    rf_depth_from_disparity(&map, 0, 255, 0, 2);
+    assert_true(isinf(map.far_m) && map.value_far == 0);
+    rf_depth_from_disparity(&map, 0, 100, -1, 3);
+    assert_true(isinf(map.far_m) && map.value_far == 25 && map.value_near == 100);
+}
+
+static void heif_orientations(void **state)
+{
+    static const struct {
+        struct heif_property properties[2];
+        int count, orientation;
+    } cases[] = {
+        {{{"irot", 0}}, 1, 1},
+        {{{"irot", 1}}, 1, 8}, /* 90 degrees anticlockwise */
+        {{{"irot", 2}}, 1, 3},
+        {{{"irot", 3}}, 1, 6},
+        {{{"imir", 1}}, 1, 2}, /* left and right exchanged */
+        {{{"imir", 0}}, 1, 4},
+        {{{"irot", 1}, {"imir", 1}}, 2, 7},
+        {{{"irot", 3}, {"imir", 1}}, 2, 5},
+        {{{"imir", 1}, {"irot", 3}}, 2, 7},
+        {{{"xxxx", 1}}, 1, 1},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        for (int large = 0; large < 2; large++) {
+            struct bytes file =
+                make_heif_boxes(cases[i].properties, cases[i].count, large);
+
+            assert_int_equal(
+                rf_heif_orientation((struct rf_bytes){file.data, file.size}, 0),
+                cases[i].orientation);
+            assert_int_equal(
+                rf_heif_orientation((struct rf_bytes){file.data, file.size}, 2), 1);
+            for (size_t size = 0; size < file.size; size++) {
+                uint8_t *const exact = malloc(size ? size : 1);
+                memcpy(exact, file.data, size);
+                assert_int_equal(rf_heif_orientation((struct rf_bytes){exact, size}, 1),
+                                 1);
+                free(exact);
+            }
+            bytes_free(&file);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers),           cmocka_unit_test(base64_text),
+        cmocka_unit_test(exif_offsets),      cmocka_unit_test(exif_texts_are_clean),
+        cmocka_unit_test(heif_orientations), cmocka_unit_test(mpf_bounds),
+        cmocka_unit_test(disparity_ranges),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

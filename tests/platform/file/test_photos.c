@@ -1,0 +1,292 @@
+/* Photos that nobody of this project made. They are not part of it: the environment
+ * variable REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
+#include "photos.h"
+
+#include <math.h>
+
+#ifdef RF_HAVE_JPEG
+#if defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
+static void lens_blur_photo(void **state)
+{
+    struct refocus_photo *photo = photo_of("phone/gdepth-dahlia.jpg");
+
+    (void)state;
+    assert_sizes(photo, 1536, 2048, 1536, 2048);
+    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
+    assert_int_equal(photo->info.original_used, 1);
+    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
+    assert_true(photo->depth.value_near == 0 && photo->depth.value_far == 255);
+    assert_true(fabs(photo->depth.near_m - 18.849538803100586) < 1e-9);
+    assert_true(fabs(photo->depth.far_m - 633.323486328125) < 1e-9);
+    assert_samples(&photo->depth, 63, 248);
+    assert_true(fabs(photo->info.focus_x - 0.29814816) < 1e-9);
+    assert_true(fabs(photo->info.focus_y - 0.53194445) < 1e-9);
+    assert_true(fabs(photo->info.focus_distance - 26.517597) < 1e-9);
+    assert_true(fabs(photo->info.blur_at_infinity - 0.00796752) < 1e-9);
+    assert_string_equal(photo->info.camera, "Motorola XT912");
+    /* The focus point lies on the flower, nearer than the map's middle: polarity holds.
+     */
+    assert_true(sample_at(&photo->depth, (int)(photo->info.focus_x * 1536),
+                          (int)(photo->info.focus_y * 2048)) < 155);
+    refocus_photo_free(&photo);
+}
+#endif
+
+#ifdef RF_HAVE_XMP
+static void apple_jpeg(void **state)
+{
+    struct refocus_photo *photo = photo_of("phone/apple-jpeg-cup.jpg");
+
+    (void)state;
+    assert_sizes(photo, 4032, 3024, 768, 576);
+    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_APPLE_MPF);
+    assert_true(photo->depth.value_near == 255 && photo->depth.value_far == 0);
+    assert_true(fabs(photo->depth.near_m - 1 / 4.835938) < 1e-9);
+    assert_true(fabs(photo->depth.far_m - 1 / 0.229614) < 1e-9);
+    assert_true(has_evidence(photo, "hdrgainmap"));
+    assert_true(has_evidence(photo, "relative"));
+    assert_int_equal(photo->icc.size, 548);
+    assert_true(photo->info.focal_length_35mm == 26);
+    refocus_photo_free(&photo);
+}
+#endif
+
+static void triples(void **state)
+{
+    struct refocus_photo *depth =
+        depth_of("lens-blur-triples/hut-depth.jpg", "inverse");
+    struct refocus_photo *photo = photo_of("lens-blur-triples/hut-alternative.jpg");
+
+    (void)state;
+    assert_int_equal(depth->depth.width, 580);
+    assert_int_equal(depth->depth.height, 1024);
+    assert_true(depth->depth.value_near == 0 && depth->depth.value_far == 255);
+    assert_null(photo->depth.samples);
+    refocus_photo_free(&photo);
+    refocus_photo_free(&depth);
+    depth = depth_of("lens-blur-triples/flowers-depth.jpg", "inverse");
+    assert_int_equal(depth->depth.width, 680);
+    refocus_photo_free(&depth);
+}
+
+static void network_depth(void **state)
+{
+    struct refocus_photo *depth = depth_of("mono/street_8_disparity.jpg", NULL);
+
+    (void)state;
+    assert_int_equal(depth->depth.width, 2000);
+    assert_true(depth->depth.value_near == 255);
+    assert_samples(&depth->depth, 0, 255);
+    refocus_photo_free(&depth);
+}
+#endif
+
+#ifdef RF_HAVE_PNG
+static double part_of_zeros(const char *name)
+{
+    struct refocus_photo *depth = depth_of(name, "5000/m");
+    int zeros = 0;
+
+    assert_int_equal(depth->depth.sample, REFOCUS_SAMPLE_U16);
+    assert_int_equal(depth->depth.flags, REFOCUS_DEPTH_ZERO_IS_UNKNOWN);
+    assert_near(depth->depth.metres_per_unit, 1 / 5000.0);
+    for (int i = 0; i < 640 * 480; i++) {
+        zeros += sample_at(&depth->depth, i % 640, i / 640) == 0;
+    }
+    refocus_photo_free(&depth);
+    return zeros / (640 * 480.0);
+}
+
+static void kinect(void **state)
+{
+    (void)state;
+    assert_true(fabs(part_of_zeros("rgbd/tum-office-depth.png") - 0.192) < 0.001);
+    assert_true(fabs(part_of_zeros("rgbd/tum-fr2-desk-depth.png") - 0.333) < 0.001);
+}
+
+static void stereo_truth(void **state)
+{
+    struct refocus_photo *depth = depth_of("stereo-gt/aloeGT.png", NULL);
+
+    (void)state;
+    assert_int_equal(depth->depth.width, 1282);
+    assert_samples(&depth->depth, 0, 211);
+    refocus_photo_free(&depth);
+}
+#endif
+
+static void light_field_truth(void **state)
+{
+    struct refocus_photo *depth =
+        depth_of("light-field/antinous/gt_disp_lowres.pfm", NULL);
+    double low = INFINITY, high = -INFINITY;
+
+    (void)state;
+    assert_int_equal(depth->depth.width, 512);
+    for (int i = 0; i < 512 * 512; i++) {
+        const double v = float_at(&depth->depth, i % 512, i / 512);
+        low = v < low ? v : low;
+        high = v > high ? v : high;
+    }
+    assert_true(fabs(low + 3.1308) < 1e-4 && fabs(high - 2.6887) < 1e-4);
+    /* "Larger is nearer, measured": see value_near in depth.h. */
+    assert_true(depth->depth.value_near == depth->depth.value_far);
+    refocus_photo_free(&depth);
+}
+
+#ifdef RF_HAVE_HEIC
+static void heic_depth(void **state)
+{
+    struct refocus_photo *photo = photo_of("phone/apple-heic-pug.heic");
+
+    (void)state;
+    assert_string_equal(photo->info.container, "HEIC");
+    assert_sizes(photo, 4032, 3024, 768, 576);
+    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_HEIF);
+    assert_true(photo->depth.value_near == 255 && photo->depth.value_far == 0);
+    assert_true(fabs(photo->depth.near_m - 1 / 4.382812) < 1e-6);
+    assert_true(fabs(photo->depth.far_m - 1 / 1.498047) < 1e-6);
+    assert_true(has_evidence(photo, "hdrgainmap"));
+    assert_string_equal(photo->info.camera, "Apple iPhone 13 Pro");
+    assert_int_equal(photo->info.orientation, 1);
+    refocus_photo_free(&photo);
+}
+
+/* The container's rotation by 90 degrees anticlockwise: photo and depth follow, once.
+ */
+static void heic_turned(void **state)
+{
+    struct refocus_photo *straight = photo_of("phone/apple-heic-pug.heic"), *turned;
+    struct bytes file = load("phone/apple-heic-pug.heic");
+
+    (void)state;
+    for (size_t i = 0; i + 8 < file.size; i++) {
+        if (memcmp(file.data + i, "irot", 4) == 0) {
+            file.data[i + 4] = 1;
+        }
+    }
+    turned = read_photo(file, REFOCUS_OK);
+    assert_sizes(turned, 3024, 4032, 576, 768);
+    assert_int_equal(turned->info.stored_width, 4032);
+    assert_int_equal(turned->info.orientation, 8);
+    for (int i = 0; i < 768 * 576; i += 101) {
+        const int x = i % 768, y = i / 768;
+        assert_int_equal(sample_at(&turned->depth, y, 767 - x),
+                         sample_at(&straight->depth, x, y));
+    }
+    for (int i = 0; i < 4032 * 3024; i += 10007) {
+        const int x = i % 4032, y = i / 4032;
+        for (int c = 0; c < 3; c++) {
+            assert_true(abs(pixel_at(&turned->image, y, 4031 - x)[c] -
+                            pixel_at(&straight->image, x, y)[c]) <= 24);
+        }
+    }
+    refocus_photo_free(&turned);
+    refocus_photo_free(&straight);
+}
+
+/* A depth image without a rotation of its own lies as the stored main picture does. */
+static void heic_depth_without_rotation(void **state)
+{
+    struct refocus_photo *straight = photo_of("phone/apple-heic-pug.heic"), *turned;
+    struct bytes file = load("phone/apple-heic-pug.heic");
+    int changed = 0;
+
+    (void)state;
+    for (size_t i = 0; i + 8 < file.size; i++) {
+        /* Item 54, five properties, among them 5, the rotation; 2 is a size. */
+        static const uint8_t association[] = {0, 54, 5};
+        if (memcmp(file.data + i, "irot", 4) == 0) {
+            file.data[i + 4] = 3;
+        }
+        if (changed == 0 && memcmp(file.data + i, association, 3) == 0 &&
+            (file.data[i + 5] & 127) == 5) {
+            file.data[i + 5] = 13;
+            changed = 1;
+        }
+    }
+    assert_int_equal(changed, 1);
+    turned = read_photo(file, REFOCUS_OK);
+    assert_sizes(turned, 3024, 4032, 576, 768);
+    assert_int_equal(turned->info.orientation, 6);
+    for (int i = 0; i < 768 * 576; i += 101) {
+        const int x = i % 768, y = i / 768;
+        assert_int_equal(sample_at(&turned->depth, 575 - y, x),
+                         sample_at(&straight->depth, x, y));
+    }
+    refocus_photo_free(&turned);
+    refocus_photo_free(&straight);
+}
+
+static void heic_cut_and_limited(void **state)
+{
+    struct bytes file = load("phone/apple-heic-pug.heic");
+    const struct refocus_read_limits limits = {.max_pixels = 4032 * 3024 - 1};
+    struct refocus_photo *photo = NULL;
+    struct refocus_reason reason;
+
+    (void)state;
+    for (size_t k = 0; k < 40; k++) {
+        /* The boxes closely, the picture data in steps. */
+        const size_t size = k < 24 ? k * k * 7 : file.size / 16 * (k - 24) + 5;
+        uint8_t *const copy = malloc(size ? size : 1);
+        int status;
+
+        memcpy(copy, file.data, size);
+        status = refocus_photo_read_memory(&photo, copy, size, NULL, &reason);
+        free(copy);
+        if (status == REFOCUS_OK) {
+            fail_msg("cut at %zu of %zu is read as if whole", size, file.size);
+        }
+    }
+    assert_int_equal(
+        refocus_photo_read_memory(&photo, file.data, file.size, &limits, &reason),
+        REFOCUS_ERR_SIZE);
+    bytes_free(&file);
+}
+
+static void heic_without_depth(void **state)
+{
+    struct refocus_photo *photo = photo_of("stereo/spatial-photo.heic");
+
+    (void)state;
+    assert_int_equal(photo->image.width, 2560);
+    assert_null(photo->depth.samples);
+    refocus_photo_free(&photo);
+}
+#endif
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#ifdef RF_HAVE_JPEG
+#if defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
+        cmocka_unit_test(lens_blur_photo),
+#endif
+#ifdef RF_HAVE_XMP
+        cmocka_unit_test(apple_jpeg),
+#endif
+        cmocka_unit_test(triples),
+        cmocka_unit_test(network_depth),
+#endif
+#ifdef RF_HAVE_PNG
+        cmocka_unit_test(kinect),
+        cmocka_unit_test(stereo_truth),
+#endif
+        cmocka_unit_test(light_field_truth),
+#ifdef RF_HAVE_HEIC
+        cmocka_unit_test(heic_depth),
+        cmocka_unit_test(heic_turned),
+        cmocka_unit_test(heic_depth_without_rotation),
+        cmocka_unit_test(heic_cut_and_limited),
+        cmocka_unit_test(heic_without_depth),
+#endif
+    };
+
+    if (!find_photos()) {
+        printf("SKIPPED: no photos in %s; set REFOCUS_PHOTOS to their folder\n",
+               photos_folder);
+        return 77;
+    }
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
