@@ -98,7 +98,7 @@ class Usage(Case):
         self.assertEqual(text, self.succeeds('-h'))
         for name in self.SUBCOMMANDS:
             self.assertRegex(text, r'(?m)^  %s +\S' % name)
-        for name in ('sheet', 'pull', 'view', 'live'):
+        for name in ('sheet', 'pull', 'view'):
             self.assertNotRegex(text, r'(?m)^  %s ' % name)
             self.fails(2, re.compile(r'^refocus: %s: unknown subcommand; ' % name), name,
                        'photo.ppm')
@@ -108,18 +108,18 @@ class Usage(Case):
             'render': self.PAPERS + '-o --output --depth --depth-unit --near --far --focus --focus-at '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
-                      '--mirror --background --threads --cpu --repeat --json --view --region '
+                      '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
                       '-h --help',
             'depth': '-o --output --depth-unit --near --far --json -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-distance --blur '
                        '--f-number --focal-length --sensor-width --rays --iterations '
-                       '--quality --aperture --blend --sigma --mirror --background --threads '
-                       '--cpu --repeat --json -h --help',
+                       '--quality --aperture --blend --sigma --highlights --mirror --background '
+                       '--threads --cpu --repeat --json -h --help',
             'bench': self.PAPERS + '--size --depth --depth-unit --near --far --focus --focus-at '
                      '--focus-distance --blur --method --rays --iterations --quality '
-                     '--aperture --blend --sigma --mirror --background --threads --cpu '
+                     '--aperture --blend --sigma --highlights --mirror --background --threads --cpu '
                      '--repeat --json -h --help',
         }
         for name, expected in options.items():
