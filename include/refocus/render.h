@@ -151,6 +151,8 @@ struct refocus_render_params {
     uint32_t blend;         /**< enum refocus_blend */
     float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
                                  eq. 5: >= 1; INFINITY = plain average */
+    float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 4
+                                 times white */
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
     uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
     uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
@@ -173,6 +175,7 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
     params.max_blur_radius = max_blur_radius;
     params.rays = 64;
     params.sigma = (float)1e30;
+    params.highlight_gain = 1;
     params.iterations = 2;
     params.prefilter = 1;
     return params;

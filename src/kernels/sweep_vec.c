@@ -7,6 +7,7 @@ enum {
     TWO_ROWS = (int)VEC_U16 == (int)RF_TILE,
     MANY = RF_BINS, /* slabs at the most */
     STEPS = 16, /* rays that a 16-bit sum of Q12 light holds: 16 * 4095 < 65536 */
+    BRIGHT_STEPS = 4,
 };
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
@@ -49,10 +50,10 @@ static ALWAYS_INLINE void sweep_pair(uint32_t *sum[3], const struct rf_sweep_job
     const ptrdiff_t plane = 2 * job->pitch;
     const char *const front = (const char *)job->blur + at;
     const char *const behind = (const char *)job->behind + at;
-    const int rays = job->rays;
+    const int rays = job->rays, steps = job->bright ? BRIGHT_STEPS : STEPS;
 
     for (int n = 0; n < rays;) {
-        const int end = n + STEPS < rays ? n + STEPS : rays;
+        const int end = n + steps < rays ? n + steps : rays;
         struct pair r = {zero, zero}, g = r, b = r;
 
         for (; n < end; n++) {

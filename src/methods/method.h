@@ -55,6 +55,7 @@ static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const li
         return 1;
     most = light[1][at] > most ? light[1][at] : most;
     most = light[2][at] > most ? light[2][at] : most;
+    most = most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
     return f->r->light_weight[most];
 }
 

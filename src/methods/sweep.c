@@ -77,6 +77,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
         .slab = plan->slab,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])offset,
         .uniform = plan->uniform,
+        .bright = f->params->highlight_gain > 1,
     };
 
     memset(run, 0, 3 * sizeof run[0]);

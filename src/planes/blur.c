@@ -19,28 +19,50 @@ void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int 
     rf_extend_rows(r, r->front.blur, y0, y1);
 }
 
-void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int y0,
-                       int y1)
+/* Whether a tile holds blurs above `least`. */
+static bool is_wide(const struct refocus_renderer *r, int tx, int ty, int least)
+{
+    const struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+
+    return bins->most > least || -bins->least > least;
+}
+
+/* n columns of a row of one plane, from `at` on. */
+static void smooth_run(const struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
+                       ptrdiff_t at, int step, int least, uint16_t *scratch, int n)
 {
     const ptrdiff_t down = step * r->stride;
+    const uint16_t *from = in + at - step;
+    const int16_t *s = r->front.blur + at;
     uint16_t *const row = scratch + step;
 
-    for (int y = y0; y < y1; y++) {
-        const ptrdiff_t at = y * r->stride;
-        const int16_t *s = r->front.blur + at;
+    r->kernels.smooth3(row - step, from - down, from, from + down, s - step - down, s - step,
+                       s - step + down, least, n + 2 * step);
+    r->kernels.smooth3(out + at, row - step, row, row + step, s - step, s, s + step, least, n);
+}
 
-        for (int c = 0; c < 3; c++) {
-            const uint16_t *from = in[c] + at - step;
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
+                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty)
+{
+    const int y0 = ty * RF_TILE, y1 = y0 + RF_TILE < r->height ? y0 + RF_TILE : r->height;
 
-            if (least == INT16_MAX) {
-                memcpy(out[c] + at, in[c] + at, (size_t)r->width * 2);
-                continue;
+    for (int tx = 0, end; tx < r->tiles_x; tx = end) {
+        const bool wide = is_wide(r, tx, ty, least);
+        const int x0 = tx * RF_TILE;
+        int n;
+
+        for (end = tx + 1; end < r->tiles_x && is_wide(r, end, ty, least) == wide;)
+            end++;
+        n = (end * RF_TILE < r->width ? end * RF_TILE : r->width) - x0;
+        for (int y = y0; y < y1; y++) {
+            const ptrdiff_t at = y * r->stride + x0;
+
+            for (int c = 0; c < 3; c++) {
+                if (wide)
+                    smooth_run(r, out[c], in[c], at, step, least, scratch, n);
+                else
+                    memcpy(out[c] + at, in[c] + at, (size_t)n * 2);
             }
-            r->kernels.smooth3(row - step, from - down, from, from + down, s - step - down,
-                               s - step, s - step + down, least, r->width + 2 * step);
-            r->kernels.smooth3(out[c] + at, row - step, row, row + step, s - step, s, s + step,
-                               least, r->width);
         }
     }
     for (int c = 0; c < 3; c++)

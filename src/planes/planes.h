@@ -24,7 +24,7 @@ struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1);
 
 /*
- * One step of the pre-filter: where |s| is above `least` (Q7.8), the mean of three rows, then
+ * One step of the pre-filter for a row of tiles, whose bins are known: where |s| is above `least` (Q7.8), the mean of three rows, then
  * of three columns, `step` pixels apart, of those pixels that are within one pixel of blur of
  * the middle one; the light as it is elsewhere. Borders are extended.
  *
@@ -33,8 +33,7 @@ void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int 
  */
 enum { RF_PREFILTER_STEPS = 3 };
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int y0,
-                       int y1);
+                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty);
 
 /* Extend rows y0..y1-1 of a padded plane of 16-bit values beyond its sides, and the first
  * and the last row of the picture above and below it. */

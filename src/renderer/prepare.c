@@ -47,7 +47,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
-    r->prepared = r->blurred = false;
+    r->prepared = r->blurred = r->highlights_found = false;
     if (!rf_good_image(photo) || !good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)

@@ -58,7 +58,7 @@ static bool good_params(const struct refocus_renderer *r,
            p->max_blur_radius <= r->max_blur_radius &&
            (p->rays == REFOCUS_RAYS_FULL || (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
            p->blend < RF_BLEND_COUNT && p->sigma >= 1 && p->iterations >= 1 &&
-           p->iterations <= 64 && p->mirror <= 1 && p->background <= 1 &&
+           p->iterations <= 64 && p->highlight_gain >= 1 && p->highlight_gain <= 4 && p->mirror <= 1 && p->background <= 1 &&
            p->prefilter <= 1 && p->reserved == 0;
 }
 
@@ -115,7 +115,7 @@ static void smooth_band(void *context, int band, int worker)
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
     rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
-                      rf_band_start(band), rf_band_end(r, band));
+                      band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
@@ -209,6 +209,7 @@ static void run_passes(struct rf_frame *f)
             return;
         }
         r->blend = f->params->blend;
+        r->highlights_found = false;
     }
     set_weights(f);
     if (method->exact) {
@@ -219,7 +220,13 @@ static void run_passes(struct rf_frame *f)
     if (f->params->max_blur_radius > 0)
         rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
     if (layers) {
+        if (f->params->highlight_gain > 1 && !r->highlights_found)
+            rf_find_highlights(r);
+        if (f->params->highlight_gain > 1)
+            rf_add_highlights(r, f->params->highlight_gain, 1);
         prefilter(f);
+        if (f->params->highlight_gain > 1)
+            rf_add_highlights(r, f->params->highlight_gain, -1);
         rf_pool_run(&r->pool, dilate_item, f, 2);
         rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
         rf_background_fill(r);

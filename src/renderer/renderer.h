@@ -9,6 +9,7 @@
 #include <refocus/render.h>
 
 #include "colour/transfer.h"
+#include "highlights/highlights.h"
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
@@ -72,6 +73,9 @@ struct refocus_renderer {
     uint8_t *alpha;     /* unpadded, width a row */
     struct rf_layer front;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
+    struct rf_highlight *highlight; /* of the photo in this blend, once they are found */
+    uint64_t highlights;
+    bool highlights_found;
 
     /* Of the last lens setting. */
     struct rf_layer behind; /* the background layer */
