@@ -65,17 +65,12 @@ static void rim_hue(const struct refocus_renderer *r, int x, int y, const int ar
         for (int i = -RIM; i <= RIM; i++) {
             const int qx = clamp(x + i, r->width - 1), qy = clamp(y + j, r->height - 1);
             const ptrdiff_t at = qy * r->stride + qx;
-            int over[3], least = RF_LIGHT_MAX;
 
-            for (int c = 0; c < 3; c++) {
-                over[c] = r->front.light[c][at] - around[c];
-                over[c] = over[c] < 0 ? 0 : over[c];
-                least = r->front.light[c][at] < least ? r->front.light[c][at] : least;
-            }
-            if (least >= LEVEL) /* all channels clipped: no hue left */
+            if (brightest(r, at) >= LEVEL) /* a clipped channel has lost the hue */
                 continue;
             for (int c = 0; c < 3; c++)
-                sum[c] += over[c];
+                if (r->front.light[c][at] > around[c])
+                    sum[c] += r->front.light[c][at] - around[c];
         }
     }
     most = sum[0] > sum[1] ? sum[0] : sum[1];
@@ -147,6 +142,38 @@ void rf_find_highlights(struct refocus_renderer *r)
     r->highlights_found = true;
 }
 
+/* Whether a bright pixel of another depth is beside it: then this one is the edge of that,
+ * and only its depth says otherwise. */
+static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight *lamp)
+{
+    const int own = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+
+    for (int j = -2; j <= 2; j++) {
+        for (int i = -2; i <= 2; i++) {
+            const ptrdiff_t at = clamp(lamp->y + j, r->height - 1) * r->stride +
+                                 clamp(lamp->x + i, r->width - 1);
+
+            if (abs(r->front.blur[at]) < own - 256 && brightest(r, at) >= LEVEL)
+                return true;
+        }
+    }
+    return false;
+}
+
+void rf_mark_highlights(struct refocus_renderer *r)
+{
+    for (uint64_t i = 0; i < r->highlights; i++) {
+        struct rf_highlight *lamp = &r->highlight[i];
+        struct rf_bins *bins =
+            &r->bins[(size_t)(lamp->y / RF_TILE) * r->tiles_x + lamp->x / RF_TILE];
+        const int blur = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+
+        lamp->is_edge = is_edge(r, lamp);
+        if (!lamp->is_edge && blur > bins->lamp)
+            bins->lamp = (int16_t)blur;
+    }
+}
+
 void rf_add_highlights(struct refocus_renderer *r, float gain, int sign)
 {
     const int share = (int)((gain - 1) * (256 / GAIN) + 0.5f);
@@ -155,7 +182,7 @@ void rf_add_highlights(struct refocus_renderer *r, float gain, int sign)
         const struct rf_highlight *lamp = &r->highlight[i];
         const ptrdiff_t at = lamp->y * r->stride + lamp->x;
         /* from half a pixel of blur on, all of it from one pixel and a half on */
-        const int blurred = ramp(abs(r->front.blur[at]), 128, 384);
+        const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
 
         for (int c = 0; c < 3; c++)
             r->front.light[c][at] =

@@ -23,6 +23,7 @@ struct refocus_renderer;
 struct rf_highlight {
     int32_t x, y;
     uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095 */
+    uint16_t is_edge;  /* for this lens: of something bright and sharper, left alone */
 };
 
 /* Most highlights of a picture; further ones, row by row, stay as they are. */
@@ -33,6 +34,10 @@ static inline uint64_t rf_highlight_capacity(int width, int height)
 
 /* Find the highlights of the prepared photo, r->highlight[0 .. r->highlights - 1]. */
 void rf_find_highlights(struct refocus_renderer *r);
+
+/* For the lens setting of r->front.blur and r->bins: tell edges from lamps, and note in its
+ * tile how far a lamp is blurred. */
+void rf_mark_highlights(struct refocus_renderer *r);
 
 /* Add (sign 1) or take away again (-1) what they lost; gain 1 to 4. */
 void rf_add_highlights(struct refocus_renderer *r, float gain, int sign);

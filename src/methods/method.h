@@ -65,8 +65,9 @@ static inline int rf_offset(int u, int s)
     return (u * s + (1 << 22)) >> 23;
 }
 
-/* The ray set for a reach (Q7.8): enough rays for it, at most the preset. */
-const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach);
+/* The ray set for a reach (Q7.8): enough rays for it, at most the preset, or a denser one where
+ * a highlight is in reach. */
+const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach, bool lamp);
 
 /* Means of a tile into the output picture. */
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);

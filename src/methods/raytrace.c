@@ -150,7 +150,7 @@ static void add(const struct rf_frame *f, int qx, int qy, double share, struct e
 static void trace_tile(const struct rf_frame *f, struct rf_rect rect,
                        struct exact_sums sums[RF_TILE][RF_TILE])
 {
-    const struct rf_ray_set *set = &f->r->set[f->r->sets - 1];
+    const struct rf_ray_set *set = &f->r->set[f->r->preset];
     const double K = f->params->max_blur_radius;
 
     for (int n = 0; n < set->count; n++) {

@@ -133,7 +133,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_copy_tile(f, rect);
         return;
     }
-    set = rf_rays_for(r, plan.reach);
+    set = rf_rays_for(r, plan.reach, plan.lamp);
     if (set->equal && !f->weighted) {
         const uint32_t scale = rf_mean_scale((uint64_t)set->count);
         uint16_t mean[3][LANES];

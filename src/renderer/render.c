@@ -180,6 +180,22 @@ static void set_weights(struct rf_frame *f)
     r->weight_blend = r->blend;
 }
 
+static void prefilter_with_highlights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    const float gain = f->params->highlight_gain;
+
+    if (gain > 1) {
+        if (!r->highlights_found)
+            rf_find_highlights(r);
+        rf_mark_highlights(r);
+        rf_add_highlights(r, gain, 1);
+    }
+    prefilter(f);
+    if (gain > 1)
+        rf_add_highlights(r, gain, -1);
+}
+
 /* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. */
 static void set_prefilter(struct rf_frame *f)
 {
@@ -218,15 +234,10 @@ static void run_passes(struct rf_frame *f)
     }
     rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
     if (f->params->max_blur_radius > 0)
-        rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
+        rf_make_rays(r, f->aperture, f->params->rays,
+                     f->params->highlight_gain > 1, f->params->max_blur_radius);
     if (layers) {
-        if (f->params->highlight_gain > 1 && !r->highlights_found)
-            rf_find_highlights(r);
-        if (f->params->highlight_gain > 1)
-            rf_add_highlights(r, f->params->highlight_gain, 1);
-        prefilter(f);
-        if (f->params->highlight_gain > 1)
-            rf_add_highlights(r, f->params->highlight_gain, -1);
+        prefilter_with_highlights(f);
         rf_pool_run(&r->pool, dilate_item, f, 2);
         rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
         rf_background_fill(r);

@@ -16,7 +16,7 @@
 enum {
     RF_GROUP = 4,     /* planes that lie together */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
-    RF_RAY_CLASSES = 7,
+    RF_RAY_CLASSES = 12, /* a preset's own set and smaller ones; denser ones for lamps */
     RF_FULL_RAYS = 255 * 255,
 };
 
@@ -47,6 +47,7 @@ struct rf_level {
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
     int16_t least, most; /* Q7.8 */
+    int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
 };
 
 struct refocus_renderer {
@@ -94,8 +95,10 @@ struct refocus_renderer {
     struct refocus_ray *rays;    /* memory of all sets */
     struct rf_ray_set set[RF_RAY_CLASSES];
     int sets;               /* how many are filled, 0: none yet */
+    int preset;             /* the one that has as many rays as were asked for */
     uint64_t set_aperture;  /* what they were made for */
     int set_rays;
+    bool set_denser;
     float set_blur;
 };
 

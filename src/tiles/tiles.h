@@ -23,6 +23,7 @@ struct rf_tile_plan {
     int slabs;
     int reach; /* largest |s| that reaches the tile, Q7.8 */
     bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
+    bool lamp;    /* a highlight is in reach */
     bool uniform; /* one slab holds all blurs in reach: every ray hits at once */
     struct rf_slab slab[RF_MAX_SLABS];
 };
