@@ -23,7 +23,8 @@
  *                 sum += light[q]; next ray
  *         sum += behind[p + offset[slabs][n]], where no slab was hit
  *
- * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the tile's first pixel.
+ * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
+ * tile's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
  */
 enum { RF_RAY_CHUNK = 64 };
 
@@ -55,7 +56,8 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
 
 /*
  * smooth3: where |blur| > least, the mean of a pixel and those of its two neighbours whose
- * blur is within one pixel (256) of its own; the pixel itself elsewhere. Q12, half up.
+ * blur is within one pixel (256) of its own; the pixel itself elsewhere. Half up; light is at
+ * most 4 * 4095 here and below.
  */
 typedef void rf_smooth3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
                            const uint16_t *after, const int16_t *blur_before,
@@ -90,13 +92,14 @@ typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur,
                         const int16_t *blur0, const int16_t *blur1, int n);
 
 /* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
- * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their parent's blur. */
+ * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their
+ * parent's blur. */
 typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
                         const uint16_t *far_row, uint16_t *mixed, int pairs);
 typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
 
 /* means: Q14 means of sums of N Q12 values, with scale = rf_mean_scale(N): within
- * 1/2 + N / 2^19 of 4 sum / N, and exact where all N are the same. */
+ * 1/2 + N / 2^17 of 4 sum / N, and exact where all N are the same. */
 typedef void rf_means_fn(uint16_t *mean, const uint32_t *sum, uint32_t scale, int n);
 static inline uint32_t rf_mean_scale(uint64_t rays)
 {

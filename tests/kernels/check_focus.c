@@ -40,7 +40,7 @@ static int check_blur(const struct rf_kernels *kernels)
     return 0;
 }
 
-/* The mean of N equal values is that value; of any, within 1/2 + N / 2^19. */
+/* The mean of N equal values is that value; of any, within 1/2 + N / 2^17. */
 static int check_scale(const struct rf_kernels *kernels)
 {
     uint32_t seed = 4;
@@ -51,19 +51,19 @@ static int check_scale(const struct rf_kernels *kernels)
         uint16_t mean[4096];
 
         for (int v = 0; v < 4096; v++)
-            sum[v] = (uint32_t)(v * rays);
+            sum[v] = (uint32_t)(4 * v * rays);
         kernels->means(mean, sum, scale, 4096);
         for (int v = 0; v < 4096; v++)
-            if (mean[v] != 4 * v)
-                return wrong("means", "of equal values", mean[v], 4 * v);
+            if (mean[v] != 16 * v)
+                return wrong("means", "of equal values", mean[v], 16 * v);
         for (int i = 0; i < 200; i++)
-            sum[i] = noise(&seed) % (4095u * (uint32_t)rays + 1);
+            sum[i] = noise(&seed) % (4 * 4095u * (uint32_t)rays + 1);
         kernels->means(mean, sum, scale, 200);
         for (int i = 0; i < 200; i++)
-            if (fabs(mean[i] - 4.0 * sum[i] / rays) > 0.5 + rays / 524288.0)
+            if (fabs(mean[i] - 4.0 * sum[i] / rays) > 0.5 + rays / 131072.0)
                 return wrong("means", "of a sum", mean[i], 4.0 * sum[i] / rays);
     }
-    printf("ok    %-12s %-6s exact of equal values, within 1/2 + N / 2^19 of all\n", "means", "c");
+    printf("ok    %-12s %-6s exact of equal values, within 1/2 + N / 2^17 of all\n", "means", "c");
     return 0;
 }
 

@@ -43,7 +43,7 @@ static size_t bytes_of(const struct row_spec *spec, int n)
 static void range_of(enum kind kind, int parameter, uint32_t seed, int *least, int *most)
 {
     *least = 0;
-    *most = 4095;
+    *most = 4 * 4095;
     if (kind == DISPARITY || kind == SCRATCH)
         *most = 65535;
     if (kind == BLUR || kind == BLUR_OR_NONE) {
@@ -51,7 +51,7 @@ static void range_of(enum kind kind, int parameter, uint32_t seed, int *least, i
         *most = MOST_BLUR;
     }
     if (kind == SUM)
-        *most = 4095 * parameter;
+        *most = 4 * 4095 * parameter;
     if (kind == RAISED) {
         *least = 32768 - MOST_BLUR;
         *most = 32768 + MOST_BLUR;

@@ -74,8 +74,8 @@ static void make_slabs(struct stage *s, bool one, uint32_t *seed)
 
 /* Light of planes from `first` on of a group of `planes`; no light between their rows. Ends
  * with the last pixel of the last plane. Returns the tile's first pixel. */
-static uint16_t *make_group(struct guarded *guarded, int planes, int first, bool bright,
-                            enum place place, uint32_t *seed)
+static uint16_t *make_group(struct guarded *guarded, int planes, int first, int most,
+                            bool extreme, enum place place, uint32_t *seed)
 {
     const int count = (SIDE - 1) * STRIDE + (planes - 1) * PITCH + SIDE;
     uint16_t *all = guarded_place(guarded, (size_t)count * 2, 2, place, noise(seed) % 17);
@@ -85,7 +85,7 @@ static uint16_t *make_group(struct guarded *guarded, int planes, int first, bool
 
         all[i] = 0xffff;
         if (plane >= first && plane < planes && x < SIDE)
-            all[i] = (uint16_t)(bright ? 4095 : noise(seed) % 4096);
+            all[i] = (uint16_t)(extreme ? most : noise_between(seed, 0, most));
     }
     return all + PAD * (STRIDE + 1);
 }
@@ -111,7 +111,8 @@ static void make_stage(struct stage *s, int slabs, bool uniform, enum place plac
 {
     static const int counts[] = {0, 1, 15, 16, 17, 24, 32, 63, RF_RAY_CHUNK};
     uint16_t *front;
-    bool bright;
+    bool extreme;
+    int most;
 
     s->job = (struct rf_sweep_job){
         .stride = STRIDE,
@@ -124,9 +125,11 @@ static void make_stage(struct stage *s, int slabs, bool uniform, enum place plac
     };
     make_slabs(s, uniform, &seed);
     make_offsets(s, &seed);
-    bright = noise(&seed) % 4 == 0;
-    s->job.behind = make_group(&s->behind, 3, 0, bright, place, &seed);
-    front = make_group(&s->front, 4, 1, bright, place, &seed);
+    extreme = noise(&seed) % 4 == 0;
+    s->job.bright = noise(&seed) % 4 == 0;
+    most = s->job.bright ? 4 * 4095 : 4095;
+    s->job.behind = make_group(&s->behind, 3, 0, most, extreme, place, &seed);
+    front = make_group(&s->front, 4, 1, most, extreme, place, &seed);
     make_blurs(s, (int16_t *)front, uniform, &seed);
     s->job.blur = (const int16_t *)front;
     for (int c = 0; c < 3; c++)

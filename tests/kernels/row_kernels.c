@@ -186,6 +186,11 @@ static void run_pull(const struct rf_kernels *k, void *const *row, int parameter
     k->pull(row[0], row[1], row[2], row[3], (uint16_t *)row[4] - 1, n);
 }
 
+static int quarters(int three, int one)
+{
+    return (3 * three + one + 2) / 4;
+}
+
 static void expect_pull(void *const *row, int parameter, int n)
 {
     uint16_t *out = row[0];
@@ -200,8 +205,8 @@ static void expect_pull(void *const *row, int parameter, int n)
         if (beside < 0 || beside >= n)
             beside = x;
         if (blur[i] == RF_NO_BLUR)
-            out[i] = (uint16_t)((9 * near_row[x] + 3 * far_row[x] + 3 * near_row[beside] +
-                                 far_row[beside] + 8) / 16);
+            out[i] = (uint16_t)quarters(quarters(near_row[x], far_row[x]),
+                                        quarters(near_row[beside], far_row[beside]));
     }
 }
 

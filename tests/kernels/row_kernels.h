@@ -10,7 +10,7 @@ enum kind {
     DISPARITY,    /* Q16 */
     BLUR,         /* Q7.8, |s| at most 127 pixels */
     BLUR_OR_NONE, /* or RF_NO_BLUR */
-    LIGHT,        /* Q12 */
+    LIGHT,        /* Q12, highlights up to 4 times white */
     RAISED,       /* s + 2^15, or 0 */
     SUM,          /* 32-bit sums of as many rays as the parameter says */
     SCRATCH,      /* anything, before and after */

@@ -55,19 +55,20 @@ static const struct view {
     float blur, focus;
     uint32_t in, out;
     bool all_styles;
+    float gain; /* of highlights, 0: none, else the photo is darkened but for its lights */
 } views[] = {
-    {83, 47, 1, 9, 0.6f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, true},
-    {64, 33, 1, 14.5f, 0, REFOCUS_FORMAT_BGR8, REFOCUS_FORMAT_RGBA8, true},
-    {31, 70, 1, 5, 1, REFOCUS_FORMAT_RGBA8, REFOCUS_FORMAT_BGR8, true},
-    {1, 1, 1, 20, 0.5f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGRA8, false},
-    {40, 17, 1, 0, 0.25f, REFOCUS_FORMAT_BGRA8, REFOCUS_FORMAT_RGB8, false},
-    {53, 38, 1, 1.25f, 0.3f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false},
-    {96, 80, 4, 20, 0.45f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false},
-    {90, 61, 1, 31.5f, 0.8f, REFOCUS_FORMAT_BGR8, REFOCUS_FORMAT_RGB8, false},
-    {61, 44, 3, 32, 0.25f, REFOCUS_FORMAT_BGRA8, REFOCUS_FORMAT_BGRA8, false},
-    {97, 54, 1, 63.5f, 0.5f, REFOCUS_FORMAT_RGBA8, REFOCUS_FORMAT_RGBA8, false},
-    {48, 65, 1, 100, 1, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false},
-    {70, 41, 1, 127, 0, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGR8, false},
+    {83, 47, 1, 9, 0.6f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, true, 0},
+    {64, 33, 1, 14.5f, 0, REFOCUS_FORMAT_BGR8, REFOCUS_FORMAT_RGBA8, true, 0},
+    {31, 70, 1, 5, 1, REFOCUS_FORMAT_RGBA8, REFOCUS_FORMAT_BGR8, true, 0},
+    {1, 1, 1, 20, 0.5f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGRA8, false, 0},
+    {40, 17, 1, 0, 0.25f, REFOCUS_FORMAT_BGRA8, REFOCUS_FORMAT_RGB8, false, 0},
+    {53, 38, 1, 1.25f, 0.3f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false, 0},
+    {96, 80, 4, 20, 0.45f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false, 4},
+    {90, 61, 1, 31.5f, 0.8f, REFOCUS_FORMAT_BGR8, REFOCUS_FORMAT_RGB8, false, 2.5f},
+    {61, 44, 3, 32, 0.25f, REFOCUS_FORMAT_BGRA8, REFOCUS_FORMAT_BGRA8, false, 0},
+    {97, 54, 1, 63.5f, 0.5f, REFOCUS_FORMAT_RGBA8, REFOCUS_FORMAT_RGBA8, false, 0},
+    {48, 65, 1, 100, 1, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false, 0},
+    {70, 41, 1, 127, 0, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGR8, false, 0},
 };
 
 /* All of them, or those that differ most and take little time at any K. */
@@ -87,8 +88,12 @@ static struct refocus_image photo_of(const struct view *view, const struct pictu
     const bool bgr = view->in == REFOCUS_FORMAT_BGR8 || view->in == REFOCUS_FORMAT_BGRA8;
 
     for (int i = 0; i < p->width * p->height; i++) {
-        for (int c = 0; c < 3; c++)
-            memory[i * bytes + (bgr ? 2 - c : c)] = p->rgb[3 * i + c];
+        for (int c = 0; c < 3; c++) {
+            const uint8_t code = p->rgb[3 * i + c];
+            const bool dark = view->gain > 0 && code < 250;
+
+            memory[i * bytes + (bgr ? 2 - c : c)] = dark ? code / 4 : code;
+        }
         if (bytes == 4)
             memory[i * 4 + 3] = (uint8_t)(i * 37);
     }
@@ -136,6 +141,8 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
             struct refocus_aperture *aperture = style_aperture(&styles[i]);
 
             params.aperture = aperture;
+            if (view->gain > 0)
+                params.highlight_gain = view->gain;
             memset(out, 0xaa, sizeof out);
             if (takes(view, &styles[i])) {
                 assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
@@ -186,9 +193,9 @@ static void pictures(void **state)
 
             if (!takes(view, &styles[i]))
                 continue;
-            snprintf(name, sizeof name, "%d x %d, depth / %d, K = %g, df = %g, %d to %d, %s",
+            snprintf(name, sizeof name, "%d x %d, depth / %d, K = %g, df = %g, gain %g, %d to %d, %s",
                      p.width, p.height, view->coarse, (double)view->blur,
-                     (double)view->focus, (int)view->in, (int)view->out, styles[i].name);
+                     (double)view->focus, (double)view->gain, (int)view->in, (int)view->out, styles[i].name);
             check_golden(plain[i], name);
         }
         picture_free(&p);
