@@ -237,8 +237,7 @@ static int compare(const void *a, const void *b)
     return *(const uint16_t *)a - *(const uint16_t *)b;
 }
 
-/* Median of the 5x5 samples around a pixel, of fewer at the border. */
-static double median_at(const uint16_t *disparity, int width, int height, int x, int y)
+double input_median_at(const uint16_t *disparity, int width, int height, int x, int y)
 {
     uint16_t values[25];
     int n = 0;
@@ -292,6 +291,6 @@ int input_focus(const struct input *input, const struct lens_settings *settings,
         x = fmin(info->focus_x * width, width - 1);
         y = fmin(info->focus_y * height, height - 1);
     }
-    *focus = median_at(prepared, width, height, (int)x, (int)y);
+    *focus = input_median_at(prepared, width, height, (int)x, (int)y);
     return EXIT_DONE;
 }

@@ -143,6 +143,9 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
 int input_focus(const struct input *input, const struct lens_settings *settings,
                 const uint16_t *prepared, double *focus);
 
+/* Median of the 5x5 disparities around a pixel, of fewer at the border. */
+double input_median_at(const uint16_t *disparity, int width, int height, int x, int y);
+
 /* Exit code for what a function of the file library returned. */
 int input_exit_code(int status);
 

@@ -105,6 +105,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         r->level[i] = level[i];
     }
     r->highlight = rf_arena_take(arena, rf_highlight_capacity(w, h), sizeof *r->highlight);
+    r->rim = rf_arena_take(arena, rf_rim_capacity(w, h), sizeof *r->rim);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);

@@ -60,6 +60,8 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     rf_run_begin(r);
     rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
     rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
+    if (!rf_cancelled(r))
+        rf_find_rims(r);
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->prepared = true;

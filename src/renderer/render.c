@@ -237,6 +237,7 @@ static void run_passes(struct rf_frame *f)
         rf_make_rays(r, f->aperture, f->params->rays,
                      f->params->highlight_gain > 1, f->params->max_blur_radius);
     if (layers) {
+        rf_patch_rims(r, f->focus, f->scale);
         prefilter_with_highlights(f);
         rf_pool_run(&r->pool, dilate_item, f, 2);
         rf_pool_run(&r->pool, mark_band, f, rf_bands(r));

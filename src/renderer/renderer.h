@@ -10,6 +10,7 @@
 
 #include "colour/transfer.h"
 #include "highlights/highlights.h"
+#include "highlights/rims.h"
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
@@ -77,6 +78,8 @@ struct refocus_renderer {
     struct rf_highlight *highlight; /* of the photo in this blend, once they are found */
     uint64_t highlights;
     bool highlights_found;
+    struct rf_rim *rim; /* of the photo */
+    uint64_t rims;
 
     /* Of the last lens setting. */
     struct rf_layer behind; /* the background layer */

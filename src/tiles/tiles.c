@@ -70,6 +70,17 @@ void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
     }
 }
 
+void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                int16_t blur)
+{
+    struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+    const int bin = bin_of(scale, blur);
+
+    bins->word[bin / 64] |= UINT64_C(1) << bin % 64;
+    bins->least = blur < bins->least ? blur : bins->least;
+    bins->most = blur > bins->most ? blur : bins->most;
+}
+
 static bool has(const struct rf_bins *bins, int bin)
 {
     return bins->word[bin / 64] >> (bin % 64) & 1;

@@ -31,6 +31,10 @@ struct rf_tile_plan {
 /* Bins of the tiles of row ty. */
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);
 
+/* One more blur in a tile. */
+void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                int16_t blur);
+
 /* Everything the rays of a tile need. `square`: the aperture reaches beyond the unit
  * circle, so that distances count by the larger axis. */
 void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
