@@ -22,6 +22,7 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
     ("sweep", "method=sweep", "the default: two layers, 64 rays"),
+    ("sweep-lights", "method=sweep,highlight=4", "the same, clipped lamps four times as bright"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "the paper to the letter: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
@@ -43,6 +44,12 @@ RAYS = [
     ("sweep-64", "rays=64", "standard"),
     ("sweep-128", "rays=128", "best"),
     ("sweep-64-raw", "rays=64,prefilter=0", "64 rays without the pre-filter"),
+]
+LIGHTS = [
+    ("gain-1", "highlight=1", "as the photo has them"),
+    ("gain-2", "highlight=2", "lamps up to twice as bright as white"),
+    ("gain-3", "highlight=3", "three times"),
+    ("gain-4", "highlight=4", "four times"),
 ]
 BLENDS = [
     ("linear", "blend=linear,sigma=off", "linear light, plain average"),
@@ -117,7 +124,7 @@ def settings_list(runs):
     return "".join(f"- `{label}`: `{settings}`\n" for label, settings, _ in runs)
 
 
-def write(out, methods, rows, rays, against, blends, others):
+def write(out, methods, rows, rays, against, blends, lights, others):
     parts = [
         "# How good the pictures are\n\n"
         "Written by `tests/quality/run.py`; do not edit. Renderings of path-traced scenes by "
@@ -136,6 +143,7 @@ def write(out, methods, rows, rays, against, blends, others):
         "## Number of rays, `sweep`: mean of the twelve views\n\n" + mean_table(RAYS, rays),
         "The same against the picture of `sweep-full`:\n\n" + mean_table(RAYS[1:], against),
         "## Blending, `sweep`: mean of the twelve views\n\n" + mean_table(BLENDS, blends),
+        "## Clipped lamps, `sweep`: mean of the twelve views\n\n" + mean_table(LIGHTS, lights),
         "## Other apertures: PSNR of each view\n\n" + view_table(METHODS, others, "psnr", "{:.2f}"),
         "## Other apertures: PSNR near edges\n\n"
         + view_table(METHODS, others, "edge_psnr", "{:.2f}"),
@@ -163,9 +171,10 @@ def main():
     against = measure(tool, scenes, [RAYS[0]] + [(l, s + ",against=sweep-full")
                                                  for l, s, _ in RAYS[1:]], 20, 0)
     blends = measure(tool, scenes, BLENDS, 20, 0)
+    lights = measure(tool, scenes, LIGHTS, 20, 0)
     others = [r for blur, blades in ((20, 6), (10, 0), (40, 0))
               for r in measure(tool, scenes, METHODS, blur, blades)]
-    write(args.out, methods, rows, rays, against, blends, others)
+    write(args.out, methods, rows, rays, against, blends, lights, others)
     print(f"wrote {args.out}", file=sys.stderr)
 
 

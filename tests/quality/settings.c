@@ -43,6 +43,7 @@ static const struct key {
     {"iterations", INT32, RENDER(iterations), NULL},
     {"blend", NAMED, RENDER(blend), blend_names},
     {"sigma", FLOAT, RENDER(sigma), sigma_names},
+    {"highlight", FLOAT, RENDER(highlight_gain), NULL},
     {"mirror", BYTE, RENDER(mirror), NULL},
     {"background", BYTE, RENDER(background), NULL},
     {"prefilter", BYTE, RENDER(prefilter), NULL},

@@ -1,23 +1,25 @@
 #include "pictures.h"
 
 const struct style styles[] = {
-    {"sweep", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep 32", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep 1", REFOCUS_METHOD_SWEEP, 1, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep 1024", REFOCUS_METHOD_SWEEP, 1024, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 0, 0},
-    {"sweep full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep stored", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0},
-    {"sweep gamma", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_GAMMA, 40, 0},
-    {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0},
-    {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5},
-    {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1},
-    {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0},
-    {"search T=2", REFOCUS_METHOD_SEARCH, 64, 2, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6},
-    {"search background", REFOCUS_METHOD_SEARCH, 64, 4, 0, 1, 0, REFOCUS_BLEND_GAMMA, 0, 0},
-    {"search mask", REFOCUS_METHOD_SEARCH, 24, 64, 1, 1, 0, REFOCUS_BLEND_LINEAR, 2, -1},
-    {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"raytrace plain", REFOCUS_METHOD_RAYTRACE, 32, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 96, 7},
+    {"sweep", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 0},
+    {"sweep 32", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 0},
+    {"sweep 1", REFOCUS_METHOD_SWEEP, 1, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0},
+    {"sweep 1024", REFOCUS_METHOD_SWEEP, 1024, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 0, 0, 0},
+    {"sweep full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0},
+    {"sweep stored", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0, 0},
+    {"sweep gamma", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_GAMMA, 40, 0, 0},
+    {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0, 0},
+    {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 0},
+    {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1, 0},
+    {"sweep lights", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 4},
+    {"sweep lights weighted", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 200, 6, 2.5f},
+    {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0, 0},
+    {"search T=2", REFOCUS_METHOD_SEARCH, 64, 2, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0},
+    {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6, 0},
+    {"search background", REFOCUS_METHOD_SEARCH, 64, 4, 0, 1, 0, REFOCUS_BLEND_GAMMA, 0, 0, 0},
+    {"search mask", REFOCUS_METHOD_SEARCH, 24, 64, 1, 1, 0, REFOCUS_BLEND_LINEAR, 2, -1, 0},
+    {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0},
+    {"raytrace plain", REFOCUS_METHOD_RAYTRACE, 32, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 96, 7, 0},
 };
 const int style_count = sizeof styles / sizeof styles[0];
 
@@ -146,6 +148,7 @@ struct refocus_render_params style_params(const struct style *style, float focus
     params.prefilter = (uint8_t)style->prefilter;
     params.blend = style->blend;
     params.sigma = style->sigma > 0 ? style->sigma : INFINITY;
+    params.highlight_gain = style->gain > 0 ? style->gain : 1;
     return params;
 }
 

@@ -43,6 +43,7 @@ struct style {
     uint32_t blend;
     float sigma;  /* 0: plain average */
     int blades;   /* 0: disc; -1: a mask with an L in it */
+    float gain;   /* of highlights; 0: none */
 };
 extern const struct style styles[];
 extern const int style_count;

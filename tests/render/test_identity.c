@@ -46,7 +46,7 @@ static void every_grey(void **state)
         memcpy(flat.disparity, deep.disparity, sizeof(uint16_t) * W * H);
         renderer = prepared(&flat, 5, 1);
         for (int i = 0; i < 24; i++) {
-            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0};
+            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0, 0};
 
             style.blend = (uint32_t)i % 3;
             style.sigma = sigmas[i / 3];
