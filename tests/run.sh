@@ -107,8 +107,8 @@ clang_stage() {
 
 minimal_stage() {
     say 'every optional feature off: the core alone'
-    CC=gcc CXX=g++ build minimal --buildtype=release -Djpeg=disabled -Dpng=disabled -Dxmp=disabled \
-        -Dheic=disabled -Dtools=disabled || return
+    CC=gcc CXX=g++ build minimal --buildtype=release -Dauto_features=disabled \
+        -Dtests=enabled || return
     run minimal
     same_bytes minimal
 }
@@ -141,8 +141,8 @@ cross_stage() {
     "$top/tests/cross/cmocka.sh" "$2" "$builds/cmocka-$2" >"$builds/cmocka-$2.log" 2>&1 ||
         { skip "$1" "no cmocka for $2, see $builds/cmocka-$2.log"; return; }
     build "$1" --buildtype=release --cross-file "$top/tests/cross/$1.ini" \
-        --cross-file "$builds/cmocka-$2/cmocka.ini" -Djpeg=disabled -Dpng=disabled \
-        -Dxmp=disabled -Dheic=disabled -Dtools=disabled || return
+        --cross-file "$builds/cmocka-$2/cmocka.ini" -Dauto_features=disabled -Dsimd=enabled \
+        -Dtests=enabled || return
     run "$1" --timeout-multiplier 10
     same_bytes "$1"
 }
