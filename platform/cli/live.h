@@ -79,7 +79,7 @@ json_t *live_times_json(const struct live_times *times);
 
 /* live_depth.c: depth maps on their way, and which goes with which frame -------------------- */
 
-enum { LIVE_DEPTHS = 8 };
+enum { LIVE_DEPTHS = 16 };
 
 struct live_depth_map {
     uint16_t *disparity; /* packed */
@@ -139,7 +139,7 @@ void live_focus_pull(struct live_focus *focus, double disparity, double seconds)
 /* Counts and times of one thread each; read when all have ended. */
 struct live_stage {
     struct live_times times;
-    uint64_t frames, corrupt, damaged, reordered, timeouts, recoveries, waits;
+    uint64_t frames, corrupt, damaged, reordered, timeouts, recoveries, skipped;
     double worst_recovery_ms;
 };
 

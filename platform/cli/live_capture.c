@@ -20,6 +20,7 @@ struct lane {
     uint16_t *samples, *registered; /* of depth */
     size_t capacity;
     int64_t last_ns;
+    bool newest_wins;
     bool done; /* nothing else will come */
 };
 
@@ -91,6 +92,23 @@ static int handle(struct lane *lane, const struct refocus_frame *frame)
     return EXIT_FAILED;
 }
 
+/* When the newest frame wins: leave out those that a newer one waits behind already. */
+static const struct refocus_frame *skip_to_newest(struct lane *lane,
+                                                  const struct refocus_frame *frame)
+{
+    const struct refocus_frame *newer;
+
+    for (int i = 0; i < LIVE_SLOTS && lane->newest_wins; i++) {
+        if (refocus_source_wait(lane->source, 0, &newer, NULL) != REFOCUS_OK)
+            break; /* a fault will be there at the next wait, too */
+        refocus_source_release(lane->source, frame);
+        frame = newer;
+        lane->stage->frames++;
+        lane->stage->skipped++;
+    }
+    return frame;
+}
+
 static void run_lane(struct lane *lane)
 {
     struct live *live = lane->live;
@@ -102,8 +120,8 @@ static void run_lane(struct lane *lane)
         int status = refocus_source_wait(lane->source, WAIT_MS, &frame, &reason);
 
         if (status == REFOCUS_OK) {
+            frame = skip_to_newest(lane, frame);
             const int result = handle(lane, frame);
-
             refocus_source_release(lane->source, frame);
             if (fault_ns)
                 note_recovery(lane, fault_ns);
@@ -184,6 +202,8 @@ void *live_capture_thread(void *argument)
                         .source = live->camera,
                         .name = live->settings->camera,
                         .stage = &live->capture,
+                        .newest_wins = live->settings->policy == POLICY_NEWEST &&
+                                       !live->settings->fast,
                         .deliver = deliver_colour};
 
     if (refocus_converter_create(&lane.converter) == REFOCUS_OK)

@@ -114,7 +114,7 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
 {
     const struct live_depth_map *map, *newest;
     struct timespec until;
-    int64_t wait_ns = half_ns + 20000000; /* what a depth camera may be late */
+    int64_t wait_ns = 3 * half_ns; /* what a depth camera may be late */
     int error = 0;
 
     clock_gettime(CLOCK_MONOTONIC, &until);

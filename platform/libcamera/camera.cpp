@@ -21,6 +21,7 @@
 #include <unistd.h>
 
 #include <libcamera/libcamera.h>
+#include <libcamera/logging.h>
 
 #include "backend.h"
 
@@ -47,6 +48,7 @@ std::shared_ptr<CameraManager> get_manager()
 
     if (manager)
         return manager;
+    logSetTarget(LoggingTargetNone); /* what goes wrong is told in reasons */
     manager = std::shared_ptr<CameraManager>(new CameraManager, [](CameraManager *ended) {
         ended->stop();
         delete ended;
@@ -141,9 +143,8 @@ public:
         if (!camera_) {
             manager_.reset();
             return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                                   "libcamera:%.100s: there is no such camera, or another "
-                                   "program uses it; --list shows those that there are",
-                                   name_.c_str());
+                                   "there is no such camera, or another program uses it; "
+                                   "--list shows those that there are");
         }
         const int error = camera_->acquire();
         if (error != 0) {

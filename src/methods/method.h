@@ -83,6 +83,6 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
 
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);
-rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile;
+rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
 
 #endif

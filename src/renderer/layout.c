@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "methods/frame.h"
 #include "support/arena.h"
 
 /* Pixels that may be read beyond the picture: the largest offset, one for the pre-filter,
@@ -71,6 +72,32 @@ int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height)
     return levels;
 }
 
+/* Bytes for the greediest of the methods that work on whole frames. */
+static uint64_t work_bytes(const struct refocus_renderer_params *params)
+{
+    static const struct {
+        uint32_t method;
+        rf_work_fn_size *size;
+    } needs[] = {{REFOCUS_METHOD_LIGHTFIELD, rf_lightfield_work},
+                 {REFOCUS_METHOD_SCATTER, rf_scatter_work},
+                 {REFOCUS_METHOD_FOVEATED, rf_foveated_work},
+                 {REFOCUS_METHOD_INTERPOLATED, rf_interpolated_work},
+                 {REFOCUS_METHOD_DIFFUSION, rf_diffusion_work}};
+    const struct rf_limits limits = {
+        params->max_width, params->max_height, rf_padding_for(params->max_blur_radius),
+        rf_threads_for(params), params->max_blur_radius};
+    uint64_t most = 0;
+
+    for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++) {
+        const uint64_t bytes = params->methods & REFOCUS_METHOD_BIT(needs[i].method)
+                                   ? needs[i].size(&limits)
+                                   : 0;
+
+        most = bytes > most ? bytes : most;
+    }
+    return most;
+}
+
 /* Sets the pointers of r, or with arena->base == NULL only counts. */
 static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                     struct rf_arena *arena)
@@ -110,6 +137,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
+    r->work = rf_arena_take(arena, work_bytes(params), 1);
 }
 
 uint64_t rf_layout_size(const struct refocus_renderer_params *params)

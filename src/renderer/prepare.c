@@ -5,6 +5,7 @@
 #include "planes/planes.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
+#include "renderer/params.h"
 
 struct job {
     struct refocus_renderer *r;
@@ -31,15 +32,6 @@ static void disparity_band(void *context, int band, int worker)
         rf_upsample_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
 }
 
-static bool good_map(const struct refocus_disparity *map)
-{
-    return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
-           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE &&
-           map->height <= REFOCUS_MAX_SIDE &&
-           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
-           (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
-}
-
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
                     const struct refocus_disparity *disparity)
 {
@@ -48,7 +40,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
     r->prepared = r->blurred = r->highlights_found = false;
-    if (!rf_good_image(photo) || !good_map(disparity))
+    if (!rf_good_image(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;

@@ -4,27 +4,49 @@
 #include <string.h>
 
 #include "background/background.h"
-#include "methods/method.h"
+#include "methods/frame.h"
 #include "planes/format.h"
 #include "planes/planes.h"
 #include "renderer/bands.h"
+#include "renderer/params.h"
 #include "renderer/rays.h"
 
 struct method {
     const char *name, *summary;
-    rf_tile_fn *tile;
+    rf_tile_fn *tile;   /* called for each tile, or */
+    rf_frame_fn *frame; /* once for the whole frame */
     bool layers; /* it needs the pre-filter, the bins of tiles and the background */
     bool exact;  /* it works in double precision */
 };
 
 static const struct method methods[REFOCUS_METHOD_COUNT] = {
     [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
-                              rf_sweep_tile, true, false},
+                              .tile = rf_sweep_tile, .layers = true},
     [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               rf_search_tile, false, false},
+                               .tile = rf_search_tile},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace",
                                  "full image-space ray tracing, Yang et al. 2016; slow",
-                                 rf_raytrace_tile, false, true},
+                                 .tile = rf_raytrace_tile, .exact = true},
+    [REFOCUS_METHOD_JITTERED] = {"jittered",
+                                 "the same for a ray of each cell of the mask; slow, grainy",
+                                 .tile = rf_jittered_tile, .exact = true},
+    [REFOCUS_METHOD_LIGHTFIELD] = {"lightfield",
+                                   "views from all over the aperture, warped and added up",
+                                   .frame = rf_lightfield_frame},
+    [REFOCUS_METHOD_BLUR] = {"blur", "each pixel blurred by its own circle of confusion",
+                             .tile = rf_gather_tile},
+    [REFOCUS_METHOD_SCATTER] = {"scatter",
+                                "each pixel spread over its circle, Potmesil 1981",
+                                .frame = rf_scatter_frame},
+    [REFOCUS_METHOD_FOVEATED] = {"foveated",
+                                 "exact at the centre of attention, Mulder 2000",
+                                 .frame = rf_foveated_frame},
+    [REFOCUS_METHOD_INTERPOLATED] = {"interpolated",
+                                     "between three pictures, NVIDIA 2004; quick",
+                                     .frame = rf_interpolated_frame},
+    [REFOCUS_METHOD_DIFFUSION] = {"diffusion",
+                                  "heat through a field of blur, Kosloff 2007",
+                                  .frame = rf_diffusion_frame},
 };
 
 const char *refocus_method_name(uint32_t method)
@@ -48,18 +70,6 @@ int refocus_format_bytes(uint32_t format)
         return 4;
     }
     return 0;
-}
-
-static bool good_params(const struct refocus_renderer *r,
-                        const struct refocus_render_params *p)
-{
-    return p && p->struct_size == sizeof *p && p->method < REFOCUS_METHOD_COUNT &&
-           p->focus_disparity >= 0 && p->focus_disparity <= 1 && p->max_blur_radius >= 0 &&
-           p->max_blur_radius <= r->max_blur_radius &&
-           (p->rays == REFOCUS_RAYS_FULL || (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
-           p->blend < RF_BLEND_COUNT && p->sigma >= 1 && p->iterations >= 1 &&
-           p->iterations <= 64 && p->highlight_gain >= 1 && p->highlight_gain <= 4 && p->mirror <= 1 && p->background <= 1 &&
-           p->prefilter <= 1 && p->reserved == 0;
 }
 
 /* The part of the picture to render; false if it is not inside. */
@@ -243,6 +253,11 @@ static void run_passes(struct rf_frame *f)
         rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
         rf_background_fill(r);
     }
+    if (method->frame && f->params->max_blur_radius > 0) {
+        if (!rf_cancelled(r))
+            method->frame(f);
+        return;
+    }
     rf_pool_run(&r->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
@@ -255,7 +270,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         return REFOCUS_ERR_ARGUMENT;
     if (!r->prepared)
         return REFOCUS_ERR_STATE;
-    if (!good_params(r, params) || !region_of(r, params, &f.region) ||
+    if (!rf_good_params(r, params) || !region_of(r, params, &f.region) ||
         !rf_good_image(out) || out->width != f.region.x1 - f.region.x0 || out->height != f.region.y1 - f.region.y0)
         return REFOCUS_ERR_ARGUMENT;
     f.aperture = params->aperture ? params->aperture : &rf_disc;

@@ -21,6 +21,8 @@ enum {
     RF_FULL_RAYS = 255 * 255,
 };
 
+#define RF_NO_METHOD UINT32_MAX
+
 /* Rays and runs of equal weight among them. */
 struct rf_ray_set {
     struct refocus_ray *ray;
@@ -94,6 +96,10 @@ struct refocus_renderer {
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q16 */
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
+
+    uint8_t *work;       /* memory of the methods that work on whole frames, one at a time */
+    uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
+    uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
 
     struct refocus_ray *rays;    /* memory of all sets */
     struct rf_ray_set set[RF_RAY_CLASSES];

@@ -89,7 +89,7 @@ class Usage(Case):
         self.assertEqual(text, self.succeeds('-h'))
         for name in self.SUBCOMMANDS:
             self.assertRegex(text, r'(?m)^  %s +\S' % name)
-        for name in ('sheet', 'pull', 'view', 'live', 'compare'):
+        for name in ('sheet', 'pull', 'view', 'compare'):
             self.assertNotRegex(text, r'(?m)^  %s ' % name)
             self.fails(2, re.compile(r'^refocus: %s: unknown subcommand; ' % name), name,
                        'photo.ppm')

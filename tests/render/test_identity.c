@@ -46,7 +46,7 @@ static void every_grey(void **state)
         memcpy(flat.disparity, deep.disparity, sizeof(uint16_t) * W * H);
         renderer = prepared(&flat, 5, 1);
         for (int i = 0; i < 24; i++) {
-            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0, 0};
+            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0, 0, 0};
 
             style.blend = (uint32_t)i % 3;
             style.sigma = sigmas[i / 3];
@@ -75,6 +75,8 @@ static void no_blur(void **state)
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
         render_style(renderer, &p, &styles[s], 0.5f, 0, out);
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
+        if (styles[s].leaks == 2) /* fields and stars are not of depth */
+            continue;
         render_style(renderer, &p, &styles[s], 0.5f, 0.98f, out); /* r <= 0.49 */
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
     }
@@ -84,8 +86,9 @@ static void no_blur(void **state)
 }
 
 /* The left half near, the right half far: renders with every style and fails where a pixel
- * of the columns from @from to @to has changed. At least a quarter of all must have. */
-static void columns_stay(float focus, int from, int to)
+ * of the columns from @from to @to has changed; styles that leak more than @allowed are left
+ * out. At least a quarter of all must have. */
+static void columns_stay(float focus, int from, int to, int allowed)
 {
     enum { W = 96, H = 40, K = 9 };
     struct picture p = picture_make(W, H, 71);
@@ -98,6 +101,8 @@ static void columns_stay(float focus, int from, int to)
     for (int s = 0; s < style_count; s++) {
         int changed = 0;
 
+        if (styles[s].leaks > allowed)
+            continue;
         render_style(renderer, &p, &styles[s], focus, K, out);
         for (int i = 0; i < W * H; i++) {
             const int same = !memcmp(out + 3 * i, p.rgb + 3 * i, 3);
@@ -116,14 +121,14 @@ static void columns_stay(float focus, int from, int to)
 static void sharp_before_blurred(void **state)
 {
     (void)state;
-    columns_stay(1, 0, 48);
+    columns_stay(1, 0, 48, 0);
 }
 
-/* A blurred half before a sharp one: pixels farther than K from the edge stay. */
+/* A blurred half before a sharp one: pixels well farther than K from the edge stay. */
 static void blurred_before_sharp(void **state)
 {
     (void)state;
-    columns_stay(0, 48 + 9 + 3, 96);
+    columns_stay(0, 48 + 3 * 9 / 2 + 5, 96, 1); /* heat goes as far as a Gaussian */
 }
 
 int main(void)
