@@ -4,8 +4,8 @@
 usage: run.py BUILD_DIR [--quick] [--out FILE]
 
 BUILD_DIR holds a release build. The scenes are in $REFOCUS_SCENES or in
-../shared/scenes beside the source tree. --quick leaves out `raytrace` with every ray,
-a minute a view.
+../shared/scenes beside the source tree. --quick leaves out what takes many
+seconds a view.
 """
 import argparse
 import json
@@ -31,11 +31,18 @@ METHODS = [
     ("search-T4-full", "method=search,iterations=4,rays=full", "four tests, every ray"),
     ("search-T2-back", "method=search,iterations=2,background=1",
      "two tests, 64 rays, hidden rays take the background layer"),
-    ("raytrace", "method=raytrace,mirror=1", "ray tracing, 64 rays, hidden rays mirrored"),
+    ("raytrace", "method=raytrace", "ray tracing, 64 rays, hidden rays mirrored"),
+    ("lightfield", "method=lightfield", "64 views, warped and summed"),
+    ("blur", "method=blur", "image-space filter"),
+    ("scatter", "method=scatter", "samples spread over their discs"),
+    ("foveated", "method=foveated", "exact in the middle, pyramids elsewhere"),
+    ("interpolated", "method=interpolated", "between blurred pictures"),
+    ("diffusion", "method=diffusion", "heat through a blur field"),
 ]
-# A minute a view, and so for the twelve views only.
+# Many seconds a view, and so for the twelve views only.
 SLOW = [
-    ("raytrace-full", "method=raytrace,rays=full,mirror=1",
+    ("jittered", "method=jittered", "ray tracing, one ray of each 2x2 of the mask"),
+    ("raytrace-full", "method=raytrace,rays=full",
      "ray tracing, every ray, hidden rays mirrored (the oracle)"),
 ]
 RAYS = [

@@ -17,11 +17,7 @@ static const struct name blend_names[] = {{"linear", REFOCUS_BLEND_LINEAR},
                                           {"stored", REFOCUS_BLEND_STORED},
                                           {"gamma", REFOCUS_BLEND_GAMMA},
                                           {0}};
-static const struct name method_names[] = {{"sweep", REFOCUS_METHOD_SWEEP},
-                                           {"search", REFOCUS_METHOD_SEARCH},
-                                           {"raytrace", REFOCUS_METHOD_RAYTRACE},
-                                           {"input", -1},
-                                           {0}};
+static const struct name method_names[] = {{"input", -1}, {0}}; /* and the library's */
 static const struct name cpu_names[] = {{"auto", REFOCUS_CPU_AUTO},
                                         {"c", REFOCUS_CPU_C},
                                         {"neon", REFOCUS_CPU_NEON},
@@ -56,6 +52,12 @@ static int parse_value(const struct key *key, const char *text, double *value)
 {
     char *end;
 
+    for (uint32_t i = 0; key->names == method_names && i < REFOCUS_METHOD_COUNT; i++) {
+        if (!strcmp(refocus_method_name(i), text)) {
+            *value = i;
+            return 0;
+        }
+    }
     for (const struct name *n = key->names; n && n->name; n++) {
         if (!strcmp(n->name, text)) {
             *value = n->value;
@@ -140,6 +142,8 @@ void quality_settings_help(FILE *file)
             fprintf(file, " number");
         for (const struct name *n = keys[i].names; n && n->name; n++)
             fprintf(file, " %s", n->name);
+        for (uint32_t k = 0; keys[i].names == method_names && k < REFOCUS_METHOD_COUNT; k++)
+            fprintf(file, " %s", refocus_method_name(k));
         fputc('\n', file);
     }
 }
