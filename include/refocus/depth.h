@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
+#include <refocus/image.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
@@ -87,6 +89,53 @@ struct refocus_depth_report {
 REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map,
                                            uint16_t *disparity, ptrdiff_t stride,
                                            struct refocus_depth_report *report);
+
+/** How to upsample. Start from refocus_upsample_params_default(). */
+struct refocus_upsample_params {
+    uint32_t struct_size;      /**< sizeof(struct refocus_upsample_params) */
+    int32_t threads;           /**< 1 to 64; 0 = one for each processor */
+    uint32_t cpu;              /**< enum refocus_cpu of render.h; 0 = the best there is */
+    uint32_t reserved;         /**< 0 */
+    const uint8_t *confidence; /**< a byte for each sample of the map, 255 = sure, 0 = a
+                                    guess that counts where there is nothing else; NULL =
+                                    all sure */
+    ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
+};
+
+static inline struct refocus_upsample_params refocus_upsample_params_default(void)
+{
+    struct refocus_upsample_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    return params;
+}
+
+/**
+ * Bring a map of disparities to the size of the photo that it belongs to, with its edges
+ * on the photo's: refocus_prepare() does the same with maps of another size.
+ *
+ * A joint bilateral filter (Kopf et al. 2007) whose pixels take the mean of the surface that
+ * carries the most weight instead of the mean of all, so that no disparity between two
+ * surfaces is made up. The result does not depend on threads or processor. A map of the
+ * photo's size is copied, one with more columns or rows is sampled.
+ *
+ * @param photo   any packed format
+ * @param map     covers the same view as the photo; see struct refocus_disparity
+ * @param params  see struct refocus_upsample_params
+ * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may not
+ *                overlap the map
+ * @param stride  bytes from a row of @p out to the next; even; may be negative
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 6 bytes a pixel are
+ *         needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD. On an
+ *         error @p out is untouched.
+ *
+ * Thread-safe.
+ */
+REFOCUS_API int refocus_upsample(const struct refocus_image *photo,
+                                 const struct refocus_disparity *map,
+                                 const struct refocus_upsample_params *params, uint16_t *out,
+                                 ptrdiff_t stride);
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "depth/upsample.h"
 #include "support/arena.h"
 
 /* Pixels that may be read beyond the picture: the largest offset, one for the pre-filter,
@@ -95,6 +96,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
+    r->taps = rf_arena_take(arena, (uint64_t)w, sizeof *r->taps);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
 }
 

@@ -25,19 +25,37 @@ static void disparity_band(void *context, int band, int worker)
     const struct job *job = context;
 
     (void)worker;
-    if (job->map->width == job->r->width && job->map->height == job->r->height)
-        rf_disparity_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
-    else
-        rf_upsample_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
+    rf_disparity_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
 }
 
-static bool good_map(const struct refocus_disparity *map)
+static uint16_t *scratch_of(void *context, int worker)
 {
-    return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
-           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE &&
-           map->height <= REFOCUS_MAX_SIDE &&
-           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
-           (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
+    return rf_scratch(context, worker);
+}
+
+/* The planes of the background layer are free until something is rendered. */
+static void upsample(struct refocus_renderer *r, const struct job *job)
+{
+    struct rf_upsampler up = {
+        .kernels = &r->kernels,
+        .photo = job->photo,
+        .map = job->map,
+        .columns = rf_upsample_samples(job->map->width, r->width),
+        .rows = rf_upsample_samples(job->map->height, r->height),
+        .coarse = r->behind.light[0],
+        .coarse_stride = r->stride,
+        .wide = r->behind.light[1],
+        .wide_stride = r->stride,
+        .raw = r->behind.light[2],
+        .raw_stride = r->stride,
+        .across = r->taps,
+        .scratch = scratch_of,
+        .context = r,
+        .out = r->disparity,
+        .out_stride = r->width,
+    };
+
+    rf_upsample(&up, &r->pool);
 }
 
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
@@ -48,7 +66,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
     r->prepared = r->blurred = false;
-    if (!rf_good_image(photo) || !good_map(disparity))
+    if (!rf_good_image(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
@@ -60,7 +78,10 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     r->levels = rf_pyramid(r->level, r->width, r->height);
     rf_run_begin(r);
     rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
-    rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
+    if (disparity->width == r->width && disparity->height == r->height)
+        rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
+    else
+        upsample(r, &job);
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->prepared = true;

@@ -78,6 +78,7 @@ struct refocus_renderer {
     int levels;
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
+    struct rf_taps *taps; /* of the depth upsampler, one for each column */
     uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
     bool blurred;         /* front.blur is valid */
 
