@@ -82,7 +82,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     22 (W + 2P + 47) (H + 2P + 16) + 6 (W + 16) (H + 16) + 4 T (W + 512) + 20 W + 2^20
+ *     22 (W + 2P + 47) (H + 2P + 16) + 6 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
  *
  * with P = ceil(K) + 2 and T threads is never exceeded. @return 0 if a parameter is out of its range. Thread-safe.
  */

@@ -9,9 +9,8 @@
 
 /* Where a pixel lies among the samples of its row or column. */
 struct rf_taps {
-    int32_t first;            /* of four samples, -2 to samples - 2 */
-    uint16_t near_by[RF_TAPS]; /* how near they are, Q15 */
-    uint16_t share[RF_TAPS];   /* the same in Q16 with sum 1 */
+    int32_t first;           /* of four samples, -2 to samples - 2 */
+    uint16_t share[RF_TAPS]; /* Q16, of sum 1 */
 };
 
 /*
@@ -39,7 +38,9 @@ struct rf_upsampler {
     ptrdiff_t wide_stride;
     uint16_t *raw; /* height x width: before the median */
     ptrdiff_t raw_stride;
-    struct rf_taps *across; /* width of them */
+    struct rf_taps *across, *down; /* width and height of them */
+    uint16_t *near_by[RF_TAPS]; /* of columns, width + RF_BATCH_SPARE each: how near they are */
+    int32_t *column; /* -2 to columns + 1: where in a row of the photo a sample is, in bytes */
     uint16_t *(*scratch)(void *context, int worker); /* 2 (columns + 8) elements */
     void *context;
 

@@ -34,11 +34,16 @@ static void lay_out(struct rf_upsampler *up, struct scratch *scratch, int thread
     up->raw_stride = up->photo->width + 2;
     up->raw = rf_arena_take(arena, (width + 2) * height, 2);
     up->across = rf_arena_take(arena, width, sizeof *up->across);
+    up->down = rf_arena_take(arena, height, sizeof *up->down);
+    for (int i = 0; i < RF_TAPS; i++)
+        up->near_by[i] = rf_arena_take(arena, width + RF_BATCH_SPARE, 2);
+    up->column = rf_arena_take(arena, columns + 4, sizeof *up->column);
     scratch->size = 2 * (size_t)(columns + 8);
     scratch->rows = rf_arena_take(arena, (uint64_t)threads * scratch->size, 2);
     if (arena->base) {
         up->coarse += 2 * up->coarse_stride + 2;
         up->raw += 1;
+        up->column += 2;
     }
 }
 

@@ -118,32 +118,33 @@ typedef void rf_steps4_fn(uint16_t *across, uint16_t *down, const uint16_t *cons
  * cluster: disparities of n pixels that lie between the same 4 x 4 samples. A pixel weighs
  * sample i by nearness, trust and likeness,
  *
- *     w = across[i % 4] down[i / 4] trust[i] (64 - min(63, |colour - colour[i]|)) / 64
+ *     w = across[i % 4] down[i / 4] trust[i] (1 - min(80, |colour - colour[i]|) / 80)^2
  *
  * with 1-norms of the colours, and takes the mean over that window, of those the cell lists,
- * whose sum of w is the greatest, the first of equal ones. across and down are Q15 and add up
- * to 1.5 at most, trust and the products are Q16, rounded down.
+ * whose sum of w is the greatest, the first of equal ones. All are Q16 and products are
+ * rounded down; those of across and down add up to less than 1.
  *
- * colour: of the first pixel; the next is `step` bytes on
+ * n is at most RF_BATCH and is rounded up to whole vectors: some of `out` after it is
+ * overwritten.
  */
-enum { RF_TAPS = 4, RF_SAMPLES = RF_TAPS * RF_TAPS, RF_UNLIKE = 63 };
-
-/* The samples within a short range of disparities. */
-struct rf_window {
-    uint16_t low;                 /* least of them */
-    uint16_t in[RF_SAMPLES];      /* 0xffff for samples in it */
-    int16_t above[RF_SAMPLES];    /* disparity - low for these, 0 for others */
-};
+enum { RF_TAPS = 4, RF_SAMPLES = RF_TAPS * RF_TAPS, RF_UNLIKE = 80, RF_BATCH = 64,
+       RF_BATCH_SPARE = 16 };
 
 struct rf_cell {
+    uint16_t disparity[RF_SAMPLES];
     uint16_t colour[3][RF_SAMPLES];
     uint16_t trust[RF_SAMPLES];
-    int windows;                  /* at least 1 */
-    struct rf_window window[RF_SAMPLES];
+    int windows;                  /* ranges of disparity, 1 to RF_SAMPLES of them */
+    uint16_t low[RF_SAMPLES], high[RF_SAMPLES]; /* their least and greatest samples */
 };
-typedef void rf_cluster_fn(uint16_t *out, const struct rf_cell *cell,
-                           const uint16_t (*across)[RF_TAPS], const uint16_t down[RF_TAPS],
-                           const uint8_t *const colour[3], int step, int n);
+
+struct rf_batch {
+    uint16_t colour[3][RF_BATCH + RF_BATCH_SPARE];
+    uint16_t across[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
+    uint16_t down[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
+};
+typedef void rf_cluster_fn(uint16_t out[RF_BATCH + RF_BATCH_SPARE],
+                           const struct rf_cell *cell, const struct rf_batch *batch, int n);
 
 /* median3: medians of 3 x 3; elements -1 and n are read. */
 typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,

@@ -44,72 +44,79 @@ static void RF_VEC(rf_steps4)(uint16_t *restrict across, uint16_t *restrict down
     }
 }
 
-/* Weights of the 16 samples for one pixel, in Q14 and smaller. */
-static inline void weigh(uint16_t weight[restrict RF_SAMPLES],
-                         const struct rf_cell *restrict cell,
-                         const uint16_t across[restrict RF_SAMPLES],
-                         const uint16_t down[restrict RF_SAMPLES], const uint8_t *const p[3],
-                         ptrdiff_t at)
+/* Weights of one sample for all pixels, in Q16. */
+static void weigh(uint16_t *restrict weight, const struct rf_cell *cell, int i,
+                  const struct rf_batch *batch, int n)
 {
-    const uint16_t c0 = p[0][at], c1 = p[1][at], c2 = p[2][at];
+    const uint16_t *restrict c0 = batch->colour[0], *restrict c1 = batch->colour[1];
+    const uint16_t *restrict c2 = batch->colour[2];
+    const uint16_t *restrict across = batch->across[i % RF_TAPS];
+    const uint16_t *restrict down = batch->down[i / RF_TAPS];
+    const uint16_t s0 = cell->colour[0][i], s1 = cell->colour[1][i], s2 = cell->colour[2][i];
+    const uint16_t trust = cell->trust[i];
 
-    for (int i = 0; i < RF_SAMPLES; i++) {
-        const uint16_t unlike = least((uint16_t)(apart(cell->colour[0][i], c0) +
-                                                 apart(cell->colour[1][i], c1) +
-                                                 apart(cell->colour[2][i], c2)),
-                                      RF_UNLIKE);
-        const uint16_t like = (uint16_t)(65535 - unlike * (65536 / (RF_UNLIKE + 1)));
-        const uint16_t near_by = (uint16_t)(((uint32_t)across[i] * down[i]) >> 16);
-        const uint16_t trusted = (uint16_t)(((uint32_t)near_by * cell->trust[i]) >> 16);
+    for (int x = 0; x < n; x++) {
+        const uint16_t unlike = least((uint16_t)(apart(c0[x], s0) + apart(c1[x], s1) +
+                                                 apart(c2[x], s2)), RF_UNLIKE);
+        /* 1/255 at least: what is unlike everything goes by nearness */
+        const uint16_t like = (uint16_t)(65535 - unlike * (65280 / RF_UNLIKE));
+        const uint16_t alike = most((uint16_t)(((uint32_t)like * like) >> 16), 64);
+        const uint16_t near_by = (uint16_t)(((uint32_t)across[x] * down[x]) >> 16);
+        const uint16_t trusted = (uint16_t)(((uint32_t)near_by * trust) >> 16);
 
-        weight[i] = (uint16_t)(((uint32_t)trusted * like) >> 16);
+        weight[x] = (uint16_t)(((uint32_t)trusted * alike) >> 16);
     }
 }
 
-/* Mean of those in the window that weighs most; windows nearest to the lens come first. */
-static inline uint16_t heaviest(const struct rf_cell *restrict cell,
-                                const uint16_t weight[restrict RF_SAMPLES])
+static void add(uint16_t *restrict total, uint32_t *restrict sum,
+                const uint16_t *restrict weight, uint16_t above, int n)
 {
-    uint16_t best = 0;
-    int window = 0;
-    int32_t sum = 0;
-
-    for (int k = 0; k < cell->windows; k++) {
-        const uint16_t *restrict in = cell->window[k].in;
-        uint16_t total = 0;
-
-        for (int i = 0; i < RF_SAMPLES; i++)
-            total = (uint16_t)(total + (weight[i] & in[i]));
-        window = total > best ? k : window;
-        best = most(total, best);
+    for (int x = 0; x < n; x++) {
+        total[x] = (uint16_t)(total[x] + weight[x]);
+        sum[x] += (uint32_t)weight[x] * above;
     }
-    if (best == 0)
-        return cell->window[0].low;
-    for (int i = 0; i < RF_SAMPLES; i++) {
-        const int16_t above = cell->window[window].above[i];
-
-        sum += (int16_t)weight[i] * above;
-    }
-    return (uint16_t)(cell->window[window].low +
-                      ((uint32_t)sum + best / 2u) / (uint32_t)best);
 }
 
-static void RF_VEC(rf_cluster)(uint16_t *restrict out, const struct rf_cell *cell,
-                               const uint16_t (*across)[RF_TAPS], const uint16_t down[RF_TAPS],
-                               const uint8_t *const colour[3], int step, int n)
+static void choose(uint16_t *restrict best, uint32_t *restrict best_sum,
+                   uint16_t *restrict best_low, const uint16_t *restrict total,
+                   const uint32_t *restrict sum, uint16_t low, int n)
 {
-    uint16_t by_row[RF_SAMPLES];
+    for (int x = 0; x < n; x++) {
+        best_sum[x] = total[x] > best[x] ? sum[x] : best_sum[x];
+        best_low[x] = total[x] > best[x] ? low : best_low[x];
+        best[x] = most(total[x], best[x]);
+    }
+}
+
+static void RF_VEC(rf_cluster)(uint16_t out[RF_BATCH + RF_BATCH_SPARE],
+                               const struct rf_cell *cell, const struct rf_batch *batch, int n)
+{
+    uint16_t weight[RF_SAMPLES][RF_BATCH], total[RF_BATCH], best[RF_BATCH];
+    uint32_t sum[RF_BATCH], best_sum[RF_BATCH];
+    const int whole = (n + 15) & ~15;
 
     for (int i = 0; i < RF_SAMPLES; i++)
-        by_row[i] = down[i / RF_TAPS];
-    for (int x = 0; x < n; x++) {
-        uint16_t by_column[RF_SAMPLES], weight[RF_SAMPLES];
-
-        for (int i = 0; i < RF_SAMPLES; i++)
-            by_column[i] = across[x][i % RF_TAPS];
-        weigh(weight, cell, by_column, by_row, colour, (ptrdiff_t)x * step);
-        out[x] = heaviest(cell, weight);
+        weigh(weight[i], cell, i, batch, whole);
+    for (int x = 0; x < whole; x++) {
+        best[x] = 0;
+        best_sum[x] = 0;
+        out[x] = cell->low[0];
     }
+    for (int k = 0; k < cell->windows; k++) {
+        const uint16_t low = cell->low[k], high = cell->high[k];
+
+        for (int x = 0; x < whole; x++) {
+            total[x] = 0;
+            sum[x] = 0;
+        }
+        for (int i = 0; i < RF_SAMPLES; i++)
+            if (low <= cell->disparity[i] && cell->disparity[i] <= high)
+                add(total, sum, weight[i], (uint16_t)(cell->disparity[i] - low), whole);
+        choose(best, best_sum, out, total, sum, low, whole);
+    }
+    for (int x = 0; x < n; x++)
+        if (best_sum[x])
+            out[x] = (uint16_t)(out[x] + (best_sum[x] + best[x] / 2u) / best[x]);
 }
 
 static inline void order(uint16_t *restrict a, uint16_t *restrict b)

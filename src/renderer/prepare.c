@@ -36,6 +36,7 @@ static uint16_t *scratch_of(void *context, int worker)
 /* The planes of the background layer are free until something is rendered. */
 static void upsample(struct refocus_renderer *r, const struct job *job)
 {
+    const ptrdiff_t row = r->width + RF_BATCH_SPARE;
     struct rf_upsampler up = {
         .kernels = &r->kernels,
         .photo = job->photo,
@@ -49,6 +50,9 @@ static void upsample(struct refocus_renderer *r, const struct job *job)
         .raw = r->behind.light[2],
         .raw_stride = r->stride,
         .across = r->taps,
+        .down = r->taps + r->width,
+        .column = r->column + 2,
+        .near_by = {r->near_by, r->near_by + row, r->near_by + 2 * row, r->near_by + 3 * row},
         .scratch = scratch_of,
         .context = r,
         .out = r->disparity,
