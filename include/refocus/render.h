@@ -62,6 +62,10 @@ struct refocus_renderer_params {
     uint64_t max_memory;     /**< bytes; creation fails above; 0 = no limit */
     struct refocus_allocator allocator; /**< all NULL: malloc and free */
     struct refocus_log log;             /**< message NULL: silent */
+    uint32_t methods;        /**< what may be rendered beside the methods that need no memory
+                                  of their own (sweep, search, raytrace, jittered, blur):
+                                  REFOCUS_METHOD_BIT() of each, or-ed */
+    uint32_t reserved;       /**< 0 */
 };
 
 static inline struct refocus_renderer_params
@@ -82,9 +86,18 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     22 (W + 2P + 47) (H + 2P + 16) + 6 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
+ *     24 (W + 2P + 79) (H + 2P + 16) + 5 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
  *
- * with P = ceil(K) + 2 and T threads is never exceeded. @return 0 if a parameter is out of its range. Thread-safe.
+ * with P = ceil(K) + 2 and T threads is never exceeded. On top of it comes the most that one
+ * of params->methods needs:
+ *
+ *     lightfield    1200 (W + 2P + 64) T + 2^12
+ *     scatter       32 W H + 3 (4 P + 80) P^2 + 2^16
+ *     foveated      96 (W + 16) (H + 16) + 2^18
+ *     interpolated  48 (W + 16) (H + 16) + 4 (W + H + 16) T + 2^16
+ *     diffusion     116 (W + 16) (H + 16) + 2^18
+ *
+ * @return 0 if a parameter is out of its range. Thread-safe.
  */
 REFOCUS_API uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params);
 
@@ -121,8 +134,19 @@ enum refocus_method {
     REFOCUS_METHOD_SWEEP = 0,    /**< two layers, front-most hit, by a sweep over disparities */
     REFOCUS_METHOD_SEARCH = 1,   /**< Yang et al. 2016: randomized intersection search */
     REFOCUS_METHOD_RAYTRACE = 2, /**< Yang et al. 2016: every pixel along every ray; slow */
+    REFOCUS_METHOD_JITTERED = 3, /**< Yang et al. 2016: the same for one ray of a cell */
+    REFOCUS_METHOD_LIGHTFIELD = 4, /**< Yang et al. 2016, compared: views warped, summed */
+    REFOCUS_METHOD_BLUR = 5,     /**< Yang et al. 2016, compared: image-space filter */
+    REFOCUS_METHOD_SCATTER = 6,  /**< Potmesil & Chakravarty 1981: samples spread */
+    REFOCUS_METHOD_FOVEATED = 7, /**< Mulder & van Liere 2000: exact where one looks */
+    REFOCUS_METHOD_INTERPOLATED = 8, /**< NVIDIA 2004: between blurred pictures */
+    REFOCUS_METHOD_DIFFUSION = 9, /**< Kosloff & Barsky 2007: heat through a blur field */
 };
-enum { REFOCUS_METHOD_COUNT = 3 };
+enum { REFOCUS_METHOD_COUNT = 10 };
+
+/** A method in struct refocus_renderer_params, and all of them. */
+#define REFOCUS_METHOD_BIT(method) (UINT32_C(1) << (method))
+#define REFOCUS_METHODS_ALL (REFOCUS_METHOD_BIT(REFOCUS_METHOD_COUNT) - 1)
 
 /** Name of a method, NULL for an unknown one. Thread-safe. */
 REFOCUS_API const char *refocus_method_name(uint32_t method);
@@ -140,6 +164,29 @@ enum refocus_blend {
 /** For rays: every pixel of the aperture mask. */
 enum { REFOCUS_RAYS_FULL = -1 };
 
+/** How `scatter` spreads a sample over its circle of confusion. */
+enum refocus_spread {
+    REFOCUS_SPREAD_UNIFORM = 0, /**< evenly */
+    REFOCUS_SPREAD_LOMMEL = 1,  /**< as light is bent at the aperture, eq. 13 */
+};
+
+/** Where `diffusion` blurs. Distances are of (x, y, d) to the field's centre: x and y in
+ *  parts of the picture's width, d the disparity. */
+enum refocus_field {
+    REFOCUS_FIELD_LENS = 0,     /**< r = K |d - df| */
+    REFOCUS_FIELD_CYLINDER = 1, /**< sharp in an upright cylinder: distance in x and d */
+    REFOCUS_FIELD_PLUS = 2,     /**< sharp in two upright slabs: the lesser of x and d */
+    REFOCUS_FIELD_PLANE = 3,    /**< sharp by an upright plane: x cos a + d sin a */
+    REFOCUS_FIELD_SPHERE = 4,   /**< sharp in a sphere: distance in x, y and d */
+    REFOCUS_FIELD_PICTURE = 5,  /**< r = K v of a map of values 0..1 */
+};
+
+/** How `diffusion` is computed. */
+enum refocus_solver {
+    REFOCUS_SOLVER_FAST = 0,     /**< Chebyshev series of the iteration */
+    REFOCUS_SOLVER_ITERATED = 1, /**< step by step as in the paper */
+};
+
 /** How to refocus. Start from refocus_render_params_default(). */
 struct refocus_render_params {
     uint32_t struct_size;   /**< sizeof(struct refocus_render_params) */
@@ -151,14 +198,58 @@ struct refocus_render_params {
     uint32_t blend;         /**< enum refocus_blend */
     float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
                                  eq. 5: >= 1; INFINITY = plain average */
+    float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 4
+                                 times white */
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
     uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
     uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
     uint8_t prefilter;      /**< sweep: 1 = smooth the input between rays that lie far apart */
     uint8_t reserved;       /**< 0 */
-    const struct refocus_aperture *aperture; /**< NULL = a disc */
+    const struct refocus_aperture *aperture; /**< NULL = a disc, the only one that scatter,
+                                 foveated, interpolated and diffusion know */
     int32_t region_x, region_y;              /**< the part of the picture to render: its */
     int32_t region_width, region_height;     /**< corner and size; all 0 = the whole */
+
+    /* What follows is of single methods; the others ignore it, but not its range. */
+
+    int32_t cell;           /**< jittered: a, the side of a cell in mask pixels, 1 to 16 */
+    uint32_t seed;          /**< jittered: which pixel of each cell; any number */
+
+    uint32_t spread;        /**< scatter: enum refocus_spread */
+    float airy_radius;      /**< scatter, Lommel: first dark ring of a point in focus, 0.25 to
+                                 16 pixels; in eq. 13 v = 3.8317 rho / airy_radius at rho pixels
+                                 from the middle and u = 3.8317 r / airy_radius */
+    float depth_ratio;      /**< scatter: z1 / z0, 1 to 1000, for the 1 / z^2 of eq. 20; 1 = all
+                                 samples count the same */
+    int32_t star_spikes;    /**< scatter: of a star filter, 0 = none, else 2 to 16 */
+    float star_length;      /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS */
+    float star_angle;       /**< degrees of the first spike, counter-clockwise from the right */
+    float star_strength;    /**< share of the light that goes to the spikes, 0 to 1 */
+
+    float sharp_radius;     /**< interpolated: c0, blur radius up to which blurriness is 0;
+                                 0.5 to 16 pixels */
+    float middle_ratio;     /**< interpolated: r1, blurriness is 1/2 at r1 c0; 0 = (1 + r2) / 2,
+                                 else above 1 and below r2 */
+    float last_ratio;       /**< interpolated: r2, blurriness is 1 from r2 c0 on; 0 = at the
+                                 largest blur of any disparity, else above 1, to 1000 */
+
+    float attention_x, attention_y; /**< foveated: centre of attention, 0 to 1 of width, height */
+    float attention_angle;  /**< foveated: across the volume of attention, 0 to 170 degrees */
+    float picture_angle;    /**< foveated: that the picture's width is seen at, 1 to 170 degrees */
+    float attention_depth;  /**< foveated: how far the volume reaches before and behind the
+                                 focus, in disparity, 0 to 1 */
+
+    uint32_t field;         /**< diffusion: enum refocus_field */
+    float field_x, field_y; /**< centre, 0 to 1 of width and height */
+    float field_disparity;  /**< centre, 0 to 1 */
+    float field_radius;     /**< distance up to which nothing is blurred, 0 to 4 */
+    float field_falloff;    /**< further distance at which r = K, 0.001 to 4 */
+    float field_angle;      /**< a of the plane's normal, degrees: 0 = sharp at one x, 90 = at
+                                 one d */
+    int32_t layers;         /**< diffusion: that the picture is split into by depth, 1 to 8 */
+    uint32_t solver;        /**< diffusion: enum refocus_solver */
+    float conductivity;     /**< diffusion: weight W where blur is strongest, 0.01 to 1 */
+    const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size */
 };
 
 /** Sweep, 64 rays, linear light, a disc, the whole picture. */
@@ -173,8 +264,25 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
     params.max_blur_radius = max_blur_radius;
     params.rays = 64;
     params.sigma = (float)1e30;
+    params.highlight_gain = 1;
     params.iterations = 2;
     params.prefilter = 1;
+    params.cell = 2;
+    params.airy_radius = 1;
+    params.depth_ratio = 1;
+    params.star_length = 24;
+    params.star_strength = (float)0.25;
+    params.sharp_radius = (float)0.5;
+    params.attention_x = params.attention_y = (float)0.5;
+    params.attention_angle = 10;
+    params.picture_angle = 50;
+    params.attention_depth = 1;
+    params.field_x = params.field_y = (float)0.5;
+    params.field_disparity = focus_disparity;
+    params.field_radius = (float)0.1;
+    params.field_falloff = (float)0.3;
+    params.layers = 4;
+    params.conductivity = (float)0.125;
     return params;
 }
 

@@ -21,6 +21,11 @@ enum refocus_status {
     REFOCUS_ERR_IO = -8,          /**< a file could not be opened, read or written */
     REFOCUS_ERR_FORMAT = -9,      /**< a file is damaged or of an unknown format */
     REFOCUS_ERR_NO_DEPTH = -10,   /**< a picture carries no depth, or no known depth */
+    REFOCUS_ERR_TIMEOUT = -11,    /**< nothing came in the time that was given */
+    REFOCUS_ERR_END = -12,        /**< a stream has no more frames */
+    REFOCUS_ERR_GONE = -13,       /**< a device is not or no longer there, a pipe is closed */
+    REFOCUS_ERR_BUSY = -14,       /**< a device is used by another program */
+    REFOCUS_ERR_PERMISSION = -15, /**< access to a file or device is refused */
 };
 
 /** English words for a status, never NULL, without a full stop. Thread-safe. */

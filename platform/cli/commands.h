@@ -8,5 +8,6 @@ extern const struct command render_command;
 extern const struct command depth_command;
 extern const struct command info_command;
 extern const struct command bench_command;
+extern const struct command live_command;
 
 #endif

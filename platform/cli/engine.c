@@ -170,6 +170,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
 
     params.threads = (int32_t)settings->threads;
     params.cpu = (uint32_t)settings->cpu;
+    params.methods = REFOCUS_METHOD_BIT(engine->params.method);
     engine->params.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;

@@ -3,12 +3,14 @@
 #include <string.h>
 #include <refocus/refocus.h>
 #include <refocus/platform/file.h>
+#include <refocus/platform/source.h>
 #include "commands.h"
 #include "interrupt.h"
 #include "report.h"
 
 static const struct command *const commands[] = {&render_command, &depth_command,
-                                                 &info_command, &bench_command};
+                                                 &info_command, &bench_command,
+                                                 &live_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_usage(FILE *out)
@@ -59,6 +61,7 @@ int main(int argc, char **argv)
     }
     if (strcmp(argv[1], "--version") == 0) {
         printf("refocus %s\nfiles: %s\n", refocus_version(), refocus_file_formats());
+        printf("sources: %s\n", refocus_source_backends());
         return report_end_output();
     }
     for (int i = 0; i < COMMANDS; i++) {

@@ -47,12 +47,13 @@ static void put_words(struct text *text, const char *words)
     put(text, words, strlen(words));
 }
 
-/* 17 digits read back as the same number; the locale's point becomes a dot. */
+/* 12 digits: a reader that is off in the last bits writes the same ones again. The locale's
+ * point becomes a dot. */
 static void put_number(struct text *text, const char *name, double value)
 {
     char number[64];
 
-    snprintf(number, sizeof number, "%.17g", value);
+    snprintf(number, sizeof number, "%.12g", value);
     for (char *c = number; *c; c++) {
         if (*c != '-' && *c != '+' && *c != 'e' && (*c < '0' || *c > '9')) {
             *c = '.';

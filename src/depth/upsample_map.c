@@ -6,6 +6,7 @@
 #include "depth/upsample.h"
 #include "planes/format.h"
 #include "renderer/layout.h"
+#include "renderer/params.h"
 #include "support/arena.h"
 
 struct scratch {

@@ -23,20 +23,21 @@
  *                 sum += light[q]; next ray
  *         if see_behind: sum += behind[p + offset[slabs][n]]
  *
- * Light is Q12, at most 4095; sums are exact. Pointers are to the tile's first pixel.
+ * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the tile's first pixel.
  */
 enum { RF_RAY_CHUNK = 64 };
 
 struct rf_sweep_job {
-    const int16_t *blur;
-    const uint16_t *light[3], *behind[3];
-    ptrdiff_t stride;
+    const int16_t *blur;     /* light is in the three planes after it, pitch apart */
+    const uint16_t *behind;  /* the first of three planes */
+    ptrdiff_t stride, pitch; /* elements */
     int rays;                                /* at most RF_RAY_CHUNK */
     int slabs;
     const struct rf_slab *slab;
     const int32_t (*offset)[RF_RAY_CHUNK];   /* [slabs + 1], of elements */
     bool see_behind;
     bool uniform; /* slabs == 1, and whatever is looked at is in it */
+    bool bright;  /* highlights are in the light */
 };
 typedef void rf_sweep_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_sweep_job *job);
 
@@ -89,8 +90,8 @@ typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur,
                         const uint16_t *const upper[3], const uint16_t *const lower[3],
                         const int16_t *blur0, const int16_t *blur1, int n);
 
-/* pull: unknown ones of 2 x pairs children take 9, 3, 3, 1 sixteenths of the four nearest
- * parents; `mixed` is scratch of pairs + 2. pull_blur: they take their parent's blur. */
+/* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
+ * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their parent's blur. */
 typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
                         const uint16_t *far_row, uint16_t *mixed, int pairs);
 typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);

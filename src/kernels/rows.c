@@ -156,12 +156,12 @@ static void RF_VEC(rf_pull)(uint16_t *restrict out, const int16_t *restrict out_
 {
     mixed++; /* mixed[-1] and mixed[pairs] repeat the ends */
     for (int x = 0; x < pairs; x++)
-        mixed[x] = (uint16_t)(3 * near_row[x] + far_row[x]);
+        mixed[x] = (uint16_t)((uint16_t)(3 * near_row[x] + far_row[x] + 2) >> 2);
     mixed[-1] = mixed[0];
     mixed[pairs] = mixed[pairs - 1];
     for (int x = 0; x < pairs; x++) {
-        const uint16_t even = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x - 1] + 8) >> 4);
-        const uint16_t odd = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x + 1] + 8) >> 4);
+        const uint16_t even = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x - 1] + 2) >> 2);
+        const uint16_t odd = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x + 1] + 2) >> 2);
         const uint16_t keep0 = known(out_blur[2 * x]), keep1 = known(out_blur[2 * x + 1]);
 
         out[2 * x] = (uint16_t)((out[2 * x] & keep0) | (even & ~keep0));

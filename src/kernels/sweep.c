@@ -16,7 +16,7 @@ static void add_slab(uint32_t sum[3][LANES], uint16_t *is_free,
             continue;
         is_free[i] = 0;
         for (int c = 0; c < 3; c++)
-            sum[c][i] += job->light[c][q];
+            sum[c][i] += (uint16_t)job->blur[q + (1 + c) * job->pitch];
     }
 }
 
@@ -36,7 +36,7 @@ void rf_sweep_c(uint32_t sum[3][LANES], const struct rf_sweep_job *job)
 
             if (is_free[i])
                 for (int c = 0; c < 3; c++)
-                    sum[c][i] += job->behind[c][q];
+                    sum[c][i] += job->behind[q + c * job->pitch];
         }
     }
 }

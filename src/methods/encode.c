@@ -7,6 +7,12 @@ static uint8_t *pixel(const struct rf_frame *f, int bytes, int x, int y)
            (ptrdiff_t)(x - f->region.x0) * bytes;
 }
 
+/* Means above white come from highlights. */
+static uint8_t code_of(const uint8_t *to_code, uint64_t mean)
+{
+    return to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
+}
+
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
 {
     const struct rf_order o = rf_order_of(f->out->format);
@@ -20,9 +26,9 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
             const int at = y % RF_TILE * RF_TILE + x % RF_TILE;
             const uint64_t w = sums->weight[at], half = w / 2;
 
-            out[o.r] = to_code[(4 * sums->light[0][at] + half) / w];
-            out[o.g] = to_code[(4 * sums->light[1][at] + half) / w];
-            out[o.b] = to_code[(4 * sums->light[2][at] + half) / w];
+            out[o.r] = code_of(to_code, (4 * sums->light[0][at] + half) / w);
+            out[o.g] = code_of(to_code, (4 * sums->light[1][at] + half) / w);
+            out[o.b] = code_of(to_code, (4 * sums->light[2][at] + half) / w);
             if (o.a >= 0)
                 out[o.a] = alpha[x];
         }
@@ -41,9 +47,9 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = 0; x < n; x++, out += o.bytes) {
-            out[o.r] = to_code[mean[0][at + x]];
-            out[o.g] = to_code[mean[1][at + x]];
-            out[o.b] = to_code[mean[2][at + x]];
+            out[o.r] = code_of(to_code, mean[0][at + x]);
+            out[o.g] = code_of(to_code, mean[1][at + x]);
+            out[o.b] = code_of(to_code, mean[2][at + x]);
             if (o.a >= 0)
                 out[o.a] = alpha[x];
         }

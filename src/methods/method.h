@@ -30,7 +30,8 @@ struct rf_frame {
     struct rf_bin_scale scale;
     struct rf_rect region;  /* of the picture; out covers just this */
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
-    int prefilter_above;    /* |s| from which rays lie far apart, Q7.8 */
+    int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
+    int prefilter_step;     /* the one that is being made */
     bool weighted;          /* eq. 5 weights differ from 1 */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
@@ -54,6 +55,7 @@ static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const li
         return 1;
     most = light[1][at] > most ? light[1][at] : most;
     most = light[2][at] > most ? light[2][at] : most;
+    most = most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
     return f->r->light_weight[most];
 }
 
@@ -63,8 +65,9 @@ static inline int rf_offset(int u, int s)
     return (u * s + (1 << 22)) >> 23;
 }
 
-/* The ray set for a reach (Q7.8): enough rays for it, at most the preset. */
-const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach);
+/* The ray set for a reach (Q7.8): enough rays for it, at most the preset, or a denser one where
+ * a highlight is in reach. */
+const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach, bool lamp);
 
 /* Means of a tile into the output picture. */
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);
@@ -80,6 +83,6 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
 
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);
-rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile;
+rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
 
 #endif

@@ -74,7 +74,7 @@ void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
     /* s of the nearest plane, d = 1 */
     const int nearest = -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius +
                                 (1 << 15)) >> 16);
-    const struct rf_ray_set *set = &r->set[r->sets - 1];
+    const struct rf_ray_set *set = &r->set[r->preset];
     struct rf_sums sums;
 
     (void)tx;

@@ -70,19 +70,18 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     struct rf_sweep_job job = {
         .blur = r->front.blur + origin,
+        .behind = r->behind.light[0] + origin,
         .stride = r->stride,
+        .pitch = r->pitch,
         .slabs = plan->slabs,
         .slab = plan->slab,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])offset,
         .see_behind = !plan->uniform,
         .uniform = plan->uniform,
+        .bright = f->params->highlight_gain > 1,
     };
 
-    for (int c = 0; c < 3; c++) {
-        job.light[c] = r->smooth[c] + origin;
-        job.behind[c] = r->behind.light[c] + origin;
-        memset(run[c], 0, sizeof run[c]);
-    }
+    memset(run, 0, 3 * sizeof run[0]);
     for (int n = 0; n < set->count; n += job.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
@@ -135,7 +134,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_copy_tile(f, rect);
         return;
     }
-    set = rf_rays_for(r, plan.reach);
+    set = rf_rays_for(r, plan.reach, plan.lamp);
     if (set->equal && !f->weighted) {
         const uint32_t scale = rf_mean_scale((uint64_t)set->count);
         uint16_t mean[3][LANES];

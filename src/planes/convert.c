@@ -48,7 +48,7 @@ void rf_disparity_rows(struct refocus_renderer *r, const struct refocus_disparit
 {
     for (int y = y0; y < y1; y++) {
         const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
-        uint16_t *out = r->disparity + (size_t)y * r->width;
+        uint16_t *out = r->disparity + y * r->stride;
 
         if (map->bits == 16)
             memcpy(out, in, (size_t)r->width * 2);

@@ -42,14 +42,4 @@ static inline bool rf_good_image(const struct refocus_image *image)
                           image->height);
 }
 
-/* The same for a map of disparities. */
-static inline bool rf_good_map(const struct refocus_disparity *map)
-{
-    return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
-           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE &&
-           map->height <= REFOCUS_MAX_SIDE &&
-           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
-           (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
-}
-
 #endif

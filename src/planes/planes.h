@@ -24,12 +24,16 @@ struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1);
 
 /*
- * Pre-filter: where |s| is above `least` (Q7.8), the mean of three rows, then of three
- * columns, of those pixels that are within one pixel of blur of the middle one; the light as
- * it is elsewhere. Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart.
+ * One step of the pre-filter for a row of tiles, whose bins are known: where |s| is above `least` (Q7.8), the mean of three rows, then
+ * of three columns, `step` pixels apart, of those pixels that are within one pixel of blur of
+ * the middle one; the light as it is elsewhere. Borders are extended.
+ *
+ * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 1 closes gaps from
+ * 1.5 pixels on; steps of 2 and 4 after it close those twice and four times as wide.
  */
-void rf_prefilter_rows(struct refocus_renderer *r, int least, uint16_t *scratch, int y0,
-                       int y1);
+enum { RF_PREFILTER_STEPS = 3 };
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
+                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty);
 
 /* Extend rows y0..y1-1 of a padded plane of 16-bit values beyond its sides, and the first
  * and the last row of the picture above and below it. */

@@ -28,7 +28,8 @@ static bool read_params(struct refocus_renderer_params *own,
            own->max_height >= 1 && own->max_height <= REFOCUS_MAX_SIDE &&
            own->max_blur_radius >= 0 && own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS &&
            own->threads >= 0 && own->threads <= RF_MAX_THREADS &&
-           own->cpu <= REFOCUS_CPU_AVX2 &&
+           own->cpu <= REFOCUS_CPU_AVX2 && (own->methods & ~REFOCUS_METHODS_ALL) == 0 &&
+           own->reserved == 0 &&
            !own->allocator.allocate == !own->allocator.release;
 }
 
@@ -74,7 +75,12 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->max_width = own.max_width;
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;
-    r->pad = rf_padding_for(own.max_blur_radius);
+    r->methods = own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
+                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    r->work_owner = RF_NO_METHOD;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
     atomic_init(&r->run, RF_RUN_IDLE);

@@ -5,8 +5,11 @@
 
 int rf_threads_for(const struct refocus_renderer_params *params);
 int rf_padding_for(float max_blur_radius);
-ptrdiff_t rf_stride_for(int width, int pad);
+ptrdiff_t rf_pitch_for(int width, int pad);
 int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height);
+
+/* Threads that a renderer with these parameters has. */
+int rf_threads_for(const struct refocus_renderer_params *params);
 
 /* Bytes of a renderer; UINT64_MAX: too many to address. */
 uint64_t rf_layout_size(const struct refocus_renderer_params *params);

@@ -5,6 +5,7 @@
 #include "planes/planes.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
+#include "renderer/params.h"
 
 struct job {
     struct refocus_renderer *r;
@@ -56,7 +57,7 @@ static void upsample(struct refocus_renderer *r, const struct job *job)
         .scratch = scratch_of,
         .context = r,
         .out = r->disparity,
-        .out_stride = r->width,
+        .out_stride = r->stride,
     };
 
     rf_upsample(&up, &r->pool);
@@ -69,14 +70,13 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
-    r->prepared = r->blurred = false;
+    r->prepared = r->blurred = r->highlights_found = false;
     if (!rf_good_image(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
     r->width = photo->width;
     r->height = photo->height;
-    r->stride = rf_stride_for(photo->width, r->pad);
     r->tiles_x = (r->width + RF_TILE - 1) / RF_TILE;
     r->tiles_y = (r->height + RF_TILE - 1) / RF_TILE;
     r->levels = rf_pyramid(r->level, r->width, r->height);
@@ -86,6 +86,8 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
     else
         upsample(r, &job);
+    if (!rf_cancelled(r))
+        rf_find_rims(r);
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->prepared = true;

@@ -3,8 +3,10 @@
 #include "methods/method.h"
 #include "renderer/rays.h"
 
-/* Sizes of sets, and the presets' own: a tile takes the smallest that is dense enough. */
-static const int class_rays[RF_RAY_CLASSES - 1] = {24, 32, 48, 64, 96, 128};
+/* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
+ * that a highlight reaches, whose disc would show the single rays, at most four times that. */
+static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
+enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 4 };
 
 static uint64_t total_weight(const struct rf_ray_set *set)
 {
@@ -16,14 +18,14 @@ static uint64_t total_weight(const struct rf_ray_set *set)
 }
 
 void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
-                  int rays, float max_blur_radius)
+                  int rays, bool denser, float max_blur_radius)
 {
     struct refocus_ray *next = r->rays;
     int sets = 0;
 
     if (rays != REFOCUS_RAYS_FULL)
         max_blur_radius = 0; /* sets of N do not depend on it */
-    if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays &&
+    if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays && r->set_denser == denser &&
         r->set_blur == max_blur_radius)
         return;
     if (rays == REFOCUS_RAYS_FULL) {
@@ -33,34 +35,46 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
         r->set[0].total_weight = total_weight(&r->set[0]);
         r->set[0].equal = next[0].weight == next[r->set[0].count - 1].weight;
         sets = 1;
+        r->preset = 0;
     } else {
-        for (int i = 0; i < RF_RAY_CLASSES; i++) {
-            const bool own = i == RF_RAY_CLASSES - 1 || class_rays[i] >= rays;
-            struct rf_ray_set *set = &r->set[sets++];
+        bool own = false; /* the preset's set is there */
 
+        for (int i = 0; i < CLASSES || !own; i++) {
+            int count = i < CLASSES ? class_rays[i] : rays;
+            struct rf_ray_set *set = &r->set[sets];
+
+            if (!own && count >= rays) {
+                i -= count > rays; /* comes before this one */
+                count = rays;
+                own = true;
+                r->preset = sets;
+            } else if (own && (!denser || count > DENSER * rays)) {
+                break;
+            }
             set->ray = next;
-            set->count = own ? rays : class_rays[i];
-            refocus_aperture_rays(aperture, set->count, next);
+            set->count = count;
+            refocus_aperture_rays(aperture, count, next);
             set->total_weight = total_weight(set);
             set->equal = true;
-            next += set->count;
-            if (own)
-                break;
+            next += count;
+            sets++;
         }
     }
     r->sets = sets;
     r->set_aperture = aperture->id;
     r->set_rays = rays;
+    r->set_denser = denser;
     r->set_blur = max_blur_radius;
 }
 
 /* N >= 1.3 pi reach^2 rays are as good as all. */
-const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach)
+const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach, bool lamp)
 {
     const int64_t need = (int64_t)reach * reach * 4084 / 1000; /* Q16 */
+    const int last = lamp ? r->sets - 1 : r->preset;
 
-    for (int i = 0; i < r->sets - 1; i++)
+    for (int i = 0; i < last; i++)
         if ((int64_t)r->set[i].count << 16 >= need)
             return &r->set[i];
-    return &r->set[r->sets - 1];
+    return &r->set[last];
 }

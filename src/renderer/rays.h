@@ -3,8 +3,9 @@
 
 #include "renderer/renderer.h"
 
-/* Fill r->set for an aperture and a number of rays; K matters for REFOCUS_RAYS_FULL. */
+/* Fill r->set for an aperture and a number of rays, with denser sets for highlights; K
+ * matters for REFOCUS_RAYS_FULL. */
 void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
-                  int rays, float max_blur_radius);
+                  int rays, bool denser, float max_blur_radius);
 
 #endif

@@ -4,27 +4,49 @@
 #include <string.h>
 
 #include "background/background.h"
-#include "methods/method.h"
+#include "methods/frame.h"
 #include "planes/format.h"
 #include "planes/planes.h"
 #include "renderer/bands.h"
+#include "renderer/params.h"
 #include "renderer/rays.h"
 
 struct method {
     const char *name, *summary;
-    rf_tile_fn *tile;
+    rf_tile_fn *tile;   /* called for each tile, or */
+    rf_frame_fn *frame; /* once for the whole frame */
     bool layers; /* it needs the pre-filter, the bins of tiles and the background */
     bool exact;  /* it works in double precision */
 };
 
 static const struct method methods[REFOCUS_METHOD_COUNT] = {
     [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
-                              rf_sweep_tile, true, false},
+                              .tile = rf_sweep_tile, .layers = true},
     [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               rf_search_tile, false, false},
+                               .tile = rf_search_tile},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace",
                                  "full image-space ray tracing, Yang et al. 2016; slow",
-                                 rf_raytrace_tile, false, true},
+                                 .tile = rf_raytrace_tile, .exact = true},
+    [REFOCUS_METHOD_JITTERED] = {"jittered",
+                                 "the same for a ray of each cell of the mask; slow, grainy",
+                                 .tile = rf_jittered_tile, .exact = true},
+    [REFOCUS_METHOD_LIGHTFIELD] = {"lightfield",
+                                   "views from all over the aperture, warped and added up",
+                                   .frame = rf_lightfield_frame},
+    [REFOCUS_METHOD_BLUR] = {"blur", "each pixel blurred by its own circle of confusion",
+                             .tile = rf_gather_tile},
+    [REFOCUS_METHOD_SCATTER] = {"scatter",
+                                "each pixel spread over its circle, Potmesil 1981",
+                                .frame = rf_scatter_frame},
+    [REFOCUS_METHOD_FOVEATED] = {"foveated",
+                                 "exact at the centre of attention, Mulder 2000",
+                                 .frame = rf_foveated_frame},
+    [REFOCUS_METHOD_INTERPOLATED] = {"interpolated",
+                                     "between three pictures, NVIDIA 2004; quick",
+                                     .frame = rf_interpolated_frame},
+    [REFOCUS_METHOD_DIFFUSION] = {"diffusion",
+                                  "heat through a field of blur, Kosloff 2007",
+                                  .frame = rf_diffusion_frame},
 };
 
 const char *refocus_method_name(uint32_t method)
@@ -48,18 +70,6 @@ int refocus_format_bytes(uint32_t format)
         return 4;
     }
     return 0;
-}
-
-static bool good_params(const struct refocus_renderer *r,
-                        const struct refocus_render_params *p)
-{
-    return p && p->struct_size == sizeof *p && p->method < REFOCUS_METHOD_COUNT &&
-           p->focus_disparity >= 0 && p->focus_disparity <= 1 && p->max_blur_radius >= 0 &&
-           p->max_blur_radius <= r->max_blur_radius &&
-           (p->rays == REFOCUS_RAYS_FULL || (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
-           p->blend < RF_BLEND_COUNT && p->sigma >= 1 && p->iterations >= 1 &&
-           p->iterations <= 64 && p->mirror <= 1 && p->background <= 1 &&
-           p->prefilter <= 1 && p->reserved == 0;
 }
 
 /* The part of the picture to render; false if it is not inside. */
@@ -96,17 +106,36 @@ static void blur_band(void *context, int band, int worker)
     rf_bin_tiles(f->r, f->scale, band);
 }
 
-/* The pre-filter in bands, and beside it the dilation in both directions. */
-static void smooth_item(void *context, int item, int worker)
+static void dilate_item(void *context, int upwards, int worker)
 {
     const struct rf_frame *f = context;
-    const int band = item - 2;
 
-    if (band < 0)
-        rf_background_dilate(f->r, item == 1);
-    else
-        rf_prefilter_rows(f->r, f->prefilter_above, rf_scratch(f->r, worker),
-                          rf_band_start(band), rf_band_end(f->r, band));
+    (void)worker;
+    rf_background_dilate(f->r, upwards);
+}
+
+static void smooth_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    const int i = f->prefilter_step;
+    /* from the photo to r->smooth, and from there by way of the background's planes, which
+     * are not in use yet */
+    uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
+    uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
+
+    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
+                      band);
+}
+
+/* All three steps or the first alone, so that the result is in r->smooth. */
+static void prefilter(struct rf_frame *f)
+{
+    const int largest = f->focus.radius;
+    const int steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1;
+
+    for (f->prefilter_step = 0; f->prefilter_step < steps; f->prefilter_step++)
+        rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
 }
 
 static void mark_band(void *context, int band, int worker)
@@ -161,6 +190,37 @@ static void set_weights(struct rf_frame *f)
     r->weight_blend = r->blend;
 }
 
+static void prefilter_with_highlights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    const float gain = f->params->highlight_gain;
+
+    if (gain > 1) {
+        if (!r->highlights_found)
+            rf_find_highlights(r);
+        rf_mark_highlights(r);
+        rf_add_highlights(r, gain, 1);
+    }
+    prefilter(f);
+    if (gain > 1)
+        rf_add_highlights(r, gain, -1);
+}
+
+/* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. */
+static void set_prefilter(struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+
+    for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
+        const double gap = 1.5 * (1 << i);
+        const double above = 256 * gap * sqrt(p->rays / 3.14159265358979);
+
+        f->prefilter_above[i] = INT16_MAX;
+        if (p->prefilter && p->rays != REFOCUS_RAYS_FULL && above < INT16_MAX)
+            f->prefilter_above[i] = (int)above;
+    }
+}
+
 static void run_passes(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
@@ -175,6 +235,7 @@ static void run_passes(struct rf_frame *f)
             return;
         }
         r->blend = f->params->blend;
+        r->highlights_found = false;
     }
     set_weights(f);
     if (method->exact) {
@@ -183,11 +244,19 @@ static void run_passes(struct rf_frame *f)
     }
     rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
     if (f->params->max_blur_radius > 0)
-        rf_make_rays(r, f->aperture, f->params->rays, f->params->max_blur_radius);
+        rf_make_rays(r, f->aperture, f->params->rays,
+                     f->params->highlight_gain > 1, f->params->max_blur_radius);
     if (layers) {
-        rf_pool_run(&r->pool, smooth_item, f, 2 + rf_bands(r));
+        rf_patch_rims(r, f->focus, f->scale);
+        prefilter_with_highlights(f);
+        rf_pool_run(&r->pool, dilate_item, f, 2);
         rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
         rf_background_fill(r);
+    }
+    if (method->frame && f->params->max_blur_radius > 0) {
+        if (!rf_cancelled(r))
+            method->frame(f);
+        return;
     }
     rf_pool_run(&r->pool, tile_item, f, f->count_tx * f->count_ty);
 }
@@ -201,7 +270,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         return REFOCUS_ERR_ARGUMENT;
     if (!r->prepared)
         return REFOCUS_ERR_STATE;
-    if (!good_params(r, params) || !region_of(r, params, &f.region) ||
+    if (!rf_good_params(r, params) || !region_of(r, params, &f.region) ||
         !rf_good_image(out) || out->width != f.region.x1 - f.region.x0 || out->height != f.region.y1 - f.region.y0)
         return REFOCUS_ERR_ARGUMENT;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
@@ -211,10 +280,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     f.first_ty = f.region.y0 / RF_TILE;
     f.count_tx = (f.region.x1 - 1) / RF_TILE - f.first_tx + 1;
     f.count_ty = (f.region.y1 - 1) / RF_TILE - f.first_ty + 1;
-    f.prefilter_above = INT16_MAX;
-    if (params->prefilter && params->rays != REFOCUS_RAYS_FULL)
-        /* rays of a set of N are s sqrt(pi / N) apart: from 1.5 pixels on */
-        f.prefilter_above = (int)floor(256 * 1.5 * sqrt(params->rays / 3.14159265358979));
+    set_prefilter(&f);
     rf_run_begin(r);
     r->blurred = false;
     run_passes(&f);

@@ -9,15 +9,19 @@
 #include <refocus/render.h>
 
 #include "colour/transfer.h"
+#include "highlights/highlights.h"
+#include "highlights/rims.h"
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
 enum {
-    RF_BINS = 256,    /* of signed blur in a tile */
+    RF_GROUP = 4,     /* planes that lie together */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
-    RF_RAY_CLASSES = 7,
+    RF_RAY_CLASSES = 12, /* a preset's own set and smaller ones; denser ones for lamps */
     RF_FULL_RAYS = 255 * 255,
 };
+
+#define RF_NO_METHOD UINT32_MAX
 
 /* Rays and runs of equal weight among them. */
 struct rf_ray_set {
@@ -46,6 +50,7 @@ struct rf_level {
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
     int16_t least, most; /* Q7.8 */
+    int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
 };
 
 struct refocus_renderer {
@@ -65,12 +70,18 @@ struct refocus_renderer {
     bool prepared;
     int width, height;
     int pad;            /* pixels beyond each side that may be read */
-    ptrdiff_t stride;   /* elements, of all padded planes */
+    ptrdiff_t stride;   /* elements from row to row, of all padded planes */
+    ptrdiff_t pitch;    /* elements between the planes of a group; see layout.c */
     uint32_t blend;     /* that the light planes are in */
-    uint16_t *disparity;
+    uint16_t *disparity; /* padded, its border is not set */
     uint8_t *alpha;     /* unpadded, width a row */
     struct rf_layer front;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
+    struct rf_highlight *highlight; /* of the photo in this blend, once they are found */
+    uint64_t highlights;
+    bool highlights_found;
+    struct rf_rim *rim; /* of the photo */
+    uint64_t rims;
 
     /* Of the last lens setting. */
     struct rf_layer behind; /* the background layer */
@@ -89,11 +100,17 @@ struct refocus_renderer {
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 
+    uint8_t *work;       /* memory of the methods that work on whole frames, one at a time */
+    uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
+    uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
+
     struct refocus_ray *rays;    /* memory of all sets */
     struct rf_ray_set set[RF_RAY_CLASSES];
     int sets;               /* how many are filled, 0: none yet */
+    int preset;             /* the one that has as many rays as were asked for */
     uint64_t set_aperture;  /* what they were made for */
     int set_rays;
+    bool set_denser;
     float set_blur;
 };
 

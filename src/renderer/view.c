@@ -19,7 +19,7 @@ int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out,
         const int16_t *s = r->front.blur + y * r->stride;
 
         if (view == REFOCUS_VIEW_DISPARITY)
-            memcpy(out, r->disparity + (size_t)y * r->width, (size_t)r->width * 2);
+            memcpy(out, r->disparity + y * r->stride, (size_t)r->width * 2);
         else
             for (int x = 0; x < r->width; x++)
                 out[x] = (uint16_t)abs(s[x]);

@@ -30,6 +30,16 @@ const char *refocus_strerror(int status)
         return "the file is damaged or of an unknown format";
     case REFOCUS_ERR_NO_DEPTH:
         return "no depth was found";
+    case REFOCUS_ERR_TIMEOUT:
+        return "nothing came in time";
+    case REFOCUS_ERR_END:
+        return "there are no more frames";
+    case REFOCUS_ERR_GONE:
+        return "the device is gone or the pipe closed";
+    case REFOCUS_ERR_BUSY:
+        return "the device is used by another program";
+    case REFOCUS_ERR_PERMISSION:
+        return "access is refused";
     }
     return "unknown status";
 }

@@ -4,7 +4,10 @@
 
 #include <stdint.h>
 
-enum { RF_TILE = 16 }; /* tiles are RF_TILE x RF_TILE pixels */
+enum {
+    RF_TILE = 16,  /* tiles are RF_TILE x RF_TILE pixels */
+    RF_BINS = 256, /* of signed blur in a tile; no more slabs than bins */
+};
 
 /* Ray u sees the slab at round(u centre). */
 struct rf_slab {

@@ -66,7 +66,19 @@ void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
         }
         bins->least = least;
         bins->most = most;
+        bins->lamp = 0;
     }
+}
+
+void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                int16_t blur)
+{
+    struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+    const int bin = bin_of(scale, blur);
+
+    bins->word[bin / 64] |= UINT64_C(1) << bin % 64;
+    bins->least = blur < bins->least ? blur : bins->least;
+    bins->most = blur > bins->most ? blur : bins->most;
 }
 
 static bool has(const struct rf_bins *bins, int bin)
@@ -113,7 +125,7 @@ static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale,
 {
     const int most = (r->pad - 2 + RF_TILE - 1) / RF_TILE;
 
-    *reach = *window = (struct rf_bins){{0}, INT16_MAX, INT16_MIN};
+    *reach = *window = (struct rf_bins){{0}, INT16_MAX, INT16_MIN, 0};
     for (int j = -most; j <= most; j++) {
         if (ty + j < 0 || ty + j >= r->tiles_y)
             continue;
@@ -130,6 +142,8 @@ static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale,
             if (!square)
                 while (least * least < gx * gx + gy * gy)
                     least++;
+            if (bins.lamp > reach->lamp && bins.lamp >= (least - 1) * 256)
+                reach->lamp = bins.lamp;
             if (least > 1)
                 drop_short(&bins, scale, (least - 1) * 256);
             for (int k = 0; k < RF_BINS / 64; k++)
@@ -200,5 +214,6 @@ void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, i
 
     collect(r, scale, tx, ty, square, &reach, &window);
     cover(&reach, scale, plan);
+    plan->lamp = reach.lamp > 0;
     plan->uniform = plan->slabs == 1 && !memcmp(reach.word, window.word, sizeof reach.word);
 }

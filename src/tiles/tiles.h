@@ -23,12 +23,17 @@ struct rf_tile_plan {
     int slabs;
     int reach; /* largest |s| that reaches the tile, Q7.8 */
     bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
+    bool lamp;    /* a highlight is in reach */
     bool uniform; /* one slab holds all blurs in reach: every ray hits at once */
     struct rf_slab slab[RF_MAX_SLABS];
 };
 
 /* Bins of the tiles of row ty. */
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);
+
+/* One more blur in a tile. */
+void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
+                int16_t blur);
 
 /* Everything the rays of a tile need. `square`: the aperture reaches beyond the unit
  * circle, so that distances count by the larger axis. */

@@ -45,11 +45,14 @@ RAYS = [
     ("sweep-64-raw", "rays=64,prefilter=0", "64 rays without the pre-filter"),
 ]
 BLENDS = [
-    ("linear", "blend=linear", "linear light, plain average"),
+    ("linear", "blend=linear,sigma=off", "linear light, plain average"),
+    ("linear-s500", "blend=linear,sigma=500", "linear light, σ = 500"),
+    ("linear-s400", "blend=linear,sigma=400", "linear light, σ = 400"),
+    ("linear-s300", "blend=linear,sigma=300", "linear light, σ = 300"),
+    ("linear-s200", "blend=linear,sigma=200", "linear light, σ = 200"),
     ("linear-s128", "blend=linear,sigma=128", "linear light, σ = 128"),
-    ("linear-s96", "blend=linear,sigma=96", "linear light, σ = 96"),
-    ("gamma", "blend=gamma", "gamma 2.2, plain average"),
-    ("stored", "blend=stored", "stored values, plain average"),
+    ("gamma", "blend=gamma,sigma=off", "gamma 2.2, plain average"),
+    ("stored", "blend=stored,sigma=off", "stored values, plain average"),
     ("stored-s160", "blend=stored,sigma=160", "stored values, σ = 160"),
     ("stored-s128", "blend=stored,sigma=128", "stored values, σ = 128"),
     ("stored-s96", "blend=stored,sigma=96", "stored values, σ = 96"),

@@ -1,23 +1,41 @@
 #include "pictures.h"
 
 const struct style styles[] = {
-    {"sweep", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep 32", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep 1", REFOCUS_METHOD_SWEEP, 1, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep 1024", REFOCUS_METHOD_SWEEP, 1024, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 0, 0},
-    {"sweep full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"sweep stored", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0},
-    {"sweep gamma", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_GAMMA, 40, 0},
-    {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0},
-    {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5},
-    {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1},
-    {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0},
-    {"search T=2", REFOCUS_METHOD_SEARCH, 64, 2, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6},
-    {"search background", REFOCUS_METHOD_SEARCH, 64, 4, 0, 1, 0, REFOCUS_BLEND_GAMMA, 0, 0},
-    {"search mask", REFOCUS_METHOD_SEARCH, 24, 64, 1, 1, 0, REFOCUS_BLEND_LINEAR, 2, -1},
-    {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0},
-    {"raytrace plain", REFOCUS_METHOD_RAYTRACE, 32, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 96, 7},
+    {"sweep", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"sweep 32", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"sweep 1", REFOCUS_METHOD_SWEEP, 1, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"sweep 1024", REFOCUS_METHOD_SWEEP, 1024, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 0, 0, 0, 0},
+    {"sweep full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"sweep stored", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0, 0, 0},
+    {"sweep gamma", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_GAMMA, 40, 0, 0, 0},
+    {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0, 0, 0},
+    {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 0, 0},
+    {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1, 0, 0},
+    {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0, 0, 0},
+    {"search T=2", REFOCUS_METHOD_SEARCH, 64, 2, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6, 0, 0},
+    {"search background", REFOCUS_METHOD_SEARCH, 64, 4, 0, 1, 0, REFOCUS_BLEND_GAMMA, 0, 0, 0, 0},
+    {"search mask", REFOCUS_METHOD_SEARCH, 24, 64, 1, 1, 0, REFOCUS_BLEND_LINEAR, 2, -1, 0, 0},
+    {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"raytrace plain", REFOCUS_METHOD_RAYTRACE, 32, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 96, 7, 0, 0},
+    {"jittered", REFOCUS_METHOD_JITTERED, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"jittered a=4", REFOCUS_METHOD_JITTERED, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 50, -1, 1, 0},
+    {"lightfield", REFOCUS_METHOD_LIGHTFIELD, 48, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"lightfield full", REFOCUS_METHOD_LIGHTFIELD, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 64, -1, 0, 0},
+    {"blur", REFOCUS_METHOD_BLUR, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"blur full", REFOCUS_METHOD_BLUR, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 5, 5, 0, 0},
+    {"scatter", REFOCUS_METHOD_SCATTER, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 1},
+    {"scatter Lommel", REFOCUS_METHOD_SCATTER, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 1, 0, 1, 1},
+    {"scatter star", REFOCUS_METHOD_SCATTER, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 30, 0, 2, 2},
+    {"foveated", REFOCUS_METHOD_FOVEATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"foveated exact", REFOCUS_METHOD_FOVEATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 3, 0, 1, 0},
+    {"foveated fast", REFOCUS_METHOD_FOVEATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 20, 0, 2, 0},
+    {"interpolated", REFOCUS_METHOD_INTERPOLATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"interpolated 2 4", REFOCUS_METHOD_INTERPOLATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 2, 0, 1, 0},
+    {"diffusion", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"diffusion iterated", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 100, 0, 1, 0},
+    {"diffusion sphere", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 0, 0, 2, 2},
+    {"diffusion plus", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 3, 2},
 };
 const int style_count = sizeof styles / sizeof styles[0];
 
@@ -134,6 +152,26 @@ struct refocus_disparity picture_disparity(const struct picture *p)
     return refocus_disparity16(p->disparity, p->width, p->height, 2 * (ptrdiff_t)p->width);
 }
 
+/* Settings that only one method looks at. */
+static void set_variant(struct refocus_render_params *params, int variant)
+{
+    params->seed = 7;
+    params->cell = variant == 1 ? 4 : 2;
+    params->spread = variant == 1 ? REFOCUS_SPREAD_LOMMEL : REFOCUS_SPREAD_UNIFORM;
+    params->airy_radius = 1.5f;
+    params->depth_ratio = variant == 1 ? 3 : 1;
+    params->star_spikes = variant == 2 ? 6 : 0;
+    params->star_length = 9;
+    params->attention_angle = variant == 1 ? 160 : variant == 2 ? 0 : 20;
+    params->attention_depth = variant == 1 ? 1 : 0.3f;
+    params->middle_ratio = variant == 1 ? 2 : 0;
+    params->last_ratio = variant == 1 ? 4 : 0;
+    params->solver = variant == 1 ? REFOCUS_SOLVER_ITERATED : REFOCUS_SOLVER_FAST;
+    params->field = variant == 2   ? REFOCUS_FIELD_SPHERE
+                    : variant == 3 ? REFOCUS_FIELD_PLUS
+                                   : REFOCUS_FIELD_LENS;
+}
+
 struct refocus_render_params style_params(const struct style *style, float focus, float blur)
 {
     struct refocus_render_params params = refocus_render_params_default(focus, blur);
@@ -146,6 +184,7 @@ struct refocus_render_params style_params(const struct style *style, float focus
     params.prefilter = (uint8_t)style->prefilter;
     params.blend = style->blend;
     params.sigma = style->sigma > 0 ? style->sigma : INFINITY;
+    set_variant(&params, style->variant);
     return params;
 }
 
@@ -171,6 +210,7 @@ struct refocus_renderer *prepared(const struct picture *picture, float blur, int
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
+    limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
     return renderer;

@@ -43,6 +43,8 @@ struct style {
     uint32_t blend;
     float sigma;  /* 0: plain average */
     int blades;   /* 0: disc; -1: a mask with an L in it */
+    int variant;  /* of the method's own settings; see style_params() */
+    int leaks;    /* what is sharp may change beside what is blurred */
 };
 extern const struct style styles[];
 extern const int style_count;

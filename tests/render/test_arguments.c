@@ -47,6 +47,7 @@ static void bad_limits(void **state)
         BAD(refocus_renderer_params, max_blur_radius, 127.001f), BAD(refocus_renderer_params, max_blur_radius, NAN),
         BAD(refocus_renderer_params, max_blur_radius, INFINITY), BAD(refocus_renderer_params, threads, -1),
         BAD(refocus_renderer_params, threads, 65), BAD(refocus_renderer_params, cpu, 5), BAD(refocus_renderer_params, cpu, UINT32_MAX),
+        BAD(refocus_renderer_params, methods, 1u << 10), BAD(refocus_renderer_params, reserved, 1),
         BAD(refocus_renderer_params, allocator.allocate, some_allocate),
         BAD(refocus_renderer_params, allocator.release, some_release)};
 
@@ -78,7 +79,7 @@ static void bad_limits(void **state)
 static void bad_settings(void **state)
 {
     const struct bad bad[] = {
-        BAD(refocus_render_params, struct_size, 0), BAD(refocus_render_params, struct_size, 8), BAD(refocus_render_params, method, 3),
+        BAD(refocus_render_params, struct_size, 0), BAD(refocus_render_params, struct_size, 8), BAD(refocus_render_params, method, 10),
         BAD(refocus_render_params, method, UINT32_MAX), BAD(refocus_render_params, focus_disparity, -0.01f),
         BAD(refocus_render_params, focus_disparity, 1.01f), BAD(refocus_render_params, focus_disparity, NAN),
         BAD(refocus_render_params, max_blur_radius, -1), BAD(refocus_render_params, max_blur_radius, 5.01f),
@@ -89,7 +90,29 @@ static void bad_settings(void **state)
         BAD(refocus_render_params, mirror, 2), BAD(refocus_render_params, background, 2), BAD(refocus_render_params, prefilter, 2),
         BAD(refocus_render_params, reserved, 1), BAD(refocus_render_params, region_x, -1), BAD(refocus_render_params, region_x, 1),
         BAD(refocus_render_params, region_y, 1), BAD(refocus_render_params, region_width, W), BAD(refocus_render_params, region_height, H),
-        BAD(refocus_render_params, region_width, -1)};
+        BAD(refocus_render_params, region_width, -1),
+        BAD(refocus_render_params, cell, 0), BAD(refocus_render_params, cell, 17),
+        BAD(refocus_render_params, spread, 2), BAD(refocus_render_params, airy_radius, 0.2f),
+        BAD(refocus_render_params, airy_radius, 17), BAD(refocus_render_params, airy_radius, NAN),
+        BAD(refocus_render_params, depth_ratio, 0.9f), BAD(refocus_render_params, depth_ratio, INFINITY),
+        BAD(refocus_render_params, star_spikes, 1), BAD(refocus_render_params, star_spikes, 17),
+        BAD(refocus_render_params, star_spikes, -2), BAD(refocus_render_params, star_length, -1),
+        BAD(refocus_render_params, star_length, 128), BAD(refocus_render_params, star_angle, NAN),
+        BAD(refocus_render_params, star_strength, 1.1f), BAD(refocus_render_params, star_strength, NAN),
+        BAD(refocus_render_params, sharp_radius, 0.4f), BAD(refocus_render_params, sharp_radius, NAN),
+        BAD(refocus_render_params, middle_ratio, 1), BAD(refocus_render_params, middle_ratio, -2),
+        BAD(refocus_render_params, last_ratio, 0.5f), BAD(refocus_render_params, last_ratio, NAN),
+        BAD(refocus_render_params, attention_x, -0.1f), BAD(refocus_render_params, attention_y, 1.1f),
+        BAD(refocus_render_params, attention_angle, -1), BAD(refocus_render_params, attention_angle, 171),
+        BAD(refocus_render_params, picture_angle, 0), BAD(refocus_render_params, picture_angle, NAN),
+        BAD(refocus_render_params, attention_depth, 1.5f), BAD(refocus_render_params, field, 6),
+        BAD(refocus_render_params, field_x, -1), BAD(refocus_render_params, field_y, NAN),
+        BAD(refocus_render_params, field_disparity, 2), BAD(refocus_render_params, field_radius, -1),
+        BAD(refocus_render_params, field_falloff, 0), BAD(refocus_render_params, field_falloff, 5),
+        BAD(refocus_render_params, field_angle, INFINITY), BAD(refocus_render_params, layers, 0),
+        BAD(refocus_render_params, layers, 9), BAD(refocus_render_params, solver, 2),
+        BAD(refocus_render_params, conductivity, 0), BAD(refocus_render_params, conductivity, 1.1f),
+        BAD(refocus_render_params, field_map, &(struct refocus_disparity){0})};
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = prepared(&p, 5, 1);
     uint8_t out[3 * W * H];
@@ -107,14 +130,45 @@ static void bad_settings(void **state)
         if (status != REFOCUS_ERR_ARGUMENT)
             fail_msg("%s: %d", bad[i].what, status);
     }
+    /* Both ratios, wrong way round; a picture that is missing; an aperture that is not round;
+     * a method that the renderer was not made for. */
+    struct refocus_aperture *aperture;
+    struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+
+    params.middle_ratio = params.last_ratio = 3;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    params = refocus_render_params_default(0.5f, 5);
+    params.method = REFOCUS_METHOD_DIFFUSION;
+    params.field = REFOCUS_FIELD_PICTURE;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_aperture_create_polygon(&aperture, 6, 0), REFOCUS_OK);
+    for (uint32_t m = REFOCUS_METHOD_SCATTER; m < REFOCUS_METHOD_COUNT; m++) {
+        params = refocus_render_params_default(0.5f, 5);
+        params.method = m;
+        params.aperture = aperture;
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    }
+    refocus_aperture_destroy(&aperture);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 5);
+    const struct refocus_image photo = picture_image(&p);
+    const struct refocus_disparity disparity = picture_disparity(&p);
+    struct refocus_renderer *plain;
+
+    limits.threads = 1;
+    assert_int_equal(refocus_renderer_create(&plain, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(plain, &photo, &disparity), REFOCUS_OK);
+    params = refocus_render_params_default(0.5f, 5);
+    params.method = REFOCUS_METHOD_LIGHTFIELD;
+    assert_int_equal(refocus_render(plain, &params, &image), REFOCUS_ERR_ARGUMENT);
+    refocus_renderer_destroy(&plain);
+
     /* Regions that reach over the side. */
     static const int region[][4] = {{1, 0, W, H},  {0, 1, W, H},           {W, 0, 1, 1},
                                     {0, H, 1, 1},  {0, 0, W + 1, H},       {0, 0, W, H + 1},
                                     {0, 0, 0, H},  {INT32_MAX, 0, W, H},   {-1, 0, W, H},
                                     {5, 5, INT32_MAX, INT32_MAX}};
     for (size_t i = 0; i < sizeof region / sizeof region[0]; i++) {
-        struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
-
+        params = refocus_render_params_default(0.5f, 5);
         params.region_x = region[i][0], params.region_y = region[i][1];
         params.region_width = region[i][2], params.region_height = region[i][3];
         if (refocus_render(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT)

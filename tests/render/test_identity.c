@@ -46,7 +46,7 @@ static void every_grey(void **state)
         memcpy(flat.disparity, deep.disparity, sizeof(uint16_t) * W * H);
         renderer = prepared(&flat, 5, 1);
         for (int i = 0; i < 24; i++) {
-            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0};
+            struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0, 0, 0};
 
             style.blend = (uint32_t)i % 3;
             style.sigma = sigmas[i / 3];
@@ -75,6 +75,8 @@ static void no_blur(void **state)
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
         render_style(renderer, &p, &styles[s], 0.5f, 0, out);
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
+        if (styles[s].leaks == 2) /* fields and stars are not of depth */
+            continue;
         render_style(renderer, &p, &styles[s], 0.5f, 0.98f, out); /* r <= 0.49 */
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
     }
@@ -83,27 +85,29 @@ static void no_blur(void **state)
     picture_free(&p);
 }
 
-/* The left half in focus, the right half behind it by K pixels of blur: what is in focus
- * has nothing blurred over it, so it stays; what is behind changes. */
-static void sharp_half(void **state)
+/* The left half near, the right half far: renders with every style and fails where a pixel
+ * of the columns from @from to @to has changed; styles that leak more than @allowed are left
+ * out. At least a quarter of all must have. */
+static void columns_stay(float focus, int from, int to, int allowed)
 {
     enum { W = 96, H = 40, K = 9 };
     struct picture p = picture_make(W, H, 71);
     struct refocus_renderer *renderer;
     uint8_t out[3 * W * H];
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         p.disparity[i] = i % W < W / 2 ? 65535 : 0;
     renderer = prepared(&p, K, 2);
     for (int s = 0; s < style_count; s++) {
         int changed = 0;
 
-        render_style(renderer, &p, &styles[s], 1, K, out);
+        if (styles[s].leaks > allowed)
+            continue;
+        render_style(renderer, &p, &styles[s], focus, K, out);
         for (int i = 0; i < W * H; i++) {
             const int same = !memcmp(out + 3 * i, p.rgb + 3 * i, 3);
 
-            if (i % W < W / 2 && !same)
+            if (i % W >= from && i % W < to && !same)
                 fail_msg("%s: (%d, %d) is in focus and changed", styles[s].name, i % W, i / W);
             changed += !same;
         }
@@ -113,33 +117,24 @@ static void sharp_half(void **state)
     picture_free(&p);
 }
 
-/* A blurred half before a sharp one: pixels farther than K from the edge stay. */
+/* The near half in focus has nothing blurred over it, so all of it stays. */
+static void sharp_before_blurred(void **state)
+{
+    (void)state;
+    columns_stay(1, 0, 48, 0);
+}
+
+/* A blurred half before a sharp one: pixels well farther than K from the edge stay. */
 static void blurred_before_sharp(void **state)
 {
-    enum { W = 96, H = 40, K = 9 };
-    struct picture p = picture_make(W, H, 72);
-    struct refocus_renderer *renderer;
-    uint8_t out[3 * W * H];
-
     (void)state;
-    for (int i = 0; i < W * H; i++)
-        p.disparity[i] = i % W < W / 2 ? 65535 : 0;
-    renderer = prepared(&p, K, 2);
-    for (int s = 0; s < style_count; s++) {
-        render_style(renderer, &p, &styles[s], 0, K, out);
-        for (int i = 0; i < W * H; i++) {
-            if (i % W > W / 2 + K + 2 && memcmp(out + 3 * i, p.rgb + 3 * i, 3))
-                fail_msg("%s: (%d, %d) is in focus and changed", styles[s].name, i % W, i / W);
-        }
-    }
-    refocus_renderer_destroy(&renderer);
-    picture_free(&p);
+    columns_stay(0, 48 + 3 * 9 / 2 + 5, 96, 1); /* heat goes as far as a Gaussian */
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_colour), cmocka_unit_test(every_grey), cmocka_unit_test(no_blur),
-        cmocka_unit_test(sharp_half), cmocka_unit_test(blurred_before_sharp)};
+        cmocka_unit_test(sharp_before_blurred), cmocka_unit_test(blurred_before_sharp)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -113,12 +113,12 @@ static void every_failure(void **state)
     }
 }
 
-/* render.h: 22 (W + 2P + 47)(H + 2P + 16) + 6 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20 */
+/* render.h: 24 (W + 2P + 79)(H + 2P + 16) + 5 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20 */
 static double stated(int width, int height, float blur, int threads)
 {
     const double p = 2 * (ceil((double)blur) + 2);
 
-    return 22 * (width + p + 47) * (height + p + 16) + 6.0 * (width + 16) * (height + 16) +
+    return 24 * (width + p + 79) * (height + p + 16) + 5.0 * (width + 16) * (height + 16) +
            4.0 * threads * (width + 512) + 24.0 * width + 12.0 * height + 1048576.0;
 }
 
@@ -144,6 +144,51 @@ static void formula(void **state)
                              sides[s][0], sides[s][1], (double)blurs[k], threads[t],
                              (unsigned long long)bytes, most);
             }
+        }
+    }
+}
+
+/* What each method of whole frames may add; the text of render.h. */
+static double extra(uint32_t method, int width, int height, float blur, int threads)
+{
+    const double w = width, h = height, p = ceil((double)blur) + 2, t = threads;
+
+    switch (method) {
+    case REFOCUS_METHOD_LIGHTFIELD:
+        return 1200 * (w + 2 * p + 64) * t + 4096;
+    case REFOCUS_METHOD_SCATTER:
+        return 32 * w * h + 3 * (4 * p + 80) * p * p + 65536;
+    case REFOCUS_METHOD_DIFFUSION:
+        return 116 * (w + 16) * (h + 16) + 262144;
+    case REFOCUS_METHOD_FOVEATED:
+        return 96 * (w + 16) * (h + 16) + 262144;
+    case REFOCUS_METHOD_INTERPOLATED:
+        return 48 * (w + 16) * (h + 16) + 4 * (w + h + 16) * t + 65536;
+    default:
+        return 0;
+    }
+}
+
+static void formula_of_methods(void **state)
+{
+    static const int sides[][2] = {{1, 1}, {1, 65535}, {65535, 1}, {17, 33}, {720, 540}};
+    static const float blurs[] = {0, 1, 20, 127};
+
+    (void)state;
+    for (uint32_t m = 0; m < REFOCUS_METHOD_COUNT; m++) {
+        for (int i = 0; i < 5 * 4 * 2; i++) {
+            const int w = sides[i % 5][0], h = sides[i % 5][1], threads = i < 20 ? 1 : 64;
+            const float blur = blurs[i / 5 % 4];
+            struct counter counter;
+            struct refocus_renderer_params params = counted(&counter, w, h, blur, threads);
+            const double without = (double)refocus_renderer_memory(&params);
+
+            params.methods = REFOCUS_METHOD_BIT(m);
+            const double with = (double)refocus_renderer_memory(&params);
+            if (with < without || with - without > extra(m, w, h, blur, threads))
+                fail_msg("%s, %d x %d, K = %g, %d threads: %.0f bytes more, header %.0f",
+                         refocus_method_name(m), w, h, (double)blur, threads, with - without,
+                         extra(m, w, h, blur, threads));
         }
     }
 }
@@ -208,7 +253,7 @@ static void nothing_while_rendering(void **state)
     uint8_t small[6] = {0, 50, 100, 150, 200, 250};
     const struct refocus_disparity coarse = {8, 3, 2, small, 3};
     struct counter counter;
-    const struct refocus_renderer_params limits = counted(&counter, 120, 90, 10, 2);
+    struct refocus_renderer_params limits = counted(&counter, 120, 90, 10, 2);
     struct refocus_renderer *renderer;
     uint8_t *out = malloc(3 * 120 * 90);
     const struct refocus_image image =
@@ -216,6 +261,7 @@ static void nothing_while_rendering(void **state)
 
     (void)state;
     assert_non_null(out);
+    limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     const int calls = counter.calls;
     for (int i = 0; i < style_count; i++) {
@@ -241,6 +287,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_failure),      cmocka_unit_test(formula),
+        cmocka_unit_test(formula_of_methods),
         cmocka_unit_test(says_what_it_takes), cmocka_unit_test(largest),
         cmocka_unit_test(nothing_while_rendering)};
     return cmocka_run_group_tests(tests, NULL, NULL);

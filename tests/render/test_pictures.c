@@ -202,6 +202,7 @@ static void sizes(void **state)
 
     (void)state;
     limits.threads = 2;
+    limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&large, &limits), 0);
     for (int i = 0; i < 11; i++) {
         struct picture p = picture_make(size[i][0], size[i][1], 50u + (uint32_t)i);

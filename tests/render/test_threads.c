@@ -77,7 +77,7 @@ static void cancel_render(void **state)
 {
     struct picture p = picture_make(900, 700, 3);
     const struct style slow = {"slow", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0,
-                               0, REFOCUS_BLEND_LINEAR, 0, 0};
+                               0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0};
     struct refocus_render_params params = style_params(&slow, 0.5f, 60);
     struct canceller canceller = {prepared(&p, 60, 3), 0};
     uint8_t *out = malloc(3 * 900 * 700), *before = malloc(3 * 900 * 700);

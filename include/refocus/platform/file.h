@@ -86,6 +86,11 @@ struct refocus_photo {
  * EXIF orientation is applied to photo and depth alike. Depth comes from GDepth (standard or
  * extended XMP), Apple's MPF disparity, or a HEIC auxiliary depth image.
  *
+ * Memory at the most, while reading: the file, 8 times the XMP in it, 9 bytes a pixel of the
+ * photo, 9 bytes a sample of the depth, and 128 KiB; and what the decoding libraries take
+ * for themselves, which is much for progressive JPEG and HEIC (some 6 bytes a pixel).
+ * The limits are checked before memory is asked for.
+ *
  * @param photo   receives a new object, or NULL on an error; ended by refocus_photo_free()
  * @param limits  NULL for the defaults
  * @param reason  receives words on an error; may be NULL

@@ -87,6 +87,32 @@ static struct refocus_aperture *take_aperture(struct input *in, int wild)
     return aperture;
 }
 
+/* What single methods look at. */
+static void take_extras(struct input *in, int wild, struct refocus_render_params *p)
+{
+    p->cell = take_in(in, wild, 1, 16);
+    p->seed = take(in, 4);
+    p->spread = (uint32_t)take_in(in, wild, 0, 1);
+    p->airy_radius = 0.25f + take_fraction(in, wild, 15.75f);
+    p->depth_ratio = 1 + take_fraction(in, wild, 999);
+    p->star_spikes = take_in(in, wild, 2, 16) & ~1;
+    p->star_length = take_fraction(in, wild, 127);
+    p->star_angle = take_fraction(in, wild, 360);
+    p->star_strength = take_fraction(in, wild, 1);
+    p->sharp_radius = 0.5f + take_fraction(in, wild, 15.5f);
+    p->last_ratio = wild ? take_float(in) : 0;
+    p->attention_x = take_fraction(in, wild, 1);
+    p->attention_y = take_fraction(in, wild, 1);
+    p->attention_angle = take_fraction(in, wild, 170);
+    p->attention_depth = take_fraction(in, wild, 1);
+    p->field = (uint32_t)take_in(in, wild, 0, REFOCUS_FIELD_SPHERE);
+    p->field_x = take_fraction(in, wild, 1);
+    p->field_radius = take_fraction(in, wild, 4);
+    p->field_falloff = 0.001f + take_fraction(in, wild, 3.9f);
+    p->layers = take_in(in, wild, 1, 8);
+    p->conductivity = 0.01f + take_fraction(in, wild, 0.99f);
+}
+
 static struct refocus_render_params take_lens(struct input *in, int wild, float most)
 {
     struct refocus_render_params p = refocus_render_params_default(
@@ -150,6 +176,7 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     struct refocus_aperture *aperture = take_aperture(in, wild);
     int status;
 
+    take_extras(in, wild, &lens);
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);
     status = refocus_prepare(renderer, &image, &map);
@@ -178,6 +205,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int status;
 
     limits.threads = take_in(&in, wild_limits, 1, 3);
+    limits.methods = wild_limits ? take(&in, 4) : REFOCUS_METHODS_ALL;
     limits.max_memory = 64 << 20;
     status = refocus_renderer_create(&renderer, &limits);
     check((status == REFOCUS_OK) == (renderer != NULL));

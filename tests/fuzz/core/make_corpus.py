@@ -59,6 +59,10 @@ def main():
         "wild_nan": b"\2" + limits(9, 9, 3, 1)[1:] + picture(9, 9, 1, 1, 16)
         + struct.pack(">ff", float("nan"), 1) + b"\xff" * 40,
     }
+    papers = ["jittered", "lightfield", "blur", "scatter", "foveated", "interpolated", "diffusion"]
+    for method, name in enumerate(papers, 3):
+        seeds[name] = (limits(40, 30, 8, 2) + picture(40, 27, 1, 1, 16)
+                       + lens(.4, 7, 8, method, 40) + DISC + bytes(range(90)))
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name, seed in seeds.items():
         (FOLDER / name).write_bytes(seed + pixels)

@@ -4,19 +4,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Room goes up in powers of two: a file may be put together byte by byte. */
+static size_t room_for(size_t size)
+{
+    size_t room = 64;
+
+    while (room < size + 1) {
+        room *= 2;
+    }
+    return room;
+}
+
 void bytes_add(struct bytes *bytes, const void *data, size_t size)
 {
-    uint8_t *const grown = realloc(bytes->data, bytes->size + size + 1);
+    const size_t room = room_for(bytes->size + size);
 
-    if (!grown) {
-        exit(99);
+    if (!bytes->data || room != room_for(bytes->size)) {
+        uint8_t *const grown = realloc(bytes->data, room);
+        if (!grown) {
+            exit(99);
+        }
+        bytes->data = grown;
     }
     if (size > 0) {
-        memcpy(grown + bytes->size, data, size);
+        memcpy(bytes->data + bytes->size, data, size);
     }
-    bytes->data = grown;
     bytes->size += size;
-    grown[bytes->size] = 0;
+    bytes->data[bytes->size] = 0;
 }
 
 void bytes_text(struct bytes *bytes, const char *text)

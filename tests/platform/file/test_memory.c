@@ -5,6 +5,7 @@
 #include "samples.h"
 
 #include <errno.h>
+#include <malloc.h>
 #include <unistd.h>
 
 void *__real_malloc(size_t size);
@@ -17,6 +18,18 @@ void *__wrap_realloc(void *memory, size_t size);
 void __wrap_free(void *memory);
 
 static long calls, fail_at, live; /* fail_at: 0 = none */
+static size_t held, peak;         /* bytes */
+
+static void hold(void *memory)
+{
+    held += memory ? malloc_usable_size(memory) : 0;
+    peak = held > peak ? held : peak;
+}
+
+static void let_go(void *memory)
+{
+    held -= memory ? malloc_usable_size(memory) : 0;
+}
 
 static int refuse(void)
 {
@@ -32,6 +45,7 @@ void *__wrap_malloc(size_t size)
     void *const memory = refuse() ? NULL : __real_malloc(size);
 
     live += memory != NULL;
+    hold(memory);
     return memory;
 }
 
@@ -40,20 +54,27 @@ void *__wrap_calloc(size_t count, size_t size)
     void *const memory = refuse() ? NULL : __real_calloc(count, size);
 
     live += memory != NULL;
+    hold(memory);
     return memory;
 }
 
 void *__wrap_realloc(void *memory, size_t size)
 {
+    const size_t before = memory ? malloc_usable_size(memory) : 0;
     void *const grown = refuse() ? NULL : __real_realloc(memory, size);
 
     live += grown != NULL && memory == NULL;
+    if (grown) {
+        hold(grown); /* both exist for a moment */
+        held -= before;
+    }
     return grown;
 }
 
 void __wrap_free(void *memory)
 {
     live -= memory != NULL;
+    let_go(memory);
     __real_free(memory);
 }
 
@@ -128,6 +149,65 @@ static void heic(void **state)
     bytes_free(&sample.bytes);
 }
 #endif
+
+/* The bound that file.h states for reading; XMP is taken for no more than the file. */
+static void peak_of(const struct sample *sample)
+{
+    struct refocus_photo *photo = NULL;
+    size_t bound;
+
+    held = peak = 0;
+    assert_int_equal(refocus_photo_read_memory(&photo, sample->bytes.data,
+                                               sample->bytes.size, NULL, NULL),
+                     REFOCUS_OK);
+    bound = (128u << 10) + (strstr(sample->name, ".jpg") ? 8 * sample->bytes.size : 0) +
+            9 * (size_t)photo->image.width * (size_t)photo->image.height +
+            9 * (size_t)photo->depth.width * (size_t)photo->depth.height;
+    if (peak > bound || peak == 0) {
+        fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name, peak,
+                 bound);
+    }
+    refocus_photo_free(&photo);
+}
+
+static void stated_peak(void **state)
+{
+    struct sample samples[SAMPLES_MAX];
+    const int count = make_samples(samples);
+    struct sample large = {.name = "large.pgm"};
+
+    (void)state;
+    for (int i = 0; i < count; i++) {
+        if (samples[i].photo) {
+            peak_of(&samples[i]);
+        }
+    }
+    free_samples(samples, count);
+    bytes_text(&large.bytes, "P5\n700 500\n65535\n");
+    for (int i = 0; i < 700 * 500; i++) {
+        bytes_number(&large.bytes, 1000, 2, true);
+    }
+    peak_of(&large);
+    assert_true(peak >= 5 * 700 * 500); /* the photo and its samples */
+    bytes_free(&large.bytes);
+#ifdef RF_HAVE_PNG
+    large.name = "large.png";
+    large.bytes = make_png(400, 300, 2, 16);
+    peak_of(&large);
+    assert_true(peak >= 9 * 400 * 300);
+    bytes_free(&large.bytes);
+#endif
+#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
+    large.name = "large.jpg";
+    large.bytes =
+        make_gdepth_extended((struct gdepth){.format = "RangeInverse",
+                                             .depth = make_png(300, 200, 0, 16),
+                                             .original = make_png(500, 300, 2, 8)},
+                             60000, 7, -1);
+    peak_of(&large);
+    bytes_free(&large.bytes);
+#endif
+}
 
 static int write_one(const char *path, long fail)
 {
@@ -224,7 +304,7 @@ int main(void)
 #ifdef RF_HAVE_HEIC
         cmocka_unit_test(heic),
 #endif
-        cmocka_unit_test(writers),
+        cmocka_unit_test(stated_peak), cmocka_unit_test(writers),
         cmocka_unit_test(files),
     };
 

@@ -1,0 +1,84 @@
+/** @file platform/convert.h  Frames of cameras as pictures and depth maps for the core.
+ *
+ * Part of librefocus-capture. A converter holds the rows and tables that it works with; it
+ * is reentrant.
+ */
+#ifndef REFOCUS_PLATFORM_CONVERT_H
+#define REFOCUS_PLATFORM_CONVERT_H
+
+#include <stdint.h>
+#include <refocus/depth.h>
+#include <refocus/image.h>
+#include <refocus/platform/source.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A converter. Opaque. */
+struct refocus_converter;
+
+/** @return REFOCUS_OK or REFOCUS_ERR_MEMORY. Ended by refocus_converter_destroy(). */
+REFOCUS_API int refocus_converter_create(struct refocus_converter **converter);
+
+/** Free a converter and set the handle to NULL. A NULL handle is fine. */
+REFOCUS_API void refocus_converter_destroy(struct refocus_converter **converter);
+
+/**
+ * A frame as RGB8. Reads each row of each plane once, from the first to the last, in whole
+ * rows: camera memory may be uncached. Y, U and V become R, G and B by BT.601 or BT.709 as
+ * the frame says, each within 1 of the real value.
+ *
+ * @param out  RGB8 of the frame's size
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (size or format of @p out, a stride below a
+ *         row), REFOCUS_ERR_FORMAT (a damaged JPEG, or one of another size),
+ *         REFOCUS_ERR_UNSUPPORTED (a format this build cannot convert), REFOCUS_ERR_MEMORY
+ */
+REFOCUS_API int refocus_convert_rgb8(struct refocus_converter *converter,
+                                     const struct refocus_frame *frame,
+                                     const struct refocus_image *out,
+                                     struct refocus_reason *reason);
+
+/**
+ * The samples of a depth frame (GREY, Y16 or Z16), copied in the same way.
+ *
+ * @param samples  receives width x height values in the machine's byte order, packed;
+ *                 8-bit ones are multiplied by 257
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (a colour format)
+ */
+REFOCUS_API int refocus_convert_samples(struct refocus_converter *converter,
+                                        const struct refocus_frame *frame, uint16_t *samples,
+                                        struct refocus_reason *reason);
+
+/** A pinhole camera: pixel (x, y) of a point (X, Y, Z) is (fx X/Z + cx, fy Y/Z + cy). */
+struct refocus_pinhole {
+    int32_t width, height;
+    double fx, fy, cx, cy;
+};
+
+/** Where the colour camera is: a point of the depth camera, in metres, is turned by
+ *  rotation (rows) and then shifted. */
+struct refocus_calibration {
+    struct refocus_pinhole depth, colour;
+    double rotation[9];
+    double translation_m[3];
+};
+
+/**
+ * Register depth onto colour: warp every sample to the pixel of the colour camera that sees
+ * it, the nearer one where two meet. A sample covers as many pixels as its share of the
+ * picture; pixels that no sample reaches stay 0 (unknown).
+ *
+ * @param samples          calibration->depth.width x height distances, packed; 0 = unknown
+ * @param metres_per_unit  > 0
+ * @param out              receives calibration->colour.width x height distances, packed
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT. Thread-safe.
+ */
+REFOCUS_API int refocus_register_depth(const struct refocus_calibration *calibration,
+                                       const uint16_t *samples, double metres_per_unit,
+                                       uint16_t *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

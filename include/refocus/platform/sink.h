@@ -1,0 +1,70 @@
+/** @file platform/sink.h  Where refocused frames go.
+ *
+ * Part of librefocus-capture. A sink is opened by name:
+ *
+ *     null                   nowhere, for timing
+ *     v4l2:/dev/video9       a V4L2 output node (virtual camera)
+ *     y4m:FILE               a YUV4MPEG2 stream, 4:2:0, BT.601 limited range
+ *     raw:FILE               RGB8 frames without a header
+ *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0
+ *
+ * FILE may be "-" for standard output, or a pipe. A sink is reentrant.
+ */
+#ifndef REFOCUS_PLATFORM_SINK_H
+#define REFOCUS_PLATFORM_SINK_H
+
+#include <stdint.h>
+#include <refocus/image.h>
+#include <refocus/platform/file.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A sink. Opaque. */
+struct refocus_sink;
+
+/**
+ * Open a sink. Nothing is written yet.
+ *
+ * @param sink    receives the sink, or NULL on an error; ended by refocus_sink_close()
+ * @param reason  receives words on an error; may be NULL, as in all functions here
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (the name), REFOCUS_ERR_UNSUPPORTED,
+ *         REFOCUS_ERR_GONE, REFOCUS_ERR_BUSY, REFOCUS_ERR_PERMISSION, REFOCUS_ERR_IO,
+ *         REFOCUS_ERR_MEMORY
+ */
+REFOCUS_API int refocus_sink_open(struct refocus_sink **sink, const char *name,
+                                  struct refocus_reason *reason);
+
+/**
+ * Say what will come: before the first frame, and whenever the size changes.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_UNSUPPORTED (a stream of one size has begun, or the device
+ *         has no such size), and as refocus_sink_open()
+ */
+REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int height,
+                                   double fps, struct refocus_reason *reason);
+
+/**
+ * Write a frame of the size that was announced.
+ *
+ * @param image  RGB8; not kept
+ * @return REFOCUS_OK, REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader closed the pipe, the
+ *         device is unplugged), REFOCUS_ERR_TIMEOUT (the device took none for a second: the
+ *         frame is dropped), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never raises SIGPIPE.
+ */
+REFOCUS_API int refocus_sink_write(struct refocus_sink *sink,
+                                   const struct refocus_image *image,
+                                   struct refocus_reason *reason);
+
+/**
+ * Write what is left, close, free, set the handle to NULL. A NULL handle is fine.
+ * @return REFOCUS_OK, or what refocus_sink_write() returns when the rest was lost
+ */
+REFOCUS_API int refocus_sink_close(struct refocus_sink **sink, struct refocus_reason *reason);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

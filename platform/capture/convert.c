@@ -1,0 +1,293 @@
+/* Frames as RGB8 and as 16-bit samples. Each row of the camera's memory is copied once, in
+ * order, before it is looked at: uncached memory is slow to read, and slowest in pieces. */
+#include <stdlib.h>
+#include <string.h>
+#include <refocus/platform/convert.h>
+#include "backend.h"
+#ifdef RF_HAVE_JPEG
+#include <turbojpeg.h>
+#endif
+
+/* R = (cy (Y - y0) + rv (V - 128) + half) >> SHIFT and so on. */
+enum { SHIFT = 14 };
+struct coefficients {
+    int y0, cy, rv, gu, gv, bu;
+};
+
+struct refocus_converter {
+    uint8_t *row[3]; /* copies of the rows of each plane */
+    size_t size[3];
+    void *jpeg;      /* tjhandle */
+};
+
+/* Kr and Kb of the standards; limited range spans 219 and 224 codes. */
+static struct coefficients choose_coefficients(const struct refocus_frame *frame)
+{
+    const bool full = frame->flags & REFOCUS_FRAME_FULL_RANGE;
+    const bool hd = frame->matrix == REFOCUS_MATRIX_BT709;
+    const double kr = hd ? 0.2126 : 0.299, kb = hd ? 0.0722 : 0.114, kg = 1 - kr - kb;
+    const double luma = full ? 1 : 255.0 / 219, chroma = full ? 1 : 255.0 / 224;
+    const double one = 1 << SHIFT;
+
+    return (struct coefficients){
+        .y0 = full ? 0 : 16,
+        .cy = (int)(one * luma + 0.5),
+        .rv = (int)(one * chroma * 2 * (1 - kr) + 0.5),
+        .gu = (int)(one * chroma * 2 * (1 - kb) * kb / kg + 0.5),
+        .gv = (int)(one * chroma * 2 * (1 - kr) * kr / kg + 0.5),
+        .bu = (int)(one * chroma * 2 * (1 - kb) + 0.5),
+    };
+}
+
+static uint8_t clamp(int value)
+{
+    value >>= SHIFT;
+    return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
+}
+
+static void put_pixel(uint8_t *rgb, int luma, int red, int green, int blue)
+{
+    rgb[0] = clamp(luma + red);
+    rgb[1] = clamp(luma + green);
+    rgb[2] = clamp(luma + blue);
+}
+
+/* A row of Y and one of U and V, which lie step apart; two pixels share a U and a V. */
+static void convert_yuv_row(uint8_t *restrict rgb, const uint8_t *restrict y, int y_step,
+                            const uint8_t *restrict u, const uint8_t *restrict v,
+                            int uv_step, int width, const struct coefficients *coefficients)
+{
+    const struct coefficients c = *coefficients;
+    const int half = (1 << (SHIFT - 1)) - c.cy * c.y0;
+
+    for (int x = 0; x < width; x += 2) {
+        const int cu = u[x / 2 * uv_step] - 128, cv = v[x / 2 * uv_step] - 128;
+        const int red = c.rv * cv, green = -c.gu * cu - c.gv * cv, blue = c.bu * cu;
+
+        put_pixel(rgb + 3 * x, c.cy * y[x * y_step] + half, red, green, blue);
+        if (x + 1 < width)
+            put_pixel(rgb + 3 * x + 3, c.cy * y[(x + 1) * y_step] + half, red, green, blue);
+    }
+}
+
+static void convert_rgb_row(uint8_t *restrict rgb, const uint8_t *restrict from, int bytes,
+                            bool blue_first, int width)
+{
+    const int red = blue_first ? 2 : 0;
+
+    for (int x = 0; x < width; x++) {
+        rgb[3 * x] = from[x * bytes + red];
+        rgb[3 * x + 1] = from[x * bytes + 1];
+        rgb[3 * x + 2] = from[x * bytes + 2 - red];
+    }
+}
+
+static void convert_grey_row(uint8_t *restrict rgb, const uint8_t *restrict from, int step,
+                             int width)
+{
+    for (int x = 0; x < width; x++)
+        rgb[3 * x] = rgb[3 * x + 1] = rgb[3 * x + 2] = from[x * step];
+}
+
+static void convert_row(uint8_t *rgb, uint8_t *const row[3], uint32_t format, int width,
+                        const struct coefficients *c)
+{
+    switch (format) {
+    case REFOCUS_FRAME_YUYV:
+        convert_yuv_row(rgb, row[0], 2, row[0] + 1, row[0] + 3, 4, width, c);
+        break;
+    case REFOCUS_FRAME_UYVY:
+        convert_yuv_row(rgb, row[0] + 1, 2, row[0], row[0] + 2, 4, width, c);
+        break;
+    case REFOCUS_FRAME_NV12:
+        convert_yuv_row(rgb, row[0], 1, row[1], row[1] + 1, 2, width, c);
+        break;
+    case REFOCUS_FRAME_NV21:
+        convert_yuv_row(rgb, row[0], 1, row[1] + 1, row[1], 2, width, c);
+        break;
+    case REFOCUS_FRAME_YUV420:
+        convert_yuv_row(rgb, row[0], 1, row[1], row[2], 1, width, c);
+        break;
+    case REFOCUS_FRAME_RGB24:
+    case REFOCUS_FRAME_BGR24:
+        convert_rgb_row(rgb, row[0], 3, format == REFOCUS_FRAME_BGR24, width);
+        break;
+    case REFOCUS_FRAME_RGBX:
+    case REFOCUS_FRAME_BGRX:
+        convert_rgb_row(rgb, row[0], 4, format == REFOCUS_FRAME_BGRX, width);
+        break;
+    case REFOCUS_FRAME_GREY:
+        convert_grey_row(rgb, row[0], 1, width);
+        break;
+    default: /* Y16, Z16: the high byte */
+        convert_grey_row(rgb, row[0] + 1, 2, width);
+        break;
+    }
+}
+
+int refocus_converter_create(struct refocus_converter **converter)
+{
+    if (!converter)
+        return REFOCUS_ERR_ARGUMENT;
+    *converter = calloc(1, sizeof **converter);
+    return *converter ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
+}
+
+void refocus_converter_destroy(struct refocus_converter **converter)
+{
+    if (!converter || !*converter)
+        return;
+#ifdef RF_HAVE_JPEG
+    if ((*converter)->jpeg)
+        tjDestroy((*converter)->jpeg);
+#endif
+    for (int i = 0; i < 3; i++)
+        free((*converter)->row[i]);
+    free(*converter);
+    *converter = NULL;
+}
+
+static int check(const struct refocus_frame *frame, struct refocus_reason *reason)
+{
+    if (rf_format_planes(frame->format) == 0 || frame->width < 1 || frame->height < 1 ||
+        frame->width > REFOCUS_MAX_SIDE || frame->height > REFOCUS_MAX_SIDE)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the frame has no size or format");
+    for (int i = 0; i < rf_format_planes(frame->format); i++) {
+        const ptrdiff_t stride = frame->stride[i] < 0 ? -frame->stride[i] : frame->stride[i];
+
+        if (!frame->plane[i] || stride < rf_plane_row(frame->format, i, frame->width))
+            return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                                   "plane %d of the frame: its stride of %lld bytes is less "
+                                   "than a row", i, (long long)frame->stride[i]);
+    }
+    return REFOCUS_OK;
+}
+
+/* Room for a row of each plane. */
+static int reserve_rows(struct refocus_converter *converter, const struct refocus_frame *frame,
+                        struct refocus_reason *reason)
+{
+    for (int i = 0; i < rf_format_planes(frame->format); i++) {
+        const size_t size = (size_t)rf_plane_row(frame->format, i, frame->width);
+
+        if (size <= converter->size[i])
+            continue;
+        free(converter->row[i]);
+        converter->row[i] = malloc(size);
+        converter->size[i] = converter->row[i] ? size : 0;
+        if (!converter->row[i])
+            return rf_capture_fail_memory(reason);
+    }
+    return REFOCUS_OK;
+}
+
+static void copy_row(struct refocus_converter *converter, const struct refocus_frame *frame,
+                     int plane, int y)
+{
+    memcpy(converter->row[plane], frame->plane[plane] + y * frame->stride[plane],
+           (size_t)rf_plane_row(frame->format, plane, frame->width));
+}
+
+#ifdef RF_HAVE_JPEG
+static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
+                        const struct refocus_image *out, struct refocus_reason *reason)
+{
+    int width, height, subsampling, space;
+
+    if (!converter->jpeg)
+        converter->jpeg = tjInitDecompress();
+    if (!converter->jpeg)
+        return rf_capture_fail_memory(reason);
+    if (tjDecompressHeader3(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes,
+                            &width, &height, &subsampling, &space) != 0 ||
+        width != out->width || height != out->height)
+        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
+                               "the JPEG of the frame is damaged or of another size");
+    if (out->stride[0] < 0 || out->stride[0] > 1 << 30)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "this stride is not possible");
+    if (tjDecompress2(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes,
+                      out->plane[0], width, (int)out->stride[0], height, TJPF_RGB,
+                      TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "the JPEG of the frame: %.180s",
+                               tjGetErrorStr2(converter->jpeg));
+    return REFOCUS_OK;
+}
+#else
+static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
+                        const struct refocus_image *out, struct refocus_reason *reason)
+{
+    (void)converter;
+    (void)frame;
+    (void)out;
+    return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                           "this build has no JPEG; choose another format of the camera");
+}
+#endif
+
+int refocus_convert_rgb8(struct refocus_converter *converter, const struct refocus_frame *frame,
+                         const struct refocus_image *out, struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    struct coefficients c;
+    int status;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!converter || !frame || !out || !out->plane[0] ||
+        out->format != REFOCUS_FORMAT_RGB8 || out->width != frame->width ||
+        out->height != frame->height ||
+        (out->stride[0] < 0 ? -out->stride[0] : out->stride[0]) < (ptrdiff_t)out->width * 3)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "the picture to convert into must be RGB8 of the frame's size");
+    if (frame->format == REFOCUS_FRAME_MJPEG && frame->plane[0])
+        return convert_jpeg(converter, frame, out, reason);
+    status = check(frame, reason);
+    if (status == REFOCUS_OK)
+        status = reserve_rows(converter, frame, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    c = choose_coefficients(frame);
+    for (int y = 0; y < frame->height; y++) {
+        copy_row(converter, frame, 0, y);
+        for (int i = 1; i < rf_format_planes(frame->format); i++)
+            if (y % 2 == 0)
+                copy_row(converter, frame, i, y / 2);
+        convert_row(out->plane[0] + y * out->stride[0], converter->row, frame->format,
+                    frame->width, &c);
+    }
+    return REFOCUS_OK;
+}
+
+int refocus_convert_samples(struct refocus_converter *converter,
+                            const struct refocus_frame *frame, uint16_t *samples,
+                            struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    int status;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!converter || !frame || !samples)
+        return REFOCUS_ERR_ARGUMENT;
+    if (frame->format != REFOCUS_FRAME_GREY && frame->format != REFOCUS_FRAME_Y16 &&
+        frame->format != REFOCUS_FRAME_Z16)
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "it is a colour format; depth comes as GREY, Y16 or Z16");
+    status = check(frame, reason);
+    if (status == REFOCUS_OK)
+        status = reserve_rows(converter, frame, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    for (int y = 0; y < frame->height; y++, samples += frame->width) {
+        const uint8_t *row = converter->row[0];
+
+        copy_row(converter, frame, 0, y);
+        if (frame->format == REFOCUS_FRAME_GREY)
+            for (int x = 0; x < frame->width; x++)
+                samples[x] = (uint16_t)(row[x] * 257);
+        else
+            for (int x = 0; x < frame->width; x++)
+                samples[x] = (uint16_t)(row[2 * x] | row[2 * x + 1] << 8);
+    }
+    return REFOCUS_OK;
+}

@@ -1,0 +1,236 @@
+/* Pictures, or the samples of depth files, as frames. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "pictures.h"
+#include "ring.h"
+
+struct pictures {
+    char *pattern;
+    bool many;
+    int first, next; /* numbers of files */
+    int64_t frame;           /* since the start */
+    struct rf_pace pace;
+    struct rf_ring ring; /* without memory: photos own it */
+    struct refocus_photo *photo[RF_MOST_BUFFERS];
+    struct refocus_photo *still; /* the one picture */
+    int width, height;           /* of the frame before, 0 at the beginning */
+};
+
+static int open_pictures(struct refocus_source *source, const char *rest,
+                         struct refocus_reason *reason)
+{
+    struct pictures *pictures;
+    char name[PATH_MAX];
+    const int many = rf_pattern_check(rest);
+
+    if (many < 0 || !*rest)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "give file:NAME, or a pattern with one %%d such as "
+                               "file:frames-%%04d.png");
+    pictures = calloc(1, sizeof *pictures);
+    if (pictures)
+        pictures->pattern = strdup(rest);
+    if (!pictures || !pictures->pattern) {
+        free(pictures);
+        return rf_capture_fail_memory(reason);
+    }
+    pictures->many = many == 1;
+    for (; pictures->first < 2; pictures->first++)
+        if (rf_pattern_name(name, sizeof name, rest, pictures->first) &&
+            access(name, R_OK) == 0)
+            break;
+    if (pictures->first == 2) {
+        free(pictures->pattern);
+        free(pictures);
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE,
+                               "%.180s: no such file (numbers begin at 0 or 1)", rest);
+    }
+    source->state = pictures;
+    return REFOCUS_OK;
+}
+
+static int get_mode(struct refocus_source *source, int index,
+                    struct refocus_source_mode *mode)
+{
+    (void)source;
+    if (index > 0)
+        return REFOCUS_ERR_ARGUMENT;
+    mode->format = REFOCUS_FRAME_RGB24;
+    return REFOCUS_OK;
+}
+
+static int read_photo(const struct refocus_source *source, struct refocus_photo **photo,
+                      const char *name, struct refocus_reason *reason)
+{
+    return source->config.flags & REFOCUS_SOURCE_DEPTH
+               ? refocus_depth_read(photo, name, NULL, 0, 0, NULL, reason)
+               : refocus_photo_read(photo, name, NULL, reason);
+}
+
+/* Point the frame into the photo. */
+static int show(struct refocus_frame *frame, const struct refocus_photo *photo,
+                struct refocus_reason *reason)
+{
+    const struct refocus_image *image = &photo->image;
+
+    if (image->plane[0]) {
+        frame->format = REFOCUS_FRAME_RGB24;
+        frame->width = image->width;
+        frame->height = image->height;
+        frame->plane[0] = image->plane[0];
+        frame->stride[0] = image->stride[0];
+        return REFOCUS_OK;
+    }
+    if (photo->depth.sample == REFOCUS_SAMPLE_F32)
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "depth of floats is not streamed; give 8 or 16 bits");
+    frame->format = photo->depth.sample == REFOCUS_SAMPLE_U8 ? REFOCUS_FRAME_GREY
+                                                             : REFOCUS_FRAME_Y16;
+    frame->width = photo->depth.width;
+    frame->height = photo->depth.height;
+    frame->plane[0] = photo->depth.samples;
+    frame->stride[0] = photo->depth.stride;
+    return REFOCUS_OK;
+}
+
+static int start(struct refocus_source *source, struct refocus_source_mode *mode,
+                 struct refocus_reason *reason)
+{
+    struct pictures *pictures = source->state;
+    const bool fast = source->config.flags & REFOCUS_SOURCE_FAST;
+    char name[PATH_MAX];
+    struct refocus_frame frame;
+    int status = REFOCUS_OK;
+
+    rf_frame_clear(&frame);
+    if (!rf_pattern_name(name, sizeof name, pictures->pattern, pictures->first))
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the name is too long");
+    refocus_photo_free(&pictures->still);
+    status = read_photo(source, &pictures->still, name, reason);
+    if (status == REFOCUS_OK)
+        status = show(&frame, pictures->still, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    mode->format = frame.format;
+    mode->width = frame.width;
+    mode->height = frame.height;
+    mode->fps = source->config.fps > 0 ? source->config.fps : 30;
+    if (pictures->many)
+        refocus_photo_free(&pictures->still);
+    pictures->next = pictures->first;
+    pictures->frame = 0;
+    pictures->width = 0;
+    pictures->ring.count = source->config.buffers;
+    pictures->ring.taken = 0;
+    rf_pace_start(&pictures->pace, mode->fps, fast);
+    return REFOCUS_OK;
+}
+
+/* Read the picture that comes next into a buffer. */
+static int read_next(struct refocus_source *source, int buffer, struct refocus_reason *reason)
+{
+    struct pictures *pictures = source->state;
+    char name[PATH_MAX];
+
+    rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
+    if (access(name, F_OK) != 0) {
+        if (!(source->config.flags & REFOCUS_SOURCE_LOOP) ||
+            pictures->next == pictures->first)
+            return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more pictures");
+        pictures->next = pictures->first;
+        rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
+    }
+    refocus_photo_free(&pictures->photo[buffer]);
+    return read_photo(source, &pictures->photo[buffer], name, reason);
+}
+
+static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
+                      struct refocus_frame **result, struct refocus_reason *reason)
+{
+    struct pictures *pictures = source->state;
+    const int64_t due = rf_pace_due(&pictures->pace, pictures->frame);
+    struct refocus_frame *frame;
+    int buffer, status;
+
+    if (!pictures->pace.fast && due > rf_now_ns()) {
+        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
+        if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
+            return status;
+    }
+    buffer = rf_ring_take(&pictures->ring);
+    if (buffer < 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
+    frame = &pictures->ring.frame[buffer];
+    rf_frame_clear(frame);
+    status = pictures->many ? read_next(source, buffer, reason) : REFOCUS_OK;
+    if (status == REFOCUS_OK)
+        status = show(frame, pictures->many ? pictures->photo[buffer] : pictures->still,
+                      reason);
+    if (status != REFOCUS_OK) {
+        rf_ring_give(&pictures->ring, (uint32_t)buffer);
+        return status;
+    }
+    frame->buffer = (uint32_t)buffer;
+    frame->sequence = (uint32_t)pictures->frame;
+    frame->timestamp_ns = due;
+    if (!pictures->many)
+        frame->flags |= REFOCUS_FRAME_STILL;
+    if (!pictures->pace.fast)
+        frame->flags |= REFOCUS_FRAME_MONOTONIC;
+    if (pictures->width && (pictures->width != frame->width ||
+                            pictures->height != frame->height))
+        frame->flags |= REFOCUS_FRAME_CHANGED;
+    pictures->width = frame->width;
+    pictures->height = frame->height;
+    pictures->frame++;
+    pictures->next++;
+    *result = frame;
+    return REFOCUS_OK;
+}
+
+static void release(struct refocus_source *source, struct refocus_frame *frame)
+{
+    struct pictures *pictures = source->state;
+
+    refocus_photo_free(&pictures->photo[frame->buffer]);
+    rf_ring_give(&pictures->ring, frame->buffer);
+}
+
+static void stop(struct refocus_source *source)
+{
+    struct pictures *pictures = source->state;
+
+    for (int i = 0; i < RF_MOST_BUFFERS; i++)
+        refocus_photo_free(&pictures->photo[i]);
+    refocus_photo_free(&pictures->still);
+}
+
+static int reopen(struct refocus_source *source, struct refocus_reason *reason)
+{
+    (void)source;
+    (void)reason;
+    return REFOCUS_OK;
+}
+
+static void close_pictures(struct refocus_source *source)
+{
+    struct pictures *pictures = source->state;
+
+    stop(source);
+    free(pictures->pattern);
+    free(pictures);
+}
+
+const struct rf_source_ops rf_source_file = {
+    .scheme = "file",
+    .open = open_pictures,
+    .get_mode = get_mode,
+    .start = start,
+    .wait = wait_frame,
+    .release = release,
+    .stop = stop,
+    .reopen = reopen,
+    .close = close_pictures,
+};

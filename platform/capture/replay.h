@@ -1,0 +1,55 @@
+/* The replay source: a script of frames and faults. */
+#ifndef RF_CAPTURE_REPLAY_H
+#define RF_CAPTURE_REPLAY_H
+
+#include "ring.h"
+
+enum rf_fault {
+    RF_FAULT_NONE,
+    RF_FAULT_DROP,        /* frames that do not come */
+    RF_FAULT_CORRUPT,     /* flagged */
+    RF_FAULT_LATE,        /* comes so many ms after its time */
+    RF_FAULT_TIMESTAMP,   /* shifted by so many ms */
+    RF_FAULT_STALL,       /* nothing comes for so many ms */
+    RF_FAULT_FAIL,        /* the stream fails; a restart helps */
+    RF_FAULT_VANISH,      /* the device is gone for so many ms */
+    RF_FAULT_QUEUE_ERROR, /* the buffer is lost when it is given back */
+    RF_FAULT_STRIDE,      /* so many bytes a row from here on */
+    RF_FAULT_FORMAT,      /* another format and size from here on */
+    RF_FAULT_MEMORY,      /* the frame finds no memory */
+};
+
+struct rf_event {
+    int64_t frame;
+    enum rf_fault fault;
+    int64_t value; /* frames, ms, bytes */
+    uint32_t format;
+    int width, height;
+};
+
+enum { RF_MOST_EVENTS = 256 };
+
+struct rf_script {
+    uint32_t format;
+    int width, height;
+    double fps;
+    int64_t frames, stride; /* 0: endless; packed */
+    uint32_t sequence;      /* of the first frame */
+    int64_t seed;
+    double random_percent; /* of the frames suffer a fault */
+    int start_errors;      /* so many starts fail first */
+    char *from, *jpeg;     /* another source, a JPEG file; owned, or NULL */
+    struct rf_event event[RF_MOST_EVENTS];
+    int events;
+};
+
+/* Fill a script from a text of lines, or of parts with semicolons. On an error the reason
+ * names the line; rf_script_free() in any case. */
+int rf_script_parse(struct rf_script *script, char *text, struct refocus_reason *reason);
+void rf_script_free(struct rf_script *script);
+
+/* replay_scene.c: draw discs before a wall, or how far they are for GREY, Y16 and Z16 (mm),
+ * into such a frame. */
+void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width, int height);
+
+#endif

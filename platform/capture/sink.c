@@ -1,0 +1,160 @@
+/* Sinks by name, and the one that drops everything. */
+#include <stdlib.h>
+#include <string.h>
+#include "pictures.h"
+#include "sink.h"
+
+static const struct rf_sink_ops *const kinds[] = {
+#ifdef RF_HAVE_V4L2
+    &rf_sink_v4l2,
+#endif
+    &rf_sink_y4m, &rf_sink_raw,
+};
+
+static int open_null(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
+{
+    (void)sink;
+    (void)rest;
+    (void)reason;
+    return REFOCUS_OK;
+}
+
+static int start_null(struct refocus_sink *sink, int width, int height, double fps,
+                      struct refocus_reason *reason)
+{
+    (void)sink;
+    (void)width;
+    (void)height;
+    (void)fps;
+    (void)reason;
+    return REFOCUS_OK;
+}
+
+static int write_null(struct refocus_sink *sink, const struct refocus_image *image,
+                      struct refocus_reason *reason)
+{
+    (void)sink;
+    (void)image;
+    (void)reason;
+    return REFOCUS_OK;
+}
+
+static int close_null(struct refocus_sink *sink, struct refocus_reason *reason)
+{
+    (void)sink;
+    (void)reason;
+    return REFOCUS_OK;
+}
+
+const struct rf_sink_ops rf_sink_null = {
+    .scheme = "null", .open = open_null, .start = start_null, .write = write_null,
+    .close = close_null};
+
+static const struct rf_sink_ops *find(const char *name, const char **rest,
+                                      struct refocus_reason *reason)
+{
+    if (strcmp(name, "null") == 0)
+        return &rf_sink_null;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        const size_t length = strlen(kinds[i]->scheme);
+
+        if (strncmp(name, kinds[i]->scheme, length) == 0 && name[length] == ':') {
+            *rest = name + length + 1;
+            return kinds[i];
+        }
+    }
+#ifndef RF_HAVE_V4L2
+    if (strncmp(name, "v4l2:", 5) == 0) {
+        rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED, "this build has no v4l2");
+        return NULL;
+    }
+#endif
+    if (rf_pattern_check(name) == 1)
+        return &rf_sink_pictures;
+    rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                    "no such kind of sink; give v4l2:DEVICE, y4m:FILE, raw:FILE, null or a "
+                    "pattern of pictures such as frames-%%04d.png");
+    return NULL;
+}
+
+int refocus_sink_open(struct refocus_sink **result, const char *name,
+                      struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    struct refocus_sink *sink;
+    const struct rf_sink_ops *ops;
+    const char *rest = name;
+    int status;
+
+    if (!result)
+        return REFOCUS_ERR_ARGUMENT;
+    *result = NULL;
+    reason = reason ? reason : &unheard;
+    memset(reason, 0, sizeof *reason);
+    if (!name)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "no name");
+    ops = find(name, &rest, reason);
+    if (!ops)
+        return strstr(reason->text, "this build") ? REFOCUS_ERR_UNSUPPORTED
+                                                  : REFOCUS_ERR_ARGUMENT;
+    sink = calloc(1, sizeof *sink);
+    if (!sink)
+        return rf_capture_fail_memory(reason);
+    sink->ops = ops;
+    status = ops->open(sink, rest, reason);
+    if (status != REFOCUS_OK)
+        free(sink);
+    else
+        *result = sink;
+    return status;
+}
+
+int refocus_sink_start(struct refocus_sink *sink, int width, int height, double fps,
+                       struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    int status;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!sink || width < 1 || height < 1 || width > REFOCUS_MAX_SIDE ||
+        height > REFOCUS_MAX_SIDE)
+        return REFOCUS_ERR_ARGUMENT;
+    status = sink->ops->start(sink, width, height, fps > 0 ? fps : 30, reason);
+    sink->started = status == REFOCUS_OK;
+    sink->width = width;
+    sink->height = height;
+    sink->fps = fps > 0 ? fps : 30;
+    return status;
+}
+
+int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *image,
+                       struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!sink || !sink->started)
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "the sink is not started");
+    if (!image || !image->plane[0] || image->format != REFOCUS_FORMAT_RGB8 ||
+        image->width != sink->width || image->height != sink->height)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "give an RGB8 picture of the size that was announced");
+    return sink->ops->write(sink, image, reason);
+}
+
+int refocus_sink_close(struct refocus_sink **handle, struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    int status;
+
+    if (!handle || !*handle)
+        return REFOCUS_OK;
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    status = (*handle)->ops->close(*handle, reason);
+    free(*handle);
+    *handle = NULL;
+    return status;
+}

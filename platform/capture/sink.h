@@ -1,0 +1,36 @@
+/* What a kind of sink is to sink.c. */
+#ifndef RF_CAPTURE_SINK_H
+#define RF_CAPTURE_SINK_H
+
+#include <refocus/platform/sink.h>
+#include "backend.h"
+
+struct rf_sink_ops;
+
+struct refocus_sink {
+    const struct rf_sink_ops *ops;
+    void *state;
+    bool started;
+    int width, height;
+    double fps;
+};
+
+struct rf_sink_ops {
+    const char *scheme; /* before the colon, or NULL for a pattern of pictures */
+    int (*open)(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason);
+    int (*start)(struct refocus_sink *sink, int width, int height, double fps,
+                 struct refocus_reason *reason);
+    int (*write)(struct refocus_sink *sink, const struct refocus_image *image,
+                 struct refocus_reason *reason);
+    int (*close)(struct refocus_sink *sink, struct refocus_reason *reason);
+};
+
+extern const struct rf_sink_ops rf_sink_null, rf_sink_y4m, rf_sink_raw, rf_sink_pictures,
+    rf_sink_v4l2;
+
+/* rgb_to_yuv.c: an RGB8 picture as a frame of BT.601, limited range, each chroma sample the
+ * mean of its pixels; or as packed RGB. The frame's planes are written to. */
+void rf_encode(const struct refocus_image *image, const struct refocus_frame *frame);
+bool rf_can_encode(uint32_t format);
+
+#endif

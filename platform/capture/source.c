@@ -1,0 +1,298 @@
+/* Sources by name; the same checks and counts for every backend. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+#include "backend.h"
+
+static const struct rf_source_ops *const backends[] = {
+#ifdef RF_HAVE_V4L2
+    &rf_source_v4l2,
+#endif
+#ifdef RF_HAVE_LIBCAMERA
+    &rf_source_libcamera,
+#endif
+    &rf_source_file, &rf_source_y4m, &rf_source_raw, &rf_source_replay,
+};
+enum { BACKENDS = sizeof backends / sizeof *backends };
+
+const char *refocus_source_backends(void)
+{
+    return ""
+#ifdef RF_HAVE_V4L2
+           "v4l2 "
+#endif
+#ifdef RF_HAVE_LIBCAMERA
+           "libcamera "
+#endif
+           "file y4m raw replay";
+}
+
+static const struct rf_source_ops *find(const char *name, const char **rest)
+{
+    for (int i = 0; i < BACKENDS; i++) {
+        const size_t length = strlen(backends[i]->scheme);
+
+        if (strncmp(name, backends[i]->scheme, length) == 0 && name[length] == ':') {
+            *rest = name + length + 1;
+            return backends[i];
+        }
+    }
+    return NULL;
+}
+
+static int unknown(const char *name, struct refocus_reason *reason)
+{
+    static const char *const known[] = {"v4l2", "libcamera"};
+
+    for (int i = 0; i < 2; i++)
+        if (strncmp(name, known[i], strlen(known[i])) == 0 && name[strlen(known[i])] == ':')
+            return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                                   "this build has no %s; it has %s", known[i],
+                                   refocus_source_backends());
+    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                           "no such kind of source; give KIND:NAME with one of %s",
+                           refocus_source_backends());
+}
+
+int refocus_source_open(struct refocus_source **result, const char *name,
+                        struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    struct refocus_source *source;
+    const struct rf_source_ops *ops;
+    const char *rest = "";
+    int status;
+
+    if (!result)
+        return REFOCUS_ERR_ARGUMENT;
+    *result = NULL;
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!name)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "no name; give KIND:NAME");
+    ops = find(name, &rest);
+    if (!ops)
+        return unknown(name, reason);
+    source = calloc(1, sizeof *source);
+    if (!source)
+        return rf_capture_fail_memory(reason);
+    source->ops = ops;
+    source->config = refocus_source_config_default();
+    source->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    source->name = strdup(name);
+    status = !source->name ? rf_capture_fail_memory(reason)
+             : source->wake_fd < 0 ? rf_capture_fail_errno(reason, errno, name)
+                                   : ops->open(source, rest, reason);
+    if (status != REFOCUS_OK) {
+        if (source->wake_fd >= 0)
+            close(source->wake_fd);
+        free(source->name);
+        free(source);
+        return status;
+    }
+    *result = source;
+    return REFOCUS_OK;
+}
+
+void refocus_source_close(struct refocus_source **handle)
+{
+    struct refocus_source *source = handle ? *handle : NULL;
+
+    if (!source)
+        return;
+    refocus_source_stop(source);
+    source->ops->close(source);
+    close(source->wake_fd);
+    free(source->name);
+    free(source);
+    *handle = NULL;
+}
+
+int refocus_source_get_mode(struct refocus_source *source, int index,
+                            struct refocus_source_mode *mode)
+{
+    if (!source || !mode || index < 0)
+        return REFOCUS_ERR_ARGUMENT;
+    memset(mode, 0, sizeof *mode);
+    return source->ops->get_mode(source, index, mode);
+}
+
+static bool config_is_sound(const struct refocus_source_config *config)
+{
+    return config->struct_size == sizeof *config &&
+           config->format < REFOCUS_FRAME_FORMAT_COUNT && config->width >= 0 &&
+           config->width <= REFOCUS_MAX_SIDE && config->height >= 0 &&
+           config->height <= REFOCUS_MAX_SIDE && config->fps >= 0 && config->fps <= 10000 &&
+           (config->buffers == 0 ||
+            (config->buffers >= 2 && config->buffers <= RF_MOST_BUFFERS)) &&
+           config->flags < 16;
+}
+
+static int begin(struct refocus_source *source, struct refocus_source_mode *mode,
+                 struct refocus_reason *reason)
+{
+    struct refocus_source_mode unseen;
+    int status;
+
+    mode = mode ? mode : &unseen;
+    memset(mode, 0, sizeof *mode);
+    source->out = 0;
+    source->sequence_known = false;
+    status = source->ops->start(source, mode, reason);
+    source->streaming = status == REFOCUS_OK;
+    return status;
+}
+
+int refocus_source_start(struct refocus_source *source,
+                         const struct refocus_source_config *config,
+                         struct refocus_source_mode *mode, struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    uint64_t ignored;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!source || (config && !config_is_sound(config)))
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "what is wanted of the source is out of its range");
+    if (source->streaming)
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it streams already; stop it first");
+    source->config = config ? *config : refocus_source_config_default();
+    if (source->config.buffers == 0)
+        source->config.buffers = 4;
+    if (read(source->wake_fd, &ignored, sizeof ignored) < 0 && errno != EAGAIN)
+        return rf_capture_fail_errno(reason, errno, source->name);
+    return begin(source, mode, reason);
+}
+
+/* Counts what the camera left out; a step back is no gap but a device that began anew. */
+static void count(struct refocus_source *source, const struct refocus_frame *frame)
+{
+    const uint32_t step = frame->sequence - source->sequence;
+
+    if (source->sequence_known && step > 1 && step < 1u << 31)
+        source->counters.dropped += step - 1;
+    source->sequence = frame->sequence;
+    source->sequence_known = true;
+    source->counters.frames++;
+    source->counters.corrupt += (frame->flags & REFOCUS_FRAME_CORRUPT) != 0;
+}
+
+int refocus_source_wait(struct refocus_source *source, int timeout_ms,
+                        const struct refocus_frame **result, struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    struct refocus_frame *frame = NULL;
+    int status;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!source || !result)
+        return REFOCUS_ERR_ARGUMENT;
+    *result = NULL;
+    if (!source->streaming)
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it does not stream; start it");
+    status = rf_source_poll(source, -1, 0, 0, NULL);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return rf_capture_fail(reason, status, "interrupted");
+    status = source->ops->wait(
+        source, rf_now_ns() + (int64_t)(timeout_ms > 0 ? timeout_ms : 0) * 1000000, &frame,
+        reason);
+    if (status == REFOCUS_ERR_TIMEOUT)
+        return rf_capture_fail(reason, status, "no frame came within %d ms", timeout_ms);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return rf_capture_fail(reason, status, "interrupted");
+    if (status != REFOCUS_OK)
+        return status;
+    source->out |= (uint64_t)1 << frame->buffer;
+    count(source, frame);
+    *result = frame;
+    return REFOCUS_OK;
+}
+
+void refocus_source_release(struct refocus_source *source, const struct refocus_frame *frame)
+{
+    if (!source || !frame || !source->streaming || frame->buffer >= RF_MOST_BUFFERS ||
+        !(source->out >> frame->buffer & 1))
+        return;
+    source->out &= ~((uint64_t)1 << frame->buffer);
+    source->counters.released++;
+    source->ops->release(source, (struct refocus_frame *)(uintptr_t)frame);
+}
+
+void refocus_source_stop(struct refocus_source *source)
+{
+    if (!source || !source->streaming)
+        return;
+    for (; source->out; source->out &= source->out - 1)
+        source->counters.released++;
+    source->ops->stop(source);
+    source->streaming = false;
+}
+
+int refocus_source_restart(struct refocus_source *source, struct refocus_source_mode *mode,
+                           struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    int status;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!source)
+        return REFOCUS_ERR_ARGUMENT;
+    refocus_source_stop(source);
+    if (rf_source_poll(source, -1, 0, 0, NULL) == REFOCUS_ERR_CANCELLED)
+        return rf_capture_fail(reason, REFOCUS_ERR_CANCELLED, "interrupted");
+    status = source->ops->reopen(source, reason);
+    if (status == REFOCUS_OK)
+        status = begin(source, mode, reason);
+    source->counters.restarts += status == REFOCUS_OK;
+    return status;
+}
+
+void refocus_source_interrupt(struct refocus_source *source)
+{
+    const uint64_t one = 1;
+
+    /* A full counter refuses the write, and is readable all the same. */
+    if (source && write(source->wake_fd, &one, sizeof one) < 0)
+        return;
+}
+
+int refocus_source_set_control(struct refocus_source *source, const char *name, double value,
+                               struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!source || !name)
+        return REFOCUS_ERR_ARGUMENT;
+    if (!source->ops->set_control)
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "sources of the kind '%s' have no controls",
+                               source->ops->scheme);
+    return source->ops->set_control(source, name, value, reason);
+}
+
+void refocus_source_get_counters(const struct refocus_source *source,
+                                 struct refocus_source_counters *counters)
+{
+    *counters = source->counters;
+}
+
+int refocus_source_list(refocus_source_found *found, void *user)
+{
+    int total = 0;
+
+    for (int i = 0; i < BACKENDS; i++) {
+        const int n = backends[i]->list ? backends[i]->list(found, user) : 0;
+
+        if (n < 0)
+            return n;
+        total += n;
+    }
+    return total;
+}

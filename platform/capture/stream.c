@@ -1,0 +1,313 @@
+/* Streams of frames out of one file: y4m, and raw without a header. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "ring.h"
+
+enum { LONGEST_HEADER = 1024 };
+
+struct stream {
+    FILE *file;
+    bool y4m, is_pipe;
+    char *path; /* owned */
+    long begin; /* of the first frame */
+    uint32_t format, flags;
+    int width, height;
+    double fps;
+    int64_t frame;
+    struct rf_pace pace;
+    struct rf_ring ring;
+};
+
+/* A line without its end; false at the end of the file or when it is too long. */
+static bool read_line(FILE *file, char *line, size_t size)
+{
+    size_t n = 0;
+    int c;
+
+    while ((c = getc(file)) != EOF && c != '\n') {
+        if (n + 1 >= size)
+            return false;
+        line[n++] = (char)c;
+    }
+    line[n] = '\0';
+    return c == '\n';
+}
+
+static uint32_t colour_space(const char *name)
+{
+    static const char *const yuv420[] = {"420", "420jpeg", "420mpeg2", "420paldv"};
+
+    for (int i = 0; i < 4; i++)
+        if (strcmp(name, yuv420[i]) == 0)
+            return REFOCUS_FRAME_YUV420;
+    if (strcmp(name, "mono") == 0)
+        return REFOCUS_FRAME_GREY;
+    return strcmp(name, "mono16") == 0 ? REFOCUS_FRAME_Y16 : REFOCUS_FRAME_ANY;
+}
+
+static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
+{
+    char header[LONGEST_HEADER], *word, *rest = NULL;
+    long numerator = 30, denominator = 1;
+
+    if (!read_line(stream->file, header, sizeof header) ||
+        strncmp(header, "YUV4MPEG2", 9) != 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
+                               "%.160s: it is not a YUV4MPEG2 stream", stream->path);
+    stream->format = REFOCUS_FRAME_YUV420;
+    for (word = strtok_r(header + 9, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+        if (*word == 'W')
+            stream->width = atoi(word + 1);
+        else if (*word == 'H')
+            stream->height = atoi(word + 1);
+        else if (*word == 'F')
+            sscanf(word + 1, "%9ld:%9ld", &numerator, &denominator);
+        else if (*word == 'C')
+            stream->format = colour_space(word + 1);
+        else if (strcmp(word, "XCOLORRANGE=FULL") == 0)
+            stream->flags |= REFOCUS_FRAME_FULL_RANGE;
+    }
+    if (stream->format == REFOCUS_FRAME_ANY)
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "%.160s: give 4:2:0 of 8 bits, mono or mono16",
+                               stream->path);
+    stream->fps = numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator
+                                                   : 30;
+    return REFOCUS_OK;
+}
+
+/* "FILE,NV12,640x480,30": from the end, as names may hold commas. */
+static int parse_raw(struct stream *stream, struct refocus_reason *reason)
+{
+    char *word[3] = {NULL, NULL, NULL};
+    int n = 0;
+
+    for (int i = 0; i < 3; i++) {
+        char *comma = strrchr(stream->path, ',');
+
+        if (!comma)
+            break;
+        *comma = '\0';
+        word[n++] = comma + 1;
+        if (rf_format_by_name(comma + 1) != REFOCUS_FRAME_ANY)
+            break;
+    }
+    stream->fps = 30;
+    if (n < 2 || (n == 3 && (stream->fps = atof(word[0])) <= 0) ||
+        sscanf(word[n - 2], "%6dx%6d", &stream->width, &stream->height) != 2)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "give raw:FILE,FORMAT,WIDTHxHEIGHT or with ,FPS behind");
+    stream->format = rf_format_by_name(word[n - 1]);
+    if (stream->format == REFOCUS_FRAME_ANY || stream->format == REFOCUS_FRAME_MJPEG)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "'%.40s' is no format of raw frames; give NV12, YUYV, RGB24, "
+                               "Y16, ...", word[n - 1]);
+    return REFOCUS_OK;
+}
+
+static void close_stream(struct refocus_source *source)
+{
+    struct stream *stream = source->state;
+
+    if (stream->file && stream->file != stdin)
+        fclose(stream->file);
+    rf_ring_free(&stream->ring);
+    free(stream->path);
+    free(stream);
+}
+
+static int open_file(struct stream *stream, struct refocus_reason *reason)
+{
+    if (strcmp(stream->path, "-") == 0) {
+        stream->file = stdin;
+    } else {
+        stream->file = fopen(stream->path, "rb");
+        if (!stream->file)
+            return rf_capture_fail_errno(reason, errno, stream->path);
+    }
+    return REFOCUS_OK;
+}
+
+static int open_stream(struct refocus_source *source, const char *rest, bool y4m,
+                       struct refocus_reason *reason)
+{
+    struct stream *stream = calloc(1, sizeof *stream);
+    int status = REFOCUS_OK;
+
+    if (!stream)
+        return rf_capture_fail_memory(reason);
+    source->state = stream;
+    stream->y4m = y4m;
+    stream->path = strdup(rest);
+    if (!stream->path)
+        status = rf_capture_fail_memory(reason);
+    if (status == REFOCUS_OK && !y4m)
+        status = parse_raw(stream, reason);
+    if (status == REFOCUS_OK)
+        status = open_file(stream, reason);
+    if (status == REFOCUS_OK && y4m)
+        status = parse_y4m(stream, reason);
+    if (status == REFOCUS_OK) {
+        const int64_t row = rf_plane_row(stream->format, 0, stream->width);
+
+        if (rf_frame_bytes(stream->format, row, stream->width, stream->height) == 0)
+            status = rf_capture_fail(reason, REFOCUS_ERR_SIZE,
+                                     "%.160s: %dx%d pixels are out of the range",
+                                     stream->path, stream->width, stream->height);
+    }
+    if (status != REFOCUS_OK) {
+        close_stream(source);
+        return status;
+    }
+    stream->begin = ftell(stream->file);
+    stream->is_pipe = stream->begin < 0 || fseek(stream->file, 0, SEEK_CUR) != 0;
+    return REFOCUS_OK;
+}
+
+static int open_y4m(struct refocus_source *source, const char *rest,
+                    struct refocus_reason *reason)
+{
+    return open_stream(source, rest, true, reason);
+}
+
+static int open_raw(struct refocus_source *source, const char *rest,
+                    struct refocus_reason *reason)
+{
+    return open_stream(source, rest, false, reason);
+}
+
+static int get_mode(struct refocus_source *source, int index,
+                    struct refocus_source_mode *mode)
+{
+    const struct stream *stream = source->state;
+
+    if (index > 0)
+        return REFOCUS_ERR_ARGUMENT;
+    mode->format = stream->format;
+    mode->width = stream->width;
+    mode->height = stream->height;
+    mode->fps = stream->fps;
+    return REFOCUS_OK;
+}
+
+static int start(struct refocus_source *source, struct refocus_source_mode *mode,
+                 struct refocus_reason *reason)
+{
+    struct stream *stream = source->state;
+
+    if (!stream->is_pipe && fseek(stream->file, stream->begin, SEEK_SET) != 0)
+        return rf_capture_fail_errno(reason, errno, stream->path);
+    stream->ring.count = source->config.buffers;
+    stream->ring.taken = 0;
+    stream->frame = 0;
+    get_mode(source, 0, mode);
+    if (source->config.fps > 0)
+        mode->fps = source->config.fps;
+    rf_pace_start(&stream->pace, mode->fps, source->config.flags & REFOCUS_SOURCE_FAST);
+    return REFOCUS_OK;
+}
+
+/* One frame into memory; REFOCUS_ERR_END where the next one would begin. */
+static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
+                      struct refocus_reason *reason)
+{
+    char header[LONGEST_HEADER];
+    size_t n;
+
+    if (stream->y4m) {
+        const int c = getc(stream->file);
+
+        if (c == EOF && !ferror(stream->file))
+            return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more frames");
+        ungetc(c, stream->file);
+        if (!read_line(stream->file, header, sizeof header) ||
+            strncmp(header, "FRAME", 5) != 0)
+            return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
+                                   "%.160s: damaged: frame %lld does not begin with FRAME",
+                                   stream->path, (long long)stream->frame);
+    }
+    n = fread(memory, 1, bytes, stream->file);
+    if (n == bytes)
+        return REFOCUS_OK;
+    if (ferror(stream->file))
+        return rf_capture_fail_errno(reason, errno, stream->path);
+    if (n == 0 && !stream->y4m)
+        return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more frames");
+    return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
+                           "%.160s: it ends within frame %lld; was it cut off?",
+                           stream->path, (long long)stream->frame);
+}
+
+static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
+                      struct refocus_frame **result, struct refocus_reason *reason)
+{
+    struct stream *stream = source->state;
+    const int64_t due = rf_pace_due(&stream->pace, stream->frame);
+    const int64_t row = rf_plane_row(stream->format, 0, stream->width);
+    const uint64_t bytes = rf_frame_bytes(stream->format, row, stream->width, stream->height);
+    struct refocus_frame *frame;
+    int buffer, status;
+
+    if (!stream->pace.fast && due > rf_now_ns()) {
+        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
+        if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
+            return status;
+    }
+    buffer = rf_ring_take(&stream->ring);
+    if (buffer < 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
+    status = rf_ring_reserve(&stream->ring, buffer, bytes)
+                 ? read_frame(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
+                 : rf_capture_fail_memory(reason);
+    if (status == REFOCUS_ERR_END && source->config.flags & REFOCUS_SOURCE_LOOP &&
+        !stream->is_pipe && stream->frame > 0 &&
+        fseek(stream->file, stream->begin, SEEK_SET) == 0)
+        status = read_frame(stream, stream->ring.memory[buffer], (size_t)bytes, reason);
+    if (status != REFOCUS_OK) {
+        rf_ring_give(&stream->ring, (uint32_t)buffer);
+        return status;
+    }
+    frame = &stream->ring.frame[buffer];
+    rf_frame_clear(frame);
+    frame->format = stream->format;
+    frame->width = stream->width;
+    frame->height = stream->height;
+    rf_frame_lay_out(frame, stream->ring.memory[buffer], row);
+    frame->buffer = (uint32_t)buffer;
+    frame->sequence = (uint32_t)stream->frame++;
+    frame->timestamp_ns = due;
+    frame->flags = stream->flags | (stream->pace.fast ? 0 : REFOCUS_FRAME_MONOTONIC);
+    *result = frame;
+    return REFOCUS_OK;
+}
+
+static void release(struct refocus_source *source, struct refocus_frame *frame)
+{
+    rf_ring_give(&((struct stream *)source->state)->ring, frame->buffer);
+}
+
+static void stop(struct refocus_source *source)
+{
+    ((struct stream *)source->state)->ring.taken = 0;
+}
+
+static int reopen(struct refocus_source *source, struct refocus_reason *reason)
+{
+    const struct stream *stream = source->state;
+
+    if (stream->is_pipe)
+        return rf_capture_fail(reason, REFOCUS_ERR_END,
+                               "%.160s: a pipe cannot be read again", stream->path);
+    return REFOCUS_OK;
+}
+
+#define STREAM_OPS(word, open_function)                                                     \
+    {                                                                                       \
+        .scheme = word, .open = open_function, .get_mode = get_mode, .start = start,        \
+        .wait = wait_frame, .release = release, .stop = stop, .reopen = reopen,             \
+        .close = close_stream                                                               \
+    }
+const struct rf_source_ops rf_source_y4m = STREAM_OPS("y4m", open_y4m);
+const struct rf_source_ops rf_source_raw = STREAM_OPS("raw", open_raw);

@@ -1,0 +1,473 @@
+/* Cameras by V4L2: raw ioctls, mapped or exported buffers, never a blocking call. */
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "v4l2.h"
+
+enum { MOST_MODES = 256, MOST_NODES = 64 };
+
+struct camera {
+    struct rf_v4l2 device;
+    char *name; /* behind the colon */
+    struct refocus_frame frame[RF_MOST_BUFFERS];
+    bool source_changed; /* the signal at the input, not yet looked at */
+    bool failed;
+    int stuck; /* buffers that the driver did not take back */
+    double fps;
+};
+
+static int open_camera(struct refocus_source *source, const char *rest,
+                       struct refocus_reason *reason)
+{
+    struct camera *camera = calloc(1, sizeof *camera);
+    int status;
+
+    if (camera)
+        camera->name = strdup(rest);
+    if (!camera || !camera->name) {
+        free(camera);
+        return rf_capture_fail_memory(reason);
+    }
+    status = rf_v4l2_open(&camera->device, rest, false, reason);
+    if (status != REFOCUS_OK) {
+        free(camera->name);
+        free(camera);
+        return status;
+    }
+    source->state = camera;
+    return REFOCUS_OK;
+}
+
+static void close_camera(struct refocus_source *source)
+{
+    struct camera *camera = source->state;
+
+    rf_v4l2_close(&camera->device);
+    free(camera->name);
+    free(camera);
+}
+
+static int reopen(struct refocus_source *source, struct refocus_reason *reason)
+{
+    struct camera *camera = source->state;
+
+    rf_v4l2_close(&camera->device);
+    return rf_v4l2_open(&camera->device, camera->name, false, reason);
+}
+
+/* Modes ----------------------------------------------------------------------------------- */
+
+static double greatest_rate(int fd, uint32_t fourcc, uint32_t width, uint32_t height)
+{
+    struct v4l2_frmivalenum interval;
+    double fps = 0;
+
+    memset(&interval, 0, sizeof interval);
+    interval.pixel_format = fourcc;
+    interval.width = width;
+    interval.height = height;
+    for (; interval.index < MOST_MODES &&
+           rf_v4l2_ioctl(fd, VIDIOC_ENUM_FRAMEINTERVALS, &interval) == 0;
+         interval.index++) {
+        const struct v4l2_fract *least = interval.type == V4L2_FRMIVAL_TYPE_DISCRETE
+                                             ? &interval.discrete
+                                             : &interval.stepwise.min;
+
+        if (least->numerator > 0)
+            fps = fmax(fps, (double)least->denominator / least->numerator);
+        if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE)
+            break;
+    }
+    return fps;
+}
+
+/* Mode number *index of one format; counts *index down by those that there are. */
+static bool find_size(const struct rf_v4l2 *device, uint32_t fourcc, int *index,
+                      struct refocus_source_mode *mode)
+{
+    struct v4l2_frmsizeenum size;
+
+    memset(&size, 0, sizeof size);
+    size.pixel_format = fourcc;
+    for (; size.index < MOST_MODES &&
+           rf_v4l2_ioctl(device->fd, VIDIOC_ENUM_FRAMESIZES, &size) == 0;
+         size.index++) {
+        const bool discrete = size.type == V4L2_FRMSIZE_TYPE_DISCRETE;
+        const uint32_t width = discrete ? size.discrete.width : size.stepwise.max_width;
+        const uint32_t height = discrete ? size.discrete.height : size.stepwise.max_height;
+
+        if ((*index)-- == 0) {
+            mode->format = rf_v4l2_format_of(fourcc);
+            mode->width = (int32_t)width;
+            mode->height = (int32_t)height;
+            mode->fps = greatest_rate(device->fd, fourcc, width, height);
+            return true;
+        }
+        if (!discrete)
+            return false;
+    }
+    /* Devices that do not say sizes have one mode for each format. */
+    if (size.index == 0 && (*index)-- == 0) {
+        mode->format = rf_v4l2_format_of(fourcc);
+        return true;
+    }
+    return false;
+}
+
+static int get_mode(struct refocus_source *source, int index,
+                    struct refocus_source_mode *mode)
+{
+    const struct camera *camera = source->state;
+    struct v4l2_fmtdesc format;
+
+    memset(&format, 0, sizeof format);
+    format.type = camera->device.type;
+    for (; format.index < MOST_MODES &&
+           rf_v4l2_ioctl(camera->device.fd, VIDIOC_ENUM_FMT, &format) == 0;
+         format.index++)
+        if (rf_v4l2_format_of(format.pixelformat) != REFOCUS_FRAME_ANY &&
+            find_size(&camera->device, format.pixelformat, &index, mode))
+            return REFOCUS_OK;
+    return REFOCUS_ERR_ARGUMENT;
+}
+
+static bool offers(const struct rf_v4l2 *device, uint32_t fourcc)
+{
+    struct v4l2_fmtdesc format;
+
+    memset(&format, 0, sizeof format);
+    format.type = device->type;
+    for (; format.index < MOST_MODES &&
+           rf_v4l2_ioctl(device->fd, VIDIOC_ENUM_FMT, &format) == 0;
+         format.index++)
+        if (format.pixelformat == fourcc)
+            return true;
+    return false;
+}
+
+/* Start ------------------------------------------------------------------------------------ */
+
+/* What the node is set to, then what is cheap to convert, then depth. */
+static uint32_t choose_fourcc(const struct rf_v4l2 *device, uint32_t wanted, uint32_t present)
+{
+    static const uint32_t preferred[] = {REFOCUS_FRAME_NV12,   REFOCUS_FRAME_NV21,
+                                         REFOCUS_FRAME_YUV420, REFOCUS_FRAME_YUYV,
+                                         REFOCUS_FRAME_UYVY,   REFOCUS_FRAME_RGB24,
+                                         REFOCUS_FRAME_BGR24,  REFOCUS_FRAME_RGBX,
+                                         REFOCUS_FRAME_BGRX,   REFOCUS_FRAME_MJPEG,
+                                         REFOCUS_FRAME_Z16,    REFOCUS_FRAME_Y16,
+                                         REFOCUS_FRAME_GREY};
+    const uint32_t is = rf_v4l2_format_of(present);
+    uint32_t fourcc;
+
+    if (is != REFOCUS_FRAME_ANY && (wanted == REFOCUS_FRAME_ANY || wanted == is))
+        return present;
+    for (size_t i = 0; i < sizeof preferred / sizeof *preferred; i++)
+        if (wanted == REFOCUS_FRAME_ANY || wanted == preferred[i])
+            for (int n = 0; (fourcc = rf_v4l2_fourcc_of(preferred[i], n)); n++)
+                if (offers(device, fourcc))
+                    return fourcc;
+    return 0;
+}
+
+/* The rate: as wanted, or as it is. */
+static double set_rate(const struct rf_v4l2 *device, double fps)
+{
+    struct v4l2_streamparm parameters;
+    const struct v4l2_fract *period = &parameters.parm.capture.timeperframe;
+
+    memset(&parameters, 0, sizeof parameters);
+    parameters.type = device->type;
+    if (rf_v4l2_ioctl(device->fd, VIDIOC_G_PARM, &parameters) != 0)
+        return 0;
+    if (fps > 0) {
+        parameters.parm.capture.timeperframe.numerator = 1000;
+        parameters.parm.capture.timeperframe.denominator = (uint32_t)(fps * 1000 + 0.5);
+        rf_v4l2_ioctl(device->fd, VIDIOC_S_PARM, &parameters);
+    }
+    return period->numerator > 0 ? (double)period->denominator / period->numerator : 0;
+}
+
+/* A changed signal at the input brings timings of its own. */
+static void follow_signal(struct camera *camera)
+{
+    struct v4l2_dv_timings timings;
+
+    if (!camera->source_changed)
+        return;
+    camera->source_changed = false;
+    memset(&timings, 0, sizeof timings);
+    if (rf_v4l2_ioctl(camera->device.fd, VIDIOC_QUERY_DV_TIMINGS, &timings) == 0)
+        rf_v4l2_ioctl(camera->device.fd, VIDIOC_S_DV_TIMINGS, &timings);
+}
+
+static int choose_format(struct refocus_source *source, struct refocus_reason *reason)
+{
+    struct camera *camera = source->state;
+    struct rf_v4l2 *device = &camera->device;
+    struct v4l2_format present;
+    uint32_t fourcc, width, height;
+    int error, status;
+
+    memset(&present, 0, sizeof present);
+    present.type = device->type;
+    error = rf_v4l2_ioctl(device->fd, VIDIOC_G_FMT, &present);
+    if (error)
+        return rf_v4l2_fail(device, reason, error, "asking for the format");
+    fourcc = device->multi ? present.fmt.pix_mp.pixelformat : present.fmt.pix.pixelformat;
+    width = device->multi ? present.fmt.pix_mp.width : present.fmt.pix.width;
+    height = device->multi ? present.fmt.pix_mp.height : present.fmt.pix.height;
+    fourcc = choose_fourcc(device, source->config.format, fourcc);
+    if (fourcc == 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "%s: it has no %s; --list shows what it has", device->path,
+                               source->config.format
+                                   ? refocus_frame_format_name(source->config.format)
+                                   : "format that is known");
+    status = rf_v4l2_set_format(device, fourcc,
+                                source->config.width ? source->config.width : (int)width,
+                                source->config.height ? source->config.height : (int)height,
+                                reason);
+    if (status == REFOCUS_OK && source->config.format &&
+        device->format != source->config.format)
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "%s: it gives %s where %s was asked for", device->path,
+                               refocus_frame_format_name(device->format),
+                               refocus_frame_format_name(source->config.format));
+    return status;
+}
+
+static int start(struct refocus_source *source, struct refocus_source_mode *mode,
+                 struct refocus_reason *reason)
+{
+    struct camera *camera = source->state;
+    struct rf_v4l2 *device = &camera->device;
+    struct v4l2_event_subscription change;
+    int type = (int)device->type, error = 0, status;
+
+    if (device->fd < 0)
+        return rf_v4l2_fail(device, reason, ENODEV, "starting it");
+    follow_signal(camera);
+    status = choose_format(source, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    camera->fps = set_rate(device, source->config.fps);
+    status = rf_v4l2_map(device, source->config.buffers,
+                         source->config.flags & REFOCUS_SOURCE_DMABUF, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    for (int n = 0; n < device->count && !error; n++)
+        error = rf_v4l2_queue(device, n, 0);
+    if (!error)
+        error = rf_v4l2_ioctl(device->fd, VIDIOC_STREAMON, &type);
+    if (error) {
+        rf_v4l2_ioctl(device->fd, VIDIOC_STREAMOFF, &type);
+        rf_v4l2_unmap(device);
+        return rf_v4l2_fail(device, reason, error, "starting the stream");
+    }
+    device->streaming = true;
+    camera->failed = false;
+    camera->stuck = 0;
+    memset(&change, 0, sizeof change);
+    change.type = V4L2_EVENT_SOURCE_CHANGE;
+    rf_v4l2_ioctl(device->fd, VIDIOC_SUBSCRIBE_EVENT, &change);
+    mode->format = device->format;
+    mode->width = device->width;
+    mode->height = device->height;
+    mode->fps = camera->fps;
+    return REFOCUS_OK;
+}
+
+static void stop(struct refocus_source *source)
+{
+    struct camera *camera = source->state;
+
+    source->counters.lost = source->counters.dequeued - source->counters.queued;
+    rf_v4l2_unmap(&camera->device);
+}
+
+/* Frames ----------------------------------------------------------------------------------- */
+
+/* True when the signal at the input is another one. */
+static bool read_events(struct camera *camera)
+{
+    struct v4l2_event event;
+
+    memset(&event, 0, sizeof event);
+    while (rf_v4l2_ioctl(camera->device.fd, VIDIOC_DQEVENT, &event) == 0)
+        if (event.type == V4L2_EVENT_SOURCE_CHANGE &&
+            event.u.src_change.changes & V4L2_EVENT_SRC_CH_RESOLUTION)
+            camera->source_changed = true;
+    return camera->source_changed;
+}
+
+static bool is_short(const struct rf_v4l2 *device, const struct rf_v4l2_done *done)
+{
+    for (int i = 0; i < device->memories; i++)
+        if (done->bytes[i] < rf_v4l2_needed(device, i) + done->offset[i] ||
+            done->bytes[i] > device->buffer[done->index].length[i])
+            return true;
+    return false;
+}
+
+static void fill(struct camera *camera, const struct rf_v4l2_done *done,
+                 struct refocus_frame *frame)
+{
+    static const uint32_t none[3] = {0, 0, 0};
+    const struct rf_v4l2 *device = &camera->device;
+    const bool cut = is_short(device, done);
+
+    rf_v4l2_lay_out(device, done->index, cut ? none : done->offset, frame);
+    if (device->format == REFOCUS_FRAME_MJPEG) {
+        frame->plane[0] = device->buffer[done->index].memory[0] + (cut ? 0 : done->offset[0]);
+        frame->bytes = cut ? 0 : done->bytes[0] - done->offset[0];
+    }
+    if (cut || done->flags & V4L2_BUF_FLAG_ERROR)
+        frame->flags |= REFOCUS_FRAME_CORRUPT;
+    if ((done->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC)
+        frame->flags |= REFOCUS_FRAME_MONOTONIC;
+    frame->sequence = done->sequence;
+    frame->timestamp_ns = done->timestamp_ns;
+}
+
+static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
+                      struct refocus_frame **result, struct refocus_reason *reason)
+{
+    struct camera *camera = source->state;
+    struct rf_v4l2 *device = &camera->device;
+    struct rf_v4l2_done done;
+    short events = 0;
+    int error, status;
+
+    if (camera->failed)
+        return rf_capture_fail(reason, REFOCUS_ERR_IO,
+                               "%s: the driver takes its buffers no more", device->path);
+    for (;;) {
+        status = rf_source_poll(source, device->fd, POLLIN | POLLPRI, deadline_ns, &events);
+        if (status != REFOCUS_OK)
+            return status;
+        if (events & POLLPRI && read_events(camera))
+            return rf_capture_fail(reason, REFOCUS_ERR_IO,
+                                   "%s: another signal is at its input", device->path);
+        error = rf_v4l2_dequeue(device, &done);
+        if (error == 0)
+            break;
+        if (error == EAGAIN && !(events & (POLLERR | POLLHUP | POLLNVAL)))
+            continue;
+        if (error == EAGAIN && source->out)
+            return rf_capture_fail(reason, REFOCUS_ERR_STATE,
+                                   "every buffer is out; release one");
+        return rf_v4l2_fail(device, reason, error == EAGAIN ? EIO : error,
+                            "taking a frame from the driver");
+    }
+    source->counters.dequeued++;
+    rf_v4l2_sync(&device->buffer[done.index], true);
+    fill(camera, &done, &camera->frame[done.index]);
+    *result = &camera->frame[done.index];
+    return REFOCUS_OK;
+}
+
+static void release(struct refocus_source *source, struct refocus_frame *frame)
+{
+    struct camera *camera = source->state;
+    struct rf_v4l2 *device = &camera->device;
+    int error;
+
+    rf_v4l2_sync(&device->buffer[frame->buffer], false);
+    error = rf_v4l2_queue(device, (int)frame->buffer, 0);
+    if (error && error != ENODEV)
+        error = rf_v4l2_queue(device, (int)frame->buffer, 0); /* some refuse once */
+    if (error == 0)
+        source->counters.queued++;
+    else if (device->count - ++camera->stuck < 2)
+        camera->failed = error != ENODEV; /* which wait will report by itself */
+}
+
+/* Controls and the list of cameras ------------------------------------------------------- */
+
+/* "Focus, Absolute" becomes "focus_absolute". */
+static void plain_name(char *plain, size_t size, const char *name)
+{
+    size_t n = 0;
+    bool gap = false;
+
+    for (; *name && n + 2 < size; name++) {
+        if (!isalnum((unsigned char)*name)) {
+            gap = n > 0;
+            continue;
+        }
+        if (gap)
+            plain[n++] = '_';
+        gap = false;
+        plain[n++] = (char)tolower((unsigned char)*name);
+    }
+    plain[n] = '\0';
+}
+
+static int set_control(struct refocus_source *source, const char *name, double value,
+                       struct refocus_reason *reason)
+{
+    const struct camera *camera = source->state;
+    struct v4l2_queryctrl query;
+    char plain[64];
+
+    memset(&query, 0, sizeof query);
+    query.id = V4L2_CTRL_FLAG_NEXT_CTRL;
+    while (rf_v4l2_ioctl(camera->device.fd, VIDIOC_QUERYCTRL, &query) == 0) {
+        plain_name(plain, sizeof plain, (const char *)query.name);
+        if (strcmp(plain, name) == 0) {
+            struct v4l2_control control = {.id = query.id, .value = (int32_t)lround(value)};
+            const int error = rf_v4l2_ioctl(camera->device.fd, VIDIOC_S_CTRL, &control);
+
+            return error ? rf_v4l2_fail(&camera->device, reason, error, name) : REFOCUS_OK;
+        }
+        query.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
+    }
+    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%s: it has no control '%.60s'",
+                           camera->device.path, name);
+}
+
+static int list(refocus_source_found *found, void *user)
+{
+    int n = 0;
+
+    for (int i = 0; i < MOST_NODES; i++) {
+        struct refocus_reason ignored;
+        struct v4l2_capability capability;
+        struct rf_v4l2 device;
+        char number[16], name[80];
+
+        memset(&device, 0, sizeof device);
+        snprintf(number, sizeof number, "%d", i);
+        if (rf_v4l2_open(&device, number, false, &ignored) != REFOCUS_OK)
+            continue;
+        memset(&capability, 0, sizeof capability);
+        if (rf_v4l2_ioctl(device.fd, VIDIOC_QUERYCAP, &capability) == 0) {
+            snprintf(name, sizeof name, "v4l2:%s", device.path);
+            capability.card[sizeof capability.card - 1] = '\0';
+            found(user, name, (const char *)capability.card);
+            n++;
+        }
+        rf_v4l2_close(&device);
+    }
+    return n;
+}
+
+const struct rf_source_ops rf_source_v4l2 = {
+    .scheme = "v4l2",
+    .open = open_camera,
+    .get_mode = get_mode,
+    .start = start,
+    .wait = wait_frame,
+    .release = release,
+    .stop = stop,
+    .reopen = reopen,
+    .set_control = set_control,
+    .close = close_camera,
+    .list = list,
+};

@@ -1,0 +1,192 @@
+#include "highlights/highlights.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/renderer.h"
+
+enum {
+    AROUND = 12,                      /* surroundings: 25 x 25 pixels */
+    AREA = (2 * AROUND + 1) * (2 * AROUND + 1),
+    RIM = 3,                          /* pixels around that tell the hue */
+    LEVEL = RF_LIGHT_MAX * 94 / 100,  /* where clipping begins to count */
+    GAIN = 3,                         /* full gain of 4 adds three times white */
+};
+
+static int clamp(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+/* Rec. 709 luminance of linear light, Q12. */
+static int luminance(const struct refocus_renderer *r, int x, int y)
+{
+    const ptrdiff_t at = y * r->stride + x;
+
+    return (218 * r->front.light[0][at] + 732 * r->front.light[1][at] +
+            74 * r->front.light[2][at] + 512) >> 10;
+}
+
+static int brightest(const struct refocus_renderer *r, ptrdiff_t at)
+{
+    int most = r->front.light[0][at];
+
+    most = r->front.light[1][at] > most ? r->front.light[1][at] : most;
+    return r->front.light[2][at] > most ? r->front.light[2][at] : most;
+}
+
+/* Mean colour of the surroundings, from a sparse grid: every third pixel of 25 x 25. */
+static void surroundings(const struct refocus_renderer *r, int x, int y, int mean[3])
+{
+    int sum[3] = {0, 0, 0}, n = 0;
+
+    for (int j = -AROUND; j <= AROUND; j += 3) {
+        for (int i = -AROUND; i <= AROUND; i += 3) {
+            const ptrdiff_t at =
+                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
+
+            for (int c = 0; c < 3; c++)
+                sum[c] += r->front.light[c][at];
+            n++;
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        mean[c] = sum[c] / n;
+}
+
+/* Colour of the lamp's rim, its largest channel RF_LIGHT_MAX; white if it has none. */
+static void rim_hue(const struct refocus_renderer *r, int x, int y, const int around[3],
+                    int hue[3])
+{
+    int64_t sum[3] = {0, 0, 0}, most;
+
+    for (int j = -RIM; j <= RIM; j++) {
+        for (int i = -RIM; i <= RIM; i++) {
+            const int qx = clamp(x + i, r->width - 1), qy = clamp(y + j, r->height - 1);
+            const ptrdiff_t at = qy * r->stride + qx;
+
+            if (brightest(r, at) >= LEVEL) /* a clipped channel has lost the hue */
+                continue;
+            for (int c = 0; c < 3; c++)
+                if (r->front.light[c][at] > around[c])
+                    sum[c] += r->front.light[c][at] - around[c];
+        }
+    }
+    most = sum[0] > sum[1] ? sum[0] : sum[1];
+    most = sum[2] > most ? sum[2] : most;
+    for (int c = 0; c < 3; c++)
+        hue[c] = most < RF_LIGHT_MAX / 4 ? RF_LIGHT_MAX : (int)(sum[c] * RF_LIGHT_MAX / most);
+}
+
+/* 0 to 256 as v goes from a to b. */
+static int ramp(int64_t v, int64_t a, int64_t b)
+{
+    return v <= a ? 0 : v >= b ? 256 : (int)(256 * (v - a) / (b - a));
+}
+
+/* Whether pixel (x, y), whose surroundings have this sum of luminance, is a clipped lamp. */
+static bool is_lamp(const struct refocus_renderer *r, int x, int y, int64_t sum,
+                    struct rf_highlight *lamp)
+{
+    const ptrdiff_t at = y * r->stride + x;
+    const int64_t own = (int64_t)luminance(r, x, y) * AREA;
+    const int level = ramp(brightest(r, at), LEVEL, RF_LIGHT_MAX);
+    const int alone = ramp(own, 3 * sum, 6 * sum);
+    const int strength = level * alone / 256;
+    int around[3], hue[3];
+
+    if (!strength)
+        return false;
+    surroundings(r, x, y, around);
+    rim_hue(r, x, y, around, hue);
+    lamp->x = x;
+    lamp->y = y;
+    for (int c = 0; c < 3; c++)
+        lamp->added[c] = (uint16_t)(GAIN * hue[c] * strength / 256);
+    return true;
+}
+
+/* Sum of the luminances of the surroundings, kept up to date along a row. */
+void rf_find_highlights(struct refocus_renderer *r)
+{
+    const uint64_t capacity = rf_highlight_capacity(r->max_width, r->max_height);
+
+    r->highlights = 0;
+    for (int y = 0; y < r->height; y++) {
+        int64_t sum = -1; /* not known here */
+        int last = 0;
+
+        for (int x = 0; x < r->width; x++) {
+            if (brightest(r, y * r->stride + x) <= LEVEL)
+                continue;
+            if (sum < 0 || x - last > AROUND) {
+                sum = 0;
+                for (int i = -AROUND; i <= AROUND; i++)
+                    for (int j = -AROUND; j <= AROUND; j++)
+                        sum += luminance(r, clamp(x + i, r->width - 1),
+                                         clamp(y + j, r->height - 1));
+            } else {
+                for (int from = last; from < x; from++)
+                    for (int j = -AROUND; j <= AROUND; j++)
+                        sum += luminance(r, clamp(from + 1 + AROUND, r->width - 1),
+                                         clamp(y + j, r->height - 1)) -
+                               luminance(r, clamp(from - AROUND, r->width - 1),
+                                         clamp(y + j, r->height - 1));
+            }
+            last = x;
+            if (r->highlights < capacity && is_lamp(r, x, y, sum, &r->highlight[r->highlights]))
+                r->highlights++;
+        }
+    }
+    r->highlights_found = true;
+}
+
+/* Whether a bright pixel of another depth is beside it: then this one is the edge of that,
+ * and only its depth says otherwise. */
+static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight *lamp)
+{
+    const int own = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+
+    for (int j = -2; j <= 2; j++) {
+        for (int i = -2; i <= 2; i++) {
+            const ptrdiff_t at = clamp(lamp->y + j, r->height - 1) * r->stride +
+                                 clamp(lamp->x + i, r->width - 1);
+
+            if (abs(r->front.blur[at]) < own - 256 && brightest(r, at) >= LEVEL)
+                return true;
+        }
+    }
+    return false;
+}
+
+void rf_mark_highlights(struct refocus_renderer *r)
+{
+    for (uint64_t i = 0; i < r->highlights; i++) {
+        struct rf_highlight *lamp = &r->highlight[i];
+        struct rf_bins *bins =
+            &r->bins[(size_t)(lamp->y / RF_TILE) * r->tiles_x + lamp->x / RF_TILE];
+        const int blur = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+
+        lamp->is_edge = is_edge(r, lamp);
+        if (!lamp->is_edge && blur > bins->lamp)
+            bins->lamp = (int16_t)blur;
+    }
+}
+
+void rf_add_highlights(struct refocus_renderer *r, float gain, int sign)
+{
+    const int share = (int)((gain - 1) * (256 / GAIN) + 0.5f);
+
+    for (uint64_t i = 0; i < r->highlights; i++) {
+        const struct rf_highlight *lamp = &r->highlight[i];
+        const ptrdiff_t at = lamp->y * r->stride + lamp->x;
+        /* from half a pixel of blur on, all of it from one pixel and a half on */
+        const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
+
+        for (int c = 0; c < 3; c++)
+            r->front.light[c][at] =
+                (uint16_t)(r->front.light[c][at] +
+                           sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
+    }
+}

@@ -1,0 +1,102 @@
+#include "highlights/rims.h"
+
+#include <stdbool.h>
+
+#include "tiles/tiles.h"
+
+enum {
+    JUMP = 65535 / 32,           /* disparities this far apart are two surfaces */
+    LEVEL = RF_LIGHT_MAX * 9 / 10, /* clipped, or nearly */
+    CONTRAST = RF_LIGHT_MAX / 2, /* least |N - F| */
+};
+
+static int clamp(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+static bool is_bright(const struct refocus_renderer *r, ptrdiff_t at)
+{
+    return r->front.light[0][at] >= LEVEL || r->front.light[1][at] >= LEVEL ||
+           r->front.light[2][at] >= LEVEL;
+}
+
+/* Whether pixel (x, y) is the rim of the bright, nearer pixel at n. */
+static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
+{
+    const ptrdiff_t p = y * r->stride + x;
+    const int middle = (r->disparity[p] + r->disparity[n]) / 2;
+    int64_t sum[3] = {0, 0, 0}, along = 0, contrast = 0;
+    int count = 0;
+
+    for (int j = -2; j <= 2; j++) {
+        for (int i = -2; i <= 2; i++) {
+            const ptrdiff_t q =
+                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
+
+            if ((i > -2 && i < 2 && j > -2 && j < 2) || r->disparity[q] > middle)
+                continue;
+            count++;
+            for (int c = 0; c < 3; c++)
+                sum[c] += r->front.light[c][q];
+        }
+    }
+    if (!count)
+        return false;
+    for (int c = 0; c < 3; c++) {
+        const int64_t far = sum[c] / count, near = r->front.light[c][n];
+
+        along += (r->front.light[c][p] - far) * (near - far);
+        contrast += (near - far) * (near - far);
+    }
+    return contrast >= (int64_t)CONTRAST * CONTRAST && 10 * along > 6 * contrast;
+}
+
+/* The rims around a bright pixel. */
+static void find_around(struct refocus_renderer *r, int x, int y, uint64_t capacity)
+{
+    const ptrdiff_t n = y * r->stride + x;
+
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            const int px = clamp(x + i, r->width - 1), py = clamp(y + j, r->height - 1);
+
+            if (r->disparity[py * r->stride + px] + JUMP < r->disparity[n] &&
+                r->rims < capacity && is_rim(r, px, py, n))
+                r->rim[r->rims++] = (struct rf_rim){px, py, r->disparity[n]};
+        }
+    }
+}
+
+void rf_find_rims(struct refocus_renderer *r)
+{
+    const uint64_t capacity = rf_rim_capacity(r->max_width, r->max_height);
+
+    r->rims = 0;
+    for (int y = 0; y < r->height; y++) {
+        const ptrdiff_t at = y * r->stride;
+        uint16_t most = 0;
+
+        for (int x = 0; x < r->width; x++) { /* most rows hold nothing bright */
+            const uint16_t a = r->front.light[0][at + x], b = r->front.light[1][at + x];
+            const uint16_t c = r->front.light[2][at + x];
+
+            most = (uint16_t)(most | (a >= LEVEL) | (b >= LEVEL) | (c >= LEVEL));
+        }
+        for (int x = 0; most && x < r->width; x++)
+            if (is_bright(r, at + x))
+                find_around(r, x, y, capacity);
+    }
+}
+
+void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
+                   struct rf_bin_scale scale)
+{
+    for (uint64_t i = 0; i < r->rims; i++) {
+        const struct rf_rim *rim = &r->rim[i];
+        int16_t *s = r->front.blur + rim->y * r->stride + rim->x;
+
+        r->kernels.signed_blur(s, &rim->disparity, focus, 1);
+        rf_add_bin(r, scale, rim->x / RF_TILE, rim->y / RF_TILE, *s);
+    }
+}

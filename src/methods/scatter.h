@@ -1,0 +1,27 @@
+/* scatter.h: tables of circles of confusion. */
+#ifndef RF_SCATTER_H
+#define RF_SCATTER_H
+
+#include <stdint.h>
+
+enum { RF_SPREAD_LEAST_TABLES = 73, RF_SPREAD_ONE = 1 << 24 };
+
+/* Shares of the light that the pixels around a sample get, Q24, for one blur radius. Row dy
+ * >= 0 begins at share + dy * (2 * reach + 1); its pixel dx is at [reach + dx]. Rows above are
+ * the same as those below. The shares of all pixels sum to RF_SPREAD_ONE. */
+struct rf_spread_table {
+    double radius;
+    int reach; /* pixels beyond the circle are 0 */
+    uint32_t *share;
+};
+
+/* Tables for radii 0 .. max_radius at equal steps: 73, or four a pixel. */
+int rf_spread_tables(double max_radius);
+/* Pixels each way that table i has room for: those of the next one, so that the two can be
+ * interpolated. */
+int rf_spread_reach(double max_radius, int i);
+
+/* Fill a table whose radius, reach and share are set. */
+void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_radius);
+
+#endif

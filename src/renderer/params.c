@@ -1,0 +1,83 @@
+#include "renderer/params.h"
+
+#include "aperture/aperture.h"
+#include "planes/format.h"
+
+static bool in(double value, double least, double most)
+{
+    return value >= least && value <= most; /* NaN is in no range */
+}
+
+static bool has_round_aperture(const struct refocus_render_params *p)
+{
+    return !p->aperture || p->aperture->shape == RF_SHAPE_DISC;
+}
+
+static bool good_rays(const struct refocus_renderer *r, const struct refocus_render_params *p)
+{
+    return in(p->focus_disparity, 0, 1) && in(p->max_blur_radius, 0, r->max_blur_radius) &&
+           (p->rays == REFOCUS_RAYS_FULL || (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
+           p->blend < RF_BLEND_COUNT && p->sigma >= 1 && p->iterations >= 1 &&
+           p->iterations <= 64 && in(p->highlight_gain, 1, 4) && p->mirror <= 1 && p->background <= 1 &&
+           p->prefilter <= 1 && p->reserved == 0 && p->cell >= 1 && p->cell <= 16;
+}
+
+static bool good_scatter(const struct refocus_render_params *p)
+{
+    return p->spread <= REFOCUS_SPREAD_LOMMEL && in(p->airy_radius, 0.25, 16) &&
+           in(p->depth_ratio, 1, 1000) &&
+           (p->star_spikes == 0 || (p->star_spikes >= 2 && p->star_spikes <= 16)) &&
+           in(p->star_length, 0, REFOCUS_MAX_BLUR_RADIUS) && in(p->star_angle, -3600, 3600) &&
+           in(p->star_strength, 0, 1);
+}
+
+static bool good_ratios(const struct refocus_render_params *p)
+{
+    const bool own_last = p->last_ratio != 0, own_middle = p->middle_ratio != 0;
+
+    return in(p->sharp_radius, 0.5, 16) &&
+           (!own_last || (p->last_ratio > 1 && p->last_ratio <= 1000)) &&
+           (!own_middle || (p->middle_ratio > 1 && p->middle_ratio <= 1000)) &&
+           !(own_last && own_middle && p->middle_ratio >= p->last_ratio);
+}
+
+static bool good_attention(const struct refocus_render_params *p)
+{
+    return in(p->attention_x, 0, 1) && in(p->attention_y, 0, 1) &&
+           in(p->attention_angle, 0, 170) && in(p->picture_angle, 1, 170) &&
+           in(p->attention_depth, 0, 1);
+}
+
+static bool good_field(const struct refocus_render_params *p)
+{
+    return p->field <= REFOCUS_FIELD_PICTURE && in(p->field_x, 0, 1) && in(p->field_y, 0, 1) &&
+           in(p->field_disparity, 0, 1) && in(p->field_radius, 0, 4) &&
+           in(p->field_falloff, 1e-3, 4) && in(p->field_angle, -3600, 3600) &&
+           p->layers >= 1 && p->layers <= 8 && p->solver <= REFOCUS_SOLVER_ITERATED &&
+           in(p->conductivity, 0.01, 1) &&
+           (!p->field_map || rf_good_map(p->field_map)) &&
+           (p->method != REFOCUS_METHOD_DIFFUSION || p->field != REFOCUS_FIELD_PICTURE ||
+            p->field_map);
+}
+
+bool rf_good_map(const struct refocus_disparity *map)
+{
+    return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
+           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE &&
+           map->height <= REFOCUS_MAX_SIDE &&
+           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
+           (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
+}
+
+bool rf_good_params(const struct refocus_renderer *r, const struct refocus_render_params *p)
+{
+    const uint32_t round_only = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
+                                REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |
+                                REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
+                                REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
+
+    return p && p->struct_size == sizeof *p && p->method < REFOCUS_METHOD_COUNT &&
+           (r->methods & REFOCUS_METHOD_BIT(p->method)) && good_rays(r, p) &&
+           good_scatter(p) && good_ratios(p) && good_attention(p) && good_field(p) &&
+           (!(round_only & REFOCUS_METHOD_BIT(p->method)) || has_round_aperture(p));
+}

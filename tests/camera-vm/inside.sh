@@ -1,0 +1,116 @@
+#!/bin/bash
+# usage: inside.sh BUILD PART    (in the virtual machine)
+# Prints 'ok NAME' or 'FAILED NAME' a test. PART: single, multi, libcamera.
+build=$1 part=$2
+refocus=$build/platform/cli/refocus
+export LIBCAMERA_LOG_LEVELS='*:ERROR'
+cd /tmp || exit 1
+
+# check NAME COMMAND...
+check() {
+    local name=$1
+    shift
+    if "$@" >"$name.log" 2>&1; then
+        echo "ok $name"
+    else
+        echo "FAILED $name"
+        tail -n 25 "$name.log"
+    fi
+}
+
+# field NAME <JSON: a number of the report
+field() { sed -n "s/^  *\"$1\": \([0-9.]*\),\{0,1\}$/\1/p" | head -n 1; }
+
+live() { timeout 100 "$refocus" live --no-commands --rays 4 --blur 3 --json "$@"; }
+
+# Colour of one node, depth of another, running freely: the frames find their partners.
+pair() {
+    local paired
+    v4l2-ctl -d2 -v width=320,height=180,pixelformat='Y16 '
+    live --camera v4l2:0 --format NV12 --size 320x180 --fps 4 --depth v4l2:2 --frames 10 >pair.json
+    paired=$(field paired <pair.json)
+    echo "$paired frames of 10 are paired"
+    [ "$paired" -ge 8 ]
+}
+
+# What is put out comes in again at the other end of the node, to the last byte.
+output() {
+    local capture
+    v4l2-ctl -d0 -i 1 && v4l2-ctl -d0 --set-dv-bt-timings index=0 &&
+        v4l2-ctl -d1 --set-dv-bt-timings index=0 &&
+        v4l2-ctl -d0 -v width=640,height=480,pixelformat=RGB3 &&
+        v4l2-ctl -d1 -x width=640,height=480,pixelformat=RGB3 &&
+        v4l2-ctl -d0 -c osd_text_mode=2,loop_video=1 || return
+    live --camera 'replay::format RGB24;size 640x480;frames 1' --fast --focus 0.3 \
+        --depth 'replay::format Z16;size 160x120;frames 1' --frames-policy every \
+        --out still-%d.ppm || return
+    live --camera file:still-0.ppm --depth still-0-depth.pgm --fps 5 --blur 0 --out v4l2:1 \
+        --duration 12 >output.json &
+    for _ in 1 2 3 4 5 6 7 8; do
+        sleep 1
+        timeout 20 v4l2-ctl -d0 --stream-mmap --stream-skip=2 --stream-count=1 --stream-to=read-back.raw
+        tail -c 921600 still-0.ppm | cmp - read-back.raw && break
+    done
+    capture=$?
+    wait
+    v4l2-ctl -d0 -i 0
+    [ "$capture" = 0 ] && [ "$(field frames_out <output.json)" -gt 10 ]
+}
+
+# A camera that another program pulls the plug of, while all of the pipeline runs.
+replug() {
+    live --camera v4l2:0 --format NV12 --size 320x180 --fps 10 --depth still-0-depth.pgm \
+        --duration 6 >replug.json &
+    sleep 3
+    v4l2-ctl -d0 -c disconnect=1
+    wait $! || return
+    cat replug.json
+    [ "$(field recoveries <replug.json)" = 1 ] &&
+        [ "$(field worst_recovery_ms <replug.json | cut -d. -f1)" -lt 1000 ] &&
+        [ "$(field frames_out <replug.json)" -gt 5 ]
+}
+
+# Formats with memories of their own for each plane, by the multi-planar API.
+multiplanar() {
+    local format
+    for format in NM12 NM21 YM12 NV12 YUYV RGB3; do
+        v4l2-ctl -d0 -v width=320,height=180,pixelformat=$format >/dev/null || return
+        live --camera v4l2:0 --depth still-0-depth.pgm --frames 3 >multi.json || return
+        grep '"format"' multi.json
+        live --camera v4l2:0 --dmabuf --depth still-0-depth.pgm --frames 3 >multi.json || return
+    done
+}
+
+libcamera_formats() {
+    local format
+    live --list || return
+    for format in RGB24 BGR24; do
+        live --camera libcamera:0 --format $format --size 320x240 --depth still-0-depth.pgm \
+            --frames 4 >libcamera.json || return
+        grep "\"format\": \"$format\"" libcamera.json || return
+    done
+}
+
+libcamera_refuses() {
+    ! live --camera libcamera:7 --depth still-0-depth.pgm --frames 1 2>refused.txt &&
+        grep -q 'no such camera' refused.txt &&
+        ! live --camera libcamera:0 --format NV12 --depth still-0-depth.pgm --frames 1 2>refused.txt &&
+        grep -q 'NV12 was asked for' refused.txt
+}
+
+# Distances as a plain picture: near on the left.
+{ printf 'P5\n32 18\n255\n'; for _ in $(seq 18); do printf '%016d%016d' 0 0 | tr 0 '\200'; done; } >still-0-depth.pgm
+case $part in
+    single)
+        check vivid-formats-and-faults "$build/tests/camera-vm/vm-v4l2" 0
+        grep -E '^(captured|recovered)' vivid-formats-and-faults.log
+        check vivid-colour-and-depth pair
+        check vivid-output-read-back output
+        check vivid-replugged replug
+        ;;
+    multi) check vivid-multiplanar multiplanar ;;
+    libcamera)
+        check vimc-formats libcamera_formats
+        check vimc-refusals libcamera_refuses
+        ;;
+esac

@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""usage: test_live.py REFOCUS  -- refocus live, by scripted cameras alone."""
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+REFOCUS = None
+SLOW = float(os.environ.get('REFOCUS_SLOW', '1'))
+SMALL = ['--blur', '3', '--rays', '4']
+DEPTH = 'replay::format Z16;size 32x24;fps 30'
+
+
+def content(name):
+    with open(name, 'rb') as file:
+        return file.read()
+
+
+def live(*args, stdin=None, timeout=120):
+    return subprocess.run([REFOCUS, 'live', *SMALL, *args], input=stdin, capture_output=True,
+                          timeout=timeout * SLOW,
+                          stdin=None if stdin is not None else subprocess.DEVNULL)
+
+
+class Live(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        os.chdir(self.folder.name)
+
+    def tearDown(self):
+        os.chdir('/')
+        self.folder.cleanup()
+
+    def report(self, *args, **more):
+        done = live('--json', *args, **more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def fails(self, code, words, *args):
+        done = live(*args)
+        self.assertEqual(done.returncode, code, done.stderr)
+        lines = done.stderr.decode().splitlines()
+        self.assertEqual(len(lines), 1, lines)
+        self.assertRegex(lines[0], r'^refocus: .+: .+')
+        self.assertIn(words, lines[0])
+        self.assertEqual(done.stdout, b'')
+
+    def test_every_frame_is_rendered_and_paired(self):
+        r = self.report('--camera', 'replay::size 64x48;frames 40', '--depth', DEPTH, '--fast',
+                        '--frames-policy', 'every', '--out', 'y4m:out.y4m')
+        self.assertEqual((r['frames_in'], r['frames_out'], r['dropped']), (40, 40, 0))
+        self.assertEqual((r['paired'], r['unpaired'], r['without_depth']), (40, 0, 0))
+        frame = 64 * 48 * 3 // 2 + len('FRAME\n')
+        header = content('out.y4m').split(b'\n')[0] + b'\n'
+        self.assertIn(b'W64 H48', header)
+        self.assertEqual(os.path.getsize('out.y4m'), len(header) + 40 * frame)
+        for stage in ('convert', 'depth', 'prepare', 'render', 'output'):
+            self.assertGreaterEqual(r['stages_ms'][stage]['median'], 0)
+
+    def test_the_pictures_do_not_depend_on_threads(self):
+        outs = []
+        for threads in '1', '3':
+            self.report('--camera', 'replay::size 64x48;frames 6', '--depth', DEPTH, '--fast',
+                        '--frames-policy', 'every', '--focus', '0.7', '--threads', threads,
+                        '--out', 'raw:out.rgb')
+            outs.append(content('out.rgb'))
+        self.assertEqual(len(outs[0]), 6 * 64 * 48 * 3)
+        self.assertEqual(outs[0], outs[1])
+
+    def test_live_is_what_render_makes(self):
+        self.report('--camera', 'replay::format RGB24;size 64x48;frames 1', '--depth', DEPTH,
+                    '--fast', '--frames-policy', 'every', '--blur', '0', '--out', 'sharp-%d.ppm')
+        with open('depth.pgm', 'wb') as depth:
+            depth.write(b'P5\n64 48\n255\n' + bytes(range(64)) * 48)
+        self.report('--camera', 'file:sharp-0.ppm', '--depth', 'depth.pgm', '--focus', '0.5',
+                    '--frames', '1', '--out', 'live-%d.ppm')
+        subprocess.run([REFOCUS, 'render', 'sharp-0.ppm', '--depth', 'depth.pgm', '--focus',
+                        '0.5', *SMALL, '-o', 'render.ppm'], check=True)
+        self.assertEqual(content('live-0.ppm'), content('render.ppm'))
+        self.assertNotEqual(content('live-0.ppm'), content('sharp-0.ppm'))
+
+    def test_the_newest_frame_wins(self):
+        r = self.report('--camera', 'replay::size 320x240;fps 400;frames 400', '--depth', DEPTH,
+                        '--blur', '20', '--rays', '64')
+        self.assertLess(r['frames_out'], 300)
+        self.assertEqual(r['frames_in'] - r['dropped'] - r['without_depth'], r['frames_out'])
+
+    def test_faults_are_recovered_from(self):
+        r = self.report('--camera', 'replay::size 64x48;fps 50;frames 100;at 10 fail;at 20 vanish '
+                        '300;at 30 corrupt;at 35 drop 3;at 40 timestamp -200;at 50 queue-error;'
+                        'at 60 stride 99;at 70 late 30', '--depth', DEPTH)
+        self.assertEqual(r['colour']['recoveries'], 2)
+        self.assertLess(r['colour']['worst_recovery_ms'], 300 + 1000 * SLOW)
+        self.assertEqual(r['colour']['corrupt'], 1)
+        self.assertEqual(r['colour']['reordered'], 1)
+        self.assertGreaterEqual(r['camera_dropped'], 3)
+        self.assertGreater(r['frames_out'], 60)
+
+    def test_depth_may_be_late_vanish_and_end(self):
+        r = self.report('--camera', 'replay::size 64x48;fps 30;frames 60', '--depth',
+                        'replay::format Y16;size 32x24;fps 30;frames 40;at 10 vanish 400;'
+                        'at 20 late 80')
+        self.assertGreater(r['unpaired'], 5)
+        self.assertGreater(r['paired'], 5)
+        self.assertEqual(r['depth']['recoveries'], 1)
+        self.assertGreater(r['frames_out'], 40)
+
+    def test_the_format_may_change(self):
+        r = self.report('--camera', 'replay::size 64x48;frames 20;at 10 format YUYV,96x50',
+                        '--depth', DEPTH, '--fast', '--frames-policy', 'every', '--out',
+                        'f-%02d.ppm')
+        self.assertEqual(r['frames_out'], 20)
+        self.assertIn(b'64 48', content('f-09.ppm')[:20])
+        self.assertIn(b'96 50', content('f-10.ppm')[:20])
+
+    def test_a_stream_of_one_size_ends_with_one_line(self):
+        self.fails(1, 'a stream of 64x48 has begun', '--camera',
+                   'replay::size 64x48;frames 20;at 10 format YUYV,96x50', '--depth', DEPTH,
+                   '--fast', '--frames-policy', 'every', '--out', 'y4m:out.y4m')
+
+    def test_patience_ends(self):
+        begin = time.monotonic()
+        self.fails(1, 'gone', '--camera', 'replay::size 64x48;at 5 vanish 100000', '--depth', DEPTH,
+                   '--patience', '0.5')
+        self.assertLess(time.monotonic() - begin, 10 * SLOW)
+
+    def test_commands(self):
+        r = self.report('--camera', 'replay::size 64x48;frames 60;fps 60', '--depth', DEPTH,
+                        stdin=b'focus 0.2\npull 0.9 0.3\nblur 2\nfocus-at 10,10\npull-at 3,4 1\n')
+        self.assertEqual(r['commands'], 5)
+        done = live('--camera', 'replay::size 64x48', '--depth', DEPTH, '--json',
+                    stdin=b'focus 7\nfly\nblur 99\nquit\n')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(done.stderr.decode().splitlines()), 3)
+
+    def test_a_pull_goes_from_one_focus_to_the_other(self):
+        # Near and far half; what is in focus is as it was, and the focus moves over.
+        with open('depth.pgm', 'wb') as depth:
+            depth.write(b'P5\n64 48\n255\n' + (bytes([255]) * 32 + bytes(32)) * 48)
+        self.report('--camera', 'replay::format RGB24;size 64x48;frames 1', '--depth', DEPTH,
+                    '--fast', '--frames-policy', 'every', '--blur', '0', '--out', 's-%d.ppm')
+        run = subprocess.Popen([REFOCUS, 'live', *SMALL, '--camera', 'file:s-0.ppm', '--fps', '30',
+                                '--depth', 'depth.pgm', '--focus', '1', '--out', 'raw:out.rgb'],
+                               stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+        time.sleep(0.7 * SLOW)
+        run.stdin.write(b'pull 0 0.5\n')
+        run.stdin.flush()
+        time.sleep(1.5 * SLOW)
+        run.communicate(b'quit\n', timeout=60 * SLOW)
+        self.assertEqual(run.returncode, 0)
+        sharp = content('s-0.ppm')[-64 * 48 * 3:]
+        data = content('out.rgb')
+        first, last = data[:64 * 48 * 3], data[-64 * 48 * 3:]
+
+        def same(picture, begin, end):
+            return all(picture[(y * 64 + x) * 3] == sharp[(y * 64 + x) * 3]
+                       for y in range(48) for x in range(begin, end))
+        self.assertTrue(same(first, 0, 24))
+        self.assertFalse(same(first, 40, 64))
+        self.assertTrue(same(last, 40, 64))
+        self.assertFalse(same(last, 0, 24))
+        between = {data[i:i + 64 * 48 * 3] for i in range(0, len(data), 64 * 48 * 3)}
+        self.assertGreater(len(between), 3)
+
+    def test_calibration_registers_depth(self):
+        camera = {'width': 64, 'height': 48, 'fx': 60, 'fy': 60, 'cx': 31.5, 'cy': 23.5}
+        depth = {'width': 32, 'height': 24, 'fx': 30, 'fy': 30, 'cx': 15.5, 'cy': 11.5}
+        calibration = {'depth': depth, 'colour': camera, 'rotation': [1, 0, 0, 0, 1, 0, 0, 0, 1],
+                       'translation_m': [0.02, 0, 0]}
+        args = ['--camera', 'replay::size 64x48;frames 5', '--depth', DEPTH, '--fast',
+                '--frames-policy', 'every']
+        with open('c.json', 'w') as file:
+            json.dump(calibration, file)
+        r = self.report(*args, '--calibration', 'c.json')
+        self.assertEqual(r['frames_out'], 5)
+        for key, value in (('rotation', [2, 0, 0, 0, 1, 0, 0, 0, 1]), ('depth', {}),
+                           ('translation_m', [1])):
+            with open('bad.json', 'w') as file:
+                json.dump({**calibration, key: value}, file)
+            self.fails(1, key, *args, '--calibration', 'bad.json')
+        calibration['depth']['width'] = 33
+        with open('c.json', 'w') as file:
+            json.dump(calibration, file)
+        self.fails(1, '--calibration is for', *args, '--calibration', 'c.json')
+
+    def test_a_closed_pipe_ends_it_with_one_line(self):
+        run = subprocess.Popen([REFOCUS, 'live', *SMALL, '--camera', 'replay::size 64x48;fps 200',
+                                '--depth', DEPTH, '--no-commands', '--out', 'y4m:-'],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.assertTrue(run.stdout.readline().startswith(b'YUV4MPEG2'))
+        run.stdout.close()
+        error = run.stderr.read()
+        run.stderr.close()
+        self.assertEqual(run.wait(timeout=60 * SLOW), 1)
+        self.assertEqual(error.count(b'\n'), 1, error)
+        self.assertIn(b'closed', error)
+
+    def test_interrupt_ends_it_well(self):
+        run = subprocess.Popen([REFOCUS, 'live', *SMALL, '--json', '--camera',
+                                'replay::size 64x48;fps 60', '--depth', DEPTH, '--no-commands'],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(1 * SLOW)
+        run.send_signal(signal.SIGINT)
+        out, error = run.communicate(timeout=60 * SLOW)
+        self.assertEqual(run.returncode, 0, error)
+        self.assertGreater(json.loads(out)['frames_out'], 0)
+
+    def test_wrong_command_lines(self):
+        camera = ['--camera', 'replay::size 64x48']
+        self.fails(2, 'no source is given', '--depth', DEPTH)
+        self.fails(2, 'no depth is given', *camera)
+        self.fails(2, 'no such kind of source', '--camera', 'webcam', '--depth', DEPTH)
+        self.fails(2, 'no such kind of sink', *camera, '--depth', DEPTH, '--out', 'screen')
+        self.fails(2, 'the focus is given twice', *camera, '--depth', DEPTH, '--focus', '1',
+                   '--focus-at', '3,3')
+        self.fails(2, 'standard output is taken', *camera, '--depth', DEPTH, '--json', '--out',
+                   'y4m:-')
+        self.fails(2, 'less than --blur', *camera, '--depth', DEPTH, '--blur-most', '1')
+        self.fails(1, 'it is not there', '--camera', 'y4m:none.y4m', '--depth', DEPTH)
+        self.fails(1, 'not understood', '--camera', 'replay::jump', '--depth', DEPTH)
+        version = subprocess.run([REFOCUS, '--version'], capture_output=True, check=True).stdout
+        for kind in ('v4l2', 'libcamera'):
+            if kind.encode() not in version:
+                self.fails(1, 'this build has no ' + kind, '--camera', kind + ':0', '--depth',
+                           DEPTH)
+            else:
+                self.fails(1, 'refocus: %s:99' % kind, '--camera', kind + ':99', '--depth', DEPTH)
+
+    def test_memory_is_constant(self):
+        sizes = []
+        for frames in '20', '400':
+            r = self.report('--camera', 'replay::size 64x48;random 1;frames ' + frames, '--depth',
+                            DEPTH, '--fast', '--frames-policy', 'every')
+            sizes.append(r['peak_rss_kib'])
+        self.assertLess(sizes[1], sizes[0] + 4096)
+
+
+if __name__ == '__main__':
+    REFOCUS = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

@@ -1,0 +1,315 @@
+/* Formats of cameras against the formulas of the standards in double precision. */
+#include "check.h"
+
+#include <math.h>
+#include <refocus/platform/convert.h>
+#include "sink.h"
+
+static uint32_t seed = 1;
+
+static uint8_t noise(void)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return (uint8_t)(seed >> 24);
+}
+
+enum { PAD = 13, MOST = 64 };
+
+/* A frame of noise with rows longer than they need to be. */
+static void make_frame(struct refocus_frame *frame, uint32_t format, int width, int height,
+                       uint8_t memory[3][MOST * MOST * 4 + PAD * MOST])
+{
+    rf_frame_clear(frame);
+    frame->format = format;
+    frame->width = width;
+    frame->height = height;
+    for (int i = 0; i < rf_format_planes(format); i++) {
+        frame->stride[i] = (ptrdiff_t)rf_plane_row(format, i, width) + PAD + i;
+        frame->plane[i] = memory[i];
+    }
+    for (int i = 0; i < 3; i++)
+        for (size_t n = 0; n < sizeof memory[i]; n++)
+            memory[i][n] = noise();
+}
+
+/* Y, U, V of a pixel, from the meaning of the formats and not from the converter. */
+static void sample(const struct refocus_frame *f, int x, int y, double yuv[3])
+{
+    const uint8_t *p0 = f->plane[0] + y * f->stride[0];
+    const uint8_t *p1 = f->plane[1] ? f->plane[1] + y / 2 * f->stride[1] : NULL;
+    const uint8_t *p2 = f->plane[2] ? f->plane[2] + y / 2 * f->stride[2] : NULL;
+
+    switch (f->format) {
+    case REFOCUS_FRAME_YUYV:
+        yuv[0] = p0[2 * x], yuv[1] = p0[x / 2 * 4 + 1], yuv[2] = p0[x / 2 * 4 + 3];
+        break;
+    case REFOCUS_FRAME_UYVY:
+        yuv[0] = p0[2 * x + 1], yuv[1] = p0[x / 2 * 4], yuv[2] = p0[x / 2 * 4 + 2];
+        break;
+    case REFOCUS_FRAME_NV12:
+        yuv[0] = p0[x], yuv[1] = p1[x / 2 * 2], yuv[2] = p1[x / 2 * 2 + 1];
+        break;
+    case REFOCUS_FRAME_NV21:
+        yuv[0] = p0[x], yuv[1] = p1[x / 2 * 2 + 1], yuv[2] = p1[x / 2 * 2];
+        break;
+    default:
+        yuv[0] = p0[x], yuv[1] = p1[x / 2], yuv[2] = p2[x / 2];
+        break;
+    }
+}
+
+static double clamp(double v)
+{
+    return v < 0 ? 0 : v > 255 ? 255 : v;
+}
+
+static void expect(const double yuv[3], uint32_t matrix, int full, double rgb[3])
+{
+    const double kr = matrix ? 0.2126 : 0.299, kb = matrix ? 0.0722 : 0.114, kg = 1 - kr - kb;
+    const double y = full ? yuv[0] / 255 : (yuv[0] - 16) / 219;
+    const double u = (yuv[1] - 128) / (full ? 255 : 224), v = (yuv[2] - 128) / (full ? 255 : 224);
+
+    rgb[0] = clamp(255 * (y + 2 * (1 - kr) * v));
+    rgb[1] = clamp(255 * (y - 2 * (1 - kb) * kb / kg * u - 2 * (1 - kr) * kr / kg * v));
+    rgb[2] = clamp(255 * (y + 2 * (1 - kb) * u));
+}
+
+static uint8_t memory[3][MOST * MOST * 4 + PAD * MOST];
+static uint8_t out[MOST * MOST * 3 + PAD * MOST];
+
+static void check_frame(struct refocus_converter *converter, uint32_t format, int width,
+                        int height, uint32_t matrix, int full)
+{
+    struct refocus_frame frame;
+    struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, width, height, width * 3 + PAD);
+    double worst = 0;
+
+    make_frame(&frame, format, width, height, memory);
+    frame.matrix = matrix;
+    frame.flags = full ? REFOCUS_FRAME_FULL_RANGE : 0;
+    memset(out, 0xa5, sizeof out);
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, NULL), REFOCUS_OK);
+    for (int y = 0; y < height; y++) {
+        const uint8_t *row = out + y * image.stride[0];
+
+        for (int x = 0; x < width; x++) {
+            double yuv[3], rgb[3];
+
+            sample(&frame, x, y, yuv);
+            expect(yuv, matrix, full, rgb);
+            for (int c = 0; c < 3; c++)
+                worst = fmax(worst, fabs(rgb[c] - row[3 * x + c]));
+        }
+        for (int x = width * 3; x < width * 3 + PAD; x++)
+            assert_int_equal(row[x], 0xa5);
+    }
+    if (worst > 1)
+        fail_msg("%s %dx%d: off by %g", refocus_frame_format_name(format), width, height, worst);
+}
+
+static void yuv_is_the_formula(void **state)
+{
+    struct refocus_converter *converter = NULL;
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (uint32_t format = REFOCUS_FRAME_YUYV; format <= REFOCUS_FRAME_YUV420; format++)
+        for (int size = 1; size < MOST; size += 9)
+            for (int kind = 0; kind < 4; kind++)
+                check_frame(converter, format, size, MOST - size, (uint32_t)kind & 1, kind / 2);
+    refocus_converter_destroy(&converter);
+    assert_null(converter);
+}
+
+static void rgb_is_exact(void **state)
+{
+    static const int order[][4] = {{0, 1, 2, 3}, {2, 1, 0, 3}, {0, 1, 2, 4}, {2, 1, 0, 4}};
+    struct refocus_converter *converter = NULL;
+    struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 31, 17, 31 * 3);
+    struct refocus_frame frame;
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (uint32_t format = REFOCUS_FRAME_RGB24; format <= REFOCUS_FRAME_BGRX; format++) {
+        const int *o = order[format - REFOCUS_FRAME_RGB24];
+
+        make_frame(&frame, format, 31, 17, memory);
+        assert_status(refocus_convert_rgb8(converter, &frame, &image, NULL), REFOCUS_OK);
+        for (int y = 0; y < 17; y++)
+            for (int x = 0; x < 31; x++)
+                for (int c = 0; c < 3; c++)
+                    assert_int_equal(out[(y * 31 + x) * 3 + c],
+                                     frame.plane[0][y * frame.stride[0] + x * o[3] + o[c]]);
+    }
+    refocus_converter_destroy(&converter);
+}
+
+static void samples_are_exact(void **state)
+{
+    struct refocus_converter *converter = NULL;
+    struct refocus_frame frame;
+    uint16_t samples[23 * 11];
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (uint32_t format = REFOCUS_FRAME_GREY; format <= REFOCUS_FRAME_Z16; format++) {
+        make_frame(&frame, format, 23, 11, memory);
+        assert_status(refocus_convert_samples(converter, &frame, samples, NULL), REFOCUS_OK);
+        for (int y = 0; y < 11; y++)
+            for (int x = 0; x < 23; x++) {
+                const uint8_t *row = frame.plane[0] + y * frame.stride[0];
+                const int expected = format == REFOCUS_FRAME_GREY
+                                         ? row[x] * 257
+                                         : row[2 * x] + 256 * row[2 * x + 1];
+
+                assert_int_equal(samples[y * 23 + x], expected);
+            }
+    }
+    make_frame(&frame, REFOCUS_FRAME_NV12, 23, 11, memory);
+    assert_status(refocus_convert_samples(converter, &frame, samples, NULL),
+                  REFOCUS_ERR_UNSUPPORTED);
+    refocus_converter_destroy(&converter);
+}
+
+static void bad_frames_are_refused(void **state)
+{
+    struct refocus_converter *converter = NULL;
+    struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 32, 16, 32 * 3);
+    struct refocus_reason reason;
+    struct refocus_frame frame;
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    make_frame(&frame, REFOCUS_FRAME_NV12, 32, 16, memory);
+    frame.stride[1] = 31;
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
+                  REFOCUS_ERR_ARGUMENT);
+    assert_non_null(strstr(reason.text, "plane 1"));
+    frame.stride[1] = 32;
+    frame.plane[1] = NULL;
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
+                  REFOCUS_ERR_ARGUMENT);
+    make_frame(&frame, REFOCUS_FRAME_YUYV, 32, 18, memory);
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
+                  REFOCUS_ERR_ARGUMENT);
+    frame.format = REFOCUS_FRAME_FORMAT_COUNT;
+    frame.height = 16;
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
+                  REFOCUS_ERR_ARGUMENT);
+    refocus_converter_destroy(&converter);
+}
+
+/* What sinks write comes back: each pixel within the loss of chroma at half the size, which is
+ * none for a picture of one colour in each 2x2 block. */
+static void encoding_comes_back(void **state)
+{
+    struct refocus_converter *converter = NULL;
+    uint8_t rgb[16 * 16 * 3], back[16 * 16 * 3];
+    struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 16, 16, 48);
+    struct refocus_image image2 = refocus_image_packed(REFOCUS_FORMAT_RGB8, back, 16, 16, 48);
+    struct refocus_frame frame;
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (uint32_t format = REFOCUS_FRAME_YUYV; format <= REFOCUS_FRAME_BGRX; format++) {
+        make_frame(&frame, format, 16, 16, memory);
+        for (int y = 0; y < 16; y++)
+            for (int x = 0; x < 16; x++)
+                for (int c = 0; c < 3; c++)
+                    rgb[(y * 16 + x) * 3 + c] =
+                        (uint8_t)((x / 2 * 37 + y / 2 * 91 + c * 71) * 5 % 256);
+        assert_true(rf_can_encode(format));
+        rf_encode(&image, &frame);
+        assert_status(refocus_convert_rgb8(converter, &frame, &image2, NULL), REFOCUS_OK);
+        for (size_t i = 0; i < sizeof rgb; i++)
+            if (abs(rgb[i] - back[i]) > 3)
+                fail_msg("%s: byte %zu is %d, was %d", refocus_frame_format_name(format), i,
+                         back[i], rgb[i]);
+    }
+    refocus_converter_destroy(&converter);
+}
+
+/* Registration ---------------------------------------------------------------------------- */
+
+static struct refocus_calibration same_cameras(void)
+{
+    struct refocus_calibration c = {.depth = {32, 24, 40, 40, 15.5, 11.5},
+                                    .colour = {32, 24, 40, 40, 15.5, 11.5},
+                                    .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+
+    return c;
+}
+
+static void registering_onto_itself_is_nothing(void **state)
+{
+    const struct refocus_calibration c = same_cameras();
+    uint16_t from[32 * 24], to[32 * 24];
+
+    (void)state;
+    for (int i = 0; i < 32 * 24; i++)
+        from[i] = (uint16_t)(i % 7 == 0 ? 0 : 500 + i * 3);
+    assert_status(refocus_register_depth(&c, from, 0.001, to), REFOCUS_OK);
+    assert_memory_equal(from, to, sizeof from);
+}
+
+static void registering_shifts_near_things_more(void **state)
+{
+    struct refocus_calibration c = same_cameras();
+    uint16_t from[32 * 24], to[32 * 24];
+
+    (void)state;
+    /* 2 m away everywhere but for a square at 1 m; the baseline of 0.1 m shifts them by
+     * 40 * 0.1 / z = 2 and 4 pixels. */
+    c.translation_m[0] = 0.1;
+    for (int y = 0; y < 24; y++)
+        for (int x = 0; x < 32; x++)
+            from[y * 32 + x] = x >= 10 && x < 16 ? 1000 : 2000;
+    assert_status(refocus_register_depth(&c, from, 0.001, to), REFOCUS_OK);
+    for (int x = 0; x < 32; x++) {
+        const int expected = x < 2               ? 0
+                             : x >= 14 && x < 20 ? 1000
+                             : x >= 12 && x < 14 ? 0 /* seen by the colour camera alone */
+                                                 : 2000;
+
+        if (to[12 * 32 + x] != expected)
+            fail_msg("pixel %d is %d, not %d", x, to[12 * 32 + x], expected);
+    }
+    c.depth.fx = 0;
+    assert_status(refocus_register_depth(&c, from, 0.001, to), REFOCUS_ERR_ARGUMENT);
+    c.depth.fx = NAN;
+    assert_status(refocus_register_depth(&c, from, 0.001, to), REFOCUS_ERR_ARGUMENT);
+}
+
+static void registering_onto_more_pixels_leaves_no_gaps(void **state)
+{
+    struct refocus_calibration c = same_cameras();
+    static uint16_t from[32 * 24], to[96 * 72];
+
+    (void)state;
+    c.colour = (struct refocus_pinhole){96, 72, 120, 120, 47.5, 35.5};
+    for (int i = 0; i < 32 * 24; i++)
+        from[i] = 1500;
+    assert_status(refocus_register_depth(&c, from, 0.001, to), REFOCUS_OK);
+    for (int y = 2; y < 70; y++)
+        for (int x = 2; x < 94; x++)
+            assert_int_equal(to[y * 96 + x], 1500);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(yuv_is_the_formula),
+        cmocka_unit_test(rgb_is_exact),
+        cmocka_unit_test(samples_are_exact),
+        cmocka_unit_test(bad_frames_are_refused),
+        cmocka_unit_test(encoding_comes_back),
+        cmocka_unit_test(registering_onto_itself_is_nothing),
+        cmocka_unit_test(registering_shifts_near_things_more),
+        cmocka_unit_test(registering_onto_more_pixels_leaves_no_gaps),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,343 @@
+/* The scripted camera: every fault, and the promises that hold through all of them. */
+#include "check.h"
+
+#include <pthread.h>
+#include <time.h>
+
+static int64_t now_ms(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+static void sleep_ms(int ms)
+{
+    const struct timespec pause = {ms / 1000, ms % 1000 * 1000000L};
+
+    nanosleep(&pause, NULL);
+}
+
+static const struct refocus_frame *next(struct refocus_source *source)
+{
+    const struct refocus_frame *frame = NULL;
+    struct refocus_reason reason;
+    const int status = refocus_source_wait(source, 2000, &frame, &reason);
+
+    if (status != REFOCUS_OK)
+        fail_msg("no frame: %d %s", status, reason.text);
+    return frame;
+}
+
+static struct refocus_source_counters counters(const struct refocus_source *source)
+{
+    struct refocus_source_counters c;
+
+    refocus_source_get_counters(source, &c);
+    return c;
+}
+
+static void frames_come_at_their_pace(void **state)
+{
+    struct refocus_source *source = started("replay::size 64x48;fps 100;frames 20", 0);
+    const struct refocus_frame *frame;
+    const int64_t begin = now_ms();
+
+    (void)state;
+    for (uint32_t i = 0; i < 20; i++) {
+        frame = next(source);
+        assert_int_equal(frame->format, REFOCUS_FRAME_NV12);
+        assert_int_equal(frame->width, 64);
+        assert_true(frame->flags & REFOCUS_FRAME_MONOTONIC);
+        refocus_source_release(source, frame);
+    }
+    assert_true(now_ms() - begin >= 180);
+    assert_status(refocus_source_wait(source, 100, &frame, NULL), REFOCUS_ERR_END);
+    assert_null(frame);
+    refocus_source_close(&source);
+    assert_null(source);
+}
+
+static void drops_and_flags_are_seen(void **state)
+{
+    struct refocus_source *source = started(
+        "replay::size 64x48;sequence 4294967290;frames 30;at 3 drop 2;at 8 corrupt;"
+        "at 12 timestamp -500", REFOCUS_SOURCE_FAST);
+    const struct refocus_frame *frame;
+    int64_t before = INT64_MIN;
+    int corrupt = 0, backwards = 0, n = 0;
+
+    (void)state;
+    while (refocus_source_wait(source, 100, &frame, NULL) == REFOCUS_OK) {
+        corrupt += (frame->flags & REFOCUS_FRAME_CORRUPT) != 0;
+        backwards += frame->timestamp_ns < before;
+        before = frame->timestamp_ns;
+        n++;
+        refocus_source_release(source, frame);
+    }
+    assert_int_equal(n, 28);
+    assert_int_equal(corrupt, 1);
+    assert_int_equal(backwards, 1);
+    assert_int_equal(counters(source).dropped, 2);
+    assert_int_equal(counters(source).corrupt, 1);
+    refocus_source_close(&source);
+}
+
+static void formats_and_strides_change(void **state)
+{
+    struct refocus_source *source = started(
+        "replay::size 64x48;frames 9;at 3 format YUYV,32x20;at 6 stride 77", REFOCUS_SOURCE_FAST);
+
+    (void)state;
+    for (int i = 0; i < 9; i++) {
+        const struct refocus_frame *frame = next(source);
+
+        assert_int_equal(frame->format, i < 3 ? REFOCUS_FRAME_NV12 : REFOCUS_FRAME_YUYV);
+        assert_int_equal(frame->width, i < 3 ? 64 : 32);
+        assert_int_equal(frame->stride[0], i < 6 ? 64 : 77);
+        assert_int_equal(!!(frame->flags & REFOCUS_FRAME_CHANGED), i == 3 || i == 6);
+        refocus_source_release(source, frame);
+    }
+    refocus_source_close(&source);
+}
+
+static void a_device_returns_within_a_second(void **state)
+{
+    struct refocus_source *source =
+        started("replay::size 64x48;fps 100;at 5 vanish 300", 0);
+    const struct refocus_frame *frame;
+    int64_t gone, back;
+    int status;
+
+    (void)state;
+    for (int i = 0; i < 5; i++)
+        refocus_source_release(source, next(source));
+    assert_status(refocus_source_wait(source, 1000, &frame, NULL), REFOCUS_ERR_GONE);
+    assert_null(frame);
+    gone = now_ms();
+    assert_status(refocus_source_restart(source, NULL, NULL), REFOCUS_ERR_GONE);
+    assert_status(refocus_source_wait(source, 100, &frame, NULL), REFOCUS_ERR_STATE);
+    while ((status = refocus_source_restart(source, NULL, NULL)) != REFOCUS_OK) {
+        assert_status(status, REFOCUS_ERR_GONE);
+        assert_true(now_ms() - gone < 2000);
+        sleep_ms(20);
+    }
+    refocus_source_release(source, next(source));
+    back = now_ms();
+    assert_true(back - gone >= 290);
+    assert_true(back - (gone + 300) < 1000);
+    assert_int_equal(counters(source).restarts, 1);
+    refocus_source_close(&source);
+}
+
+static void a_failed_stream_restarts(void **state)
+{
+    struct refocus_source *source =
+        started("replay::size 64x48;frames 20;at 5 fail;at 9 memory", REFOCUS_SOURCE_FAST);
+    const struct refocus_frame *frame;
+    int n = 0, failed = 0, memory = 0, status;
+
+    (void)state;
+    while ((status = refocus_source_wait(source, 100, &frame, NULL)) != REFOCUS_ERR_END) {
+        if (status == REFOCUS_ERR_IO) {
+            failed++;
+            assert_status(refocus_source_wait(source, 100, &frame, NULL), REFOCUS_ERR_IO);
+            assert_status(refocus_source_restart(source, NULL, NULL), REFOCUS_OK);
+        } else if (status == REFOCUS_ERR_MEMORY) {
+            memory++;
+        } else {
+            assert_status(status, REFOCUS_OK);
+            n++;
+            refocus_source_release(source, frame);
+        }
+    }
+    assert_int_equal(failed, 1);
+    assert_int_equal(memory, 1);
+    assert_int_equal(n, 18);
+    refocus_source_close(&source);
+}
+
+static void start_errors_pass(void **state)
+{
+    struct refocus_source *source = NULL;
+
+    (void)state;
+    assert_status(refocus_source_open(&source, "replay::start-errors 2", NULL), REFOCUS_OK);
+    assert_status(refocus_source_start(source, NULL, NULL, NULL), REFOCUS_ERR_IO);
+    assert_status(refocus_source_restart(source, NULL, NULL), REFOCUS_ERR_IO);
+    assert_status(refocus_source_restart(source, NULL, NULL), REFOCUS_OK);
+    assert_status(refocus_source_start(source, NULL, NULL, NULL), REFOCUS_ERR_STATE);
+    refocus_source_close(&source);
+}
+
+static void lost_buffers_are_counted(void **state)
+{
+    struct refocus_source *source = started(
+        "replay::size 64x48;at 2 queue-error;at 4 queue-error;at 6 queue-error",
+        REFOCUS_SOURCE_FAST);
+    const struct refocus_frame *frame;
+
+    (void)state;
+    for (int i = 0; i < 7; i++)
+        refocus_source_release(source, next(source));
+    /* One of four is left: less than a stream needs. */
+    assert_status(refocus_source_wait(source, 100, &frame, NULL), REFOCUS_ERR_IO);
+    assert_int_equal(counters(source).lost, 3);
+    assert_int_equal(counters(source).queued, 4);
+    assert_status(refocus_source_restart(source, NULL, NULL), REFOCUS_OK);
+    refocus_source_release(source, next(source));
+    refocus_source_close(&source);
+}
+
+static void every_buffer_out_is_a_state(void **state)
+{
+    struct refocus_source *source = started("replay::size 64x48", REFOCUS_SOURCE_FAST);
+    const struct refocus_frame *frame[5];
+
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        frame[i] = next(source);
+    assert_status(refocus_source_wait(source, 10, &frame[4], NULL), REFOCUS_ERR_STATE);
+    refocus_source_release(source, frame[2]);
+    refocus_source_release(source, frame[2]); /* twice is once */
+    frame[2] = next(source);
+    assert_status(refocus_source_wait(source, 10, &frame[4], NULL), REFOCUS_ERR_STATE);
+    refocus_source_close(&source);
+}
+
+static void *interrupt(void *source)
+{
+    sleep_ms(50);
+    refocus_source_interrupt(source);
+    return NULL;
+}
+
+static void another_thread_stops_it(void **state)
+{
+    struct refocus_source *source =
+        started("replay::size 64x48;fps 100;at 3 stall 60000", 0);
+    const struct refocus_frame *frame;
+    const int64_t begin = now_ms();
+    pthread_t thread;
+
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        refocus_source_release(source, next(source));
+    assert_int_equal(pthread_create(&thread, NULL, interrupt, source), 0);
+    assert_status(refocus_source_wait(source, 30000, &frame, NULL), REFOCUS_ERR_CANCELLED);
+    assert_true(now_ms() - begin < 5000);
+    assert_status(refocus_source_wait(source, 30000, &frame, NULL), REFOCUS_ERR_CANCELLED);
+    assert_status(refocus_source_restart(source, NULL, NULL), REFOCUS_ERR_CANCELLED);
+    pthread_join(thread, NULL);
+    assert_status(refocus_source_start(source, NULL, NULL, NULL), REFOCUS_OK);
+    assert_status(refocus_source_wait(source, 20, &frame, NULL), REFOCUS_ERR_TIMEOUT);
+    refocus_source_close(&source);
+}
+
+/* A number from the environment, for slow builds. */
+static int number(const char *name, int usual)
+{
+    const char *text = getenv(name);
+
+    return text && atoi(text) > 0 ? atoi(text) : usual;
+}
+
+static void opening_and_closing_leaks_nothing(void **state)
+{
+    const int cycles = number("REFOCUS_CYCLES", 10000);
+    int fds = 0, threads = 0, mappings = 0;
+
+    (void)state;
+    for (int i = 0; i < cycles; i++) {
+        struct refocus_source *source = started("replay::size 16x8", REFOCUS_SOURCE_FAST);
+
+        if (i & 1)
+            refocus_source_release(source, next(source));
+        else
+            next(source); /* still out at the end */
+        if (i & 2)
+            refocus_source_stop(source);
+        refocus_source_close(&source);
+        if (i == 50) {
+            fds = count_entries("fd");
+            threads = count_entries("task");
+            mappings = count_mappings();
+        }
+    }
+    assert_int_equal(count_entries("fd"), fds);
+    assert_int_equal(count_entries("task"), threads);
+    assert_true(count_mappings() <= mappings + 2);
+}
+
+static void faults_lose_no_buffer(void **state)
+{
+    const int frames = number("REFOCUS_FRAMES", 200000);
+    struct refocus_source *source;
+    struct refocus_source_counters c;
+    const struct refocus_frame *frame;
+    uint64_t gone = 0, failed = 0, timeouts = 0;
+    char name[128];
+    int status, fds = 0, mappings = 0;
+
+    (void)state;
+    snprintf(name, sizeof name, "replay::size 16x8;random 1;seed 7;frames %d", frames);
+    source = started(name, REFOCUS_SOURCE_FAST);
+    for (uint64_t n = 0;; n++) {
+        status = refocus_source_wait(source, 1000, &frame, NULL);
+        if (status == REFOCUS_ERR_END)
+            break;
+        if (status == REFOCUS_OK) {
+            assert_true(frame->plane[0][frame->stride[0] * (frame->height - 1)] > 0);
+            refocus_source_release(source, frame);
+        } else if (status == REFOCUS_ERR_GONE || status == REFOCUS_ERR_IO) {
+            gone += status == REFOCUS_ERR_GONE;
+            failed += status == REFOCUS_ERR_IO;
+            while (refocus_source_restart(source, NULL, NULL) == REFOCUS_ERR_GONE)
+                sleep_ms(1);
+        } else {
+            assert_status(status, REFOCUS_ERR_TIMEOUT);
+            timeouts++;
+        }
+        if (n == 1000) {
+            fds = count_entries("fd");
+            mappings = count_mappings();
+        }
+    }
+    assert_int_equal(count_entries("fd"), fds);
+    assert_true(count_mappings() <= mappings + 2);
+    refocus_source_stop(source);
+    c = counters(source);
+    printf("%llu frames, %llu dropped, %llu corrupt, %llu gone, %llu failed, %llu restarts\n",
+           (unsigned long long)c.frames, (unsigned long long)c.dropped,
+           (unsigned long long)c.corrupt, (unsigned long long)gone, (unsigned long long)failed,
+           (unsigned long long)c.restarts);
+    assert_true(c.frames > (uint64_t)frames * 98 / 100);
+    assert_int_equal(c.frames, c.released);
+    assert_int_equal(c.frames, c.dequeued);
+    assert_int_equal(c.dequeued, c.queued + c.lost);
+    assert_int_equal(c.restarts, gone + failed);
+    assert_true(c.dropped > 0 && c.corrupt > 0 && gone > 0 && failed > 0 && c.lost > 0);
+    assert_true(c.lost < (uint64_t)frames / 400);
+    assert_int_equal(timeouts, 0);
+    refocus_source_close(&source);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_come_at_their_pace),
+        cmocka_unit_test(drops_and_flags_are_seen),
+        cmocka_unit_test(formats_and_strides_change),
+        cmocka_unit_test(a_device_returns_within_a_second),
+        cmocka_unit_test(a_failed_stream_restarts),
+        cmocka_unit_test(start_errors_pass),
+        cmocka_unit_test(lost_buffers_are_counted),
+        cmocka_unit_test(every_buffer_out_is_a_state),
+        cmocka_unit_test(another_thread_stops_it),
+        cmocka_unit_test(opening_and_closing_leaks_nothing),
+        cmocka_unit_test(faults_lose_no_buffer),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

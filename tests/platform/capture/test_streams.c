@@ -1,0 +1,233 @@
+/* Sinks and the sources that read what they wrote; names that are refused. */
+#include "check.h"
+
+#include <unistd.h>
+#include <refocus/platform/convert.h>
+#include <refocus/platform/sink.h>
+
+enum { WIDTH = 37, HEIGHT = 22, FRAMES = 4 };
+static uint8_t pixels[WIDTH * HEIGHT * 3];
+
+static struct refocus_image picture(int n)
+{
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        for (int c = 0; c < 3; c++)
+            pixels[3 * i + c] = (uint8_t)(40 + i % WIDTH / 2 * 4 + i / WIDTH / 2 * 3 + n * 7 + c);
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, WIDTH, HEIGHT, WIDTH * 3);
+}
+
+static void write_frames(const char *name)
+{
+    struct refocus_sink *sink = NULL;
+    struct refocus_reason reason;
+
+    assert_status(refocus_sink_open(&sink, name, &reason), REFOCUS_OK);
+    assert_status(refocus_sink_start(sink, WIDTH, HEIGHT, 25, &reason), REFOCUS_OK);
+    for (int n = 0; n < FRAMES; n++) {
+        const struct refocus_image image = picture(n);
+
+        assert_status(refocus_sink_write(sink, &image, &reason), REFOCUS_OK);
+    }
+    assert_status(refocus_sink_close(&sink, &reason), REFOCUS_OK);
+    assert_null(sink);
+}
+
+/* Every frame twice over, as with REFOCUS_SOURCE_LOOP, each byte within a bound. */
+static void read_frames(const char *name, int bound)
+{
+    struct refocus_source *source =
+        started(name, REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_LOOP);
+    struct refocus_converter *converter = NULL;
+    uint8_t back[WIDTH * HEIGHT * 3];
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, back, WIDTH, HEIGHT, WIDTH * 3);
+
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (int n = 0; n < 2 * FRAMES; n++) {
+        const struct refocus_frame *frame;
+        struct refocus_reason reason;
+
+        if (refocus_source_wait(source, 0, &frame, &reason) != REFOCUS_OK)
+            fail_msg("%s: frame %d: %s", name, n, reason.text);
+        assert_status(refocus_convert_rgb8(converter, frame, &image, NULL), REFOCUS_OK);
+        refocus_source_release(source, frame);
+        picture(n % FRAMES);
+        for (size_t i = 0; i < sizeof back; i++)
+            if (abs(back[i] - pixels[i]) > bound)
+                fail_msg("%s: frame %d, byte %zu is %d, was %d", name, n, i, back[i],
+                         pixels[i]);
+    }
+    refocus_converter_destroy(&converter);
+    refocus_source_close(&source);
+    source = started(name, REFOCUS_SOURCE_FAST);
+    for (int n = 0; n < FRAMES; n++) {
+        const struct refocus_frame *frame;
+
+        assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
+        refocus_source_release(source, frame);
+    }
+    const struct refocus_frame *frame;
+    assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_ERR_END);
+    refocus_source_close(&source);
+}
+
+static void streams_come_back(void **state)
+{
+    (void)state;
+    write_frames("y4m:frames.y4m");
+    read_frames("y4m:frames.y4m", 5);
+    write_frames("raw:frames.rgb");
+    read_frames("raw:frames.rgb,RGB24,37x22,25", 0);
+}
+
+static void pictures_come_back(void **state)
+{
+    (void)state;
+    write_frames("frame-%03d.ppm");
+    read_frames("file:frame-%03d.ppm", 0);
+}
+
+static void write_text(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void damage_is_named(void **state)
+{
+    const struct refocus_frame *frame;
+    struct refocus_source *source = NULL;
+    struct refocus_reason reason;
+
+    (void)state;
+    write_text("bad.y4m", "YUV5MPEG2 W4 H4\n");
+    assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_FORMAT);
+    assert_null(source);
+    write_text("bad.y4m", "YUV4MPEG2 W400000 H4\n");
+    assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_SIZE);
+    write_text("bad.y4m", "YUV4MPEG2 W4 H4 C444\n");
+    assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason),
+                  REFOCUS_ERR_UNSUPPORTED);
+    write_text("bad.y4m", "YUV4MPEG2 W4 H4\nFRAME\nabcdefghijklmnopqrstuvwxFRAME\nabc");
+    source = started("y4m:bad.y4m", REFOCUS_SOURCE_FAST);
+    assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
+    refocus_source_release(source, frame);
+    assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_ERR_FORMAT);
+    assert_non_null(strstr(reason.text, "frame 1"));
+    refocus_source_close(&source);
+}
+
+static void wrong_names_are_refused(void **state)
+{
+    static const struct {
+        const char *name;
+        int status;
+    } names[] = {
+        {"", REFOCUS_ERR_ARGUMENT},
+        {"nothing", REFOCUS_ERR_ARGUMENT},
+        {"webcam:0", REFOCUS_ERR_ARGUMENT},
+        {"file:", REFOCUS_ERR_ARGUMENT},
+        {"file:a-%s.png", REFOCUS_ERR_ARGUMENT},
+        {"file:a-%d-%d.png", REFOCUS_ERR_ARGUMENT},
+        {"file:not-there-%d.png", REFOCUS_ERR_GONE},
+        {"y4m:not-there.y4m", REFOCUS_ERR_GONE},
+        {"raw:x,NV12", REFOCUS_ERR_ARGUMENT},
+        {"raw:x,NV99,4x4", REFOCUS_ERR_ARGUMENT},
+        {"raw:not-there,NV12,4x4", REFOCUS_ERR_GONE},
+        {"replay:not-there", REFOCUS_ERR_GONE},
+        {"replay::size 0x4", REFOCUS_ERR_FORMAT},
+        {"replay::at 3 explode", REFOCUS_ERR_FORMAT},
+        {"replay::size 64x48;stride 3", REFOCUS_ERR_SIZE},
+        {"replay::from y4m:not-there.y4m", REFOCUS_ERR_GONE},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct refocus_reason reason = {""};
+        struct refocus_source *source = NULL;
+        const int status = refocus_source_open(&source, names[i].name, &reason);
+
+        if (status != names[i].status || source || !reason.text[0])
+            fail_msg("'%s' gives %d '%s'", names[i].name, status, reason.text);
+    }
+    assert_status(refocus_source_open(NULL, "x", NULL), REFOCUS_ERR_ARGUMENT);
+}
+
+/* The reader of a pipe goes: a status, and no signal ends this program. */
+static void a_closed_pipe_is_a_status(void **state)
+{
+    struct refocus_sink *sink = NULL;
+    const struct refocus_image image = picture(0);
+    char name[64];
+    int ends[2];
+
+    (void)state;
+    assert_int_equal(pipe(ends), 0);
+    snprintf(name, sizeof name, "raw:/proc/self/fd/%d", ends[1]);
+    assert_status(refocus_sink_open(&sink, name, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_start(sink, WIDTH, HEIGHT, 25, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_OK);
+    close(ends[0]);
+    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_GONE);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    close(ends[1]);
+}
+
+static void sinks_refuse_what_is_wrong(void **state)
+{
+    struct refocus_sink *sink = NULL;
+    struct refocus_image image = picture(0);
+
+    (void)state;
+    assert_status(refocus_sink_open(&sink, "nowhere", NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_open(&sink, "y4m:", NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_open(&sink, "y4m:/not/there/x", NULL), REFOCUS_ERR_GONE);
+    assert_null(sink);
+    assert_status(refocus_sink_open(&sink, "raw:changes.rgb", NULL), REFOCUS_OK);
+    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_STATE);
+    assert_status(refocus_sink_start(sink, WIDTH, HEIGHT, 25, NULL), REFOCUS_OK);
+    image.width--;
+    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_start(sink, WIDTH - 1, HEIGHT, 25, NULL),
+                  REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+}
+
+static void replay_replays(void **state)
+{
+    struct refocus_source *source;
+    const struct refocus_frame *frame;
+    int n = 0;
+
+    (void)state;
+    write_frames("raw:frames.rgb");
+    source = started("replay::from raw:frames.rgb,RGB24,37x22,25;frames 10;at 2 drop",
+                     REFOCUS_SOURCE_FAST);
+    for (; refocus_source_wait(source, 100, &frame, NULL) == REFOCUS_OK; n++) {
+        picture(n % FRAMES);
+        for (int y = 0; y < HEIGHT; y++)
+            assert_memory_equal(frame->plane[0] + y * frame->stride[0], pixels + y * WIDTH * 3,
+                                WIDTH * 3);
+        refocus_source_release(source, frame);
+    }
+    assert_int_equal(n, 9);
+    refocus_source_close(&source);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(streams_come_back),
+        cmocka_unit_test(pictures_come_back),
+        cmocka_unit_test(damage_is_named),
+        cmocka_unit_test(wrong_names_are_refused),
+        cmocka_unit_test(a_closed_pipe_is_a_status),
+        cmocka_unit_test(sinks_refuse_what_is_wrong),
+        cmocka_unit_test(replay_replays),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
