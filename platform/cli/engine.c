@@ -10,8 +10,10 @@
 static const struct {
     const char *name, *summary;
     int rays;
-} qualities[] = {
-    {"preview", "32 rays", 32}, {"standard", "64 rays", 64}, {"best", "128 rays", 128}};
+    float highlight_gain;
+} qualities[] = {{"preview", "32 rays", 32, 1},
+                 {"standard", "64 rays", 64, 1},
+                 {"best", "128 rays, and light given back to clipped lamps", 128, 4}};
 
 static const struct {
     const char *name, *summary;
@@ -148,6 +150,9 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
         params->iterations = (int32_t)settings->iterations;
     if (!isnan(settings->sigma))
         params->sigma = (float)settings->sigma;
+    params->highlight_gain = isnan(settings->highlights)
+                                 ? qualities[settings->quality].highlight_gain
+                                 : (float)settings->highlights;
     params->mirror = settings->mirror;
     params->background = settings->background;
     status = make_aperture(engine, settings->aperture);
@@ -276,10 +281,11 @@ json_t *engine_json(const struct engine *engine)
                                                      : json_integer(params->rays);
 
     return json_pack(
-        "{s:s, s:o, s:s, s:o, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:I, s:I}", "method",
+        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:I, s:I}", "method",
         refocus_method_name(params->method), "rays", rays, "blend",
         engine_blend_name(params->blend), "sigma",
-        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "iterations",
+        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "highlights",
+        (double)params->highlight_gain, "iterations",
         (int)params->iterations, "blur", (double)params->max_blur_radius, "focus",
         (double)params->focus_disparity, "threads", (int)engine->info.threads, "cpu",
         refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms, "prepare_ms",

@@ -9,7 +9,7 @@
 
 struct engine_settings {
     int method, quality, blend, cpu;
-    double rays, iterations, sigma; /* NAN: not given */
+    double rays, iterations, sigma, highlights; /* NAN: not given */
     double threads, repeat;
     const char *aperture;
     bool mirror, background, json;
@@ -19,6 +19,7 @@ enum { QUALITY_STANDARD = 1 };
 
 #define ENGINE_SETTINGS_NONE(repeat_default)                                                \
     {.quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,             \
+     .highlights = NAN,                                                                     \
      .repeat = repeat_default, .aperture = "disc"}
 
 const char *engine_quality_name(uint32_t index);
@@ -63,7 +64,7 @@ const char *engine_blend_summary(uint32_t index);
     {.kind = OPTION_FLAG,                                                                   \
      .name = "--mirror",                                                                    \
      .offset = offsetof(type, member.mirror),                                               \
-     .help = "search, raytrace: where a ray is hidden take the mirrored one"},              \
+     .help = "search: where a ray is hidden take the mirrored pixel"},              \
     {.kind = OPTION_FLAG,                                                                   \
      .name = "--background",                                                                \
      .offset = offsetof(type, member.background),                                           \
@@ -90,7 +91,17 @@ const char *engine_blend_summary(uint32_t index);
      .word = "off",                                                                         \
      .word_value = INFINITY,                                                                \
      .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default off, "   \
-             "which is best in linear light"}
+             "which is best in linear light"},                                              \
+    {.kind = OPTION_NUMBER,                                                                 \
+     .name = "--highlights",                                                                \
+     .argument = "GAIN",                                                                    \
+     .offset = offsetof(type, member.highlights),                                           \
+     .least = 1,                                                                            \
+     .greatest = 4,                                                                         \
+     .word = "off",                                                                         \
+     .word_value = 1,                                                                       \
+     .help = "sweep: light given back to small clipped lamps, up to GAIN times white; "     \
+             "default by --quality"}
 #define RUN_OPTIONS(type, member)                                                           \
     {.kind = OPTION_INTEGER,                                                                \
      .name = "--threads",                                                                   \
