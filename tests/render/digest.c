@@ -129,6 +129,7 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
     struct refocus_renderer *renderer;
     int status;
 
+    limits.methods = REFOCUS_METHODS_ALL;
     limits.cpu = cpu;
     limits.threads = threads;
     status = refocus_renderer_create(&renderer, &limits);
