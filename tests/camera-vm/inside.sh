@@ -57,6 +57,26 @@ output() {
     [ "$capture" = 0 ] && [ "$(field frames_out <output.json)" -gt 10 ]
 }
 
+# One line that says why, and what to do.
+no_permission() {
+    chmod 600 /dev/video0
+    ! setpriv --reuid=65534 --clear-groups "$refocus" live --camera v4l2:0 \
+        --depth still-0-depth.pgm --frames 1 2>refused.txt &&
+        cat refused.txt && [ "$(wc -l <refused.txt)" = 1 ] && grep -q "group 'video'" refused.txt
+}
+
+# A virtual camera that goes while frames flow into it is opened again.
+sink_replugged() {
+    v4l2-ctl -d1 --set-dv-bt-timings index=0
+    live --camera 'replay::format RGB24;size 640x480;fps 5' --depth still-0-depth.pgm \
+        --out v4l2:1 --duration 8 >sink.json &
+    sleep 4
+    v4l2-ctl -d0 -c disconnect=1
+    wait $! || return
+    cat sink.json
+    [ "$(field sink_recoveries <sink.json)" -ge 1 ] && [ "$(field frames_out <sink.json)" -gt 8 ]
+}
+
 # A camera that another program pulls the plug of, while all of the pipeline runs.
 replug() {
     live --camera v4l2:0 --format NV12 --size 320x180 --fps 10 --depth still-0-depth.pgm \
@@ -91,6 +111,14 @@ libcamera_formats() {
     done
 }
 
+# The example: the library in another program's loop.
+libcamera_loop() {
+    local program=$build/examples/own_libcamera_loop
+    [ -x "$program" ] || { echo 'it is not built'; return 1; }
+    timeout 60 "$program" 4 >loop.txt && cat loop.txt &&
+        [ "$(wc -l <loop.txt)" = 4 ] && ! grep -q '^0.00' loop.txt
+}
+
 libcamera_refuses() {
     ! live --camera libcamera:7 --depth still-0-depth.pgm --frames 1 2>refused.txt &&
         grep -q 'no such camera' refused.txt &&
@@ -107,10 +135,13 @@ case $part in
         check vivid-colour-and-depth pair
         check vivid-output-read-back output
         check vivid-replugged replug
+        check vivid-sink-replugged sink_replugged
+        check vivid-no-permission no_permission
         ;;
     multi) check vivid-multiplanar multiplanar ;;
     libcamera)
         check vimc-formats libcamera_formats
         check vimc-refusals libcamera_refuses
+        check vimc-own-loop libcamera_loop
         ;;
 esac
