@@ -5,21 +5,24 @@
 #include <math.h>
 #include <refocus/refocus.h>
 #include "options.h"
+#include "papers.h"
 #include "report.h"
 
 struct engine_settings {
     int method, quality, blend, cpu;
-    double rays, iterations, sigma; /* NAN: not given */
+    double rays, iterations, sigma, highlights; /* NAN: not given */
     double threads, repeat;
     const char *aperture;
     bool mirror, background, json;
+    struct paper_settings papers;
 };
 
 enum { QUALITY_STANDARD = 1 };
 
 #define ENGINE_SETTINGS_NONE(repeat_default)                                                \
     {.quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,             \
-     .repeat = repeat_default, .aperture = "disc"}
+     .highlights = NAN,                                                                     \
+     .repeat = repeat_default, .aperture = "disc", .papers = PAPER_SETTINGS_NONE}
 
 const char *engine_quality_name(uint32_t index);
 const char *engine_quality_summary(uint32_t index);
@@ -27,14 +30,15 @@ const char *engine_blend_name(uint32_t index);
 const char *engine_blend_summary(uint32_t index);
 
 /* Rows of tables of options, for settings with a member of the type above. */
-#define METHOD_OPTIONS(type, member)                                                        \
+#define METHOD_OPTION(type, member)                                                         \
     {.kind = OPTION_CHOICE,                                                                 \
      .name = "--method",                                                                    \
      .argument = "NAME",                                                                    \
      .offset = offsetof(type, member.method),                                               \
      .choice = refocus_method_name,                                                         \
      .summary = refocus_method_summary,                                                     \
-     .help = "how it is rendered; default sweep"},                                          \
+     .help = "how it is rendered; default sweep"}
+#define METHOD_OPTIONS(type, member)                                                        \
     {.kind = OPTION_INTEGER,                                                                \
      .name = "--rays",                                                                      \
      .argument = "N",                                                                       \
@@ -63,7 +67,7 @@ const char *engine_blend_summary(uint32_t index);
     {.kind = OPTION_FLAG,                                                                   \
      .name = "--mirror",                                                                    \
      .offset = offsetof(type, member.mirror),                                               \
-     .help = "search, raytrace: where a ray is hidden take the mirrored one"},              \
+     .help = "search: where a ray is hidden take the mirrored pixel"},              \
     {.kind = OPTION_FLAG,                                                                   \
      .name = "--background",                                                                \
      .offset = offsetof(type, member.background),                                           \
@@ -90,7 +94,17 @@ const char *engine_blend_summary(uint32_t index);
      .word = "off",                                                                         \
      .word_value = INFINITY,                                                                \
      .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default off, "   \
-             "which is best in linear light"}
+             "which is best in linear light"},                                              \
+    {.kind = OPTION_NUMBER,                                                                 \
+     .name = "--highlights",                                                                \
+     .argument = "GAIN",                                                                    \
+     .offset = offsetof(type, member.highlights),                                           \
+     .least = 1,                                                                            \
+     .greatest = 4,                                                                         \
+     .word = "off",                                                                         \
+     .word_value = 1,                                                                       \
+     .help = "sweep: light given back to small clipped lamps, up to GAIN times white; "     \
+             "default by --quality"}
 #define RUN_OPTIONS(type, member)                                                           \
     {.kind = OPTION_INTEGER,                                                                \
      .name = "--threads",                                                                   \
@@ -123,6 +137,9 @@ struct engine {
     struct refocus_renderer *renderer;
     struct refocus_renderer_info info;
     struct refocus_aperture *aperture;
+    struct refocus_disparity field_map; /* samples NULL: none */
+    double field_disparity;             /* NAN: that in focus */
+    uint32_t methods; /* that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     struct refocus_render_params params;
     double create_ms, prepare_ms;
     struct spread render_ms;

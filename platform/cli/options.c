@@ -350,8 +350,8 @@ static void print_option(const struct option *option)
     print_wrapped(text, HELP_COLUMN, HELP_COLUMN);
     if (option->kind == OPTION_CHOICE && option->summary)
         for (uint32_t i = 0; option->choice(i); i++) {
-            printf("%*s%-10s", HELP_COLUMN + 2, "", option->choice(i));
-            print_wrapped(option->summary(i), HELP_COLUMN + 12, HELP_COLUMN + 12);
+            printf("%*s%-13s", HELP_COLUMN + 2, "", option->choice(i));
+            print_wrapped(option->summary(i), HELP_COLUMN + 15, HELP_COLUMN + 15);
         }
 }
 
