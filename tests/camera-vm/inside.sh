@@ -90,6 +90,23 @@ replug() {
         [ "$(field frames_out <replug.json)" -gt 5 ]
 }
 
+# Pulled out so that the node is gone, and put in again.
+rebind() {
+    local driver=/sys/bus/platform/drivers/vivid
+    live --camera v4l2:0 --format NV12 --size 320x180 --fps 10 --depth still-0-depth.pgm \
+        --duration 8 >rebind.json &
+    sleep 3
+    echo vivid.0 >$driver/unbind
+    [ ! -e /dev/video0 ] || return
+    sleep 1
+    echo vivid.0 >$driver/bind
+    wait $! || return
+    cat rebind.json
+    [ "$(field recoveries <rebind.json)" -ge 1 ] &&
+        [ "$(field worst_recovery_ms <rebind.json | cut -d. -f1)" -lt 3000 ] &&
+        [ "$(field frames_out <rebind.json)" -gt 10 ]
+}
+
 # Formats with memories of their own for each plane, by the multi-planar API.
 multiplanar() {
     local format
@@ -137,6 +154,7 @@ case $part in
         check vivid-replugged replug
         check vivid-sink-replugged sink_replugged
         check vivid-no-permission no_permission
+        check vivid-pulled-out rebind
         ;;
     multi) check vivid-multiplanar multiplanar ;;
     libcamera)
