@@ -26,6 +26,7 @@ live() { timeout 100 "$refocus" live --no-commands --rays 4 --blur 3 --json "$@"
 # Colour of one node, depth of another, running freely: the frames find their partners.
 pair() {
     local paired
+    v4l2-ctl -d0 -i 0
     v4l2-ctl -d2 -v width=320,height=180,pixelformat='Y16 '
     live --camera v4l2:0 --format NV12 --size 320x180 --fps 4 --depth v4l2:2 --frames 10 >pair.json
     paired=$(field paired <pair.json)
