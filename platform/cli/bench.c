@@ -27,8 +27,10 @@ static const struct option options[] = {
     DEPTH_UNIT_OPTIONS(struct settings, depth),
     FOCUS_OPTIONS(struct settings, lens),
     {.kind = OPTION_HEADING, .help = "How"},
+    METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine),
     RUN_OPTIONS(struct settings, engine),
+    PAPER_OPTIONS(struct settings, engine.papers),
     {.help = NULL},
 };
 
@@ -228,8 +230,8 @@ static int run(int argc, char **argv)
         if (status == EXIT_DONE) {
             scene.photo = input.photo->image;
             scene.disparity = input.disparity;
-            scene.map_width = input.depth_from->depth.width;
-            scene.map_height = input.depth_from->depth.height;
+            scene.map_width = input.width;
+            scene.map_height = input.height;
         }
     } else if (status == EXIT_DONE) {
         engine.name = input.photo_name = input.depth_name = "made-up scene";

@@ -108,6 +108,51 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
     return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
 }
 
+/* blend4: four rows by weights in Q16 that add up to 1, rounded half up. */
+typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
+                          const uint16_t weight[4], int n);
+
+/* steps4: the largest step to the right and the largest one down within four rows, whose
+ * element n is read. */
+typedef void rf_steps4_fn(uint16_t *across, uint16_t *down, const uint16_t *const row[4],
+                          int n);
+
+/*
+ * cluster: disparities of n pixels that lie between the same 4 x 4 samples. A pixel weighs
+ * sample i by nearness, trust and likeness,
+ *
+ *     w = across[i % 4] down[i / 4] trust[i] (1 - min(80, |colour - colour[i]|) / 80)^2
+ *
+ * with 1-norms of the colours, and takes the mean over that window, of those the cell lists,
+ * whose sum of w is the greatest, the first of equal ones. All are Q16 and products are
+ * rounded down; those of across and down add up to less than 1.
+ *
+ * n is at most RF_BATCH and is rounded up to whole vectors: some of `out` after it is
+ * overwritten.
+ */
+enum { RF_TAPS = 4, RF_SAMPLES = RF_TAPS * RF_TAPS, RF_UNLIKE = 80, RF_BATCH = 64,
+       RF_BATCH_SPARE = 16 };
+
+struct rf_cell {
+    uint16_t disparity[RF_SAMPLES];
+    uint16_t colour[3][RF_SAMPLES];
+    uint16_t trust[RF_SAMPLES];
+    int windows;                  /* ranges of disparity, 1 to RF_SAMPLES of them */
+    uint16_t low[RF_SAMPLES], high[RF_SAMPLES]; /* their least and greatest samples */
+};
+
+struct rf_batch {
+    uint16_t colour[3][RF_BATCH + RF_BATCH_SPARE];
+    uint16_t across[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
+    uint16_t down[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
+};
+typedef void rf_cluster_fn(uint16_t out[RF_BATCH + RF_BATCH_SPARE],
+                           const struct rf_cell *cell, const struct rf_batch *batch, int n);
+
+/* median3: medians of 3 x 3; elements -1 and n are read. */
+typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
+                           const uint16_t *after, int n);
+
 struct rf_kernels {
     rf_sweep_fn *sweep;
     rf_signed_blur_fn *signed_blur;
@@ -119,6 +164,10 @@ struct rf_kernels {
     rf_pull_fn *pull;
     rf_pull_blur_fn *pull_blur;
     rf_means_fn *means;
+    rf_blend4_fn *blend4;
+    rf_steps4_fn *steps4;
+    rf_cluster_fn *cluster;
+    rf_median3_fn *median3;
 };
 
 /* The best kernels of an instruction set, enum refocus_cpu; false: this processor or build does
@@ -130,6 +179,8 @@ rf_sweep_fn rf_sweep_c;
 /* Each set overwrites what it does better. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
+rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
+    rf_upsample_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 
 #endif
