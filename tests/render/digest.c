@@ -79,7 +79,8 @@ static bool takes(const struct view *view, const struct style *style)
     if (view->all_styles)
         return true;
     return style->rays >= 32 && style->rays <= 64 &&
-           (style->method <= REFOCUS_METHOD_RAYTRACE || turn % 4 == 0);
+           (style->method <= REFOCUS_METHOD_RAYTRACE ||
+            (view->blur <= 20 && turn % 4 == 0));
 }
 
 enum { MOST_BYTES = 4 * 100 * 100 };
