@@ -32,12 +32,12 @@ static void mark(struct twin *t)
     for (int y = 0; y < t->height; y++) {
         for (int x = 0; x < t->width; x++) {
             const int p = y * t->width + x;
-            double most = -1e9;
+            bool foreground = false;
 
-            for (int q = 0; q < t->width; q++)
-                most = fmax(most, fmax(down[y * t->width + q], up[y * t->width + q]) -
-                                      abs(q - x) / 2.0);
-            t->behind_blur[p] = most > t->blur[p] + 0.5 ? NAN : t->blur[p];
+            for (int q = 0; q < t->width && !foreground; q++)
+                foreground = fmax(down[y * t->width + q], up[y * t->width + q]) >
+                             t->blur[p] + 0.5 + abs(q - x) / 2.0;
+            t->behind_blur[p] = foreground ? NAN : t->blur[p];
             for (int c = 0; c < 3; c++)
                 t->behind[c][p] = t->smooth[c][p];
         }
