@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
+#include <refocus/image.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
@@ -25,6 +27,8 @@ enum refocus_depth_meaning {
 
 enum refocus_depth_flags {
     REFOCUS_DEPTH_ZERO_IS_UNKNOWN = 1, /**< a sample of 0 holds no value */
+    REFOCUS_DEPTH_MAX_IS_UNKNOWN = 2,  /**< nor does the greatest code, 255 or 65535 */
+    REFOCUS_DEPTH_2047_IS_UNKNOWN = 4, /**< nor does 2047, as in raw Kinect frames */
 };
 
 /**
@@ -62,6 +66,7 @@ struct refocus_depth_report {
     double value_far;  /**< for disparity: the sample that became d = 0 */
     uint64_t unknown;  /**< samples that held no value and were filled */
     uint64_t clamped;  /**< samples beyond z0 or z1 (or the values of d = 1 and 0) */
+    uint64_t specks;   /**< samples in patches too small to be true; filled too */
 };
 
 /**
@@ -87,6 +92,87 @@ struct refocus_depth_report {
 REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map,
                                            uint16_t *disparity, ptrdiff_t stride,
                                            struct refocus_depth_report *report);
+
+/** Largest patch that can be taken for a speck, in samples. */
+enum { REFOCUS_MAX_SPECKLE = 255 };
+
+/** What refocus_depth_repair() does. Start from refocus_repair_params_default(). */
+struct refocus_repair_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_repair_params) */
+    int32_t speckle;      /**< patches of fewer samples are filled like holes, 0 to
+                               REFOCUS_MAX_SPECKLE; 0 and 1 = none. A patch is what touches,
+                               across corners too, in steps of 1/24 of the range */
+    uint8_t *confidence;  /**< receives a byte a sample: 255 = as measured, 0 = filled; may
+                               be NULL. For refocus_upsample() */
+    ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
+};
+
+static inline struct refocus_repair_params refocus_repair_params_default(void)
+{
+    struct refocus_repair_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    return params;
+}
+
+/**
+ * refocus_depth_to_disparity() that also removes specks and says what was filled. Time and
+ * memory are linear in the number of samples: 5 bytes each at most.
+ *
+ * @return as refocus_depth_to_disparity(). Thread-safe.
+ */
+REFOCUS_API int refocus_depth_repair(const struct refocus_depth_map *map,
+                                     const struct refocus_repair_params *params,
+                                     uint16_t *disparity, ptrdiff_t stride,
+                                     struct refocus_depth_report *report);
+
+/** How to upsample. Start from refocus_upsample_params_default(). */
+struct refocus_upsample_params {
+    uint32_t struct_size;      /**< sizeof(struct refocus_upsample_params) */
+    int32_t threads;           /**< 1 to 64; 0 = one for each processor */
+    uint32_t cpu;              /**< enum refocus_cpu of render.h; 0 = the best there is */
+    uint32_t reserved;         /**< 0 */
+    const uint8_t *confidence; /**< a byte for each sample of the map, 255 = sure, 0 = a
+                                    guess that counts where there is nothing else; NULL =
+                                    all sure */
+    ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
+};
+
+static inline struct refocus_upsample_params refocus_upsample_params_default(void)
+{
+    struct refocus_upsample_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    return params;
+}
+
+/**
+ * Bring a map of disparities to the size of the photo that it belongs to, with its edges
+ * on the photo's: refocus_prepare() does the same with maps of another size.
+ *
+ * A joint bilateral filter (Kopf et al. 2007) whose pixels take the mean of the surface that
+ * carries the most weight instead of the mean of all, so that no disparity between two
+ * surfaces is made up. The result does not depend on threads or processor. A map of the
+ * photo's size is copied, one with more columns or rows is sampled.
+ *
+ * @param photo   any packed format
+ * @param map     covers the same view as the photo; see struct refocus_disparity
+ * @param params  see struct refocus_upsample_params
+ * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may not
+ *                overlap the map
+ * @param stride  bytes from a row of @p out to the next; even; may be negative
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 6 bytes a pixel are
+ *         needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD. On an
+ *         error @p out is untouched.
+ *
+ * Thread-safe.
+ */
+REFOCUS_API int refocus_upsample(const struct refocus_image *photo,
+                                 const struct refocus_disparity *map,
+                                 const struct refocus_upsample_params *params, uint16_t *out,
+                                 ptrdiff_t stride);
 
 #ifdef __cplusplus
 }

@@ -272,8 +272,8 @@ static int run(int argc, char **argv)
         if (status == EXIT_DONE) {
             scene.photo = input.photo->image;
             scene.disparity = input.disparity;
-            scene.map_width = input.depth_from->depth.width;
-            scene.map_height = input.depth_from->depth.height;
+            scene.map_width = input.width;
+            scene.map_height = input.height;
         }
     } else if (status == EXIT_DONE) {
         engine.name = input.photo_name = input.depth_name = "made-up scene";

@@ -1,21 +1,76 @@
 /* refocus depth */
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 #include "commands.h"
 #include "inputs.h"
+#include "interrupt.h"
 #include "outputs.h"
 #include "report.h"
 
+enum view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };
+
 struct settings {
     struct depth_settings depth;
+    double focus_at[2], blur;
     const char *output;
+    int view;
     bool json;
 };
+
+static const char *view_name(uint32_t index)
+{
+    static const char *const names[] = {"none", "disparity", "confidence"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+static const char *view_summary(uint32_t index)
+{
+    static const char *const words[] = {"the disparities as they are",
+                                        "their picture, bright = near",
+                                        "white where the depth was measured, black where it "
+                                        "was filled"};
+
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
 
 static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
                   "the disparities to write, 1 = nearest: .png or .pgm of 16 bits (65535 = 1) "
-                  "or .pfm of 32-bit floats"),
+                  "or .pfm of 32-bit floats; or a .jpg: the JPEG photo, every byte of it, with "
+                  "the depth inside as GDepth"),
+    DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
+    REPAIR_OPTIONS(struct settings, depth),
+    {.kind = OPTION_FLAG,
+     .name = "--full",
+     .offset = offsetof(struct settings, depth.full),
+     .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_CHOICE,
+     .name = "--view",
+     .argument = "WHAT",
+     .offset = offsetof(struct settings, view),
+     .choice = view_name,
+     .summary = view_summary,
+     .help = "write an 8-bit picture to look at instead: .png, .jpg or .ppm"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--focus-at",
+     .argument = "X,Y",
+     .offset = offsetof(struct settings, focus_at),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SIDE,
+     .count = 2,
+     .help = "for a .jpg: the pixel in focus when it is opened again; default: what the photo "
+             "says"},
+    {.kind = OPTION_NUMBER,
+     .name = "--blur",
+     .argument = "K",
+     .offset = offsetof(struct settings, blur),
+     .least = 0,
+     .greatest = REFOCUS_MAX_BLUR_RADIUS,
+     .help = "for a .jpg, with --focus-at: the blur radius of disparity 0 when 1 is in focus"},
     {.kind = OPTION_FLAG,
      .name = "--json",
      .offset = offsetof(struct settings, json),
@@ -34,28 +89,152 @@ static int print_report(const struct settings *settings, const struct input *inp
     const struct refocus_depth_report *report = &input->report;
 
     if (settings->json) {
-        json_t *json = json_pack("{s:o, s:o, s:o}", "file",
+        json_t *json = json_pack("{s:o, s:o, s:i, s:i, s:o}", "file",
                                  report_text_json(input->photo_name), "output",
-                                 report_text_json(settings->output), "depth",
+                                 report_text_json(settings->output), "width", input->width,
+                                 "height", input->height, "depth",
                                  report_depth_json(input->depth_from, report));
         return report_print_json(json);
     }
-    printf("size     %dx%d\n", (int)map->width, (int)map->height);
+    printf("size     %dx%d\n", input->width, input->height);
     if (report->near_m > 0)
         printf("near     %.4g m\n", report->near_m);
     if (report->far_m > 0)
         printf("far      %.4g m\n", report->far_m);
     printf("filled   %llu samples without a value, %.1f %%\n",
            (unsigned long long)report->unknown, percent(report->unknown, map));
+    if (settings->depth.speckle > 1)
+        printf("specks   %llu samples in small patches, filled too, %.1f %%\n",
+               (unsigned long long)report->specks, percent(report->specks, map));
     printf("clamped  %llu samples beyond the range, %.1f %%\n",
            (unsigned long long)report->clamped, percent(report->clamped, map));
     return report_end_output();
 }
 
+static bool is_jpeg(const char *path)
+{
+    const char *dot = path ? strrchr(path, '.') : NULL;
+
+    return dot && (!strcasecmp(dot, ".jpg") || !strcasecmp(dot, ".jpeg"));
+}
+
+/* A grey picture of the disparities or of what is known of them. */
+static int write_view(const struct settings *settings, const struct input *input)
+{
+    const bool known = settings->view == VIEW_CONFIDENCE;
+    const int width = known ? input->depth_from->depth.width : input->width;
+    const int height = known ? input->depth_from->depth.height : input->height;
+    const size_t pixels = (size_t)width * (size_t)height;
+    uint8_t *rgb = pixels <= SIZE_MAX / 3 ? malloc(3 * pixels) : NULL;
+    int status;
+
+    if (!rgb)
+        return report_failure(EXIT_FAILED, settings->output, "not enough memory");
+    for (size_t i = 0; i < 3 * pixels; i++)
+        rgb[i] = known ? input->confidence[i / 3] : (uint8_t)(input->disparity[i / 3] >> 8);
+
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, width,
+                                                            height, 3 * (ptrdiff_t)width);
+    status = output_write_image(settings->output, &image, NULL);
+    free(rgb);
+    return status;
+}
+
+/* The focus to be saved: that of the options, else that of the photo. */
+static int settle_focus(const struct settings *settings, const struct input *input,
+                        struct refocus_depth_write *depth)
+{
+    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_photo_info *info = &input->photo->info;
+    const double larger = photo->width > photo->height ? photo->width : photo->height;
+    const double x = settings->focus_at[0], y = settings->focus_at[1];
+    double d;
+
+    if (isnan(x)) {
+        if (info->focus_x > 0 || info->focus_y > 0) {
+            depth->focus_x = info->focus_x;
+            depth->focus_y = info->focus_y;
+        }
+        depth->focus_distance = info->focus_distance;
+        depth->blur_at_infinity = info->blur_at_infinity;
+        return EXIT_DONE;
+    }
+    if (x >= photo->width || y >= photo->height)
+        return report_failure(EXIT_WRONG, "--focus-at",
+                              "%g,%g lies outside of %s; give 0,0 to %d,%d", x, y,
+                              input->photo_name, photo->width - 1, photo->height - 1);
+    depth->focus_x = (x + 0.5) / photo->width;
+    depth->focus_y = (y + 0.5) / photo->height;
+    d = input->disparity[(size_t)(depth->focus_y * input->height) * (size_t)input->width +
+                         (size_t)(depth->focus_x * input->width)] / 65535.0;
+    if (depth->near_m > 0 && depth->far_m > depth->near_m) {
+        const struct refocus_depth_range range = {depth->near_m, depth->far_m};
+        const double z = refocus_depth_of_disparity(&range, d);
+
+        depth->focus_distance = isfinite(z) ? z : 0;
+    }
+    if (!isnan(settings->blur))
+        depth->blur_at_infinity = settings->blur * d / larger;
+    return EXIT_DONE;
+}
+
+static int write_photo(const struct settings *settings, const struct input *input)
+{
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    struct refocus_reason reason = {""};
+    int status;
+
+    depth.disparity = input->disparity;
+    depth.width = input->width;
+    depth.height = input->height;
+    depth.stride = 2 * (ptrdiff_t)input->width;
+    depth.near_m = input->report.near_m;
+    depth.far_m = input->report.far_m;
+    status = settle_focus(settings, input, &depth);
+    if (status != EXIT_DONE)
+        return status;
+    interrupt_hold(true);
+    status = interrupt_came() ? REFOCUS_ERR_CANCELLED
+                              : refocus_photo_write_depth(settings->output, input->photo_name,
+                                                          &depth, &reason);
+    interrupt_hold(false);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return report_failure(EXIT_FAILED, settings->output,
+                              "interrupted; nothing was written");
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, settings->output, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+static int write_output(const struct settings *settings, const struct input *input)
+{
+    if (settings->view != VIEW_NONE)
+        return write_view(settings, input);
+    if (is_jpeg(settings->output))
+        return write_photo(settings, input);
+    return output_write_gray16(settings->output, input->disparity, input->width,
+                               input->height);
+}
+
+static int check(const struct settings *settings, const char *const *files)
+{
+    static const char *const endings[] = {".png", ".pgm", ".pfm", ".jpg", ".jpeg", NULL};
+    static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
+    const char *const inputs[] = {files[0], settings->depth.file};
+    int status = input_check_depth(&settings->depth);
+
+    if (status == EXIT_DONE)
+        status = output_check(settings->output, settings->view ? views : endings, inputs, 2);
+    if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
+        return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
+    return status;
+}
+
 static int run(int argc, char **argv)
 {
-    static const char *const endings[] = {".png", ".pgm", ".pfm", NULL};
-    struct settings settings = {.depth = DEPTH_SETTINGS_NONE};
+    struct settings settings = {
+        .depth = DEPTH_SETTINGS_NONE, .focus_at = {NAN, NAN}, .blur = NAN};
     struct input input = {0};
     const char *files[2];
     int status;
@@ -63,18 +242,18 @@ static int run(int argc, char **argv)
     status = options_parse(&depth_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
-    status = input_check_depth(&settings.depth);
-    if (status == EXIT_DONE)
-        status = output_check(settings.output, endings, files, 1);
+    status = check(&settings, files);
     if (status != EXIT_DONE)
         return status;
     report_progress("reading", 0);
-    status = input_read_depth(&input, files[0], &settings.depth);
+    if (settings.depth.file || settings.depth.full ||
+        (is_jpeg(settings.output) && settings.view == VIEW_NONE))
+        status = input_read(&input, files[0], &settings.depth);
+    else
+        status = input_read_depth(&input, files[0], &settings.depth);
     if (status == EXIT_DONE) {
         report_progress("writing", 0.7);
-        status = output_write_gray16(settings.output, input.disparity,
-                                     input.depth_from->depth.width,
-                                     input.depth_from->depth.height);
+        status = write_output(&settings, &input);
     }
     report_progress_end();
     if (status == EXIT_DONE)
@@ -86,10 +265,10 @@ static int run(int argc, char **argv)
 const struct command depth_command = {
     .name = "depth",
     .usage = "FILE -o OUT [options]",
-    .summary = "read the depth of a photo or a depth file, and write it as disparities",
-    .notes = "FILE is a photo that carries depth, or a depth map. Samples without a value are "
-             "filled from those around them, from the farther side where two surfaces meet, "
-             "and counted.",
+    .summary = "read, repair or upsample the depth of a photo, and write it",
+    .notes = "FILE is a photo that carries depth, a photo with --depth, or a depth map. Samples "
+             "without a value are filled from those around them, from the farther side where "
+             "two surfaces meet, and counted.",
     .options = options,
     .files_least = 1,
     .files_most = 1,

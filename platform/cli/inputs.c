@@ -14,9 +14,44 @@ int input_exit_code(int status)
     return status == REFOCUS_ERR_ARGUMENT ? EXIT_WRONG : EXIT_FAILED;
 }
 
+/* Flags of the names in --invalid; false when one is not known. */
+static bool find_codes(const char *names, uint32_t *flags)
+{
+    static const struct {
+        const char *name;
+        uint32_t flag;
+    } codes[] = {{"zero", REFOCUS_DEPTH_ZERO_IS_UNKNOWN},
+                 {"max", REFOCUS_DEPTH_MAX_IS_UNKNOWN},
+                 {"2047", REFOCUS_DEPTH_2047_IS_UNKNOWN}};
+
+    *flags = 0;
+    while (names && *names) {
+        const size_t length = strcspn(names, ",");
+        bool found = false;
+
+        for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
+            if (strlen(codes[i].name) == length && !strncmp(names, codes[i].name, length)) {
+                *flags |= codes[i].flag;
+                found = true;
+            }
+        }
+        if (!found)
+            return false;
+        names += length + (names[length] == ',');
+    }
+    return true;
+}
+
 int input_check_depth(const struct depth_settings *settings)
 {
     struct refocus_depth_map map;
+    uint32_t flags;
+
+    if (!find_codes(settings->invalid, &flags))
+        return report_failure(EXIT_WRONG, "--invalid",
+                              "'%s' is not known; give zero, max or 2047, or several with "
+                              "commas",
+                              settings->invalid);
 
     memset(&map, 0, sizeof map);
     map.sample = REFOCUS_SAMPLE_U16;
@@ -75,21 +110,69 @@ static int settle_embedded(struct input *input, const struct depth_settings *set
     return EXIT_DONE;
 }
 
-static int convert(struct input *input)
+/* Follow the photo's edges to its size, with filled samples counting least. */
+static int enlarge(struct input *input)
 {
-    const struct refocus_depth_map *map = &input->depth_from->depth;
+    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_disparity map =
+        refocus_disparity16(input->disparity, input->width, input->height,
+                            (ptrdiff_t)input->width * 2);
+    struct refocus_upsample_params params = refocus_upsample_params_default();
+    const uint64_t bytes = (uint64_t)photo->width * (uint64_t)photo->height * 2;
+    uint16_t *full = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
+    int status = REFOCUS_ERR_MEMORY;
+
+    params.confidence = input->confidence;
+    params.confidence_stride = input->width;
+    if (full)
+        status = refocus_upsample(photo, &map, &params, full, (ptrdiff_t)photo->width * 2);
+    if (status != REFOCUS_OK) {
+        free(full);
+        return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
+                              refocus_strerror(status));
+    }
+    free(input->disparity);
+    input->disparity = full;
+    input->width = photo->width;
+    input->height = photo->height;
+    return EXIT_DONE;
+}
+
+static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
+{
+    return input->photo && input->photo->image.plane[0] &&
+           (input->photo->image.width != input->width ||
+            input->photo->image.height != input->height) &&
+           (settings->full || input->report.unknown + input->report.specks > 0);
+}
+
+static int convert(struct input *input, const struct depth_settings *settings)
+{
+    struct refocus_depth_map settled = input->depth_from->depth, *map = &settled;
+    struct refocus_repair_params params = refocus_repair_params_default();
     const uint64_t bytes = (uint64_t)map->width * (uint64_t)map->height * sizeof(uint16_t);
     int status = REFOCUS_ERR_MEMORY;
+    uint32_t flags;
+
+    find_codes(settings->invalid, &flags);
+    map->flags |= flags;
 
     if (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m)
         return report_failure(EXIT_WRONG, input->depth_name,
                               "near %g m is not nearer than far %g m; give --near and --far",
                               map->near_m, map->far_m);
-    if (bytes <= SIZE_MAX)
+    if (bytes <= SIZE_MAX) {
         input->disparity = malloc((size_t)bytes);
-    if (input->disparity)
-        status = refocus_depth_to_disparity(map, input->disparity,
-                                            (ptrdiff_t)map->width * 2, &input->report);
+        input->confidence = malloc((size_t)bytes / 2);
+    }
+    input->width = map->width;
+    input->height = map->height;
+    params.speckle = (int32_t)settings->speckle;
+    params.confidence = input->confidence;
+    params.confidence_stride = map->width;
+    if (input->disparity && input->confidence)
+        status = refocus_depth_repair(map, &params, input->disparity,
+                                      (ptrdiff_t)map->width * 2, &input->report);
     if (status == REFOCUS_ERR_NO_DEPTH)
         return report_failure(EXIT_FAILED, input->depth_name,
                               "no sample of the depth map holds a value; give another "
@@ -97,7 +180,7 @@ static int convert(struct input *input)
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
                               refocus_strerror(status));
-    return EXIT_DONE;
+    return worth_enlarging(input, settings) ? enlarge(input) : EXIT_DONE;
 }
 
 static int read_side(struct input *input, const char *file,
@@ -142,7 +225,7 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
         input->depth_from = input->photo;
         status = settle_embedded(input, settings);
     }
-    return status == EXIT_DONE ? convert(input) : status;
+    return status == EXIT_DONE ? convert(input, settings) : status;
 }
 
 int input_read_depth(struct input *input, const char *file,
@@ -153,12 +236,13 @@ int input_read_depth(struct input *input, const char *file,
     memset(input, 0, sizeof *input);
     input->photo_name = file;
     status = read_side(input, file, settings);
-    return status == EXIT_DONE ? convert(input) : status;
+    return status == EXIT_DONE ? convert(input, settings) : status;
 }
 
 void input_free(struct input *input)
 {
     free(input->disparity);
+    free(input->confidence);
     refocus_photo_free(&input->side);
     refocus_photo_free(&input->photo);
 }

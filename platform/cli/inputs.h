@@ -11,6 +11,9 @@
 struct depth_settings {
     const char *file, *unit;
     double near_m, far_m; /* NAN: not given */
+    double speckle;       /* patches of fewer samples are removed; 0: none */
+    const char *invalid;  /* names of codes for "no value", or NULL */
+    bool full;            /* bring the depth to the photo's size */
 };
 
 struct lens_settings {
@@ -18,7 +21,7 @@ struct lens_settings {
     double blur, f_number, focal_length, sensor_width;
 };
 
-#define DEPTH_SETTINGS_NONE {NULL, NULL, NAN, NAN}
+#define DEPTH_SETTINGS_NONE {NULL, NULL, NAN, NAN, 0, NULL, false}
 #define LENS_SETTINGS_NONE {NAN, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN}
 
 /* Rows of tables of options, for settings with a member of the types above. */
@@ -54,6 +57,20 @@ struct lens_settings {
      .above = true,                                                                         \
      .greatest = INFINITY,                                                                  \
      .help = "metres of disparity 0, also 'inf'; default as for --near"}
+#define REPAIR_OPTIONS(type, member)                                                        \
+    {.kind = OPTION_TEXT,                                                                   \
+     .name = "--invalid",                                                                   \
+     .argument = "CODES",                                                                   \
+     .offset = offsetof(type, member.invalid),                                              \
+     .help = "samples that hold no value, with commas: zero, max (255 or 65535), 2047; "    \
+             "NaN and infinity never do, nor does zero in distances"},                      \
+    {.kind = OPTION_INTEGER,                                                                \
+     .name = "--speckle",                                                                   \
+     .argument = "N",                                                                       \
+     .offset = offsetof(type, member.speckle),                                              \
+     .least = 0,                                                                            \
+     .greatest = REFOCUS_MAX_SPECKLE,                                                       \
+     .help = "fill patches of fewer than N samples like holes; default 0: none"}
 #define FOCUS_OPTIONS(type, member)                                                         \
     {.kind = OPTION_NUMBER,                                                                 \
      .name = "--focus",                                                                     \
@@ -120,7 +137,9 @@ struct input {
     struct refocus_photo *photo;
     struct refocus_photo *side;             /* a depth file of its own, or NULL */
     const struct refocus_photo *depth_from; /* one of the two */
-    uint16_t *disparity;                    /* packed, of the size of the map */
+    uint16_t *disparity;                    /* packed */
+    uint8_t *confidence;                    /* of each sample of the map: 0 = filled */
+    int width, height;                      /* of the disparities: the map's, or the photo's */
     struct refocus_depth_report report;
 };
 

@@ -39,6 +39,7 @@ static const struct option options[] = {
                   "colour profile"),
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
+    REPAIR_OPTIONS(struct settings, depth),
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
@@ -203,9 +204,8 @@ static int render(struct engine *engine, struct input *input, struct refocus_ima
         return status;
 
     const struct refocus_image *photo = &input->photo->image;
-    const struct refocus_depth_map *map = &input->depth_from->depth;
     const struct refocus_disparity disparity = refocus_disparity16(
-        input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
+        input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
 
     report_progress("preparing", 0.15);
     status = engine_create(engine, &settings->engine, photo->width, photo->height, blur);

@@ -92,6 +92,8 @@ int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster);
 int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster,
                      int orientation);
 void rf_orient_point(double *x, double *y, int orientation);
+/* The orientation that undoes one. */
+int rf_orient_inverse(int orientation);
 
 /* load.c, store.c: whole files ---------------------------------------- */
 
@@ -253,6 +255,13 @@ int rf_xmp_extended(struct rf_read *read, struct rf_bytes jpeg, const char *guid
 
 /* base64.c: decode in place; (size_t)-1 when it is no base64. Blanks are skipped. */
 size_t rf_base64_decode(char *text, size_t length);
+
+/* md5.c: digest in capital hexadecimal digits and a NUL. */
+void rf_md5_hex(struct rf_bytes bytes, char hex[33]);
+
+/* depth_write.c: x:xmptk of our packets, and whether a standard packet is one. */
+#define RF_XMP_TOOL "librefocus"
+bool rf_xmp_is_ours(struct rf_bytes packet);
 
 /* Depth containers: fill read->samples, read->depth, info. */
 int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp);

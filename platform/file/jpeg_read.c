@@ -7,6 +7,7 @@ enum { MARKER_APP1 = 0xe1, MARKER_APP2 = 0xe2, ICC_CHUNKS = 255 };
 
 struct parts {
     struct rf_bytes exif, xmp, mpf;
+    struct rf_bytes older_xmp; /* what was there before our own packet was put in front */
     struct rf_bytes icc[ICC_CHUNKS];
     int icc_count; /* as the chunks say; -1: they disagree */
     size_t end;    /* the byte behind the main picture */
@@ -44,6 +45,10 @@ static void take_segment(struct parts *parts, int marker, struct rf_bytes segmen
                    rf_jpeg_after(segment, rf_jpeg_xmp_signature,
                                  sizeof rf_jpeg_xmp_signature, &rest)) {
             parts->xmp = rest;
+        } else if (parts->xmp.data && !parts->older_xmp.data && rf_xmp_is_ours(parts->xmp) &&
+                   rf_jpeg_after(segment, rf_jpeg_xmp_signature,
+                                 sizeof rf_jpeg_xmp_signature, &rest)) {
+            parts->older_xmp = rest;
         }
     } else if (marker == MARKER_APP2) {
         if (!parts->mpf.data && rf_jpeg_after(segment, rf_jpeg_mpf_signature,
@@ -140,6 +145,29 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     return status;
 }
 
+/* Of the packet before ours: the all-in-focus original, when its main picture is blurred. */
+static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
+                      struct rf_xmp *xmp)
+{
+    static const enum rf_xmp_key keys[] = {RF_XMP_IMAGE_MIME, RF_XMP_IMAGE_DATA};
+    struct rf_xmp older = {{NULL}, {0}};
+    bool found;
+    double blur;
+    int status = read_xmp(read, file, packet, &older);
+
+    if (status == REFOCUS_OK) {
+        status = rf_xmp_number(read, &older, RF_XMP_FOCUS_BLUR, "GFocus:BlurAtInfinity",
+                               &found, &blur);
+    }
+    for (int i = 0; status == REFOCUS_OK && !(found && blur == 0.0) && i < 2; i++) {
+        xmp->value[keys[i]] = older.value[keys[i]];
+        xmp->length[keys[i]] = older.length[keys[i]];
+        older.value[keys[i]] = NULL;
+    }
+    rf_xmp_free(&older);
+    return status;
+}
+
 /* Depth from the first container that holds some. */
 static int read_depth(struct rf_read *read, struct rf_bytes file,
                       const struct parts *parts)
@@ -150,6 +178,9 @@ static int read_depth(struct rf_read *read, struct rf_bytes file,
 
     if (parts->xmp.data) {
         status = read_xmp(read, main_picture, parts->xmp, &xmp);
+        if (status == REFOCUS_OK && parts->older_xmp.data) {
+            status = read_older(read, main_picture, parts->older_xmp, &xmp);
+        }
         if (status == REFOCUS_OK) {
             status = rf_read_gdepth(read, &xmp);
         }

@@ -103,3 +103,8 @@ void rf_orient_point(double *x, double *y, int orientation)
         break;
     }
 }
+
+int rf_orient_inverse(int orientation)
+{
+    return orientation == 6 ? 8 : orientation == 8 ? 6 : orientation;
+}

@@ -6,6 +6,12 @@
 #include <refocus/depth.h>
 #include <refocus/image.h>
 #include "depth/fill.h"
+#include "depth/speckle.h"
+
+enum {
+    KNOWN_FLAGS = REFOCUS_DEPTH_ZERO_IS_UNKNOWN | REFOCUS_DEPTH_MAX_IS_UNKNOWN |
+                  REFOCUS_DEPTH_2047_IS_UNKNOWN,
+};
 
 /* A sample is first brought to a number that is linear in d, its rank: the sample itself for
  * disparities, 1/z for distances. */
@@ -13,7 +19,7 @@ struct conversion {
     const struct refocus_depth_map *map;
     double rank_near, rank_far; /* of d = 1 and d = 0 */
     double scale;               /* from ranks to 65535 d; 0 for a map of one depth */
-    uint64_t unknown, clamped;
+    uint64_t unknown, clamped, specks;
 };
 
 static int sample_bytes(uint32_t sample)
@@ -48,7 +54,7 @@ static int check(const struct refocus_depth_map *map, const uint16_t *disparity,
         return REFOCUS_ERR_ARGUMENT;
 
     const int bytes = sample_bytes(map->sample);
-    if (bytes == 0 || (map->flags & ~(uint32_t)REFOCUS_DEPTH_ZERO_IS_UNKNOWN) != 0 ||
+    if (bytes == 0 || (map->flags & ~(uint32_t)KNOWN_FLAGS) != 0 ||
         map->stride == PTRDIFF_MIN || stride == PTRDIFF_MIN || stride % 2 != 0 ||
         !is_stride(map->stride, (int64_t)map->width * bytes, map->height) ||
         !is_stride(stride, (int64_t)map->width * 2, map->height))
@@ -70,6 +76,18 @@ static int check(const struct refocus_depth_map *map, const uint16_t *disparity,
                    ? REFOCUS_OK
                    : REFOCUS_ERR_ARGUMENT;
     return REFOCUS_ERR_ARGUMENT;
+}
+
+/* The codes that sensors have for "no value". */
+static bool is_code(const struct refocus_depth_map *map, double v)
+{
+    const double most = map->sample == REFOCUS_SAMPLE_U8    ? 255
+                        : map->sample == REFOCUS_SAMPLE_U16 ? 65535
+                                                            : NAN;
+
+    return (v == 0 && (map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN)) ||
+           (v == most && (map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN)) ||
+           (v == 2047 && (map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN));
 }
 
 /* Rank of sample (x, y); NAN when it holds no value. Samples lie at any address. */
@@ -94,7 +112,7 @@ static double rank_of(const struct refocus_depth_map *map, const char *row, int 
         break;
     }
     }
-    if (!isfinite(v) || (v == 0 && (map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN)))
+    if (!isfinite(v) || (map->flags && is_code(map, v)))
         return NAN;
     if (map->meaning == REFOCUS_DEPTH_DISPARITY)
         return v;
@@ -210,37 +228,96 @@ static void fill_report(const struct conversion *conversion,
     }
     report->unknown = conversion->unknown;
     report->clamped = conversion->clamped;
+    report->specks = conversion->specks;
+}
+
+/* Memory for the state of samples, and with @p specks for finding patches. */
+static int take_memory(const struct refocus_depth_map *map, bool specks, uint8_t **state,
+                       uint32_t **work)
+{
+    const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
+
+    if (samples > SIZE_MAX / sizeof **work || (specks && samples > INT32_MAX))
+        return REFOCUS_ERR_MEMORY;
+    *state = malloc((size_t)samples);
+    *work = specks && *state ? malloc((size_t)samples * sizeof **work) : NULL;
+    if (*state && (*work || !specks))
+        return REFOCUS_OK;
+    free(*state);
+    *state = NULL;
+    return REFOCUS_ERR_MEMORY;
+}
+
+static void write_confidence(const struct refocus_depth_map *map, const uint8_t *state,
+                             const struct refocus_repair_params *params)
+{
+    for (int y = 0; y < map->height; y++) {
+        uint8_t *row = params->confidence + y * params->confidence_stride;
+
+        for (int x = 0; x < map->width; x++)
+            row[x] = !state || *state++ == RF_SAMPLE_KNOWN ? 255 : 0;
+    }
+}
+
+static bool good_repair(const struct refocus_repair_params *params,
+                        const struct refocus_depth_map *map)
+{
+    return params && params->struct_size == sizeof *params && params->speckle >= 0 &&
+           params->speckle <= REFOCUS_MAX_SPECKLE &&
+           (!params->confidence || is_stride(params->confidence_stride, map->width,
+                                             map->height));
+}
+
+int refocus_depth_repair(const struct refocus_depth_map *map,
+                         const struct refocus_repair_params *params, uint16_t *disparity,
+                         ptrdiff_t stride, struct refocus_depth_report *report)
+{
+    struct conversion conversion = {.map = map};
+    uint8_t *state = NULL;
+    uint32_t *work = NULL;
+    int status;
+
+    status = check(map, disparity, stride);
+    if (status == REFOCUS_OK && !good_repair(params, map))
+        status = REFOCUS_ERR_ARGUMENT;
+    if (status == REFOCUS_OK)
+        status = measure(&conversion);
+    if (status != REFOCUS_OK)
+        return status;
+    choose_range(&conversion);
+    /* A map of one depth is all 0, holes and all. */
+    if ((conversion.unknown > 0 && (conversion.scale != 0 || params->confidence)) ||
+        params->speckle > 1) {
+        status = take_memory(map, params->speckle > 1, &state, &work);
+        if (status != REFOCUS_OK)
+            return status;
+    }
+    convert(&conversion, disparity, stride, state);
+    if (work)
+        conversion.specks = rf_remove_specks(disparity, stride, map->width, map->height,
+                                             params->speckle, state, work);
+    /* All of it specks: then there is nothing to tell them by. */
+    if (conversion.specks + conversion.unknown ==
+        (uint64_t)map->width * (uint64_t)map->height) {
+        conversion.specks = 0;
+        conversion.clamped = 0;
+        convert(&conversion, disparity, stride, state);
+    }
+    if (params->confidence)
+        write_confidence(map, state, params);
+    if (state && conversion.scale != 0)
+        rf_fill_holes(disparity, stride, map->width, map->height, state);
+    free(work);
+    free(state);
+    if (report)
+        fill_report(&conversion, report);
+    return REFOCUS_OK;
 }
 
 int refocus_depth_to_disparity(const struct refocus_depth_map *map, uint16_t *disparity,
                                ptrdiff_t stride, struct refocus_depth_report *report)
 {
-    struct conversion conversion = {.map = map};
-    uint8_t *state = NULL;
-    int status;
+    const struct refocus_repair_params params = refocus_repair_params_default();
 
-    status = check(map, disparity, stride);
-    if (status != REFOCUS_OK)
-        return status;
-    status = measure(&conversion);
-    if (status != REFOCUS_OK)
-        return status;
-    choose_range(&conversion);
-
-    /* A map of one depth is all 0, holes and all. */
-    if (conversion.unknown > 0 && conversion.scale != 0) {
-        const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
-        if (samples > SIZE_MAX)
-            return REFOCUS_ERR_MEMORY;
-        state = malloc((size_t)samples);
-        if (!state)
-            return REFOCUS_ERR_MEMORY;
-    }
-    convert(&conversion, disparity, stride, state);
-    if (state)
-        rf_fill_holes(disparity, stride, map->width, map->height, state);
-    free(state);
-    if (report)
-        fill_report(&conversion, report);
-    return REFOCUS_OK;
+    return refocus_depth_repair(map, &params, disparity, stride, report);
 }

@@ -26,10 +26,41 @@ static void disparity_band(void *context, int band, int worker)
     const struct job *job = context;
 
     (void)worker;
-    if (job->map->width == job->r->width && job->map->height == job->r->height)
-        rf_disparity_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
-    else
-        rf_upsample_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
+    rf_disparity_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
+}
+
+static uint16_t *scratch_of(void *context, int worker)
+{
+    return rf_scratch(context, worker);
+}
+
+/* The planes of the background layer are free until something is rendered. */
+static void upsample(struct refocus_renderer *r, const struct job *job)
+{
+    const ptrdiff_t row = r->width + RF_BATCH_SPARE;
+    struct rf_upsampler up = {
+        .kernels = &r->kernels,
+        .photo = job->photo,
+        .map = job->map,
+        .columns = rf_upsample_samples(job->map->width, r->width),
+        .rows = rf_upsample_samples(job->map->height, r->height),
+        .coarse = r->behind.light[0],
+        .coarse_stride = r->stride,
+        .wide = r->behind.light[1],
+        .wide_stride = r->stride,
+        .raw = r->behind.light[2],
+        .raw_stride = r->stride,
+        .across = r->taps,
+        .down = r->taps + r->width,
+        .column = r->column + 2,
+        .near_by = {r->near_by, r->near_by + row, r->near_by + 2 * row, r->near_by + 3 * row},
+        .scratch = scratch_of,
+        .context = r,
+        .out = r->disparity,
+        .out_stride = r->stride,
+    };
+
+    rf_upsample(&up, &r->pool);
 }
 
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
@@ -51,7 +82,10 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     r->levels = rf_pyramid(r->level, r->width, r->height);
     rf_run_begin(r);
     rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
-    rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
+    if (disparity->width == r->width && disparity->height == r->height)
+        rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
+    else
+        upsample(r, &job);
     if (!rf_cancelled(r))
         rf_find_rims(r);
     if (rf_run_end(r))

@@ -266,7 +266,7 @@ static void test_bad_arguments(void **state)
     bad[n++].sample = 4;
     bad[n++].meaning = 0;
     bad[n++].meaning = 3;
-    bad[n++].flags = 2;
+    bad[n++].flags = 8;
     bad[n++].metres_per_unit = 0;
     bad[n++].metres_per_unit = NAN;
     bad[n++].metres_at_zero = INFINITY;

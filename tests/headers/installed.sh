@@ -10,7 +10,8 @@ mkdir -p "$work/src"
 DESTDIR=$work/dest meson install -C "$build" --no-rebuild >"$work/install.log"
 
 pc=$(find "$work/dest" -name refocus.pc)
-export PKG_CONFIG_LIBDIR="${pc%/*}" PKG_CONFIG_SYSROOT_DIR="$work/dest"
+PKG_CONFIG_LIBDIR=${pc%/*}:$(pkg-config --variable pc_path pkg-config)
+export PKG_CONFIG_LIBDIR PKG_CONFIG_SYSROOT_DIR="$work/dest"
 export PKG_CONFIG_ALLOW_SYSTEM_CFLAGS=1 PKG_CONFIG_ALLOW_SYSTEM_LIBS=1
 LD_LIBRARY_PATH=$(pkg-config --variable=libdir refocus)
 case $LD_LIBRARY_PATH in "$work"/*) ;; *) LD_LIBRARY_PATH=$work/dest$LD_LIBRARY_PATH ;; esac
@@ -24,9 +25,11 @@ cp "$source"/examples/*.c "$work/src"
 cd "$work"
 for program in src/*.c; do
     name=$(basename "$program" .c)
-    # shellcheck disable=SC2046
+    packages=refocus
+    ! grep -q '<refocus/platform/' "$program" || packages='refocus refocus-file refocus-capture'
+    # shellcheck disable=SC2046,SC2086
     "$@" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -pedantic -Werror -o "$name" \
-        "$program" $(pkg-config --cflags --libs refocus) -lm -pthread
+        "$program" $(pkg-config --cflags --libs $packages) -lm -pthread
     "./$name"
     echo "ok $name"
 done

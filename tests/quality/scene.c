@@ -29,6 +29,8 @@ static int read_views(struct quality_scene *scene, const char *path)
         fprintf(stderr, "refocus-quality: %s:%d: %s\n", path, error.line, error.text);
         return -1;
     }
+    scene->near_m = json_number_value(json_object_get(root, "z0"));
+    scene->far_m = json_number_value(json_object_get(root, "z1"));
     list = json_object_get(root, "gt");
     if (json_array_size(list) < 1 || json_array_size(list) > QUALITY_MAX_VIEWS)
         goto done;

@@ -19,6 +19,7 @@ struct quality_scene {
     char folder[1024];
     const char *name; /* last part of folder */
     int width, height;
+    double near_m, far_m; /* z0 and z1; 0 when not given */
     uint8_t *photo;      /* R G B */
     uint16_t *disparity;
     int views;           /* ordered by K, blades, df */

@@ -9,6 +9,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 #include <refocus/depth.h>
 #include <refocus/image.h>
 #include <refocus/status.h>
@@ -171,6 +172,45 @@ REFOCUS_API int refocus_image_write(const char *path, const struct refocus_image
 REFOCUS_API int refocus_gray16_write(const char *path, const uint16_t *samples, int width,
                                      int height, ptrdiff_t stride,
                                      struct refocus_reason *reason);
+
+/** Depth to be saved in a photo. Start from refocus_depth_write_default(). */
+struct refocus_depth_write {
+    uint32_t struct_size;      /**< sizeof(struct refocus_depth_write) */
+    int32_t width;             /**< samples, 1 to REFOCUS_MAX_SIDE */
+    int32_t height;            /**< samples, 1 to REFOCUS_MAX_SIDE */
+    const uint16_t *disparity; /**< of the upright photo: 65535 nearest, 0 farthest */
+    ptrdiff_t stride;          /**< bytes from a row to the next; even; may be negative */
+    double near_m, far_m;      /**< z0 and z1 in metres; 0 = not known */
+    double focus_x, focus_y;   /**< where the focus is, 0..1 of the upright photo; -1: none */
+    double focus_distance;     /**< metres; 0 = not known */
+    double blur_at_infinity;   /**< radius of its blur, of the larger side; 0 = not known */
+};
+
+static inline struct refocus_depth_write refocus_depth_write_default(void)
+{
+    struct refocus_depth_write depth;
+
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    depth.focus_x = depth.focus_y = -1;
+    return depth;
+}
+
+/**
+ * Save a JPEG photo with depth in it, as GDepth: a standard XMP packet with the range and the
+ * focus, and an extended one with the depth as a 16-bit PNG. Every segment of the original
+ * stays byte for byte, also an XMP packet that is there already; what an earlier call put
+ * in is replaced, so that writing the same depth again gives the same file.
+ *
+ * @param path      as for refocus_image_write(): whole or not at all
+ * @param original  a JPEG; may be @p path
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (the original is no JPEG),
+ *         REFOCUS_ERR_FORMAT (it is damaged), REFOCUS_ERR_SIZE, REFOCUS_ERR_IO,
+ *         REFOCUS_ERR_MEMORY. Thread-safe.
+ */
+REFOCUS_API int refocus_photo_write_depth(const char *path, const char *original,
+                                          const struct refocus_depth_write *depth,
+                                          struct refocus_reason *reason);
 
 /** Formats of this build, e.g. "JPEG PNG HEIC PPM PGM PFM". Thread-safe. */
 REFOCUS_API const char *refocus_file_formats(void);

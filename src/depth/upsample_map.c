@@ -1,0 +1,126 @@
+/* upsample_map.c: the upsampler with memory and threads of its own. */
+#include <refocus/depth.h>
+
+#include <stdlib.h>
+
+#include "depth/upsample.h"
+#include "planes/format.h"
+#include "renderer/layout.h"
+#include "renderer/params.h"
+#include "support/arena.h"
+
+struct scratch {
+    uint16_t *rows;
+    size_t size;
+};
+
+static uint16_t *scratch_of(void *context, int worker)
+{
+    const struct scratch *scratch = context;
+
+    return scratch->rows + (size_t)worker * scratch->size;
+}
+
+/* Sets the pointers, or with arena->base == NULL only counts. */
+static void lay_out(struct rf_upsampler *up, struct scratch *scratch, int threads,
+                    struct rf_arena *arena)
+{
+    const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
+    const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
+
+    up->coarse_stride = up->columns + 4;
+    up->coarse = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
+    up->wide_stride = up->photo->width;
+    up->wide = rf_arena_take(arena, width * rows, 2);
+    up->raw_stride = up->photo->width + 2;
+    up->raw = rf_arena_take(arena, (width + 2) * height, 2);
+    up->across = rf_arena_take(arena, width, sizeof *up->across);
+    up->down = rf_arena_take(arena, height, sizeof *up->down);
+    for (int i = 0; i < RF_TAPS; i++)
+        up->near_by[i] = rf_arena_take(arena, width + RF_BATCH_SPARE, 2);
+    up->column = rf_arena_take(arena, columns + 4, sizeof *up->column);
+    scratch->size = 2 * (size_t)(columns + 8);
+    scratch->rows = rf_arena_take(arena, (uint64_t)threads * scratch->size, 2);
+    if (arena->base) {
+        up->coarse += 2 * up->coarse_stride + 2;
+        up->raw += 1;
+        up->column += 2;
+    }
+}
+
+static void copy_map(const struct refocus_disparity *map, uint16_t *out, ptrdiff_t stride)
+{
+    for (int y = 0; y < map->height; y++) {
+        const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
+        uint16_t *to = (uint16_t *)((char *)out + y * stride);
+
+        for (int x = 0; x < map->width; x++)
+            to[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
+    }
+}
+
+static bool good_params(const struct refocus_upsample_params *params,
+                        const struct refocus_disparity *map)
+{
+    return params->struct_size == sizeof *params && params->threads >= 0 &&
+           params->threads <= RF_MAX_THREADS && params->cpu <= REFOCUS_CPU_AVX2 &&
+           (!params->confidence ||
+            rf_good_stride(params->confidence_stride, map->width, map->height));
+}
+
+int refocus_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
+                     const struct refocus_upsample_params *params, uint16_t *out,
+                     ptrdiff_t stride)
+{
+    struct refocus_renderer_params threads = refocus_renderer_params_default(1, 1, 0);
+    struct rf_arena arena = {NULL, RF_ARENA_ALIGN};
+    struct rf_kernels kernels;
+    struct scratch scratch;
+    struct rf_pool pool;
+    atomic_int run;
+    void *block;
+    int status;
+
+    if (!rf_good_image(photo) || !rf_good_map(map) || !params || !good_params(params, map) ||
+        !out || ((uintptr_t)out & 1) || (stride & 1) ||
+        !rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
+        return REFOCUS_ERR_ARGUMENT;
+    threads.threads = params->threads;
+    threads.cpu = params->cpu;
+    if (!rf_kernels_select(&kernels, &threads.cpu))
+        return REFOCUS_ERR_UNSUPPORTED;
+    if (map->width == photo->width && map->height == photo->height) {
+        copy_map(map, out, stride);
+        return REFOCUS_OK;
+    }
+    struct rf_upsampler up = {
+        .kernels = &kernels,
+        .photo = photo,
+        .map = map,
+        .confidence = params->confidence,
+        .confidence_stride = params->confidence_stride,
+        .columns = rf_upsample_samples(map->width, photo->width),
+        .rows = rf_upsample_samples(map->height, photo->height),
+        .scratch = scratch_of,
+        .context = &scratch,
+        .out = out,
+        .out_stride = stride / 2,
+    };
+    lay_out(&up, &scratch, rf_threads_for(&threads), &arena);
+    if (arena.used > PTRDIFF_MAX)
+        return REFOCUS_ERR_SIZE;
+    block = malloc((size_t)arena.used);
+    if (!block)
+        return REFOCUS_ERR_MEMORY;
+    arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
+    arena.used = 0;
+    lay_out(&up, &scratch, rf_threads_for(&threads), &arena);
+    atomic_init(&run, RF_RUN_RUNNING);
+    status = rf_pool_start(&pool, rf_threads_for(&threads), &run);
+    if (status == REFOCUS_OK) {
+        rf_upsample(&up, &pool);
+        rf_pool_end(&pool);
+    }
+    free(block);
+    return status;
+}
