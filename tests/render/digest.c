@@ -74,6 +74,8 @@ static const struct view {
 /* All of them, or those that differ most and take little time at any K. */
 static bool takes(const struct view *view, const struct style *style)
 {
+    if (style->method > REFOCUS_METHOD_RAYTRACE)
+        return view->all_styles && view->blur < 10; /* the others take long */
     return view->all_styles || (style->rays != REFOCUS_RAYS_FULL && style->rays <= 64 &&
                                 style->rays >= 32);
 }
@@ -131,6 +133,7 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
 
     limits.cpu = cpu;
     limits.threads = threads;
+    limits.methods = REFOCUS_METHODS_ALL;
     status = refocus_renderer_create(&renderer, &limits);
     if (status != REFOCUS_ERR_UNSUPPORTED) {
         assert_int_equal(status, REFOCUS_OK);
