@@ -74,13 +74,10 @@ static const struct view {
 /* All of them, or those that take little time at any K; of the lesser methods one in four. */
 static bool takes(const struct view *view, const struct style *style)
 {
-    const int turn = (int)(view - views) + (int)(style - styles);
-
-    if (view->all_styles)
-        return true;
-    return style->rays >= 32 && style->rays <= 64 &&
-           (style->method <= REFOCUS_METHOD_RAYTRACE ||
-            (view->blur <= 20 && turn % 4 == 0));
+    if (style->method > REFOCUS_METHOD_RAYTRACE)
+        return view->all_styles && view->blur < 10; /* the others take long */
+    return view->all_styles || (style->rays != REFOCUS_RAYS_FULL && style->rays <= 64 &&
+                                style->rays >= 32);
 }
 
 enum { MOST_BYTES = 4 * 100 * 100 };
@@ -137,7 +134,6 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
     limits.methods = REFOCUS_METHODS_ALL;
     limits.cpu = cpu;
     limits.threads = threads;
-    limits.methods = REFOCUS_METHODS_ALL;
     status = refocus_renderer_create(&renderer, &limits);
     if (status != REFOCUS_ERR_UNSUPPORTED) {
         assert_int_equal(status, REFOCUS_OK);
