@@ -32,12 +32,36 @@ cv::Mat match(const cv::Mat &a, const cv::Mat &b, int least, int count)
     return out;
 }
 
+/* Patches too small to be seen by both cameras by anything but chance: those in occlusions, from
+ * which filling would spread. Returns the share that is left. */
+float remove_specks(cv::Mat &disparity)
+{
+    const int least = std::max(16, disparity.rows * disparity.cols / 4000);
+    const short gone = -32768;
+    cv::Mat fixed(disparity.size(), CV_16S);
+    long left = 0;
+
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++) {
+            const float d = disparity.at<float>(y, x);
+
+            fixed.at<short>(y, x) = std::isnan(d) ? gone : cv::saturate_cast<short>(d * 16);
+        }
+    cv::filterSpeckles(fixed, gone, least, 16);
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++) {
+            if (fixed.at<short>(y, x) == gone)
+                disparity.at<float>(y, x) = none;
+            else
+                left++;
+        }
+    return (float)left / (float)disparity.total();
+}
+
 /* Both ways; what disagrees by more than a pixel is taken out. Returns the share that is left. */
 float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count, cv::Mat &out)
 {
     cv::Mat flipped_left, flipped_right, back;
-    long agree = 0;
-
     out = match(left, right, least, count);
     cv::flip(left, flipped_left, 1);
     cv::flip(right, flipped_right, 1);
@@ -51,11 +75,9 @@ float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count
 
             if (at < 0 || at >= out.cols || !(std::fabs(other[at] - row[x]) <= 1))
                 row[x] = none;
-            else
-                agree++;
         }
     }
-    return (float)agree / (float)out.total();
+    return remove_specks(out);
 }
 
 cv::Mat shifted(const cv::Mat &image, int down)
