@@ -108,7 +108,7 @@ clang_stage() {
 minimal_stage() {
     say 'every optional feature off: the core alone'
     CC=gcc CXX=g++ build minimal --buildtype=release -Djpeg=disabled -Dpng=disabled -Dxmp=disabled \
-        -Dheic=disabled -Dtools=disabled -Dv4l2=disabled -Dlibcamera=disabled || return
+        -Dheic=disabled -Dtools=disabled -Dv4l2=disabled -Dlibcamera=disabled -Dopencv=disabled || return
     run minimal
     same_bytes minimal
 }
