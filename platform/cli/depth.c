@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "inputs.h"
 #include "interrupt.h"
+#include "made.h"
 #include "outputs.h"
 #include "report.h"
 
@@ -14,8 +15,9 @@ enum view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };
 struct settings {
     struct depth_settings depth;
     double focus_at[2], blur;
-    const char *output;
-    int view;
+    const char *output, *model;
+    int view, preset;
+    bool side_by_side;
     bool json;
 };
 
@@ -48,6 +50,21 @@ static const struct option options[] = {
      .name = "--full",
      .offset = offsetof(struct settings, depth.full),
      .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_TEXT,
+     .name = "--estimate",
+     .argument = "MODEL.onnx",
+     .offset = offsetof(struct settings, model),
+     .help = "depth of the one photo, by a network"},
+    {.kind = OPTION_CHOICE,
+     .name = "--preset",
+     .argument = "NAME",
+     .offset = offsetof(struct settings, preset),
+     .choice = made_preset,
+     .help = "which network it is: size and range of its input"},
+    {.kind = OPTION_FLAG,
+     .name = "--side-by-side",
+     .offset = offsetof(struct settings, side_by_side),
+     .help = "FILE holds both pictures of a stereo pair, the left one left"},
     {.kind = OPTION_CHOICE,
      .name = "--view",
      .argument = "WHAT",
@@ -106,6 +123,8 @@ static int print_report(const struct settings *settings, const struct input *inp
     if (settings->depth.speckle > 1)
         printf("specks   %llu samples in small patches, filled too, %.1f %%\n",
                (unsigned long long)report->specks, percent(report->specks, map));
+    for (int i = 0; i < input->made.info.evidence_count; i++)
+        printf("because  %s\n", input->made.info.evidence[i]);
     printf("clamped  %llu samples beyond the range, %.1f %%\n",
            (unsigned long long)report->clamped, percent(report->clamped, map));
     return report_end_output();
@@ -217,15 +236,30 @@ static int write_output(const struct settings *settings, const struct input *inp
                                input->height);
 }
 
+static bool is_made(const struct settings *settings, const char *const *files)
+{
+    return files[1] || settings->side_by_side || settings->model;
+}
+
 static int check(const struct settings *settings, const char *const *files)
 {
     static const char *const endings[] = {".png", ".pgm", ".pfm", ".jpg", ".jpeg", NULL};
     static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
-    const char *const inputs[] = {files[0], settings->depth.file};
+    const char *const inputs[] = {files[0], settings->depth.file, files[1], settings->model};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
-        status = output_check(settings->output, settings->view ? views : endings, inputs, 2);
+        status = output_check(settings->output, settings->view ? views : endings, inputs, 4);
+    if (status == EXIT_DONE &&
+        (files[1] != NULL) + settings->side_by_side + (settings->model != NULL) +
+                (settings->depth.file != NULL) > 1)
+        return report_failure(EXIT_WRONG, files[0],
+                              "its depth is given twice; give one of RIGHT, --side-by-side, "
+                              "--estimate and --depth");
+    if (status == EXIT_DONE && is_made(settings, files) && is_jpeg(settings->output) &&
+        settings->side_by_side && settings->view == VIEW_NONE)
+        return report_failure(EXIT_WRONG, settings->output,
+                              "depth of half a picture does not fit the file; give a .png");
     if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
         return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
     return status;
@@ -236,7 +270,7 @@ static int run(int argc, char **argv)
     struct settings settings = {
         .depth = DEPTH_SETTINGS_NONE, .focus_at = {NAN, NAN}, .blur = NAN};
     struct input input = {0};
-    const char *files[2];
+    const char *files[3] = {NULL};
     int status;
 
     status = options_parse(&depth_command, argc, argv, &settings, files);
@@ -246,7 +280,12 @@ static int run(int argc, char **argv)
     if (status != EXIT_DONE)
         return status;
     report_progress("reading", 0);
-    if (settings.depth.file || settings.depth.full ||
+    if (settings.model)
+        status = input_read_estimate(&input, files[0], settings.model, settings.preset,
+                                     &settings.depth);
+    else if (is_made(&settings, files))
+        status = input_read_stereo(&input, files[0], files[1], &settings.depth);
+    else if (settings.depth.file || settings.depth.full ||
         (is_jpeg(settings.output) && settings.view == VIEW_NONE))
         status = input_read(&input, files[0], &settings.depth);
     else
@@ -264,13 +303,14 @@ static int run(int argc, char **argv)
 
 const struct command depth_command = {
     .name = "depth",
-    .usage = "FILE -o OUT [options]",
-    .summary = "read, repair or upsample the depth of a photo, and write it",
-    .notes = "FILE is a photo that carries depth, a photo with --depth, or a depth map. Samples "
+    .usage = "FILE [RIGHT] -o OUT [options]",
+    .summary = "make, read, repair or upsample the depth of a photo, and write it",
+    .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, the left "
+             "picture of a stereo pair, or any photo with --estimate. Samples "
              "without a value are filled from those around them, from the farther side where "
              "two surfaces meet, and counted.",
     .options = options,
     .files_least = 1,
-    .files_most = 1,
+    .files_most = 2,
     .run = run,
 };

@@ -146,7 +146,7 @@ static bool worth_enlarging(const struct input *input, const struct depth_settin
            (settings->full || input->report.unknown + input->report.specks > 0);
 }
 
-static int convert(struct input *input, const struct depth_settings *settings)
+int input_convert(struct input *input, const struct depth_settings *settings)
 {
     struct refocus_depth_map settled = input->depth_from->depth, *map = &settled;
     struct refocus_repair_params params = refocus_repair_params_default();
@@ -225,7 +225,7 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
         input->depth_from = input->photo;
         status = settle_embedded(input, settings);
     }
-    return status == EXIT_DONE ? convert(input, settings) : status;
+    return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
 int input_read_depth(struct input *input, const char *file,
@@ -236,13 +236,14 @@ int input_read_depth(struct input *input, const char *file,
     memset(input, 0, sizeof *input);
     input->photo_name = file;
     status = read_side(input, file, settings);
-    return status == EXIT_DONE ? convert(input, settings) : status;
+    return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
 void input_free(struct input *input)
 {
     free(input->disparity);
     free(input->confidence);
+    free(input->made_samples);
     refocus_photo_free(&input->side);
     refocus_photo_free(&input->photo);
 }

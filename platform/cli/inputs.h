@@ -137,6 +137,8 @@ struct input {
     struct refocus_photo *photo;
     struct refocus_photo *side;             /* a depth file of its own, or NULL */
     const struct refocus_photo *depth_from; /* one of the two */
+    struct refocus_photo made;              /* its depth: made of pictures, samples below */
+    float *made_samples;
     uint16_t *disparity;                    /* packed */
     uint8_t *confidence;                    /* of each sample of the map: 0 = filled */
     int width, height;                      /* of the disparities: the map's, or the photo's */
@@ -153,6 +155,14 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
 /* Read a depth file, or the depth of a photo; input->photo is NULL afterwards. */
 int input_read_depth(struct input *input, const char *file,
                      const struct depth_settings *settings);
+/* Read a photo, and make depth: of it and the right one of a stereo pair, NULL when they lie
+ * side by side in one; or by a network. */
+int input_read_stereo(struct input *input, const char *left, const char *right,
+                      const struct depth_settings *settings);
+int input_read_estimate(struct input *input, const char *photo, const char *model, int preset,
+                        const struct depth_settings *settings);
+/* The last steps of both: input->made is of the photo. */
+int input_convert(struct input *input, const struct depth_settings *settings);
 void input_free(struct input *input);
 
 /* K of the settings. */

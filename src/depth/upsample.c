@@ -11,12 +11,15 @@ enum {
     RUN = 8,              /* pixels that are collected together */
 };
 
-/* Quadratic fall-off over two samples, (2 - |t|)^2, for means; t in Q8. */
+/* Cubic B-spline, for means: it smooths noise, and keeps slopes. t in Q8, result in Q24 / 6. */
 static int mean_weight(int t)
 {
-    const int left = 512 - abs(t);
+    const int64_t a = abs(t), left = 512 - a;
 
-    return left <= 0 ? 0 : left * left;
+    if (a >= 512)
+        return 0;
+    return (int)(a >= 256 ? left * left * left
+                          : 4 * (1 << 24) - 6 * 256 * a * a + 3 * a * a * a);
 }
 
 /* (1 - (t / 2.6)^2)^2 sqrt(1/8) in Q16 for the choice: wider, or it would be all nearness.

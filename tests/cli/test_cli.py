@@ -112,7 +112,7 @@ class Usage(Case):
                       '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
                       '-h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--view --focus-at --blur --json -h --help',
+                     '--estimate --preset --side-by-side --view --focus-at --blur --json -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-distance --blur '
@@ -572,6 +572,19 @@ class DepthAndInfo(Case):
         width, height, bits, channels, rows = pictures.read_png('c.png')
         self.assertEqual((width, height, bits, channels), (W, H, 8, 3))
         self.assertEqual(sum(row.count(b'\0\0\0') for row in rows), less['unknown'])
+
+    def test_depth_of_pictures(self):
+        self.fails(1, re.compile(r'^refocus: depth.pgm: (the two pictures do not match|too few '
+                                 r'pixels|it is a depth map, not a photo|the pictures are too '
+                                 r'small|this build has no OpenCV)'),
+                   'depth', 'photo.ppm', 'depth.pgm', '-o', 'd.png')
+        self.fails(2, 'photo.ppm: its depth is given twice; give one of RIGHT, --side-by-side, '
+                   '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
+                   '--depth', 'depth.pgm')
+        self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '
+                                 r'build has no OpenCV)'),
+                   'depth', 'photo.ppm', '-o', 'd.png', '--estimate', 'no.onnx')
+        self.assertFalse(os.path.exists('d.png'))
 
     def test_depth_into_jpeg(self):
         self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'p.jpg', '--blur', '0')

@@ -21,6 +21,7 @@ enum { EDGE = 65535 / 20 }; /* a step of one pixel of blur at K = 20 */
 struct coarse {
     int width, height;
     uint16_t *disparity;
+    uint8_t *confidence; /* 0 where the sensor saw nothing, or NULL */
 };
 
 typedef int upsample_fn(const struct quality_scene *scene, const struct coarse *coarse,
@@ -102,15 +103,28 @@ static int joint_bilateral(const struct quality_scene *scene, const struct coars
     return 0;
 }
 
-static int cluster(const struct quality_scene *scene, const struct coarse *c, uint16_t *out)
+static int upsample(const struct quality_scene *scene, const struct coarse *c,
+                    const uint8_t *confidence, uint16_t *out)
 {
     const struct refocus_image photo = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, scene->photo, scene->width, scene->height, 3 * scene->width);
     const struct refocus_disparity map =
         refocus_disparity16(c->disparity, c->width, c->height, 2 * c->width);
-    const struct refocus_upsample_params params = refocus_upsample_params_default();
+    struct refocus_upsample_params params = refocus_upsample_params_default();
 
+    params.confidence = confidence;
+    params.confidence_stride = c->width;
     return refocus_upsample(&photo, &map, &params, out, 2 * (ptrdiff_t)scene->width);
+}
+
+static int cluster(const struct quality_scene *scene, const struct coarse *c, uint16_t *out)
+{
+    return upsample(scene, c, NULL, out);
+}
+
+static int trusting(const struct quality_scene *scene, const struct coarse *c, uint16_t *out)
+{
+    return upsample(scene, c, c->confidence, out);
 }
 
 static const struct {
@@ -120,7 +134,8 @@ static const struct {
             {"nearest", nearest},
             {"bilinear", bilinear},
             {"joint bilateral mean", joint_bilateral},
-            {"refocus_upsample", cluster}};
+            {"refocus_upsample, holes filled", cluster},
+            {"refocus_upsample, holes as confidence", trusting}};
 
 /* Pixels on either side of a step. */
 static void find_edges(const uint16_t *d, int w, int h, uint8_t *edge)
@@ -253,6 +268,7 @@ static int read_coarse(const struct quality_scene *scene, struct coarse *coarse)
                                     .metres_per_unit = 0.001,
                                     .near_m = scene->near_m,
                                     .far_m = scene->far_m};
+    struct refocus_repair_params params = refocus_repair_params_default();
     int status;
 
     snprintf(path, sizeof path, "%s/depth_lowres.png", scene->folder);
@@ -263,9 +279,12 @@ static int read_coarse(const struct quality_scene *scene, struct coarse *coarse)
     map.height = coarse->height;
     map.stride = 2 * coarse->width;
     coarse->disparity = malloc((size_t)coarse->width * (size_t)coarse->height * 2);
-    status = coarse->disparity ? refocus_depth_to_disparity(&map, coarse->disparity, map.stride,
-                                                            NULL)
-                               : -1;
+    coarse->confidence = malloc((size_t)coarse->width * (size_t)coarse->height);
+    params.confidence = coarse->confidence;
+    params.confidence_stride = coarse->width;
+    status = coarse->disparity && coarse->confidence
+                 ? refocus_depth_repair(&map, &params, coarse->disparity, map.stride, NULL)
+                 : -1;
     free(mm);
     return status;
 }
@@ -273,7 +292,7 @@ static int read_coarse(const struct quality_scene *scene, struct coarse *coarse)
 static int score_scene(const char *folder, const char *pictures)
 {
     struct quality_scene scene;
-    struct coarse coarse = {0, 0, NULL};
+    struct coarse coarse = {0, 0, NULL, NULL};
     uint16_t *d;
     double exact_psnr = 0, exact_edge = 0;
     int result = -1;
@@ -317,6 +336,7 @@ static int score_scene(const char *folder, const char *pictures)
 done:
     free(d);
     free(coarse.disparity);
+    free(coarse.confidence);
     quality_scene_free(&scene);
     return result;
 }
@@ -339,7 +359,7 @@ static int time_scene(const char *folder)
 {
     enum { W = 1920, H = 1080, CW = 320, CH = 240, RUNS = 21 };
     struct quality_scene scene, large;
-    struct coarse map = {CW, CH, malloc(CW * CH * 2)};
+    struct coarse map = {CW, CH, malloc(CW * CH * 2), NULL};
     uint16_t *out = malloc((size_t)W * H * 2);
     int result = -1;
 

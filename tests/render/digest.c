@@ -208,6 +208,30 @@ static void pictures(void **state)
     }
 }
 
+/* A coarse map brought to the photo's size. */
+static void upsampled(void **state)
+{
+    static const int samples[][2] = {{20, 15}, {7, 31}, {1, 3}, {90, 4}};
+    struct picture p = picture_make(83, 47, 99);
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, p.rgb, p.width, p.height, 3 * p.width);
+    const struct refocus_upsample_params params = refocus_upsample_params_default();
+    uint16_t out[83 * 47];
+    char name[64];
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        const struct refocus_disparity map = refocus_disparity16(
+            p.disparity + i * 100, samples[i][0], samples[i][1], 2 * samples[i][0]);
+
+        assert_int_equal(refocus_upsample(&photo, &map, &params, out, 2 * 83), 0);
+        printf("digest %016llx  upsampled from %d x %d\n",
+               (unsigned long long)hash((const uint8_t *)out, sizeof out), samples[i][0],
+               samples[i][1]);
+    }
+    picture_free(&p);
+}
+
 static void ray_sets(void **state)
 {
     static struct refocus_ray rays[REFOCUS_MAX_RAYS];
@@ -237,6 +261,7 @@ static void ray_sets(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures),
+                                       cmocka_unit_test(upsampled),
                                        cmocka_unit_test(ray_sets)};
     const bool update = argc == 3 && !strcmp(argv[2], "--update");
     int failed;

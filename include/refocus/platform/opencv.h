@@ -1,0 +1,113 @@
+/** @file platform/opencv.h  Depth from two pictures or from one, by OpenCV.
+ *
+ * Part of librefocus-opencv, not of the core: pkg-config name `refocus-opencv`. A C face: no
+ * exception gets out, and cv::setNumThreads() is left as it is.
+ */
+#ifndef REFOCUS_PLATFORM_OPENCV_H
+#define REFOCUS_PLATFORM_OPENCV_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <refocus/image.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Why something failed, in words that say what to do: one line, no full stop. */
+struct refocus_cv_reason {
+    char text[256];
+};
+
+/** Stereo matching. Start from refocus_stereo_params_default(). */
+struct refocus_stereo_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_stereo_params) */
+    int32_t max_side;     /**< pictures are matched at no more than this width; default 1600 */
+    float least_match;    /**< share of pixels that has to agree from left and right, else the
+                               pair is refused; default 0.3 */
+};
+
+static inline struct refocus_stereo_params refocus_stereo_params_default(void)
+{
+    struct refocus_stereo_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.max_side = 1600;
+    params.least_match = (float)0.3;
+    return params;
+}
+
+/** What the matching found. */
+struct refocus_stereo_report {
+    float vertical_offset;      /**< pixels that the right picture lies lower; undone */
+    float least, greatest;      /**< disparities found, pixels of the left picture */
+    float matched;              /**< share of pixels that agree from left and right */
+};
+
+/**
+ * Disparities of a rectified stereo pair, in pixels of the left picture: a point at x in it is at
+ * x - disparity in the right one. Semi-global matching (Hirschmueller 2008), both ways; where
+ * they disagree by more than a pixel there is NaN. The range of disparities and a small vertical
+ * offset are found at a reduced size.
+ *
+ * @param left, right  RGB8, of the same size, at least 64 x 32
+ * @param disparity    receives width x height floats, larger = nearer
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (the pictures do not match),
+ *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the reason). On an
+ *         error @p disparity holds nothing of use. Thread-safe.
+ */
+REFOCUS_API int refocus_cv_stereo(const struct refocus_image *left,
+                                  const struct refocus_image *right,
+                                  const struct refocus_stereo_params *params,
+                                  float *disparity, struct refocus_stereo_report *report,
+                                  struct refocus_cv_reason *reason);
+
+/** How a network wants its picture: value = (code - mean) scale, R G B. */
+struct refocus_network {
+    int32_t width, height; /**< of its input, 32 to 2048 */
+    float mean[3];         /**< codes 0..255 */
+    float scale;
+    int32_t inverse;       /**< 1: its output grows with distance */
+};
+
+/** Presets: "tcmonodepth", "midas-small", "depth-anything-small"; NULL ends them. */
+REFOCUS_API const char *refocus_cv_network_name(uint32_t index);
+REFOCUS_API int refocus_cv_network(uint32_t index, struct refocus_network *network);
+
+/** Depth of one picture, without a unit. */
+struct refocus_estimate {
+    float *samples; /**< packed, larger = nearer; freed by refocus_cv_estimate_free() */
+    int32_t width, height;
+};
+
+/**
+ * Depth of one picture by a network in an ONNX file, larger = nearer.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file), REFOCUS_ERR_FORMAT (no
+ *         network that OpenCV reads, or not one with this input), REFOCUS_ERR_MEMORY
+ */
+REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo, const char *model,
+                                    const struct refocus_network *network,
+                                    struct refocus_estimate *estimate,
+                                    struct refocus_cv_reason *reason);
+REFOCUS_API void refocus_cv_estimate_free(struct refocus_estimate *estimate);
+
+/**
+ * Joint bilateral upsampling (Kopf et al. 2007) of a map of disparities to the photo's size, of
+ * OpenCV's parts: the mean of the samples around, weighted by nearness and likeness. The core's
+ * refocus_upsample() is better and faster; this is what it is compared with.
+ *
+ * @param sigma_range  of the likeness, in codes
+ * @param out          width x height, packed
+ */
+REFOCUS_API int refocus_cv_upsample(const struct refocus_image *photo,
+                                    const struct refocus_disparity *map, float sigma_range,
+                                    uint16_t *out, struct refocus_cv_reason *reason);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,226 @@
+/* Depth from two pictures: OpenCV's semi-global matching, both ways. */
+#include "guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+const float none = std::numeric_limits<float>::quiet_NaN();
+
+/* Matches of a to b with a[x] ~ b[x - d], d from least on; NaN where there is none. */
+cv::Mat match(const cv::Mat &a, const cv::Mat &b, int least, int count)
+{
+    enum { BLOCK = 3 };
+    const int area = BLOCK * BLOCK;
+    const cv::Ptr<cv::StereoSGBM> sgbm = cv::StereoSGBM::create(
+        least, count, BLOCK, 8 * area, 32 * area, -1, 63, 5, 0, 0, cv::StereoSGBM::MODE_SGBM_3WAY);
+    /* What lies beyond the border would not be matched: a margin of repeated pixels. */
+    const int left = std::max(0, least + count), right = std::max(0, -least);
+    cv::Mat wide_a, wide_b, raw, out;
+
+    cv::copyMakeBorder(a, wide_a, 0, 0, left, right, cv::BORDER_REPLICATE);
+    cv::copyMakeBorder(b, wide_b, 0, 0, left, right, cv::BORDER_REPLICATE);
+    sgbm->compute(wide_a, wide_b, raw);
+    raw.colRange(left, left + a.cols).convertTo(out, CV_32F, 1 / 16.0);
+    out.setTo(none, out < least);
+    return out;
+}
+
+/* Patches too small to be seen by both cameras by anything but chance: those in occlusions, from
+ * which filling would spread. Returns the share that is left. */
+float remove_specks(cv::Mat &disparity)
+{
+    const int least = std::max(16, disparity.rows * disparity.cols / 4000);
+    const short gone = -32768;
+    cv::Mat fixed(disparity.size(), CV_16S);
+    long left = 0;
+
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++) {
+            const float d = disparity.at<float>(y, x);
+
+            fixed.at<short>(y, x) = std::isnan(d) ? gone : cv::saturate_cast<short>(d * 16);
+        }
+    cv::filterSpeckles(fixed, gone, least, 16);
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++) {
+            if (fixed.at<short>(y, x) == gone)
+                disparity.at<float>(y, x) = none;
+            else
+                left++;
+        }
+    return (float)left / (float)disparity.total();
+}
+
+/* Both ways; what disagrees by more than a pixel is taken out. Returns the share that is left. */
+float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count, cv::Mat &out)
+{
+    cv::Mat flipped_left, flipped_right, back;
+    out = match(left, right, least, count);
+    cv::flip(left, flipped_left, 1);
+    cv::flip(right, flipped_right, 1);
+    cv::flip(match(flipped_right, flipped_left, least, count), back, 1);
+    for (int y = 0; y < out.rows; y++) {
+        float *row = out.ptr<float>(y);
+        const float *other = back.ptr<float>(y);
+
+        for (int x = 0; x < out.cols; x++) {
+            const int at = std::isnan(row[x]) ? -1 : cvRound(x - row[x]);
+
+            if (at < 0 || at >= out.cols || !(std::fabs(other[at] - row[x]) <= 1))
+                row[x] = none;
+        }
+    }
+    return remove_specks(out);
+}
+
+cv::Mat shifted(const cv::Mat &image, int down)
+{
+    cv::Mat out;
+    const cv::Mat move = (cv::Mat_<double>(2, 3) << 1, 0, 0, 0, 1, -down);
+
+    cv::warpAffine(image, out, move, image.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    return out;
+}
+
+/* What is searched at full size, found at a reduced one. */
+struct search {
+    int offset, least, count;
+    float matched;
+};
+
+/* Ends of the range that holds all but the outermost thousandth. */
+void find_range(const cv::Mat &disparity, double scale, search &s)
+{
+    std::vector<float> values;
+
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++)
+            if (!std::isnan(disparity.at<float>(y, x)))
+                values.push_back(disparity.at<float>(y, x));
+    std::sort(values.begin(), values.end());
+    const size_t tail = values.size() / 1000;
+    const double low = values[tail] * scale, high = values[values.size() - 1 - tail] * scale;
+    const double margin = 4 + (high - low) / 20;
+    s.least = (int)std::floor(low - margin);
+    s.count = ((int)std::ceil(high + margin) - s.least + 15) / 16 * 16;
+}
+
+search look(const cv::Mat &left, const cv::Mat &right)
+{
+    enum { WIDTH = 400, ROWS = 5 };
+    const double scale = std::max(1.0, left.cols / (double)WIDTH);
+    const int width = cvRound(left.cols / scale), count = std::max(32, width / 3 / 16 * 16);
+    search best = {0, 0, 0, -1};
+    cv::Mat a, b, disparity, kept;
+
+    cv::resize(left, a, cv::Size(width, cvRound(left.rows / scale)), 0, 0, cv::INTER_AREA);
+    cv::resize(right, b, a.size(), 0, 0, cv::INTER_AREA);
+    for (int i = 0; i <= 2 * ROWS; i++) { /* 0, 1, -1, 2, -2, ... */
+        const int offset = i % 2 ? (i + 1) / 2 : -i / 2;
+        const float matched =
+            match_both(a, shifted(b, offset), -count / 3 / 16 * 16, count, disparity);
+
+        if (matched > best.matched + 0.01f) {
+            best.matched = matched;
+            best.offset = offset;
+            kept = disparity.clone();
+        }
+    }
+    best.offset = cvRound(best.offset * scale);
+    if (best.matched > 0)
+        find_range(kept, scale, best);
+    return best;
+}
+
+/* The offset to the pixel, in a strip of full size. */
+int refine(const cv::Mat &left, const cv::Mat &right, const search &s, int reach)
+{
+    const int rows = std::min(left.rows, 240), from = (left.rows - rows) / 2;
+    int best = s.offset;
+    float most = -1;
+    cv::Mat disparity;
+
+    for (int i = 0; i <= 2 * reach; i++) {
+        const int offset = s.offset + (i % 2 ? (i + 1) / 2 : -i / 2);
+        const float matched =
+            match_both(left.rowRange(from, from + rows),
+                       shifted(right, offset).rowRange(from, from + rows), s.least, s.count,
+                       disparity);
+
+        if (matched > most + 0.005f) {
+            most = matched;
+            best = offset;
+        }
+    }
+    return best;
+}
+
+int stereo(const refocus_image *left, const refocus_image *right,
+           const refocus_stereo_params *params, float *out, refocus_stereo_report *report,
+           refocus_cv_reason *reason)
+{
+    const double scale = std::max(1.0, left->width / (double)params->max_side);
+    const cv::Size size(cvRound(left->width / scale), std::max(1, cvRound(left->height / scale)));
+    cv::Mat a, b, disparity, full;
+
+    cv::cvtColor(refocus_cv::view(left), a, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(refocus_cv::view(right), b, cv::COLOR_RGB2GRAY);
+    if (scale > 1) {
+        cv::resize(a, a, size, 0, 0, cv::INTER_AREA);
+        cv::resize(b, b, size, 0, 0, cv::INTER_AREA);
+    }
+    search s = look(a, b);
+    if (s.matched < params->least_match / 2)
+        return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
+                                "the two pictures do not match row by row; give a rectified pair, "
+                                "left before right");
+    if (a.cols > 400)
+        s.offset = refine(a, b, s, (a.cols + 799) / 800);
+    if (s.offset)
+        b = shifted(b, s.offset);
+    const float matched = match_both(a, b, s.least, s.count, disparity);
+    if (matched < params->least_match)
+        return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
+                                "too few pixels of the two pictures match; give a rectified pair, "
+                                "left before right");
+    disparity *= scale;
+    cv::resize(disparity, full, cv::Size(left->width, left->height), 0, 0, cv::INTER_NEAREST);
+    for (int y = 0; y < full.rows; y++)
+        std::copy_n(full.ptr<float>(y), full.cols, out + (size_t)y * (size_t)full.cols);
+    if (report) {
+        *report = {(float)(s.offset * scale), (float)(s.least * scale),
+                   (float)((s.least + s.count) * scale), matched};
+        double least = 0, greatest = 0;
+        cv::minMaxLoc(full, &least, &greatest, nullptr, nullptr, full == full);
+        report->least = (float)least;
+        report->greatest = (float)greatest;
+    }
+    return REFOCUS_OK;
+}
+
+} // namespace
+
+int refocus_cv_stereo(const struct refocus_image *left, const struct refocus_image *right,
+                      const struct refocus_stereo_params *params, float *disparity,
+                      struct refocus_stereo_report *report, struct refocus_cv_reason *reason)
+{
+    if (!refocus_cv::good_photo(left) || !refocus_cv::good_photo(right) || !params ||
+        params->struct_size != sizeof *params || params->max_side < 64 || !disparity)
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "not two pictures");
+    if (left->width != right->width || left->height != right->height)
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT,
+                                "the two pictures differ in size; give a rectified pair");
+    if (left->width < 64 || left->height < 32)
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT,
+                                "the pictures are too small to be matched; give 64x32 or more");
+    return refocus_cv::guarded(reason, REFOCUS_ERR_UNSUPPORTED, [&] {
+        return stereo(left, right, params, disparity, report, reason);
+    });
+}

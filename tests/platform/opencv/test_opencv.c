@@ -1,0 +1,267 @@
+/* Depth of pictures by OpenCV: pairs and networks that the test makes itself. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include <refocus/platform/opencv.h>
+
+enum { W = 320, H = 200, FAR = 8, NEAR = 26 };
+
+static uint32_t state_of = 1;
+
+static uint8_t noise(void)
+{
+    state_of = state_of * 1664525u + 1013904223u;
+    return (uint8_t)(state_of >> 24);
+}
+
+static int disparity_at(int x, int y)
+{
+    return x >= 120 && x < 220 && y >= 60 && y < 150 ? NEAR : FAR;
+}
+
+/* A textured square before a textured wall; the right picture lies @p lower pixels lower. */
+static void make_pair(uint8_t *left, uint8_t *right, int lower)
+{
+    state_of = 7;
+    for (int i = 0; i < 3 * W * H; i++)
+        left[i] = right[i] = noise();
+    for (int pass = 0; pass < 2; pass++) /* the near square covers the wall */
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++) {
+                const int d = disparity_at(x, y), to = y + lower;
+
+                if ((d == NEAR) == pass && x - d >= 0 && to >= 0 && to < H)
+                    memcpy(right + 3 * (to * W + x - d), left + 3 * (y * W + x), 3);
+            }
+}
+
+static struct refocus_image picture(uint8_t *pixels)
+{
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
+}
+
+static void stereo(void **state)
+{
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    const struct refocus_image a = picture(left), b = picture(right);
+    const struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_stereo_report report;
+    struct refocus_cv_reason reason;
+
+    (void)state;
+    for (int lower = -3; lower <= 3; lower += 3) {
+        int known = 0, good = 0;
+
+        make_pair(left, right, lower);
+        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
+        assert_true(fabsf(report.vertical_offset - (float)lower) < 0.5f);
+        for (int i = 0; i < W * H; i++) {
+            known += !isnan(d[i]);
+            good += fabsf(d[i] - (float)disparity_at(i % W, i / W)) <= 1;
+        }
+        assert_in_range(known, W * H * 7 / 10, W * H);
+        assert_in_range(good, known * 97 / 100, known);
+    }
+}
+
+static void stereo_refuses(void **state)
+{
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    const struct refocus_image a = picture(left);
+    struct refocus_image b = picture(right);
+    const struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_cv_reason reason;
+
+    (void)state;
+    for (int i = 0; i < 3 * W * H; i++) {
+        left[i] = noise();
+        right[i] = noise();
+    }
+    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
+    assert_non_null(strstr(reason.text, "match"));
+    b.width--;
+    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_cv_stereo(&a, NULL, &params, d, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_cv_stereo(&a, &a, NULL, d, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_cv_stereo(&a, &a, &params, NULL, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+}
+
+/* ONNX by hand: protobuf fields, all shorter than 128 bytes. */
+struct message {
+    uint8_t bytes[512];
+    size_t size;
+};
+
+static void put_number(struct message *m, int field, int value)
+{
+    m->bytes[m->size++] = (uint8_t)(field << 3 | (field > 15 ? 128 : 0));
+    if (field > 15)
+        m->bytes[m->size++] = (uint8_t)(field >> 4);
+    if (value >= 128)
+        m->bytes[m->size++] = (uint8_t)(value | 128);
+    m->bytes[m->size++] = (uint8_t)(value >= 128 ? value >> 7 : value);
+}
+
+static void put_bytes(struct message *m, int field, const void *bytes, size_t size)
+{
+    m->bytes[m->size++] = (uint8_t)(field << 3 | 2);
+    if (size >= 128)
+        m->bytes[m->size++] = (uint8_t)(size | 128);
+    m->bytes[m->size++] = (uint8_t)(size >= 128 ? size >> 7 : size);
+    memcpy(m->bytes + m->size, bytes, size);
+    m->size += size;
+}
+
+static void put(struct message *m, int field, const struct message *part)
+{
+    put_bytes(m, field, part->bytes, part->size);
+}
+
+static void put_text(struct message *m, int field, const char *text)
+{
+    put_bytes(m, field, text, strlen(text));
+}
+
+static struct message value(const char *name, int channels)
+{
+    const int sizes[] = {1, channels, 32, 48};
+    struct message info = {{0}, 0}, type = info, tensor = info, shape = info;
+
+    for (int i = 0; i < 4; i++) {
+        struct message dim = {{0}, 0};
+
+        put_number(&dim, 1, sizes[i]);
+        put(&shape, 1, &dim);
+    }
+    put_number(&tensor, 1, 1);
+    put(&tensor, 2, &shape);
+    put(&type, 1, &tensor);
+    put_text(&info, 1, name);
+    put(&info, 2, &type);
+    return info;
+}
+
+/* y = 2 R + G: a 1 x 1 convolution of a 48 x 32 picture. */
+static void write_network(const char *path)
+{
+    static const float weights[3] = {2, 1, 0};
+    struct message model = {{0}, 0}, graph = model, node = model, tensor = model, opset = model;
+    struct message attribute = model;
+    const struct message in = value("x", 3), out = value("y", 1);
+    FILE *file = fopen(path, "wb");
+
+    put_text(&node, 1, "x");
+    put_text(&node, 1, "w");
+    put_text(&node, 2, "y");
+    put_text(&node, 3, "c");
+    put_text(&node, 4, "Conv");
+    put_text(&attribute, 1, "kernel_shape");
+    put_number(&attribute, 8, 1);
+    put_number(&attribute, 8, 1);
+    put_number(&attribute, 20, 7);
+    put(&node, 5, &attribute);
+    put_number(&tensor, 1, 1);
+    put_number(&tensor, 1, 3);
+    put_number(&tensor, 1, 1);
+    put_number(&tensor, 1, 1);
+    put_number(&tensor, 2, 1);
+    put_text(&tensor, 8, "w");
+    put_bytes(&tensor, 9, weights, sizeof weights);
+    put(&graph, 1, &node);
+    put_text(&graph, 2, "g");
+    put(&graph, 5, &tensor);
+    put(&graph, 11, &in);
+    put(&graph, 12, &out);
+    put_number(&opset, 2, 11);
+    put_number(&model, 1, 6);
+    put(&model, 7, &graph);
+    put(&model, 8, &opset);
+    assert_non_null(file);
+    assert_int_equal(fwrite(model.bytes, 1, model.size, file), model.size);
+    fclose(file);
+}
+
+static void estimate(void **state)
+{
+    static uint8_t pixels[3 * W * H];
+    const struct refocus_image photo = picture(pixels);
+    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0};
+    struct refocus_estimate result;
+    struct refocus_cv_reason reason;
+    char path[] = "/tmp/refocus-onnx-XXXXXX";
+    const int file = mkstemp(path);
+
+    (void)state;
+    assert_true(file >= 0);
+    for (int i = 0; i < W * H; i++) {
+        pixels[3 * i] = (uint8_t)(i % W < W / 2 ? 200 : 40);
+        pixels[3 * i + 1] = 100;
+        pixels[3 * i + 2] = 255;
+    }
+    write_network(path);
+    for (network.inverse = 0; network.inverse < 2; network.inverse++) {
+        const float sign = network.inverse ? -1 : 1;
+
+        assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
+                         REFOCUS_OK);
+        assert_int_equal(result.width, 48);
+        assert_int_equal(result.height, 32);
+        for (int y = 0; y < 32; y++) {
+            assert_true(fabsf(result.samples[48 * y + 5] - sign * 240) < 0.01f);
+            assert_true(fabsf(result.samples[48 * y + 40] - sign * 80) < 0.01f);
+        }
+        refocus_cv_estimate_free(&result);
+    }
+    /* Cut off, empty, gone, of another kind. */
+    for (int size = 90; size >= 0; size -= 30) {
+        assert_int_equal(ftruncate(file, size), 0);
+        assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
+                         REFOCUS_ERR_FORMAT);
+        assert_null(result.samples);
+    }
+    close(file);
+    unlink(path);
+    assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
+                     REFOCUS_ERR_IO);
+    network.width = 1;
+    assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+    for (uint32_t i = 0; refocus_cv_network_name(i); i++)
+        assert_int_equal(refocus_cv_network(i, &network), REFOCUS_OK);
+    assert_int_equal(refocus_cv_network(99, &network), REFOCUS_ERR_ARGUMENT);
+}
+
+static void upsample(void **state)
+{
+    static uint8_t pixels[3 * W * H];
+    static uint16_t map[40 * 25], out[W * H];
+    const struct refocus_image photo = picture(pixels);
+    const struct refocus_disparity coarse = refocus_disparity16(map, 40, 25, 80);
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) /* sample k is at pixel 8 k + 3.5 */
+        memset(pixels + 3 * i, i % W < 150 ? 220 : 30, 3);
+    for (int i = 0; i < 40 * 25; i++)
+        map[i] = i % 40 * 8 + 4 < 150 ? 50000 : 10000;
+    assert_int_equal(refocus_cv_upsample(&photo, &coarse, 20, out, NULL), REFOCUS_OK);
+    for (int i = 0; i < W * H; i++)
+        assert_in_range(out[i], i % W < 150 ? 49990 : 9990, i % W < 150 ? 50010 : 10010);
+    assert_int_equal(refocus_cv_upsample(&photo, &coarse, 0, out, NULL), REFOCUS_ERR_ARGUMENT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(stereo), cmocka_unit_test(stereo_refuses),
+                                       cmocka_unit_test(estimate), cmocka_unit_test(upsample)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
