@@ -537,6 +537,19 @@ class Papers(Case):
                    % (W, H), 'compare', *common, '--reference', 'tiny.ppm')
 
 
+    def test_ray_statistics(self):
+        report = self.reports('bench', 'photo.ppm', '--depth', 'depth.pgm', '--blur', '6',
+                              '--focus', '0.2', '--rays')
+        self.assertEqual(report['rays'] % report['pixels'], 0)
+        self.assertAlmostEqual(sum(report['found_after']) + report['never'], 1)
+        self.assertGreater(report['found_after'][0], 0.5)
+        self.assertGreater(report['hidden'], 0)
+        text = self.succeeds('bench', '--rays', '--size', '60x40', '--blur', '3')
+        self.assertRegex(text, r'(?m)^ +1 +\d+\.\d+ %')
+        report = self.reports('bench', '--rays', '5', '--size', '60x40', '--repeat', '1')
+        self.assertEqual(report['rays'], 5)
+
+
 class DepthAndInfo(Case):
     def test_depth(self):
         report = self.reports('depth', 'depth.pgm', '-o', 'd.pgm')
