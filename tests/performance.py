@@ -20,6 +20,7 @@ RUNS = [
     ("sweep", ["--rays", "32"], 0),
     ("sweep", ["--rays", "64"], 0),
     ("sweep", ["--rays", "128"], 0),
+    ("sweep", ["--rays", "64", "--cpu", "c"], 0),
     ("search", ["--rays", "64", "--iterations", "1"], 0),
     ("search", ["--rays", "64", "--iterations", "2"], 0),
     ("search", ["--rays", "full", "--iterations", "1"], 3),

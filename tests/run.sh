@@ -107,8 +107,8 @@ clang_stage() {
 
 minimal_stage() {
     say 'every optional feature off: the core alone'
-    CC=gcc CXX=g++ build minimal --buildtype=release -Djpeg=disabled -Dpng=disabled -Dxmp=disabled \
-        -Dheic=disabled -Dtools=disabled -Dv4l2=disabled -Dlibcamera=disabled -Dopencv=disabled || return
+    CC=gcc CXX=g++ build minimal --buildtype=release -Dauto_features=disabled \
+        -Dtests=enabled || return
     run minimal
     same_bytes minimal
 }
@@ -141,29 +141,10 @@ cross_stage() {
     "$top/tests/cross/cmocka.sh" "$2" "$builds/cmocka-$2" >"$builds/cmocka-$2.log" 2>&1 ||
         { skip "$1" "no cmocka for $2, see $builds/cmocka-$2.log"; return; }
     build "$1" --buildtype=release --cross-file "$top/tests/cross/$1.ini" \
-        --cross-file "$builds/cmocka-$2/cmocka.ini" -Djpeg=disabled -Dpng=disabled \
-        -Dxmp=disabled -Dheic=disabled -Dtools=disabled -Dlibcamera=disabled || return
+        --cross-file "$builds/cmocka-$2/cmocka.ini" -Dauto_features=disabled -Dsimd=enabled \
+        -Dtests=enabled || return
     run "$1" --timeout-multiplier 10
     same_bytes "$1"
-}
-
-# Real drivers in a virtual machine: vivid and vimc.
-camera_stage() {
-    local log=$builds/camera-vm.log rc p f
-    say 'cameras: V4L2 and libcamera drivers in a virtual machine'
-    need_packages qemu-system-x86 busybox-static xz-utils gcc-12 make v4l-utils libcamera-ipa ||
-        { skip camera-vm 'its packages cannot be had, see above'; return; }
-    "$top/tests/camera-vm/test.sh" "$builds/gcc" >"$log" 2>&1
-    rc=$?
-    if [ $rc = 77 ]; then
-        skip camera-vm "$(grep SKIPPED "$log" | head -n 1), see $log"
-        return
-    fi
-    p=$(grep -c '^ok ' "$log") f=$(grep -c '^FAILED ' "$log")
-    grep -E '^(ok|captured|recovered)' "$log" | sed 's/^/    /'
-    passed=$((passed + p))
-    [ "$rc" = 0 ] || fail 'cameras in the virtual machine' "$log"
-    [ "$f" -le 1 ] || failed=$((failed + f - 1))
 }
 
 fuzz_stage() {
@@ -194,11 +175,9 @@ need_packages meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-d
     { fail 'tools to build with are missing'; finish; }
 need_packages libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
-need_packages libcamera-dev || skip 'cameras by libcamera' 'libcamera-dev is missing'
 
 gcc_stage
 if [ "$mode" != quick ]; then
-    camera_stage
     clang_stage
     minimal_stage
     memory_stage

@@ -5,13 +5,11 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 #include "backend.h"
+#include "libcamera.h"
 
 static const struct rf_source_ops *const backends[] = {
 #ifdef RF_HAVE_V4L2
     &rf_source_v4l2,
-#endif
-#ifdef RF_HAVE_LIBCAMERA
-    &rf_source_libcamera,
 #endif
     &rf_source_file, &rf_source_y4m, &rf_source_raw, &rf_source_replay,
 };
@@ -39,6 +37,12 @@ static const struct rf_source_ops *find(const char *name, const char **rest)
             return backends[i];
         }
     }
+#ifdef RF_HAVE_LIBCAMERA
+    if (strncmp(name, "libcamera:", strlen("libcamera:")) == 0) {
+        *rest = name + strlen("libcamera:");
+        return rf_libcamera();
+    }
+#endif
     return NULL;
 }
 
@@ -49,7 +53,7 @@ static int unknown(const char *name, struct refocus_reason *reason)
     for (int i = 0; i < 2; i++)
         if (strncmp(name, known[i], strlen(known[i])) == 0 && name[strlen(known[i])] == ':')
             return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                                   "this build has no %s; it has %s", known[i],
+                                   "%s is not in this build or its module is gone; there are %s", known[i],
                                    refocus_source_backends());
     return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                            "no such kind of source; give KIND:NAME with one of %s",
@@ -287,8 +291,9 @@ int refocus_source_list(refocus_source_found *found, void *user)
 {
     int total = 0;
 
-    for (int i = 0; i < BACKENDS; i++) {
-        const int n = backends[i]->list ? backends[i]->list(found, user) : 0;
+    for (int i = 0; i <= BACKENDS; i++) {
+        const struct rf_source_ops *ops = i < BACKENDS ? backends[i] : rf_libcamera();
+        const int n = ops && ops->list ? ops->list(found, user) : 0;
 
         if (n < 0)
             return n;

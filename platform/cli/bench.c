@@ -27,8 +27,10 @@ static const struct option options[] = {
     DEPTH_UNIT_OPTIONS(struct settings, depth),
     FOCUS_OPTIONS(struct settings, lens),
     {.kind = OPTION_HEADING, .help = "How"},
+    METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine),
     RUN_OPTIONS(struct settings, engine),
+    PAPER_OPTIONS(struct settings, engine.papers),
     {.help = NULL},
 };
 

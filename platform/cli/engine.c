@@ -70,52 +70,28 @@ static int polygon_aperture(struct engine *engine, const char *shape)
     return EXIT_DONE;
 }
 
-/* A greyscale mask out of a picture: its luma, exact for grey pixels. */
+/* A mask out of a greyscale picture. */
 static int mask_aperture(struct engine *engine, const char *file)
 {
-    struct refocus_reason reason = {""};
-    struct refocus_photo *photo = NULL;
-    uint8_t *mask = NULL;
-    int status, result = EXIT_FAILED;
+    int width, height, status;
+    uint8_t *mask = papers_read_grey(file, &width, &height);
 
-    status = refocus_photo_read(&photo, file, NULL, &reason);
-    if (status != REFOCUS_OK || !photo->image.plane[0]) {
-        report_failure(result, file, "%s",
-                       reason.text[0] ? reason.text : "it is not a picture of a mask");
-        goto end;
-    }
-
-    const struct refocus_image *image = &photo->image;
-    const int width = image->width, height = image->height;
+    if (!mask)
+        return EXIT_FAILED;
     if (width > REFOCUS_MAX_APERTURE_SIDE || height > REFOCUS_MAX_APERTURE_SIDE) {
-        report_failure(result, file, "%dx%d pixels are too many for an aperture; give at most "
-                       "%dx%d", width, height, REFOCUS_MAX_APERTURE_SIDE,
-                       REFOCUS_MAX_APERTURE_SIDE);
-        goto end;
-    }
-    mask = malloc((size_t)width * (size_t)height);
-    if (!mask) {
-        report_failure(result, file, "not enough memory");
-        goto end;
-    }
-    for (int y = 0; y < height; y++) {
-        const uint8_t *row = image->plane[0] + y * image->stride[0];
-        for (int x = 0; x < width; x++)
-            mask[y * width + x] =
-                (uint8_t)((54 * row[3 * x] + 183 * row[3 * x + 1] + 19 * row[3 * x + 2]) >> 8);
+        free(mask);
+        return report_failure(EXIT_FAILED, file, "%dx%d pixels are too many for an aperture; "
+                              "give at most %dx%d", width, height, REFOCUS_MAX_APERTURE_SIDE,
+                              REFOCUS_MAX_APERTURE_SIDE);
     }
     status = refocus_aperture_create_mask(&engine->aperture, mask, width, height, width);
-    if (status == REFOCUS_OK)
-        result = EXIT_DONE;
-    else
-        report_failure(result, file, "%s",
-                       status == REFOCUS_ERR_ARGUMENT
-                           ? "no pixel of the aperture is open; give white where light passes"
-                           : refocus_strerror(status));
-end:
     free(mask);
-    refocus_photo_free(&photo);
-    return result;
+    if (status == REFOCUS_OK)
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, file, "%s",
+                          status == REFOCUS_ERR_ARGUMENT
+                              ? "no pixel of the aperture is open; give white where light passes"
+                              : refocus_strerror(status));
 }
 
 static int make_aperture(struct engine *engine, const char *shape)
@@ -133,6 +109,16 @@ static int make_aperture(struct engine *engine, const char *shape)
                               "polygon:BLADES:DEGREES or a mask picture",
                               shape);
     return mask_aperture(engine, shape);
+}
+
+/* Methods whose circles of confusion are circles. */
+static int check_aperture(uint32_t method, const char *aperture)
+{
+    if (method < REFOCUS_METHOD_SCATTER || strcmp(aperture, "disc") == 0)
+        return EXIT_DONE;
+    return report_failure(EXIT_WRONG, "--aperture",
+                          "'%s' does not go with --method %s, which knows a disc alone; leave "
+                          "one of them out", aperture, refocus_method_name(method));
 }
 
 int engine_begin(struct engine *engine, const struct engine_settings *settings)
@@ -155,8 +141,14 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
                                  : (float)settings->highlights;
     params->mirror = settings->mirror;
     params->background = settings->background;
+    engine->methods = REFOCUS_METHOD_BIT(params->method);
+    engine->field_disparity = settings->papers.field_disparity;
     status = make_aperture(engine, settings->aperture);
     params->aperture = engine->aperture;
+    if (status == EXIT_DONE)
+        status = check_aperture(params->method, settings->aperture);
+    if (status == EXIT_DONE)
+        status = papers_apply(&settings->papers, params, &engine->field_map);
     return status;
 }
 
@@ -175,7 +167,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
 
     params.threads = (int32_t)settings->threads;
     params.cpu = (uint32_t)settings->cpu;
-    params.methods = REFOCUS_METHOD_BIT(engine->params.method);
+    params.methods = engine->methods;
     engine->params.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;
@@ -194,7 +186,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
                               (double)refocus_renderer_memory(&params) / (1 << 20));
     interrupt_watch(engine->renderer);
     refocus_renderer_get_info(engine->renderer, &engine->info);
-    return EXIT_DONE;
+    return papers_place(&settings->papers, &engine->params, width, height);
 }
 
 int engine_prepare(struct engine *engine, const struct refocus_image *photo,
@@ -250,6 +242,9 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
 
     if (!times)
         return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
+    engine->params.field_disparity = isnan(engine->field_disparity)
+                                         ? engine->params.focus_disparity
+                                         : (float)engine->field_disparity;
     for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
         const double start = report_clock_ms();
 
@@ -272,6 +267,7 @@ void engine_end(struct engine *engine)
     interrupt_watch(NULL);
     refocus_renderer_destroy(&engine->renderer);
     refocus_aperture_destroy(&engine->aperture);
+    free((void *)engine->field_map.samples);
 }
 
 json_t *engine_json(const struct engine *engine)

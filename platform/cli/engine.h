@@ -5,6 +5,7 @@
 #include <math.h>
 #include <refocus/refocus.h>
 #include "options.h"
+#include "papers.h"
 #include "report.h"
 
 struct engine_settings {
@@ -13,6 +14,7 @@ struct engine_settings {
     double threads, repeat;
     const char *aperture;
     bool mirror, background, json;
+    struct paper_settings papers;
 };
 
 enum { QUALITY_STANDARD = 1 };
@@ -20,7 +22,7 @@ enum { QUALITY_STANDARD = 1 };
 #define ENGINE_SETTINGS_NONE(repeat_default)                                                \
     {.quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,             \
      .highlights = NAN,                                                                     \
-     .repeat = repeat_default, .aperture = "disc"}
+     .repeat = repeat_default, .aperture = "disc", .papers = PAPER_SETTINGS_NONE}
 
 const char *engine_quality_name(uint32_t index);
 const char *engine_quality_summary(uint32_t index);
@@ -28,14 +30,15 @@ const char *engine_blend_name(uint32_t index);
 const char *engine_blend_summary(uint32_t index);
 
 /* Rows of tables of options, for settings with a member of the type above. */
-#define METHOD_OPTIONS(type, member)                                                        \
+#define METHOD_OPTION(type, member)                                                         \
     {.kind = OPTION_CHOICE,                                                                 \
      .name = "--method",                                                                    \
      .argument = "NAME",                                                                    \
      .offset = offsetof(type, member.method),                                               \
      .choice = refocus_method_name,                                                         \
      .summary = refocus_method_summary,                                                     \
-     .help = "how it is rendered; default sweep"},                                          \
+     .help = "how it is rendered; default sweep"}
+#define METHOD_OPTIONS(type, member)                                                        \
     {.kind = OPTION_INTEGER,                                                                \
      .name = "--rays",                                                                      \
      .argument = "N",                                                                       \
@@ -134,6 +137,9 @@ struct engine {
     struct refocus_renderer *renderer;
     struct refocus_renderer_info info;
     struct refocus_aperture *aperture;
+    struct refocus_disparity field_map; /* samples NULL: none */
+    double field_disparity;             /* NAN: that in focus */
+    uint32_t methods; /* that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     struct refocus_render_params params;
     double create_ms, prepare_ms;
     struct spread render_ms;

@@ -113,6 +113,7 @@ static const struct option options[] = {
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
      .help = "the most that the command 'blur' may ask for, default twice --blur"},
     {.kind = OPTION_HEADING, .help = "Rendering"},
+    METHOD_OPTION(struct live_settings, engine),
     METHOD_OPTIONS(struct live_settings, engine),
     {.kind = OPTION_INTEGER,
      .name = "--threads",

@@ -44,6 +44,7 @@ static const struct option options[] = {
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
     {.kind = OPTION_HEADING, .help = "Rendering"},
+    METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine),
     {.kind = OPTION_NUMBERS,
      .name = "--region",
@@ -62,6 +63,7 @@ static const struct option options[] = {
      .help = "write a picture in false colours with a legend instead"},
     {.kind = OPTION_HEADING, .help = "Running"},
     RUN_OPTIONS(struct settings, engine),
+    PAPER_OPTIONS(struct settings, engine.papers),
     {.help = NULL},
 };
 

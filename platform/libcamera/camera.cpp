@@ -624,7 +624,7 @@ int list(refocus_source_found *found, void *user)
 } // namespace
 
 extern "C" {
-extern const struct rf_source_ops rf_source_libcamera;
+extern REFOCUS_API const struct rf_source_ops rf_source_libcamera;
 const struct rf_source_ops rf_source_libcamera = {
     "libcamera", open_camera, get_mode, start,        wait_frame, release,
     stop,        reopen,      set_control, close_camera, list,

@@ -21,9 +21,10 @@
  *             q = p + offset[k][n]
  *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
  *                 sum += light[q]; next ray
- *         if see_behind: sum += behind[p + offset[slabs][n]]
+ *         sum += behind[p + offset[slabs][n]], where no slab was hit
  *
- * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the tile's first pixel.
+ * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
+ * tile's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
  */
 enum { RF_RAY_CHUNK = 64 };
 
@@ -35,7 +36,6 @@ struct rf_sweep_job {
     int slabs;
     const struct rf_slab *slab;
     const int32_t (*offset)[RF_RAY_CHUNK];   /* [slabs + 1], of elements */
-    bool see_behind;
     bool uniform; /* slabs == 1, and whatever is looked at is in it */
     bool bright;  /* highlights are in the light */
 };
@@ -49,14 +49,15 @@ struct rf_focus {
 
 /*
  * signed_blur: s = K (df - d), Yang et al. 2016, eq. 4. Q7.8 pixels, rounded half up in
- * magnitude; within 1/256 pixel of the real value.
+ * magnitude: within 1/512 pixel for this focus, within 1.25/256 of that of real K and df.
  */
 typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
                                struct rf_focus focus, int n);
 
 /*
  * smooth3: where |blur| > least, the mean of a pixel and those of its two neighbours whose
- * blur is within one pixel (256) of its own; the pixel itself elsewhere. Q12, half up.
+ * blur is within one pixel (256) of its own; the pixel itself elsewhere. Half up; light is at
+ * most 4 * 4095 here and below.
  */
 typedef void rf_smooth3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
                            const uint16_t *after, const int16_t *blur_before,
@@ -69,8 +70,8 @@ enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
 enum { RF_NO_BLUR = INT16_MIN };
 
 /*
- * spread_row: grey dilation of a row by the cone to both sides, of values up to 2 `reach`
- * half pixels apart. Values are s + 2^15. Returns where the result is, row or spare; both are
+ * spread_row: grey dilation of a row by the cone to both sides, of values at most `reach` cone
+ * steps apart, reach at most 2 RF_SPREAD_MARGIN - 1. Values are s + 2^15. Returns where the result is, row or spare; both are
  * n long, with RF_SPREAD_MARGIN elements before and after them that are overwritten.
  */
 enum { RF_SPREAD_MARGIN = 256 };
@@ -85,19 +86,20 @@ typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int n);
 typedef void rf_mark_fn(int16_t *behind, const int16_t *blur, const uint16_t *dilated, int n);
 
 /* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
- * farthest blur; RF_NO_BLUR if none is known. */
+ * farthest blur; 0 and RF_NO_BLUR if none is known. */
 typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur,
                         const uint16_t *const upper[3], const uint16_t *const lower[3],
                         const int16_t *blur0, const int16_t *blur1, int n);
 
 /* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
- * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their parent's blur. */
+ * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their
+ * parent's blur. */
 typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
                         const uint16_t *far_row, uint16_t *mixed, int pairs);
 typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
 
-/* means: Q14 means of sums of N Q12 values, (4 sum + N / 2) / N within 1/1000, with
- * scale = rf_mean_scale(N). */
+/* means: Q14 means of sums of N Q12 values, with scale = rf_mean_scale(N): within
+ * 1/2 + N / 2^17 of 4 sum / N, and exact where all N are the same. */
 typedef void rf_means_fn(uint16_t *mean, const uint32_t *sum, uint32_t scale, int n);
 static inline uint32_t rf_mean_scale(uint64_t rays)
 {

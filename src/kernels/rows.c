@@ -33,14 +33,18 @@ static void RF_VEC(rf_signed_blur)(int16_t *restrict blur, const uint16_t *restr
     }
 }
 
-/* Mean of three of which at least the middle counts, for Q12 values: rounded half up. */
+static inline uint16_t third_of(uint16_t s) /* s / 3, rounded down: 3 * 43691 = 2^17 + 1 */
+{
+    return (uint16_t)((uint16_t)(((uint32_t)s * 43691) >> 16) >> 1);
+}
+
+/* Mean of three of which at least the middle counts, sums below 2^16: rounded half up. */
 static inline uint16_t mean3(uint16_t a, uint16_t b, uint16_t c, uint16_t use_a, uint16_t use_c)
 {
     const uint16_t two = (uint16_t)(use_a ^ use_c), three = (uint16_t)(use_a & use_c);
     const uint16_t sum = (uint16_t)(b + (a & use_a) + (c & use_c));
     const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
-    /* (s + 1) * 21846 >> 16 is (s + 1) / 3 rounded down for s below 2^15 */
-    const uint16_t third = (uint16_t)(((uint32_t)(uint16_t)(sum + 1) * 21846) >> 16);
+    const uint16_t third = third_of((uint16_t)(sum + 1));
 
     return (uint16_t)((sum & ~(two | three)) | (half & two) | (third & three));
 }
@@ -138,8 +142,7 @@ static void RF_VEC(rf_push)(uint16_t *const out[3], int16_t *restrict out_blur,
             const uint16_t sum = (uint16_t)((a[2 * x] & k0) + (a[2 * x + 1] & k1) +
                                             (b[2 * x] & k2) + (b[2 * x + 1] & k3));
             const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
-            const uint16_t third =
-                (uint16_t)(((uint32_t)(uint16_t)(sum + 1) * 21846) >> 16);
+            const uint16_t third = third_of((uint16_t)(sum + 1));
             const uint16_t quarter = (uint16_t)((uint16_t)(sum + 2) >> 2);
 
             to[x] = count == 4 ? quarter : count == 3 ? third : count == 2 ? half : sum;

@@ -28,8 +28,6 @@ void rf_sweep_c(uint32_t sum[3][LANES], const struct rf_sweep_job *job)
         memset(is_free, 0xff, sizeof is_free);
         for (int k = 0; k < job->slabs; k++)
             add_slab(sum, is_free, job, &job->slab[k], job->offset[k][n]);
-        if (!job->see_behind)
-            continue;
         for (int i = 0; i < LANES; i++) {
             const ptrdiff_t q =
                 i / RF_TILE * job->stride + i % RF_TILE + job->offset[job->slabs][n];

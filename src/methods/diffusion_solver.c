@@ -50,6 +50,8 @@ void rf_series_make(struct rf_series *series, int steps, double largest_weight)
 {
     enum { POINTS = 2048 };
     double coefficient[RF_SERIES_MOST] = {0}, tail = 0, sum = 0;
+    const double reach = 64 + 8 * sqrt(steps * largest_weight); /* beyond: below rounding */
+    const int most = reach < RF_SERIES_MOST ? (int)reach : RF_SERIES_MOST;
 
     /* the cosine transform of the function at Chebyshev's points */
     for (int j = 0; j < POINTS; j++) {
@@ -60,7 +62,7 @@ void rf_series_make(struct rf_series *series, int steps, double largest_weight)
         const double value = scale * power(1 - largest_weight + largest_weight * t, steps);
         here = t;
         coefficient[0] += value / 2;
-        for (int k = 1; k < RF_SERIES_MOST; k++) {
+        for (int k = 1; k < most; k++) {
             const double next = 2 * t * here - before;
 
             coefficient[k] += value * here;
@@ -68,8 +70,8 @@ void rf_series_make(struct rf_series *series, int steps, double largest_weight)
             here = next;
         }
     }
-    series->terms = RF_SERIES_MOST;
-    while (series->terms > 2 && (tail += fabs(coefficient[series->terms - 1])) < 2e-5)
+    series->terms = most;
+    while (series->terms > 2 && (tail += fabs(coefficient[series->terms - 1])) < 2e-7)
         series->terms--;
     for (int k = 0; k < series->terms; k++)
         sum += coefficient[k];

@@ -76,7 +76,6 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
         .slabs = plan->slabs,
         .slab = plan->slab,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])offset,
-        .see_behind = !plan->uniform,
         .uniform = plan->uniform,
         .bright = f->params->highlight_gain > 1,
     };

@@ -68,6 +68,7 @@ static int render(const struct quality_scene *scene, const struct quality_view *
         return REFOCUS_OK;
     }
     limits.threads = settings->threads;
+    limits.methods = REFOCUS_METHOD_BIT(settings->render.method);
     limits.cpu = (uint32_t)settings->cpu;
     if ((status = make_aperture(view, &aperture))
         || (status = refocus_renderer_create(&renderer, &limits))

@@ -4,8 +4,8 @@
 usage: run.py BUILD_DIR [--quick] [--out FILE]
 
 BUILD_DIR holds a release build. The scenes are in $REFOCUS_SCENES or in
-../shared/scenes beside the source tree. --quick leaves out `raytrace` with every ray,
-a minute a view.
+../shared/scenes beside the source tree. --quick leaves out what takes many
+seconds a view.
 """
 import argparse
 import json
@@ -22,6 +22,7 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
     ("sweep", "method=sweep", "the default: two layers, 64 rays"),
+    ("sweep-lights", "method=sweep,highlight=4", "the same, clipped lamps four times as bright"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "the paper to the letter: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
@@ -30,11 +31,18 @@ METHODS = [
     ("search-T4-full", "method=search,iterations=4,rays=full", "four tests, every ray"),
     ("search-T2-back", "method=search,iterations=2,background=1",
      "two tests, 64 rays, hidden rays take the background layer"),
-    ("raytrace", "method=raytrace,mirror=1", "ray tracing, 64 rays, hidden rays mirrored"),
+    ("raytrace", "method=raytrace", "ray tracing, 64 rays, hidden rays mirrored"),
+    ("lightfield", "method=lightfield", "64 views, warped and summed"),
+    ("blur", "method=blur", "image-space filter"),
+    ("scatter", "method=scatter", "samples spread over their discs"),
+    ("foveated", "method=foveated", "exact in the middle, pyramids elsewhere"),
+    ("interpolated", "method=interpolated", "between blurred pictures"),
+    ("diffusion", "method=diffusion", "heat through a blur field"),
 ]
-# A minute a view, and so for the twelve views only.
+# Many seconds a view, and so for the twelve views only.
 SLOW = [
-    ("raytrace-full", "method=raytrace,rays=full,mirror=1",
+    ("jittered", "method=jittered", "ray tracing, one ray of each 2x2 of the mask"),
+    ("raytrace-full", "method=raytrace,rays=full",
      "ray tracing, every ray, hidden rays mirrored (the oracle)"),
 ]
 RAYS = [
@@ -43,6 +51,12 @@ RAYS = [
     ("sweep-64", "rays=64", "standard"),
     ("sweep-128", "rays=128", "best"),
     ("sweep-64-raw", "rays=64,prefilter=0", "64 rays without the pre-filter"),
+]
+LIGHTS = [
+    ("gain-1", "highlight=1", "as the photo has them"),
+    ("gain-2", "highlight=2", "lamps up to twice as bright as white"),
+    ("gain-3", "highlight=3", "three times"),
+    ("gain-4", "highlight=4", "four times"),
 ]
 BLENDS = [
     ("linear", "blend=linear,sigma=off", "linear light, plain average"),
@@ -117,7 +131,7 @@ def settings_list(runs):
     return "".join(f"- `{label}`: `{settings}`\n" for label, settings, _ in runs)
 
 
-def write(out, methods, rows, rays, against, blends, others):
+def write(out, methods, rows, rays, against, blends, lights, others):
     parts = [
         "# How good the pictures are\n\n"
         "Written by `tests/quality/run.py`; do not edit. Renderings of path-traced scenes by "
@@ -136,6 +150,7 @@ def write(out, methods, rows, rays, against, blends, others):
         "## Number of rays, `sweep`: mean of the twelve views\n\n" + mean_table(RAYS, rays),
         "The same against the picture of `sweep-full`:\n\n" + mean_table(RAYS[1:], against),
         "## Blending, `sweep`: mean of the twelve views\n\n" + mean_table(BLENDS, blends),
+        "## Clipped lamps, `sweep`: mean of the twelve views\n\n" + mean_table(LIGHTS, lights),
         "## Other apertures: PSNR of each view\n\n" + view_table(METHODS, others, "psnr", "{:.2f}"),
         "## Other apertures: PSNR near edges\n\n"
         + view_table(METHODS, others, "edge_psnr", "{:.2f}"),
@@ -163,9 +178,10 @@ def main():
     against = measure(tool, scenes, [RAYS[0]] + [(l, s + ",against=sweep-full")
                                                  for l, s, _ in RAYS[1:]], 20, 0)
     blends = measure(tool, scenes, BLENDS, 20, 0)
+    lights = measure(tool, scenes, LIGHTS, 20, 0)
     others = [r for blur, blades in ((20, 6), (10, 0), (40, 0))
               for r in measure(tool, scenes, METHODS, blur, blades)]
-    write(args.out, methods, rows, rays, against, blends, others)
+    write(args.out, methods, rows, rays, against, blends, lights, others)
     print(f"wrote {args.out}", file=sys.stderr)
 
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum kind { INT32, BYTE, FLOAT, NAMED, TEXT };
+enum kind { INT32, BYTE, FLOAT, NAMED, METHOD, TEXT };
 
 struct name {
     const char *name;
@@ -17,11 +17,6 @@ static const struct name blend_names[] = {{"linear", REFOCUS_BLEND_LINEAR},
                                           {"stored", REFOCUS_BLEND_STORED},
                                           {"gamma", REFOCUS_BLEND_GAMMA},
                                           {0}};
-static const struct name method_names[] = {{"sweep", REFOCUS_METHOD_SWEEP},
-                                           {"search", REFOCUS_METHOD_SEARCH},
-                                           {"raytrace", REFOCUS_METHOD_RAYTRACE},
-                                           {"input", -1},
-                                           {0}};
 static const struct name cpu_names[] = {{"auto", REFOCUS_CPU_AUTO},
                                         {"c", REFOCUS_CPU_C},
                                         {"neon", REFOCUS_CPU_NEON},
@@ -38,7 +33,7 @@ static const struct key {
     size_t offset;
     const struct name *names;
 } keys[] = {
-    {"method", NAMED, RENDER(method), method_names},
+    {"method", METHOD, RENDER(method), NULL},
     {"rays", INT32, RENDER(rays), ray_names},
     {"iterations", INT32, RENDER(iterations), NULL},
     {"blend", NAMED, RENDER(blend), blend_names},
@@ -46,6 +41,13 @@ static const struct key {
     {"mirror", BYTE, RENDER(mirror), NULL},
     {"background", BYTE, RENDER(background), NULL},
     {"prefilter", BYTE, RENDER(prefilter), NULL},
+    {"cell", INT32, RENDER(cell), NULL},
+    {"seed", INT32, RENDER(seed), NULL},
+    {"spread", INT32, RENDER(spread), NULL},
+    {"attention_angle", FLOAT, RENDER(attention_angle), NULL},
+    {"layers", INT32, RENDER(layers), NULL},
+    {"solver", INT32, RENDER(solver), NULL},
+    {"conductivity", FLOAT, RENDER(conductivity), NULL},
     {"threads", INT32, offsetof(struct quality_settings, threads), NULL},
     {"cpu", NAMED, offsetof(struct quality_settings, cpu), cpu_names},
     {"against", TEXT, offsetof(struct quality_settings, against), NULL},
@@ -55,6 +57,16 @@ static int parse_value(const struct key *key, const char *text, double *value)
 {
     char *end;
 
+    for (uint32_t i = 0; key->kind == METHOD && refocus_method_name(i); i++) {
+        if (!strcmp(refocus_method_name(i), text)) {
+            *value = i;
+            return 0;
+        }
+    }
+    if (key->kind == METHOD) {
+        *value = -1;
+        return strcmp(text, "input") ? -1 : 0;
+    }
     for (const struct name *n = key->names; n && n->name; n++) {
         if (!strcmp(n->name, text)) {
             *value = n->value;
@@ -78,7 +90,7 @@ static int set(struct quality_settings *settings, const struct key *key, const c
         if (key->kind != FLOAT || !isinf(value))
             return -1;
     }
-    if (key->names == method_names && value < 0)
+    if (key->kind == METHOD && value < 0)
         settings->input = 1;
     else if (key->kind == BYTE)
         *(uint8_t *)field = (uint8_t)value;
@@ -135,6 +147,9 @@ void quality_settings_help(FILE *file)
         fprintf(file, "  %-11s", keys[i].name);
         if (keys[i].kind == TEXT)
             fprintf(file, " label of an earlier run");
+        else if (keys[i].kind == METHOD)
+            for (uint32_t m = 0; refocus_method_name(m); m++)
+                fprintf(file, "%s %s", m ? "" : " input", refocus_method_name(m));
         else if (keys[i].kind != NAMED)
             fprintf(file, " number");
         for (const struct name *n = keys[i].names; n && n->name; n++)

@@ -1,6 +1,15 @@
-/* Prints a hash of every kind of picture that the core makes: the same text is expected
- * from every compiler and processor. tests/run.sh compares them. */
+/* Golden pictures: hashes of every kind of picture that the core makes, on every instruction
+ * set of this processor and by 1, 2, 3 and 8 threads. The same are expected from every
+ * compiler and processor.
+ *
+ * usage: render-digest golden.txt            compares with the file
+ *        render-digest golden.txt --update   writes it: after a change of the arithmetic
+ *
+ * Prints them too; tests/run.sh compares what its builds print. */
 #include "pictures.h"
+
+static const char *golden_path;
+static FILE *golden_new; /* being written, else NULL */
 
 static uint64_t hash(const uint8_t *bytes, size_t n)
 {
@@ -11,36 +20,190 @@ static uint64_t hash(const uint8_t *bytes, size_t n)
     return h;
 }
 
-static void print_digests(void **state)
+/* A hash against the line of that name in the golden file. */
+static void check_golden(uint64_t is, const char *name)
 {
-    static const struct {
-        int width, height;
-        float blur, focus;
-    } views[] = {{83, 47, 9, 0.6f}, {64, 33, 14.5f, 0}, {31, 70, 5, 1}};
+    char line[200], wanted[200];
+    FILE *file;
+
+    snprintf(wanted, sizeof wanted, "%016llx  %s\n", (unsigned long long)is, name);
+    printf("digest %s", wanted);
+    if (golden_new) {
+        fputs(wanted, golden_new);
+        return;
+    }
+    file = fopen(golden_path, "r");
+    if (!file)
+        fail_msg("%s cannot be read", golden_path);
+    while (fgets(line, sizeof line, file)) {
+        line[strcspn(line, "\n")] = 0;
+        if (strlen(line) > 18 && !strcmp(line + 18, name)) {
+            fclose(file);
+            if (strncmp(line, wanted, 16))
+                fail_msg("%s: is %.16s, should be %.16s", name, wanted, line);
+            return;
+        }
+    }
+    fclose(file);
+    fail_msg("%s: not in %s", name, golden_path);
+}
+
+/* What is rendered: a picture, its depth in samples as large as `coarse` pixels, a lens, and
+ * the formats of the photo and of the result. */
+static const struct view {
+    int width, height, coarse;
+    float blur, focus;
+    uint32_t in, out;
+    bool all_styles;
+    float gain; /* of highlights, 0: none, else the photo is darkened but for its lights */
+} views[] = {
+    {83, 47, 1, 9, 0.6f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, true, 0},
+    {64, 33, 1, 14.5f, 0, REFOCUS_FORMAT_BGR8, REFOCUS_FORMAT_RGBA8, true, 0},
+    {31, 70, 1, 5, 1, REFOCUS_FORMAT_RGBA8, REFOCUS_FORMAT_BGR8, true, 0},
+    {1, 1, 1, 20, 0.5f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGRA8, false, 0},
+    {40, 17, 1, 0, 0.25f, REFOCUS_FORMAT_BGRA8, REFOCUS_FORMAT_RGB8, false, 0},
+    {53, 38, 1, 1.25f, 0.3f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false, 0},
+    {96, 80, 4, 20, 0.45f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false, 4},
+    {90, 61, 1, 31.5f, 0.8f, REFOCUS_FORMAT_BGR8, REFOCUS_FORMAT_RGB8, false, 2.5f},
+    {61, 44, 3, 32, 0.25f, REFOCUS_FORMAT_BGRA8, REFOCUS_FORMAT_BGRA8, false, 0},
+    {97, 54, 1, 63.5f, 0.5f, REFOCUS_FORMAT_RGBA8, REFOCUS_FORMAT_RGBA8, false, 0},
+    {48, 65, 1, 100, 1, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, false, 0},
+    {70, 41, 1, 127, 0, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGR8, false, 0},
+};
+
+/* All of them, or those that differ most and take little time at any K. */
+static bool takes(const struct view *view, const struct style *style)
+{
+    return view->all_styles || (style->rays != REFOCUS_RAYS_FULL && style->rays <= 64 &&
+                                style->rays >= 32);
+}
+
+enum { MOST_BYTES = 4 * 100 * 100 };
+
+/* The photo in the format of the view, the alpha not all the same. */
+static struct refocus_image photo_of(const struct view *view, const struct picture *p,
+                                     uint8_t memory[MOST_BYTES])
+{
+    const int bytes = refocus_format_bytes(view->in);
+    const bool bgr = view->in == REFOCUS_FORMAT_BGR8 || view->in == REFOCUS_FORMAT_BGRA8;
+
+    for (int i = 0; i < p->width * p->height; i++) {
+        for (int c = 0; c < 3; c++) {
+            const uint8_t code = p->rgb[3 * i + c];
+            const bool dark = view->gain > 0 && code < 250;
+
+            memory[i * bytes + (bgr ? 2 - c : c)] = dark ? code / 4 : code;
+        }
+        if (bytes == 4)
+            memory[i * 4 + 3] = (uint8_t)(i * 37);
+    }
+    return refocus_image_packed(view->in, memory, p->width, p->height,
+                                (ptrdiff_t)p->width * bytes);
+}
+
+static struct picture depth_of(const struct view *view, const struct picture *p)
+{
+    const int n = view->coarse;
+    struct picture depth = picture_flat((p->width + n - 1) / n, (p->height + n - 1) / n,
+                                        (uint8_t[3]){0}, 0);
+
+    for (int y = 0; y < depth.height; y++)
+        for (int x = 0; x < depth.width; x++)
+            depth.disparity[y * depth.width + x] = p->disparity[y * n * p->width + x * n];
+    return depth;
+}
+
+/* Renders all styles of a view; false: there is no such instruction set here. */
+static bool hash_view(const struct view *view, const struct picture *p, uint32_t cpu,
+                      int threads, uint64_t *hashes)
+{
+    static uint8_t in[MOST_BYTES], out[MOST_BYTES];
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(p->width, p->height, view->blur);
+    const struct refocus_image photo = photo_of(view, p, in);
+    const int stride = refocus_format_bytes(view->out) * p->width;
+    const struct refocus_image image =
+        refocus_image_packed(view->out, out, p->width, p->height, stride);
+    struct picture depth = depth_of(view, p);
+    const struct refocus_disparity disparity = picture_disparity(&depth);
+    struct refocus_renderer *renderer;
+    int status;
+
+    limits.cpu = cpu;
+    limits.threads = threads;
+    status = refocus_renderer_create(&renderer, &limits);
+    if (status != REFOCUS_ERR_UNSUPPORTED) {
+        assert_int_equal(status, REFOCUS_OK);
+        assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+        for (int i = 0; i < style_count; i++) {
+            struct refocus_render_params params =
+                style_params(&styles[i], view->focus, view->blur);
+            struct refocus_aperture *aperture = style_aperture(&styles[i]);
+
+            params.aperture = aperture;
+            if (view->gain > 0)
+                params.highlight_gain = view->gain;
+            memset(out, 0xaa, sizeof out);
+            if (takes(view, &styles[i])) {
+                assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+                hashes[i] = hash(out, (size_t)stride * (size_t)p->height);
+            }
+            refocus_aperture_destroy(&aperture);
+        }
+        refocus_renderer_destroy(&renderer);
+    }
+    picture_free(&depth);
+    return status == REFOCUS_OK;
+}
+
+/* Another instruction set or number of threads: the same hashes. */
+static void check_same(const struct view *view, const struct picture *p, uint32_t cpu,
+                       int threads, const uint64_t *expected)
+{
+    uint64_t hashes[64] = {0};
+
+    if (!hash_view(view, p, cpu, threads, hashes))
+        return;
+    for (int i = 0; i < style_count; i++)
+        if (takes(view, &styles[i]) && hashes[i] != expected[i])
+            fail_msg("%d x %d, K = %g, %s: %s with %d threads differs from plain C with one",
+                     view->width, view->height, (double)view->blur, styles[i].name,
+                     refocus_cpu_name(cpu), threads);
+}
+
+static void pictures(void **state)
+{
     const int count = sizeof views / sizeof views[0];
 
     (void)state;
+    assert_true(style_count <= 64);
     for (int v = 0; v < count; v++) {
-        struct picture p = picture_make(views[v].width, views[v].height, 77u + (uint32_t)v);
-        struct refocus_renderer *renderer = prepared(&p, views[v].blur, 2);
-        const size_t size = 3 * (size_t)p.width * (size_t)p.height;
-        uint8_t *out = malloc(size);
+        const struct view *view = &views[v];
+        struct picture p = picture_make(view->width, view->height, 77u + (uint32_t)v);
+        uint64_t plain[64] = {0};
 
-        assert_non_null(out);
+        assert_true(hash_view(view, &p, REFOCUS_CPU_C, 1, plain));
+        for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++)
+            check_same(view, &p, cpu, 2, plain);
+        check_same(view, &p, REFOCUS_CPU_AUTO, 1, plain);
+        check_same(view, &p, REFOCUS_CPU_AUTO, 3, plain);
+        check_same(view, &p, REFOCUS_CPU_AUTO, 8, plain);
         for (int i = 0; i < style_count; i++) {
-            render_style(renderer, &p, &styles[i], views[v].focus, views[v].blur, out);
-            printf("digest %016llx  %d x %d, K = %g, df = %g, %s\n",
-                   (unsigned long long)hash(out, size), p.width, p.height,
-                   (double)views[v].blur, (double)views[v].focus, styles[i].name);
+            char name[120];
+
+            if (!takes(view, &styles[i]))
+                continue;
+            snprintf(name, sizeof name, "%d x %d, depth / %d, K = %g, df = %g, gain %g, %d to %d, %s",
+                     p.width, p.height, view->coarse, (double)view->blur,
+                     (double)view->focus, (double)view->gain, (int)view->in, (int)view->out, styles[i].name);
+            check_golden(plain[i], name);
         }
-        free(out);
-        refocus_renderer_destroy(&renderer);
         picture_free(&p);
     }
 }
 
 /* A coarse map brought to the photo's size. */
-static void print_upsampled(void **state)
+static void upsampled(void **state)
 {
     static const int samples[][2] = {{20, 15}, {7, 31}, {1, 3}, {90, 4}};
     struct picture p = picture_make(83, 47, 99);
@@ -48,6 +211,7 @@ static void print_upsampled(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, p.rgb, p.width, p.height, 3 * p.width);
     const struct refocus_upsample_params params = refocus_upsample_params_default();
     uint16_t out[83 * 47];
+    char name[60];
 
     (void)state;
     for (int i = 0; i < 4; i++) {
@@ -55,14 +219,13 @@ static void print_upsampled(void **state)
             p.disparity + i * 100, samples[i][0], samples[i][1], 2 * samples[i][0]);
 
         assert_int_equal(refocus_upsample(&photo, &map, &params, out, 2 * 83), 0);
-        printf("digest %016llx  upsampled from %d x %d\n",
-               (unsigned long long)hash((const uint8_t *)out, sizeof out), samples[i][0],
-               samples[i][1]);
+        snprintf(name, sizeof name, "upsampled from %d x %d", samples[i][0], samples[i][1]);
+        check_golden(hash((const uint8_t *)out, sizeof out), name);
     }
     picture_free(&p);
 }
 
-static void print_rays(void **state)
+static void ray_sets(void **state)
 {
     static struct refocus_ray rays[REFOCUS_MAX_RAYS];
     static const int counts[] = {1, 7, 24, 64, 255, 1024};
@@ -77,20 +240,34 @@ static void print_rays(void **state)
         else
             assert_int_equal(refocus_aperture_create_disc(&aperture), 0);
         for (int i = 0; i < 6; i++) {
+            char name[60];
+
             assert_int_equal(refocus_aperture_rays(aperture, counts[i], rays), 0);
-            printf("digest %016llx  %d rays, %d blades\n",
-                   (unsigned long long)hash((const uint8_t *)rays,
-                                            (size_t)counts[i] * sizeof rays[0]),
-                   counts[i], blades);
+            snprintf(name, sizeof name, "%d rays, %d blades", counts[i], blades);
+            check_golden(hash((const uint8_t *)rays, (size_t)counts[i] * sizeof rays[0]), name);
         }
         refocus_aperture_destroy(&aperture);
     }
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(print_digests),
-                                       cmocka_unit_test(print_upsampled),
-                                       cmocka_unit_test(print_rays)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures), cmocka_unit_test(upsampled),
+                                       cmocka_unit_test(ray_sets)};
+    const bool update = argc == 3 && !strcmp(argv[2], "--update");
+    int failed;
+
+    if (argc != 2 && !update) {
+        fprintf(stderr, "usage: render-digest GOLDEN [--update]\n");
+        return 2;
+    }
+    golden_path = argv[1];
+    if (update && !(golden_new = fopen(golden_path, "w"))) {
+        perror(golden_path);
+        return 1;
+    }
+    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    if (golden_new)
+        fclose(golden_new);
+    return failed;
 }

@@ -11,6 +11,8 @@ const struct style styles[] = {
     {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0, 0, 0},
     {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 0, 0},
     {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1, 0, 0},
+    {"sweep lights", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 1, 0},
+    {"sweep lights weighted", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 200, 6, 2, 0},
     {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0, 0, 0},
     {"search T=2", REFOCUS_METHOD_SEARCH, 64, 2, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
     {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6, 0, 0},
@@ -155,6 +157,7 @@ struct refocus_disparity picture_disparity(const struct picture *p)
 /* Settings that only one method looks at. */
 static void set_variant(struct refocus_render_params *params, int variant)
 {
+    params->highlight_gain = variant == 1 ? 4 : variant == 2 ? 2.5f : 1;
     params->seed = 7;
     params->cell = variant == 1 ? 4 : 2;
     params->spread = variant == 1 ? REFOCUS_SPREAD_LOMMEL : REFOCUS_SPREAD_UNIFORM;

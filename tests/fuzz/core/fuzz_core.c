@@ -124,6 +124,7 @@ static struct refocus_render_params take_lens(struct input *in, int wild, float 
         p.rays = REFOCUS_RAYS_FULL;
     p.blend = (uint32_t)take_in(in, wild, 0, 2);
     p.sigma = 1 + take_fraction(in, wild, 300);
+    p.highlight_gain = 1 + take_fraction(in, wild, 3);
     p.iterations = take_in(in, wild, 1, 8);
     p.mirror = (uint8_t)take_in(in, wild, 0, 1);
     p.background = (uint8_t)take_in(in, wild, 0, 1);

@@ -25,10 +25,10 @@ def picture(width, height, form, out, bits, depth=None):
             + u16(dw, 1) + u16(dh, 1) + bytes([depth is None]))
 
 
-def lens(focus, blur, most, method, rays, blend=0, sigma=128, iterations=2, flags=(0, 0, 1),
+def lens(focus, blur, most, method, rays, blend=0, sigma=128, gain=1, iterations=2, flags=(0, 0, 1),
          region=(0, 0, 0, 0)):
     return (share(focus, 1) + share(blur / most, 1) + u16(method) + u16(rays) + u16(blend)
-            + share(sigma - 1, 300) + u16(iterations, 1) + b"".join(map(u16, flags))
+            + share(sigma - 1, 300) + share(gain - 1, 3) + u16(iterations, 1) + b"".join(map(u16, flags))
             + b"".join(map(u16, region)))
 
 
@@ -52,6 +52,8 @@ def main():
         + lens(.2, 10, 10, 0, 24, sigma=3) + DISC,
         "fine_depth": limits(12, 12, 3, 1) + picture(9, 12, 1, 1, 16, depth=(48, 41))
         + lens(.2, 3, 3, 1, 7) + DISC,
+        "lights": limits(48, 40, 9, 2) + picture(48, 40, 1, 1, 16)
+        + lens(.1, 9, 9, 0, 64, gain=4, sigma=300) + DISC,
         "too_large": limits(10, 10, 3, 1) + picture(11, 10, 1, 1, 16) + lens(.2, 3, 3, 0, 7),
         "no_blur": limits(10, 10, 3, 1) + picture(10, 10, 1, 1, 16) + lens(.2, 0, 3, 0, 7) + DISC,
         "column": limits(1, 48, 12, 3) + picture(1, 48, 1, 1, 16) + lens(.6, 12, 12, 0, 64) + DISC,

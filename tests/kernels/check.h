@@ -1,0 +1,45 @@
+/* What the files of check-kernels share. */
+#ifndef KERNELS_CHECK_H
+#define KERNELS_CHECK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <refocus/render.h>
+
+#include "kernels/kernels.h"
+
+/* Kernels of an instruction set, beside those in plain C. */
+struct subject {
+    const char *cpu;
+    struct rf_kernels kernels, plain;
+};
+
+/* Whole numbers that look random: the same for the same seed. */
+static inline uint32_t noise(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return *seed >> 8;
+}
+
+static inline int noise_between(uint32_t *seed, int least, int most)
+{
+    return least + (int)(noise(seed) % (uint32_t)(most - least + 1));
+}
+
+/* Each prints a line that begins with "ok" or "FAIL" for each kernel; the number of failures. */
+int check_rows(const struct subject *subject);
+int check_sweep(const struct subject *subject);
+int check_focus(void);
+
+/* Prints a line with the time of each kernel, in plain C and by the subject. */
+void bench_rows(const struct subject *subject);
+void bench_sweep(const struct subject *subject);
+
+/* Seconds that the fastest of several runs of call(context) takes. */
+double best_time(void (*call)(void *context), void *context);
+
+/* Operations of simd/vec.h, by check_vec.c of an instruction set. */
+int check_vec_sse41(void), check_vec_avx2(void), check_vec_neon(void);
+
+#endif

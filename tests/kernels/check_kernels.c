@@ -1,0 +1,80 @@
+/* check-kernels: every kernel of every instruction set that this build and this processor have,
+ * bit for bit against a reference. With --bench, their times beside those of plain C.
+ *
+ * usage: check-kernels [--bench] */
+#include "check.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+static double now(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+double best_time(void (*call)(void *context), void *context)
+{
+    const double end = now() + 0.1;
+    double best = 1e9;
+
+    do {
+        const double start = now();
+        double taken;
+
+        call(context);
+        taken = now() - start;
+        best = taken < best ? taken : best;
+    } while (now() < end);
+    return best;
+}
+
+static int check_vec(uint32_t cpu)
+{
+    switch (cpu) {
+#if defined(RF_WITH_SSE41)
+    case REFOCUS_CPU_SSE41:
+        return check_vec_sse41();
+#endif
+#if defined(RF_WITH_AVX2)
+    case REFOCUS_CPU_AVX2:
+        return check_vec_avx2();
+#endif
+#if defined(RF_WITH_NEON)
+    case REFOCUS_CPU_NEON:
+        return check_vec_neon();
+#endif
+    }
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    const bool bench = argc == 2 && !strcmp(argv[1], "--bench");
+    int failures = 0;
+
+    if (argc > 1 && !bench) {
+        fprintf(stderr, "usage: check-kernels [--bench]\n");
+        return 2;
+    }
+    if (!bench)
+        failures += check_focus();
+    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++) {
+        struct subject subject = {.cpu = refocus_cpu_name(cpu)};
+        uint32_t plain = REFOCUS_CPU_C, own = cpu;
+
+        if (!rf_kernels_select(&subject.kernels, &own) ||
+            !rf_kernels_select(&subject.plain, &plain))
+            continue;
+        if (bench && cpu != REFOCUS_CPU_C) {
+            bench_sweep(&subject);
+            bench_rows(&subject);
+        } else if (!bench) {
+            failures += check_vec(cpu) + check_sweep(&subject) + check_rows(&subject);
+        }
+    }
+    return failures > 0;
+}

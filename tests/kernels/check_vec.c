@@ -1,0 +1,157 @@
+/* The operations of simd/vec.h against their meaning in C; compiled for each instruction
+ * set, as the kernels are. Lanes take every pair of some extremes, then noise. */
+#include "check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "simd/vec.h"
+
+#define TEXT_OF(set) #set
+#define TEXT(set)    TEXT_OF(set)
+
+enum { MOST_LANES = 32, ROUNDS = 2000 };
+
+struct lanes {
+    uint16_t a[MOST_LANES + 1], b[MOST_LANES + 1], out[MOST_LANES + 1];
+};
+
+typedef vec_u16 operation(vec_u16 a, vec_u16 b);
+typedef uint16_t meaning(uint16_t a, uint16_t b);
+
+static uint16_t c_add(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(a + b);
+}
+
+static uint16_t c_sub(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(a - b);
+}
+
+static uint16_t c_and(uint16_t a, uint16_t b)
+{
+    return a & b;
+}
+
+static uint16_t c_without(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(a & ~b);
+}
+
+static uint16_t c_at_most(uint16_t a, uint16_t b)
+{
+    return a <= b ? 0xffff : 0;
+}
+
+static vec_u16 first(vec_u16 a, vec_u16 b)
+{
+    (void)b;
+    return a;
+}
+
+static uint16_t c_first(uint16_t a, uint16_t b)
+{
+    (void)b;
+    return a;
+}
+
+static const struct {
+    const char *name;
+    operation *run;
+    meaning *expect;
+} operations[] = {
+    {"load, store", first, c_first},         {"add", vec_u16_add, c_add},
+    {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
+    {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
+};
+
+static uint16_t pick(int round, int lane, int which, uint32_t *seed)
+{
+    static const uint16_t extreme[] = {0,      1,      2,      0x7ffe, 0x7fff, 0x8000,
+                                       0x8001, 0xfffe, 0xffff, 0x00ff, 0x0100, 0xff00};
+    const int pair = round * (int)VEC_U16 + lane;
+
+    if (pair < 12 * 12)
+        return extreme[which ? pair / 12 : pair % 12];
+    return (uint16_t)noise(seed);
+}
+
+/* Elements from [1] on, so that rows are unaligned. */
+static int check_operation(int i)
+{
+    uint32_t seed = 9;
+    struct lanes v;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int lane = 0; lane < (int)VEC_U16; lane++) {
+            v.a[1 + lane] = pick(round, lane, 0, &seed);
+            v.b[1 + lane] = pick(round, lane, 1, &seed);
+        }
+        vec_u16_store(v.out + 1, operations[i].run(vec_u16_load(v.a + 1), vec_u16_load(v.b + 1)));
+        for (int lane = 1; lane <= (int)VEC_U16; lane++) {
+            const uint16_t should = operations[i].expect(v.a[lane], v.b[lane]);
+
+            if (v.out[lane] != should) {
+                printf("FAIL  vec_u16_%s, %s: of 0x%04x, 0x%04x is 0x%04x, should be 0x%04x\n",
+                       operations[i].name, TEXT(RF_VEC_SET), v.a[lane], v.b[lane], v.out[lane],
+                       should);
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+static int check_set(void)
+{
+    for (int x = 0; x <= 0xffff; x++) {
+        uint16_t out[MOST_LANES];
+
+        vec_u16_store(out, vec_u16_set((uint16_t)x));
+        for (int lane = 0; lane < (int)VEC_U16; lane++)
+            if (out[lane] != x) {
+                printf("FAIL  vec_u16_set, %s: of %d is %d\n", TEXT(RF_VEC_SET), x, out[lane]);
+                return 1;
+            }
+    }
+    return 0;
+}
+
+static int check_add_to(void)
+{
+    uint32_t seed = 5, sum[MOST_LANES + 2], before[MOST_LANES + 2];
+    uint16_t v[MOST_LANES];
+
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int i = 0; i < (int)VEC_U16 + 2; i++)
+            sum[i] = before[i] = round % 2 ? noise(&seed) : 0xffff0000 + noise(&seed) % 3;
+        for (int lane = 0; lane < (int)VEC_U16; lane++)
+            v[lane] = pick(round, lane, 0, &seed);
+        vec_u16_add_to(sum + 1, vec_u16_load(v));
+        for (int i = 0; i < (int)VEC_U16 + 2; i++) {
+            const bool inside = i > 0 && i <= (int)VEC_U16;
+            const uint32_t should = before[i] + (inside ? v[i - 1] : 0);
+
+            if (sum[i] != should) {
+                printf("FAIL  vec_u16_add_to, %s: sum %d is 0x%08x, should be 0x%08x\n",
+                       TEXT(RF_VEC_SET), i, (unsigned)sum[i], (unsigned)should);
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+int RF_VEC(check_vec)(void)
+{
+    const int count = sizeof operations / sizeof operations[0];
+    int failures = check_set() + check_add_to();
+
+    for (int i = 0; i < count; i++)
+        failures += check_operation(i);
+    if (failures == 0)
+        printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
+               count + 2, (int)VEC_U16);
+    return failures;
+}

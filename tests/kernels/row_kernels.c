@@ -1,0 +1,273 @@
+#include "row_kernels.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_RADIUS = 127 * 256 + 1 };
+
+/* The parameter holds both parts of a focus. */
+static struct rf_focus focus_of(int parameter)
+{
+    uint32_t seed = (uint32_t)parameter;
+    struct rf_focus focus = {(uint16_t)noise(&seed), (uint16_t)(noise(&seed) % MOST_RADIUS)};
+
+    if (parameter % 3 == 0)
+        focus.disparity = parameter % 2 ? 65535 : 0;
+    if (parameter % 5 == 0)
+        focus.radius = MOST_RADIUS;
+    return focus;
+}
+
+static void run_signed_blur(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    k->signed_blur(row[0], row[1], focus_of(parameter), n);
+}
+
+static void expect_signed_blur(void *const *row, int parameter, int n)
+{
+    const struct rf_focus focus = focus_of(parameter);
+    int16_t *blur = row[0];
+    const uint16_t *disparity = row[1];
+
+    for (int x = 0; x < n; x++) {
+        const int64_t distance = (int64_t)focus.disparity - disparity[x];
+        const int64_t q24 = distance * focus.radius;
+
+        if (q24 >= 0)
+            blur[x] = (int16_t)((q24 + 32768) / 65536);
+        else
+            blur[x] = (int16_t)-((-q24 + 32768) / 65536);
+    }
+}
+
+static void run_smooth3(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    k->smooth3(row[0], row[1], row[2], row[3], row[4], row[5], row[6], parameter, n);
+}
+
+static void expect_smooth3(void *const *row, int parameter, int n)
+{
+    uint16_t *out = row[0];
+
+    for (int x = 0; x < n; x++) {
+        const int own = ((const int16_t *)row[5])[x];
+        int sum = 0, count = 0;
+
+        for (int i = 0; i < 3; i++) {
+            const int light = ((const uint16_t *)row[1 + i])[x];
+            const int blur = ((const int16_t *)row[4 + i])[x];
+
+            if (i == 1 || (abs(own) > parameter && abs(blur - own) <= 256)) {
+                sum += light;
+                count++;
+            }
+        }
+        out[x] = (uint16_t)((2 * sum + count) / (2 * count));
+    }
+}
+
+/* The result is moved to the first row, whichever it is in. */
+static void run_spread_row(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    const uint16_t *result = k->spread_row(row[0], row[1], parameter, n);
+
+    if (result != row[0])
+        memcpy(row[0], result, (size_t)n * 2);
+}
+
+static int fallen(int value, int fall)
+{
+    return value > fall ? value - fall : 0;
+}
+
+static void expect_spread_row(void *const *row, int parameter, int n)
+{
+    uint16_t *const in = row[0], *const out = row[1];
+
+    (void)parameter;
+    for (int x = 0; x < n; x++) {
+        int most = 0;
+
+        for (int q = 0; q < n; q++) {
+            const int value = fallen(in[q], abs(q - x) * RF_CONE_STEP);
+
+            most = value > most ? value : most;
+        }
+        out[x] = (uint16_t)most;
+    }
+    if (n > 0)
+        memcpy(in, out, (size_t)n * 2);
+}
+
+static void run_dilate_from(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->dilate_from(row[0], row[1], n);
+}
+
+static void expect_dilate_from(void *const *row, int parameter, int n)
+{
+    uint16_t *out = row[0];
+    const uint16_t *before = row[1];
+
+    (void)parameter;
+    for (int x = 0; x < n; x++) {
+        for (int dx = -1; dx <= 1; dx++) {
+            const int value =
+                fallen(before[x + dx], dx == 0 ? RF_CONE_STEP : RF_CONE_DIAGONAL);
+
+            if (value > out[x])
+                out[x] = (uint16_t)value;
+        }
+    }
+}
+
+static void run_mark(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->mark(row[0], row[1], row[2], n);
+}
+
+static void expect_mark(void *const *row, int parameter, int n)
+{
+    int16_t *behind = row[0];
+    const int16_t *blur = row[1];
+    const uint16_t *dilated = row[2];
+
+    (void)parameter;
+    for (int x = 0; x < n; x++) {
+        if (dilated[x] - 32768 > blur[x] + 128)
+            behind[x] = RF_NO_BLUR;
+        else
+            behind[x] = blur[x];
+    }
+}
+
+static void run_push(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    uint16_t *const out[3] = {row[0], row[1], row[2]};
+    /* three channels from two pairs of rows */
+    const uint16_t *const upper[3] = {row[4], row[5], row[5]};
+    const uint16_t *const lower[3] = {row[6], row[7], row[6]};
+
+    (void)parameter;
+    k->push(out, row[3], upper, lower, row[8], row[9], n);
+}
+
+static void expect_push(void *const *row, int parameter, int n)
+{
+    static const int upper[3] = {4, 5, 5}, lower[3] = {6, 7, 6};
+
+    (void)parameter;
+    for (int x = 0; x < n; x++) {
+        int sum[3] = {0}, count = 0, farthest = RF_NO_BLUR;
+
+        for (int i = 0; i < 4; i++) {
+            const int at = 2 * x + i % 2;
+            const int blur = ((const int16_t *)row[8 + i / 2])[at];
+
+            if (blur == RF_NO_BLUR)
+                continue;
+            count++;
+            farthest = blur > farthest ? blur : farthest;
+            for (int c = 0; c < 3; c++)
+                sum[c] += ((const uint16_t *)row[i < 2 ? upper[c] : lower[c]])[at];
+        }
+        for (int c = 0; c < 3; c++)
+            ((uint16_t *)row[c])[x] =
+                count == 0 ? 0 : (uint16_t)((2 * sum[c] + count) / (2 * count));
+        ((int16_t *)row[3])[x] = (int16_t)farthest;
+    }
+}
+
+static void run_pull(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->pull(row[0], row[1], row[2], row[3], (uint16_t *)row[4] - 1, n);
+}
+
+static int quarters(int three, int one)
+{
+    return (3 * three + one + 2) / 4;
+}
+
+static void expect_pull(void *const *row, int parameter, int n)
+{
+    uint16_t *out = row[0];
+    const int16_t *blur = row[1];
+    const uint16_t *near_row = row[2], *far_row = row[3];
+
+    (void)parameter;
+    for (int i = 0; i < 2 * n; i++) {
+        const int x = i / 2;
+        int beside = i % 2 ? x + 1 : x - 1;
+
+        if (beside < 0 || beside >= n)
+            beside = x;
+        if (blur[i] == RF_NO_BLUR)
+            out[i] = (uint16_t)quarters(quarters(near_row[x], far_row[x]),
+                                        quarters(near_row[beside], far_row[beside]));
+    }
+}
+
+static void run_pull_blur(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->pull_blur(row[0], row[1], n);
+}
+
+static void expect_pull_blur(void *const *row, int parameter, int n)
+{
+    int16_t *out = row[0];
+
+    (void)parameter;
+    for (int i = 0; i < 2 * n; i++)
+        if (out[i] == RF_NO_BLUR)
+            out[i] = ((const int16_t *)row[1])[i / 2];
+}
+
+static void run_means(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    k->means(row[0], row[1], rf_mean_scale((uint64_t)parameter), n);
+}
+
+/* floor(sum scale / 2^30 + 1/2), its product by hand in two halves. */
+static void expect_means(void *const *row, int parameter, int n)
+{
+    const uint64_t scale = rf_mean_scale((uint64_t)parameter);
+    uint16_t *mean = row[0];
+    const uint32_t *sum = row[1];
+
+    for (int x = 0; x < n; x++) {
+        const uint64_t high = (sum[x] >> 16) * scale, low = (sum[x] & 0xffff) * scale;
+
+        mean[x] = (uint16_t)((high * 65536 + low + 536870912) / 1073741824);
+    }
+}
+
+const struct row_kernel row_kernels[] = {
+    {"signed_blur", 2, {{BLUR, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, 30000,
+     run_signed_blur, expect_signed_blur},
+    {"smooth3", 7,
+     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0},
+      {BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}}, 0, INT16_MAX,
+     run_smooth3, expect_smooth3},
+    {"spread_row", 2,
+     {{RAISED, 1, 0, RF_SPREAD_MARGIN}, {SCRATCH, 1, 0, RF_SPREAD_MARGIN}}, 1, 258,
+     run_spread_row, expect_spread_row},
+    {"dilate_from", 2, {{RAISED, 1, 0, 0}, {RAISED, 1, 1, 0}}, 0, 0,
+     run_dilate_from, expect_dilate_from},
+    {"mark", 3, {{BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {RAISED, 1, 0, 0}}, 0, 0,
+     run_mark, expect_mark},
+    {"push", 10,
+     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {BLUR, 1, 0, 0},
+      {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0},
+      {BLUR_OR_NONE, 2, 0, 0}, {BLUR_OR_NONE, 2, 0, 0}}, 0, 0, run_push, expect_push},
+    {"pull", 5,
+     {{LIGHT, 2, 0, 0}, {BLUR_OR_NONE, 2, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0},
+      {SCRATCH, 1, 0, 1}}, 0, 0, run_pull, expect_pull},
+    {"pull_blur", 2, {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}}, 0, 0,
+     run_pull_blur, expect_pull_blur},
+    {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
+};
+const int row_kernel_count = sizeof row_kernels / sizeof row_kernels[0];

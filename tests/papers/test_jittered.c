@@ -1,0 +1,75 @@
+/* Jittered sampling: repeatable by its seed, the mean of many is full tracing. */
+#include "pictures.h"
+
+enum { W = 40, H = 30 };
+
+static void render(struct refocus_renderer *renderer, uint32_t method, int cell, uint32_t seed,
+                   uint8_t *out)
+{
+    struct refocus_render_params params = refocus_render_params_default(0.3f, 6);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+
+    params.method = method;
+    params.rays = REFOCUS_RAYS_FULL;
+    params.blend = REFOCUS_BLEND_STORED;
+    params.cell = cell;
+    params.seed = seed;
+    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+}
+
+static void seeds(void **state)
+{
+    struct picture p = picture_make(W, H, 5);
+    struct refocus_renderer *one = prepared(&p, 6, 1), *three = prepared(&p, 6, 3);
+    uint8_t a[3 * W * H], b[3 * W * H];
+
+    (void)state;
+    for (int cell = 2; cell <= 4; cell++) {
+        render(one, REFOCUS_METHOD_JITTERED, cell, 9, a);
+        render(three, REFOCUS_METHOD_JITTERED, cell, 9, b);
+        assert_same_pixels(b, a, W, H, "the same seed");
+        render(one, REFOCUS_METHOD_JITTERED, cell, 10, b);
+        assert_true(memcmp(a, b, sizeof a) != 0);
+    }
+    refocus_renderer_destroy(&one);
+    refocus_renderer_destroy(&three);
+    picture_free(&p);
+}
+
+/* Cells of one pixel leave nothing to chance: full tracing, but for how mask pixels at the rim
+ * count. Larger cells scatter about it without a bias. */
+static void mean_of_many(void **state)
+{
+    enum { MANY = 40 };
+    struct picture p = picture_make(W, H, 6);
+    struct refocus_renderer *renderer = prepared(&p, 6, 2);
+    uint8_t full[3 * W * H], exact[3 * W * H], out[3 * W * H];
+    double sum[3 * W * H] = {0}, bias = 0, scatter = 0, rim = 0;
+
+    (void)state;
+    render(renderer, REFOCUS_METHOD_RAYTRACE, 2, 0, full);
+    render(renderer, REFOCUS_METHOD_JITTERED, 1, 0, exact);
+    for (uint32_t seed = 0; seed < MANY; seed++) {
+        render(renderer, REFOCUS_METHOD_JITTERED, 3, seed, out);
+        for (int i = 0; i < 3 * W * H; i++) {
+            sum[i] += out[i] / (double)MANY;
+            scatter += pow(out[i] - exact[i], 2) / (3.0 * W * H * MANY);
+        }
+    }
+    for (int i = 0; i < 3 * W * H; i++) {
+        bias += pow(sum[i] - exact[i], 2) / (3.0 * W * H);
+        rim += pow((double)full[i] - exact[i], 2) / (3.0 * W * H);
+    }
+    if (sqrt(rim) > 2.5 || sqrt(scatter) < 3 || bias > scatter / 8)
+        fail_msg("rms %g at the rim, %g of one, %g of the mean", sqrt(rim), sqrt(scatter),
+                 sqrt(bias));
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(seeds), cmocka_unit_test(mean_of_many)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,110 @@
+/* The two quick ones: NVIDIA's table against its formula, and the volume of attention of
+ * Mulder & van Liere. */
+#include "methods/blurriness.h"
+#include "pictures.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* Equation 1 of the white paper, D the camera distance, F the focus distance, all in metres. */
+static double white_paper(double D, double F, double f, double N)
+{
+    return fabs((F / D - 1) * f * f / (N * (F - f)));
+}
+
+/* 0 at c0 and below, 1/2 at r1 c0, 1 at r2 c0 and above. */
+static double interpolator(double circle, double c0, double r1, double r2)
+{
+    if (circle <= c0)
+        return 0;
+    if (circle <= r1 * c0)
+        return 0.5 * (circle - c0) / (r1 * c0 - c0);
+    return fmin(1, 0.5 + 0.5 * (circle - r1 * c0) / (r2 * c0 - r1 * c0));
+}
+
+static void table(void **state)
+{
+    static const struct {
+        double f, N, focus, near, far;
+    } lens[] = {{0.05, 1.8, 2, 0.8, 1e9}, {0.085, 1.4, 3, 1, 40}, {0.028, 2.8, 0.6, 0.4, 9}};
+    const double pixels_per_metre = 720 / 0.036, c0 = 0.7, r1 = 3, r2 = 9;
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const double a = 1 / lens[i].near, b = 1 / lens[i].far;
+        const double df = (1 / lens[i].focus - b) / (a - b);
+        /* radius at d = 1 for a focus at d = 0: any two points give K */
+        const double K = white_paper(lens[i].near, lens[i].focus, lens[i].f, lens[i].N) / 2 *
+                         pixels_per_metre / (1 - df);
+        uint8_t entry[RF_BLURRINESS_SIZE];
+
+        rf_blurriness_table(entry, df, K, c0, r1 * c0, r2 * c0);
+        for (int k = 0; k < RF_BLURRINESS_SIZE; k++) {
+            const double D = 1 / (b + k / (RF_BLURRINESS_SIZE - 1.0) * (a - b));
+            const double circle =
+                white_paper(D, lens[i].focus, lens[i].f, lens[i].N) / 2 * pixels_per_metre;
+            const double expected = 255 * interpolator(circle, c0, r1, r2);
+
+            if (fabs(entry[k] - expected) > 0.51)
+                fail_msg("lens %d, %g m: %d, the formula gives %g", i, D, entry[k], expected);
+        }
+    }
+}
+
+static void render(struct refocus_renderer *renderer, const struct picture *p, float angle,
+                   float depth, uint8_t *out)
+{
+    struct refocus_render_params params = refocus_render_params_default(0.4f, 9);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, p->width, p->height, 3 * p->width);
+
+    params.method = REFOCUS_METHOD_FOVEATED;
+    params.attention_x = 0.25f;
+    params.attention_angle = angle;
+    params.attention_depth = depth;
+    params.picture_angle = 60;
+    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+}
+
+/* Inside the cone the bytes are those of the exact technique, outside of its fading side those
+ * of the fast one. */
+static void volume(void **state)
+{
+    enum { W = 160, H = 90 };
+    struct picture p = picture_make(W, H, 17);
+    struct refocus_renderer *renderer = prepared(&p, 9, 2);
+    static uint8_t all[3 * W * H], none[3 * W * H], some[3 * W * H], flat[3 * W * H];
+    const double radius = W / 2.0 * tan(10 * pi / 180) / tan(30 * pi / 180);
+    int in = 0, out = 0, differ = 0;
+
+    (void)state;
+    render(renderer, &p, 165, 1, all);
+    render(renderer, &p, 0, 1, none);
+    render(renderer, &p, 20, 1, some);
+    render(renderer, &p, 165, 0.1f, flat); /* by depth */
+    for (int i = 0; i < W * H; i++) {
+        const double r = hypot(i % W - 0.25 * (W - 1), i / W - 0.5 * (H - 1));
+        const double d = fabs(p.disparity[i] / 65535.0 - (double)0.4f);
+
+        differ += memcmp(all + 3 * i, none + 3 * i, 3) != 0;
+        if (r < radius - 0.01) {
+            assert_memory_equal(some + 3 * i, all + 3 * i, 3);
+            in++;
+        } else if (r > 1.25 * radius + 0.01) {
+            assert_memory_equal(some + 3 * i, none + 3 * i, 3);
+            out++;
+        }
+        if (d < 0.099)
+            assert_memory_equal(flat + 3 * i, all + 3 * i, 3);
+        if (d > 0.201)
+            assert_memory_equal(flat + 3 * i, none + 3 * i, 3);
+    }
+    assert_true(in > 1500 && out > 5000 && differ > W * H / 4);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(table), cmocka_unit_test(volume)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

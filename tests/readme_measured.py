@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Puts the figures of tests/quality.md and tests/performance.md into README.md's table.
+
+Run tests/quality/run.py and tests/performance.py first, the latter on an idle machine.
+"""
+import re
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1]
+
+# run in quality.md; method and options in performance.md; what it is
+ROWS = [
+    ("input", None, "the untouched photo"),
+    ("sweep", ("sweep", "--rays 64"), "`sweep`, 64 rays: the default"),
+    ("sweep", ("sweep", "--rays 64 --cpu c"), "the same in plain C"),
+    ("search-T1-full", ("search", "--rays full --iterations 1", None),
+     "`search`, one test, every ray: the paper"),
+    ("search-T2", ("search", "--rays 64 --iterations 2"), "`search`, two tests, 64 rays"),
+    ("raytrace-full", ("raytrace", "--rays full"), "`raytrace`, every ray"),
+]
+
+
+def cells(line):
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+
+
+def quality():
+    """Scores of the first table, the means of the twelve views: run -> PSNR, edges, SSIM."""
+    text = (SOURCE / "tests" / "quality.md").read_text(encoding="utf-8")
+    table = text.split("## Methods")[1].split("\n\n")[1]
+    return {cells(line)[0].strip("`"): cells(line)[2:5] for line in table.splitlines()[2:]}
+
+
+def times():
+    """(method, options, threads) -> best ms; and the line that names the machine."""
+    lines = (SOURCE / "tests" / "performance.md").read_text(encoding="utf-8").splitlines()
+    found = {}
+    for line in lines:
+        row = cells(line)
+        if line.startswith("| `"):
+            found[row[0].strip("`"), row[1], int(row[2])] = row[6]
+    machine = next(line for line in lines if "logical processors" in line)
+    return found, machine
+
+
+def main():
+    scores, (best, machine) = quality(), times()
+    out = ["| | PSNR, dB | near depth edges | SSIM | ms, 1 thread | ms, 2 threads |",
+           "| --- | --- | --- | --- | --- | --- |"]
+    for run, timed, words in ROWS:
+        if run not in scores:
+            continue
+        ms = [best.get((timed[0], timed[1], n), "") if timed else "" for n in (1, 2)]
+        out.append("| " + " | ".join([words] + scores[run] + ms) + " |")
+    block = "\n".join(out) + f"\n\n720x540, K = 20; whole frames, the best of 20: {machine}.\n"
+    readme = SOURCE / "README.md"
+    text = readme.read_text(encoding="utf-8")
+    text = re.sub(r"(<!-- measured:.*?-->\n).*?(<!-- /measured -->)",
+                  lambda m: m.group(1) + block + m.group(2), text, flags=re.S)
+    readme.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
