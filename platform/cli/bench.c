@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "bench_rays.h"
 #include "commands.h"
 #include "engine.h"
 #include "inputs.h"
@@ -11,6 +12,7 @@ struct settings {
     struct lens_settings lens;
     struct engine_settings engine;
     double size[2];
+    bool statistics; /* --rays alone */
 };
 
 static const struct option options[] = {
@@ -29,6 +31,11 @@ static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "How"},
     METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine),
+    {.kind = OPTION_FLAG,
+     .name = "--rays",
+     .offset = offsetof(struct settings, statistics),
+     .help = "without a number: no times, but what the rays of the mask meet: how many find a "
+             "true intersection after 1, 2, ... tests of the search"},
     RUN_OPTIONS(struct settings, engine),
     PAPER_OPTIONS(struct settings, engine.papers),
     {.help = NULL},
@@ -167,6 +174,20 @@ static int check(const struct settings *settings, const char *photo)
     return EXIT_DONE;
 }
 
+static int count_rays(const struct engine *engine, const struct settings *settings,
+                      const uint16_t *disparity, int width, int height)
+{
+    struct ray_statistics statistics;
+
+    if (ray_statistics(&statistics, disparity, width, height, engine->params.focus_disparity,
+                       engine->params.max_blur_radius, engine->aperture) != 0)
+        return report_failure(EXIT_FAILED, "--rays", "not enough memory");
+    if (settings->engine.json)
+        return report_print_json(ray_statistics_json(&statistics));
+    ray_statistics_print(&statistics);
+    return report_end_output();
+}
+
 static int measure(struct engine *engine, const struct settings *settings,
                    struct input *input, const struct scene *scene)
 {
@@ -196,12 +217,32 @@ static int measure(struct engine *engine, const struct settings *settings,
         status = input_focus(input, &settings->lens, prepared, &focus);
         engine->params.focus_disparity = (float)focus;
     }
-    if (status == EXIT_DONE)
+    if (status == EXIT_DONE && settings->statistics)
+        status = count_rays(engine, settings, prepared, width, height);
+    else if (status == EXIT_DONE)
         status = engine_render(engine, &out, (int)settings->engine.repeat);
     report_progress_end();
     free(prepared);
     free(out.plane[0]);
     return status;
+}
+
+/* --rays has a number everywhere, and here a meaning without one. Takes it out of argv. */
+static bool take_bare_rays(int *argc, char **argv)
+{
+    for (int i = 1; i < *argc && strcmp(argv[i], "--") != 0; i++) {
+        const char *next = i + 1 < *argc ? argv[i + 1] : "-";
+
+        if (strcmp(argv[i], "--rays") != 0 || strcmp(next, "full") == 0 ||
+            strspn(next, "0123456789+.e") == strlen(next))
+            continue;
+        if (next[0] != '-' && strpbrk(next, "./") == NULL)
+            continue; /* neither an option nor a file: let it be refused as a number */
+        memmove(argv + i, argv + i + 1, sizeof *argv * (size_t)(*argc - i));
+        --*argc;
+        return true;
+    }
+    return false;
 }
 
 static int run(int argc, char **argv)
@@ -217,6 +258,7 @@ static int run(int argc, char **argv)
     const char *files[2];
     int status;
 
+    settings.statistics = take_bare_rays(&argc, argv);
     status = options_parse(&bench_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
@@ -243,7 +285,7 @@ static int run(int argc, char **argv)
     }
     if (status == EXIT_DONE)
         status = measure(&engine, &settings, &input, &scene);
-    if (status == EXIT_DONE)
+    if (status == EXIT_DONE && !settings.statistics)
         status = print_report(&settings, &engine, &scene, files[0]);
     engine_end(&engine);
     if (files[0]) {

@@ -206,6 +206,19 @@ static void follow_signal(struct camera *camera)
         rf_v4l2_ioctl(camera->device.fd, VIDIOC_S_DV_TIMINGS, &timings);
 }
 
+/* Where the driver can tell: of the input that is chosen, whose number is the event's. */
+static void watch_signal(const struct rf_v4l2 *device)
+{
+    struct v4l2_event_subscription change;
+    int input = 0;
+
+    rf_v4l2_ioctl(device->fd, VIDIOC_G_INPUT, &input);
+    memset(&change, 0, sizeof change);
+    change.type = V4L2_EVENT_SOURCE_CHANGE;
+    change.id = (uint32_t)input;
+    rf_v4l2_ioctl(device->fd, VIDIOC_SUBSCRIBE_EVENT, &change);
+}
+
 static int choose_format(struct refocus_source *source, struct refocus_reason *reason)
 {
     struct camera *camera = source->state;
@@ -247,7 +260,6 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
 {
     struct camera *camera = source->state;
     struct rf_v4l2 *device = &camera->device;
-    struct v4l2_event_subscription change;
     int type = (int)device->type, error = 0, status;
 
     if (device->fd < 0)
@@ -273,9 +285,7 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     device->streaming = true;
     camera->failed = false;
     camera->stuck = 0;
-    memset(&change, 0, sizeof change);
-    change.type = V4L2_EVENT_SOURCE_CHANGE;
-    rf_v4l2_ioctl(device->fd, VIDIOC_SUBSCRIBE_EVENT, &change);
+    watch_signal(device);
     mode->format = device->format;
     mode->width = device->width;
     mode->height = device->height;

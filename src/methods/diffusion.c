@@ -23,7 +23,7 @@ struct work {
     uint8_t *member;
     float *weight;
     float *plane[CHANNELS];  /* the layer */
-    float *scratch[3][CHANNELS];
+    float *scratch[2][CHANNELS];
     float *below[CHANNELS];  /* what has been composited */
     ptrdiff_t stride;
     uint64_t planes_size;    /* floats of a plane */
@@ -47,7 +47,7 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
     for (int c = 0; c < CHANNELS; c++) {
         PLANE(work->plane[c]);
         PLANE(work->below[c]);
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 2; i++)
             PLANE(work->scratch[i][c]);
     }
     PLANE(work->weight);
@@ -213,8 +213,7 @@ static void diffuse_channel(void *context, int c, int worker)
                          work->scratch[0][c], work->steps);
     else
         rf_diffuse_series(f->r, &work->layer.box, work->weight, work->plane[c],
-                          work->scratch[0][c], work->scratch[1][c], work->scratch[2][c],
-                          &work->series);
+                          work->scratch[0][c], work->scratch[1][c], &work->series);
 }
 
 /* Over: what is below counts as whole wherever there is any of it, because a surface goes on
@@ -258,7 +257,7 @@ static void do_layer(struct work *work, int number)
         const size_t bytes = sizeof(float) * (size_t)work->planes_size;
 
         memset(work->plane[c] - work->stride - 1, 0, bytes);
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 2; i++)
             memset(work->scratch[i][c] - work->stride - 1, 0, bytes);
     }
     rf_pool_run(pool, cut_out_row, work, rows);

@@ -36,10 +36,10 @@ struct rf_series {
 };
 void rf_series_make(struct rf_series *series, int steps, double largest_weight);
 
-/* The sum of the series applied to a plane; before and here are scratch. */
+/* The sum of the series applied to a plane; even and odd are scratch. */
 void rf_diffuse_series(const struct refocus_renderer *r, const struct rf_box *box,
-                       const float *weight, float *plane, float *before, float *here,
-                       float *next, const struct rf_series *series);
+                       const float *weight, float *plane, float *even, float *odd,
+                       const struct rf_series *series);
 
 /* Pixels of a layer's edge in tiles, for extrapolating. */
 struct rf_edge {
@@ -48,6 +48,7 @@ struct rf_edge {
 struct rf_edge_tile {
     int first, count;
     double x, y, radius; /* sums over the edge pixels of the tile */
+    int next;            /* tile that has any, or -1 */
 };
 enum { RF_EDGE_TILE = 16 };
 
@@ -64,6 +65,7 @@ struct rf_diffusion_layer {
     struct rf_edge *edge;
     struct rf_edge_tile *tile; /* tiles_x a row */
     int tiles_x, tiles_y;
+    int first_tile; /* that has any edge pixels, or -1 */
 };
 
 /* Grow the region, 7.1: set rings, reach and box; false: no pixel is a member. */

@@ -78,13 +78,13 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
 void rf_layer_list_edge(struct rf_diffusion_layer *layer)
 {
     const int w = layer->r->width, h = layer->r->height;
-    int count = 0;
+    int count = 0, *link = &layer->first_tile;
 
     for (int t = 0; t < layer->tiles_x * layer->tiles_y; t++) {
         struct rf_edge_tile *tile = &layer->tile[t];
         const int x0 = t % layer->tiles_x * RF_EDGE_TILE, y0 = t / layer->tiles_x * RF_EDGE_TILE;
 
-        *tile = (struct rf_edge_tile){count, 0, 0, 0, 0};
+        *tile = (struct rf_edge_tile){.first = count};
         for (int y = y0; y < lesser(y0 + RF_EDGE_TILE, h); y++) {
             for (int x = x0; x < lesser(x0 + RF_EDGE_TILE, w); x++) {
                 if (!is_member(layer, x, y) ||
@@ -99,7 +99,12 @@ void rf_layer_list_edge(struct rf_diffusion_layer *layer)
             }
         }
         tile->count = count - tile->first;
+        if (tile->count > 0) {
+            *link = t;
+            link = &tile->next;
+        }
     }
+    *link = -1;
 }
 
 /* Eq. 3 with weights 1 / distance^2. The edge pixels of a tile that is farther than one tile
@@ -109,28 +114,24 @@ static float extrapolate(const struct rf_diffusion_layer *layer, int x, int y)
     const int tx = x / RF_EDGE_TILE, ty = y / RF_EDGE_TILE;
     double sum = 0, weight = 0;
 
-    for (int j = 0; j < layer->tiles_y; j++) {
-        for (int i = 0; i < layer->tiles_x; i++) {
-            const struct rf_edge_tile *tile = &layer->tile[j * layer->tiles_x + i];
-            const int n = tile->count;
+    for (int t = layer->first_tile; t >= 0; t = layer->tile[t].next) {
+        const struct rf_edge_tile *tile = &layer->tile[t];
+        const int i = t % layer->tiles_x, j = t / layer->tiles_x, n = tile->count;
 
-            if (n == 0)
-                continue;
-            if (i < tx - 1 || i > tx + 1 || j < ty - 1 || j > ty + 1) {
-                const double dx = tile->x / n - x, dy = tile->y / n - y;
-                const double g = 1 / (dx * dx + dy * dy);
+        if (i < tx - 1 || i > tx + 1 || j < ty - 1 || j > ty + 1) {
+            const double dx = tile->x / n - x, dy = tile->y / n - y;
+            const double g = 1 / (dx * dx + dy * dy);
 
-                sum += g * tile->radius;
-                weight += g * n;
-                continue;
-            }
-            for (int k = tile->first; k < tile->first + n; k++) {
-                const int ex = layer->edge[k].x + INT16_MAX, ey = layer->edge[k].y + INT16_MAX;
-                const double g = 1.0 / ((double)(ex - x) * (ex - x) + (double)(ey - y) * (ey - y));
+            sum += g * tile->radius;
+            weight += g * n;
+            continue;
+        }
+        for (int k = tile->first; k < tile->first + n; k++) {
+            const int ex = layer->edge[k].x + INT16_MAX, ey = layer->edge[k].y + INT16_MAX;
+            const double g = 1.0 / ((double)(ex - x) * (ex - x) + (double)(ey - y) * (ey - y));
 
-                sum += g * layer->radius[ey * layer->stride + ex];
-                weight += g;
-            }
+            sum += g * layer->radius[ey * layer->stride + ex];
+            weight += g;
         }
     }
     return weight > 0 ? (float)(sum / weight) : 0;

@@ -80,42 +80,51 @@ void rf_series_make(struct rf_series *series, int steps, double largest_weight)
     series->largest_weight = (float)largest_weight;
 }
 
-void rf_diffuse_series(const struct refocus_renderer *r, const struct rf_box *box,
-                       const float *weight, float *plane, float *before, float *here,
-                       float *next, const struct rf_series *series)
+/* Row y of T_k into the plane of T_(k-2), and its share into the sum. */
+static void series_row(const struct rf_box *box, const float *weight, float *plane,
+                       float *const T[2], const struct rf_series *series, int k, int y)
 {
-    const float flow = 0.25f / series->largest_weight;
+    const float a = series->coefficient[k], flow = 0.25f / series->largest_weight;
+    const float *c = T[(k + 1) % 2] + y * box->stride, *w = weight + y * box->stride;
+    float *restrict t = T[k % 2] + y * box->stride;
+    float *restrict sum = plane + y * box->stride;
 
-    for (int k = 0; k < series->terms && !rf_cancelled(r); k++) {
-        const float a = series->coefficient[k];
+    if (k == 0) {
+        for (int x = box->x0; x < box->x1; x++) {
+            t[x] = sum[x];
+            sum[x] *= a;
+        }
+    } else if (k == 1) { /* T_1 = t */
+        for (int x = box->x0; x < box->x1; x++) {
+            t[x] = c[x] + flow * FLOW(c, w, x, box->stride);
+            sum[x] += a * t[x];
+        }
+    } else { /* T_k = 2 t T_(k-1) - T_(k-2) */
+        for (int x = box->x0; x < box->x1; x++) {
+            t[x] = 2 * (c[x] + flow * FLOW(c, w, x, box->stride)) - t[x];
+            sum[x] += a * t[x];
+        }
+    }
+}
 
-        for (int y = box->y0; y < box->y1; y++) {
-            const float *b = before + y * box->stride, *c = here + y * box->stride;
-            const float *w = weight + y * box->stride;
-            float *restrict n = next + y * box->stride;
-            float *restrict sum = plane + y * box->stride;
+void rf_diffuse_series(const struct refocus_renderer *r, const struct rf_box *box,
+                       const float *weight, float *plane, float *even, float *odd,
+                       const struct rf_series *series)
+{
+    enum { AT_ONCE = 16 };
+    float *const T[2] = {even, odd};
 
-            if (k == 0) {
-                for (int x = box->x0; x < box->x1; x++) {
-                    n[x] = sum[x];
-                    sum[x] *= a;
-                }
-            } else if (k == 1) { /* T_1 = t */
-                for (int x = box->x0; x < box->x1; x++) {
-                    n[x] = c[x] + flow * FLOW(c, w, x, box->stride);
-                    sum[x] += a * n[x];
-                }
-            } else { /* T_k = 2 t T_(k-1) - T_(k-2) */
-                for (int x = box->x0; x < box->x1; x++) {
-                    n[x] = 2 * (c[x] + flow * FLOW(c, w, x, box->stride)) - b[x];
-                    sum[x] += a * n[x];
-                }
+    /* Some terms at once, each two rows behind the one before it, so that what they share is
+     * still in the cache: T_k needs rows y - 1 .. y + 1 of T_(k-1), and takes the place of
+     * row y of T_(k-2), which T_(k-1) needs for its rows up to y + 1. */
+    for (int first = 0; first < series->terms && !rf_cancelled(r); first += AT_ONCE) {
+        for (int front = box->y0; front < box->y1 + 2 * (AT_ONCE - 1); front++) {
+            for (int i = 0; i < AT_ONCE && first + i < series->terms; i++) {
+                const int y = front - 2 * i;
+
+                if (y >= box->y0 && y < box->y1)
+                    series_row(box, weight, plane, T, series, first + i, y);
             }
         }
-        float *free = before;
-
-        before = here;
-        here = next;
-        next = free;
     }
 }

@@ -26,6 +26,7 @@ live() { timeout 100 "$refocus" live --no-commands --rays 4 --blur 3 --json "$@"
 # Colour of one node, depth of another, running freely: the frames find their partners.
 pair() {
     local paired
+    v4l2-ctl -d0 -i 0
     v4l2-ctl -d2 -v width=320,height=180,pixelformat='Y16 '
     live --camera v4l2:0 --format NV12 --size 320x180 --fps 4 --depth v4l2:2 --frames 10 >pair.json
     paired=$(field paired <pair.json)
@@ -57,6 +58,26 @@ output() {
     [ "$capture" = 0 ] && [ "$(field frames_out <output.json)" -gt 10 ]
 }
 
+# One line that says why, and what to do.
+no_permission() {
+    chmod 600 /dev/video0
+    ! setpriv --reuid=65534 --clear-groups "$refocus" live --camera v4l2:0 \
+        --depth still-0-depth.pgm --frames 1 2>refused.txt &&
+        cat refused.txt && [ "$(wc -l <refused.txt)" = 1 ] && grep -q "group 'video'" refused.txt
+}
+
+# A virtual camera that goes while frames flow into it is opened again.
+sink_replugged() {
+    v4l2-ctl -d1 --set-dv-bt-timings index=0
+    live --camera 'replay::format RGB24;size 640x480;fps 5' --depth still-0-depth.pgm \
+        --out v4l2:1 --duration 8 >sink.json &
+    sleep 4
+    v4l2-ctl -d0 -c disconnect=1
+    wait $! || return
+    cat sink.json
+    [ "$(field sink_recoveries <sink.json)" -ge 1 ] && [ "$(field frames_out <sink.json)" -gt 8 ]
+}
+
 # A camera that another program pulls the plug of, while all of the pipeline runs.
 replug() {
     live --camera v4l2:0 --format NV12 --size 320x180 --fps 10 --depth still-0-depth.pgm \
@@ -68,6 +89,23 @@ replug() {
     [ "$(field recoveries <replug.json)" = 1 ] &&
         [ "$(field worst_recovery_ms <replug.json | cut -d. -f1)" -lt 1000 ] &&
         [ "$(field frames_out <replug.json)" -gt 5 ]
+}
+
+# Pulled out so that the node is gone, and put in again.
+rebind() {
+    local driver=/sys/bus/platform/drivers/vivid
+    live --camera v4l2:0 --format NV12 --size 320x180 --fps 10 --depth still-0-depth.pgm \
+        --duration 8 >rebind.json &
+    sleep 3
+    echo vivid.0 >$driver/unbind
+    [ ! -e /dev/video0 ] || return
+    sleep 1
+    echo vivid.0 >$driver/bind
+    wait $! || return
+    cat rebind.json
+    [ "$(field recoveries <rebind.json)" -ge 1 ] &&
+        [ "$(field worst_recovery_ms <rebind.json | cut -d. -f1)" -lt 3000 ] &&
+        [ "$(field frames_out <rebind.json)" -gt 10 ]
 }
 
 # Formats with memories of their own for each plane, by the multi-planar API.
@@ -91,6 +129,14 @@ libcamera_formats() {
     done
 }
 
+# The example: the library in another program's loop.
+libcamera_loop() {
+    local program=$build/examples/own_libcamera_loop
+    [ -x "$program" ] || { echo 'it is not built'; return 1; }
+    timeout 60 "$program" 4 >loop.txt && cat loop.txt &&
+        [ "$(wc -l <loop.txt)" = 4 ] && ! grep -q '^0.00' loop.txt
+}
+
 libcamera_refuses() {
     ! live --camera libcamera:7 --depth still-0-depth.pgm --frames 1 2>refused.txt &&
         grep -q 'no such camera' refused.txt &&
@@ -107,10 +153,14 @@ case $part in
         check vivid-colour-and-depth pair
         check vivid-output-read-back output
         check vivid-replugged replug
+        check vivid-sink-replugged sink_replugged
+        check vivid-no-permission no_permission
+        check vivid-pulled-out rebind
         ;;
     multi) check vivid-multiplanar multiplanar ;;
     libcamera)
         check vimc-formats libcamera_formats
         check vimc-refusals libcamera_refuses
+        check vimc-own-loop libcamera_loop
         ;;
 esac

@@ -26,9 +26,9 @@ part() {
     grep -q '^FAILED ' <<<"$log" || echo "FAILED camera-vm-$1: $ok tests of $2 ran"
     failed=1
 }
-part single 4
+part single 7
 CAMERA_VM_VIVID="n_devs=1 multiplanar=2 node_types=0x1" CAMERA_VM_VIMC=none part multi 1
 if "$build/platform/cli/refocus" --version | grep -q libcamera; then
-    CAMERA_VM_VIVID=none part libcamera 2
+    CAMERA_VM_VIVID=none part libcamera 3
 fi
 exit $failed

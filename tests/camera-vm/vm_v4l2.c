@@ -422,6 +422,30 @@ static void the_sequence_may_wrap(void **state)
     inject("wrap_sequence_number", 0);
 }
 
+/* The cable of an HDMI input is pulled: the driver tells, and the stream begins anew. */
+static void another_signal_restarts_it(void **state)
+{
+    struct refocus_source *source;
+    char command[128];
+
+    (void)state;
+    snprintf(command, sizeof command, "v4l2-ctl -d%s -i 1 >/dev/null", node + strlen("v4l2:"));
+    assert_int_equal(system(command), 0);
+    source = opened();
+    assert_status(refocus_source_start(source, NULL, NULL, &reason), REFOCUS_OK);
+    take(source, 2);
+    inject("dv_timings_signal_mode", 1);
+    assert_status(until_fault(source), REFOCUS_ERR_IO);
+    assert_non_null(strstr(reason.text, "signal"));
+    assert_true(recover(source) < 1000);
+    inject("dv_timings_signal_mode", 0);
+    assert_status(until_fault(source), REFOCUS_ERR_IO);
+    assert_true(recover(source) < 1000);
+    finish(source, 0);
+    command[strlen(command) - strlen("1 >/dev/null")] = '0';
+    assert_int_equal(system(command), 0);
+}
+
 static void *interrupt(void *source)
 {
     sleep_ms(100);
@@ -492,6 +516,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_fatal_error_is_recovered_from),
         cmocka_unit_test(an_unplugged_device_returns),
         cmocka_unit_test(the_sequence_may_wrap),
+        cmocka_unit_test(another_signal_restarts_it),
         cmocka_unit_test(another_thread_stops_it),
         cmocka_unit_test(cycles_leak_nothing),
     };

@@ -159,7 +159,7 @@ static double extra(uint32_t method, int width, int height, float blur, int thre
     case REFOCUS_METHOD_SCATTER:
         return 32 * w * h + 3 * (4 * p + 80) * p * p + 65536;
     case REFOCUS_METHOD_DIFFUSION:
-        return 116 * (w + 16) * (h + 16) + 262144;
+        return 96 * (w + 16) * (h + 16) + 262144;
     case REFOCUS_METHOD_FOVEATED:
         return 96 * (w + 16) * (h + 16) + 262144;
     case REFOCUS_METHOD_INTERPOLATED:

@@ -249,6 +249,38 @@ static void ray_sets(void **state)
     refocus_aperture_destroy(&aperture);
 }
 
+/* Every number of rays: the same each time, inside the unit circle, no two alike, and in each
+ * of eight wedges and of eight rings of equal area as many as its share, give or take a few. */
+static void every_ray_set(void **state)
+{
+    static struct refocus_ray rays[REFOCUS_MAX_RAYS], again[REFOCUS_MAX_RAYS];
+
+    (void)state;
+    for (int n = 1; n <= REFOCUS_MAX_RAYS; n++) {
+        const double share = n / 8.0, most = 3;
+        int wedge[8] = {0}, ring[8] = {0};
+
+        memset(again, 0xff, sizeof again);
+        assert_int_equal(refocus_aperture_rays(NULL, n, rays), REFOCUS_OK);
+        assert_int_equal(refocus_aperture_rays(NULL, n, again), REFOCUS_OK);
+        assert_memory_equal(rays, again, (size_t)n * sizeof rays[0]);
+        for (int i = 0; i < n; i++) {
+            const double u = rays[i].u / 32768.0, v = rays[i].v / 32768.0;
+            const int square = (int)(8 * (u * u + v * v));
+
+            assert_true(u * u + v * v <= 1.0001);
+            wedge[(int)floor((atan2(v, u) / 6.283185307179586 + 0.5) * 8) & 7]++;
+            ring[square < 8 ? square : 7]++;
+            for (int k = 0; k < i; k++)
+                assert_true(rays[k].u != rays[i].u || rays[k].v != rays[i].v);
+        }
+        for (int i = 0; i < 8; i++)
+            if (fabs(wedge[i] - share) > most || fabs(ring[i] - share) > 1.5)
+                fail_msg("%d rays: %d in wedge %d, %d in ring %d, should be %.1f", n, wedge[i],
+                         i, ring[i], i, share);
+    }
+}
+
 /* Sum of the weights of the full set: the area of the shape, antialiased. */
 static void full_ray_area(void **state)
 {
@@ -290,7 +322,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(disc),     cmocka_unit_test(energy), cmocka_unit_test(polygon),
-        cmocka_unit_test(mask),     cmocka_unit_test(ray_sets),
+        cmocka_unit_test(mask),     cmocka_unit_test(ray_sets), cmocka_unit_test(every_ray_set),
         cmocka_unit_test(full_ray_area)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

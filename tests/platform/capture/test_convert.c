@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <refocus/platform/convert.h>
+#include <refocus/platform/file.h>
 #include "sink.h"
 
 static uint32_t seed = 1;
@@ -232,6 +233,50 @@ static void encoding_comes_back(void **state)
     refocus_converter_destroy(&converter);
 }
 
+#ifdef RF_HAVE_JPEG
+static void jpegs_are_decoded_or_refused(void **state)
+{
+    static uint8_t rgb[32 * 16 * 3], back[32 * 16 * 3], bytes[8192];
+    struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 32, 16, 96);
+    struct refocus_image image2 = refocus_image_packed(REFOCUS_FORMAT_RGB8, back, 32, 16, 96);
+    struct refocus_converter *converter = NULL;
+    struct refocus_frame frame;
+    FILE *file;
+
+    (void)state;
+    for (int i = 0; i < 32 * 16 * 3; i++)
+        rgb[i] = (uint8_t)(60 + i / 3 % 32 * 3 + i % 3);
+    assert_status(refocus_image_write("frame.jpg", &image, NULL, NULL), REFOCUS_OK);
+    file = fopen("frame.jpg", "rb");
+    assert_non_null(file);
+    rf_frame_clear(&frame);
+    frame.format = REFOCUS_FRAME_MJPEG;
+    frame.width = 32;
+    frame.height = 16;
+    frame.plane[0] = bytes;
+    frame.bytes = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    assert_status(refocus_convert_rgb8(converter, &frame, &image2, NULL), REFOCUS_OK);
+    for (size_t i = 0; i < sizeof rgb; i++)
+        assert_true(abs(rgb[i] - back[i]) <= 6);
+    frame.bytes /= 2;
+    assert_status(refocus_convert_rgb8(converter, &frame, &image2, NULL), REFOCUS_ERR_FORMAT);
+    frame.bytes = 0;
+    assert_status(refocus_convert_rgb8(converter, &frame, &image2, NULL), REFOCUS_ERR_FORMAT);
+    refocus_converter_destroy(&converter);
+
+    /* The same by a camera of MJPEG. */
+    struct refocus_source *source = started("replay::jpeg frame.jpg", REFOCUS_SOURCE_FAST);
+    const struct refocus_frame *got;
+    assert_status(refocus_source_wait(source, 100, &got, NULL), REFOCUS_OK);
+    assert_int_equal(got->format, REFOCUS_FRAME_MJPEG);
+    assert_int_equal(got->width, 32);
+    assert_memory_equal(got->plane[0], bytes, got->bytes);
+    refocus_source_close(&source);
+}
+#endif
+
 /* Registration ---------------------------------------------------------------------------- */
 
 static struct refocus_calibration same_cameras(void)
@@ -306,6 +351,9 @@ int main(void)
         cmocka_unit_test(samples_are_exact),
         cmocka_unit_test(bad_frames_are_refused),
         cmocka_unit_test(encoding_comes_back),
+#ifdef RF_HAVE_JPEG
+        cmocka_unit_test(jpegs_are_decoded_or_refused),
+#endif
         cmocka_unit_test(registering_onto_itself_is_nothing),
         cmocka_unit_test(registering_shifts_near_things_more),
         cmocka_unit_test(registering_onto_more_pixels_leaves_no_gaps),

@@ -1,0 +1,138 @@
+/* What is behind the foreground, in double precision; see src/background/background.h. */
+#include "twin.h"
+
+/* Rows from one end to the other: a step straight costs half a pixel of blur, one
+ * diagonally half of sqrt 2. */
+static void dilate_rows(const struct twin *t, double *most, int from, int step)
+{
+    for (int i = 0; i < t->height; i++) {
+        const int y = from + i * step;
+
+        for (int x = 0; x < t->width; x++) {
+            double *m = &most[y * t->width + x];
+
+            *m = t->blur[y * t->width + x];
+            for (int dx = -1; i > 0 && dx <= 1; dx++)
+                if (x + dx >= 0 && x + dx < t->width)
+                    *m = fmax(*m, most[(y - step) * t->width + x + dx] -
+                                      (dx ? sqrt(2) / 2 : 0.5));
+        }
+    }
+}
+
+/* Unknown pixels are those that something farther could be seen through: NaN. */
+static void mark(struct twin *t)
+{
+    const size_t bytes = (size_t)t->width * (size_t)t->height * sizeof(double);
+    double *down = malloc(bytes), *up = malloc(bytes);
+
+    assert_true(down && up);
+    dilate_rows(t, down, 0, 1);
+    dilate_rows(t, up, t->height - 1, -1);
+    for (int y = 0; y < t->height; y++) {
+        for (int x = 0; x < t->width; x++) {
+            const int p = y * t->width + x;
+            bool foreground = false;
+
+            for (int q = 0; q < t->width && !foreground; q++)
+                foreground = fmax(down[y * t->width + q], up[y * t->width + q]) >
+                             t->blur[p] + 0.5 + abs(q - x) / 2.0;
+            t->behind_blur[p] = foreground ? NAN : t->blur[p];
+            for (int c = 0; c < 3; c++)
+                t->behind[c][p] = t->smooth[c][p];
+        }
+    }
+    free(down);
+    free(up);
+}
+
+/* A level of the pyramid: planes of light, and blur in the fourth. */
+struct level {
+    int width, height;
+    double *plane[4];
+};
+
+static struct level coarser(const struct level *fine)
+{
+    struct level coarse = {(fine->width + 1) / 2, (fine->height + 1) / 2, {0}};
+
+    for (int c = 0; c < 4; c++) {
+        coarse.plane[c] = malloc((size_t)coarse.width * (size_t)coarse.height * sizeof(double));
+        assert_non_null(coarse.plane[c]);
+    }
+    return coarse;
+}
+
+/* Parents: the mean of the known children's light, their farthest blur. */
+static void push(const struct level *fine, struct level *coarse)
+{
+    for (int i = 0; i < coarse->width * coarse->height; i++) {
+        double sum[3] = {0}, farthest = NAN;
+        int count = 0;
+
+        for (int j = 0; j < 4; j++) {
+            const int x = i % coarse->width * 2 + j % 2, y = i / coarse->width * 2 + j / 2;
+            const int q = y * fine->width + x;
+
+            if (x >= fine->width || y >= fine->height || isnan(fine->plane[3][q]))
+                continue;
+            count++;
+            farthest = fmax(farthest, fine->plane[3][q]);
+            for (int c = 0; c < 3; c++)
+                sum[c] += fine->plane[c][q];
+        }
+        for (int c = 0; c < 3; c++)
+            coarse->plane[c][i] = sum[c] / count;
+        coarse->plane[3][i] = farthest;
+    }
+}
+
+/* The parent beside the own one, on the child's side. */
+static int beside(int child, int parents)
+{
+    const int other = child % 2 ? child / 2 + 1 : child / 2 - 1;
+
+    return other < 0 || other >= parents ? child / 2 : other;
+}
+
+/* Unknown children: bilinear between the four nearest parents, the blur of their own. */
+static void pull(struct level *fine, const struct level *coarse)
+{
+    const int w = coarse->width;
+
+    for (int y = 0; y < fine->height; y++) {
+        for (int x = 0; x < fine->width; x++) {
+            const int p = y * fine->width + x;
+            const int x0 = x / 2, x1 = beside(x, w), y0 = y / 2, y1 = beside(y, coarse->height);
+
+            if (!isnan(fine->plane[3][p]))
+                continue;
+            for (int c = 0; c < 3; c++) {
+                const double *from = coarse->plane[c];
+
+                fine->plane[c][p] = (9 * from[y0 * w + x0] + 3 * from[y0 * w + x1] +
+                                     3 * from[y1 * w + x0] + from[y1 * w + x1]) / 16;
+            }
+            fine->plane[3][p] = coarse->plane[3][y0 * w + x0];
+        }
+    }
+}
+
+void twin_background(struct twin *t)
+{
+    struct level level[32] = {{t->width, t->height,
+                               {t->behind[0], t->behind[1], t->behind[2], t->behind_blur}}};
+    int levels = 1;
+
+    mark(t);
+    while (level[levels - 1].width > 1 || level[levels - 1].height > 1) {
+        level[levels] = coarser(&level[levels - 1]);
+        push(&level[levels - 1], &level[levels]);
+        levels++;
+    }
+    while (--levels > 0) {
+        pull(&level[levels - 1], &level[levels]);
+        for (int c = 0; c < 4; c++)
+            free(level[levels].plane[c]);
+    }
+}

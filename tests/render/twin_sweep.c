@@ -1,0 +1,240 @@
+/* The sweep in double precision: which blurs reach a tile, slabs over them, rays. See
+ * src/tiles/tiles.h and src/methods/sweep.c. */
+#include "twin.h"
+
+enum { BINS = 256, FOCUS_BIN = 127, SETS = 6 };
+static const double overlap = 0.125;
+
+/* Blurs of a tile: which bins are occupied, and the extremes. Bin i begins at
+ * (i - 127) width - 1/2. */
+struct bins {
+    bool has[BINS];
+    double least, most;
+};
+
+struct slab {
+    double low, high, centre; /* met if low <= s <= high */
+};
+
+struct plan {
+    int slabs;
+    struct slab slab[BINS];
+    double reach;
+    bool sharp;
+};
+
+static double bin_width(double K)
+{
+    return K <= 31.5 ? 0.25 : K <= 63.5 ? 0.5 : 1;
+}
+
+static int bin_of(double width, double s)
+{
+    return (int)floor((s + 0.5) / width) + FOCUS_BIN;
+}
+
+static double edge_of(double width, int bin)
+{
+    return (bin - FOCUS_BIN) * width - 0.5;
+}
+
+static void note(struct bins *bins, double width, double s)
+{
+    bins->has[bin_of(width, s)] = true;
+    bins->least = fmin(bins->least, s);
+    bins->most = fmax(bins->most, s);
+}
+
+static struct bins bins_of_tile(const struct twin *t, double width, int tx, int ty)
+{
+    struct bins bins = {{false}, 1e9, -1e9};
+
+    for (int y = ty * TWIN_TILE; y < (ty + 1) * TWIN_TILE && y < t->height; y++) {
+        for (int x = tx * TWIN_TILE; x < (tx + 1) * TWIN_TILE && x < t->width; x++) {
+            note(&bins, width, t->map_blur[y * t->width + x]); /* rims as what they were too */
+            note(&bins, width, t->blur[y * t->width + x]);
+        }
+    }
+    return bins;
+}
+
+/* Leave out the bins that lie below a blur of s pixels as a whole. */
+static void drop_short(struct bins *bins, double width, double s)
+{
+    const int first = bin_of(width, -s) + 1, end = bin_of(width, s);
+    const double low = edge_of(width, first), high = edge_of(width, end);
+
+    for (int i = first; i < end; i++)
+        bins->has[i] = false;
+    if (bins->least >= low && bins->least < high)
+        bins->least = high;
+    if (bins->most >= low && bins->most < high)
+        bins->most = low;
+}
+
+/* The blurs that can be met from tile (tx, ty): those of a tile g pixels away that are g - 1
+ * pixels or more. */
+static struct bins reach_of_tile(const struct twin *t, const struct bins *tiles, int across,
+                                 int down, double width, int tx, int ty)
+{
+    struct bins reach = {{false}, 1e9, -1e9};
+
+    (void)t;
+    for (int y = 0; y < down; y++) {
+        for (int x = 0; x < across; x++) {
+            const int dx = abs(x - tx), dy = abs(y - ty);
+            const double gap = ceil(hypot(dx ? (dx - 1) * TWIN_TILE + 1 : 0,
+                                          dy ? (dy - 1) * TWIN_TILE + 1 : 0));
+            struct bins bins = tiles[y * across + x];
+
+            if (gap > ceil(t->K) + 1)
+                continue;
+            if (gap > 1)
+                drop_short(&bins, width, gap - 1);
+            for (int i = 0; i < BINS; i++)
+                reach.has[i] |= bins.has[i];
+            reach.least = fmin(reach.least, bins.least);
+            reach.most = fmax(reach.most, bins.most);
+        }
+    }
+    return reach;
+}
+
+/* A slab over bins [bin, last], nothing of it in focus. */
+static struct slab slab_over(const struct bins *bins, double width, int bin, int last)
+{
+    struct slab slab = {fmax(edge_of(width, bin), bins->least),
+                        fmin(edge_of(width, last + 1), bins->most), 0};
+
+    slab.centre = (slab.low + slab.high) / 2;
+    return slab;
+}
+
+/* Slabs a pixel wide from the near side on, half as wide below 3 pixels of blur; one for
+ * all that is in focus. */
+static struct plan cover(const struct bins *bins, double width)
+{
+    const int pixel = (int)(1 / width);
+    struct plan plan = {.sharp = true};
+
+    for (int bin = 0; bin < BINS;) {
+        const double low = edge_of(width, bin);
+        int end = bin + pixel, last = bin;
+        struct slab slab;
+
+        if (!bins->has[bin]) {
+            bin++;
+            continue;
+        }
+        if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel) {
+            plan.slab[plan.slabs++] = (struct slab){-0.5, nextafter(0.5, 0), 0};
+            bin = FOCUS_BIN + pixel;
+            continue;
+        }
+        if (pixel > 1 && low > -3 && low < 3)
+            end = bin + pixel / 2;
+        if (bin < FOCUS_BIN && end > FOCUS_BIN)
+            end = FOCUS_BIN;
+        for (int i = bin; i < end && i < BINS; i++)
+            last = bins->has[i] ? i : last;
+        slab = slab_over(bins, width, bin, last);
+        plan.sharp = false;
+        plan.reach = fmax(plan.reach, fmax(-slab.low, slab.high));
+        slab.low -= overlap;
+        slab.high += overlap;
+        if (slab.centre < 0 && slab.high >= -0.5)
+            slab.high = nextafter(-0.5, -1);
+        if (slab.centre > 0 && slab.low < 0.5)
+            slab.low = 0.5;
+        plan.slab[plan.slabs++] = slab;
+        bin = last + 1;
+    }
+    return plan;
+}
+
+/* Ray sets from the coarsest to the preset's own. */
+struct sets {
+    struct refocus_ray *ray[SETS + 1];
+    int count[SETS + 1], sets;
+};
+
+static struct sets make_sets(const struct twin *t)
+{
+    static const int sizes[SETS] = {24, 32, 48, 64, 96, 128};
+    struct sets sets = {{0}, {0}, 0};
+
+    for (int i = 0; i < SETS && sizes[i] < t->params->rays; i++)
+        sets.ray[sets.sets++] = twin_rays(t->params->aperture, sizes[i], t->K,
+                                          &sets.count[i]);
+    sets.ray[sets.sets] = twin_rays(t->params->aperture, t->params->rays, t->K,
+                                    &sets.count[sets.sets]);
+    sets.sets++;
+    return sets;
+}
+
+static int set_for(const struct sets *sets, double reach)
+{
+    for (int i = 0; i < sets->sets - 1; i++)
+        if (sets->count[i] >= 4.084 * reach * reach)
+            return i;
+    return sets->sets - 1;
+}
+
+static void trace(const struct twin *t, const struct plan *plan, int x, int y,
+                  struct refocus_ray ray, double behind, struct twin_sum *sum)
+{
+    for (int i = 0; i < plan->slabs; i++) {
+        const int q = twin_meets(t, x, y, ray, plan->slab[i].centre);
+
+        if (t->blur[q] >= plan->slab[i].low && t->blur[q] <= plan->slab[i].high) {
+            twin_add(t, sum, t->smooth, q, ray.weight);
+            return;
+        }
+    }
+    twin_add(t, sum, t->behind, twin_meets(t, x, y, ray, behind), ray.weight);
+}
+
+static void sweep_tile(const struct twin *t, const struct plan *plan, const struct sets *sets,
+                       int tx, int ty, uint8_t *rgb)
+{
+    const double behind = t->behind_blur[twin_at(t, tx * TWIN_TILE + TWIN_TILE / 2,
+                                                 ty * TWIN_TILE + TWIN_TILE / 2)];
+    const int set = set_for(sets, plan->reach);
+
+    for (int y = ty * TWIN_TILE; y < (ty + 1) * TWIN_TILE && y < t->height; y++) {
+        for (int x = tx * TWIN_TILE; x < (tx + 1) * TWIN_TILE && x < t->width; x++) {
+            struct twin_sum sum = {{0}, 0};
+
+            if (plan->sharp)
+                twin_add(t, &sum, t->light, y * t->width + x, 1);
+            for (int n = 0; !plan->sharp && n < sets->count[set]; n++)
+                trace(t, plan, x, y, sets->ray[set][n], behind, &sum);
+            twin_encode(t, &sum, rgb + 3 * (y * t->width + x));
+        }
+    }
+}
+
+void twin_sweep(struct twin *t, uint8_t *rgb)
+{
+    const int across = (t->width + TWIN_TILE - 1) / TWIN_TILE;
+    const int down = (t->height + TWIN_TILE - 1) / TWIN_TILE;
+    const double width = bin_width(t->K);
+    struct bins *tiles = calloc((size_t)(across * down), sizeof *tiles);
+    struct sets sets = make_sets(t);
+
+    assert_non_null(tiles);
+    twin_prefilter(t);
+    twin_background(t);
+    for (int i = 0; i < across * down; i++)
+        tiles[i] = bins_of_tile(t, width, i % across, i / across);
+    for (int i = 0; i < across * down; i++) {
+        const struct bins reach =
+            reach_of_tile(t, tiles, across, down, width, i % across, i / across);
+        const struct plan plan = cover(&reach, width);
+
+        sweep_tile(t, &plan, &sets, i % across, i / across, rgb);
+    }
+    for (int i = 0; i < sets.sets; i++)
+        free(sets.ray[i]);
+    free(tiles);
+}
