@@ -173,7 +173,8 @@ fuzz_stage() {
 
 need_packages meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-dev ||
     { fail 'tools to build with are missing'; finish; }
-need_packages libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
+need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-dnn-dev \
+    libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
 
 gcc_stage
