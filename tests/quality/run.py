@@ -22,7 +22,8 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
     ("sweep", "method=sweep", "the default: two layers, 64 rays"),
-    ("sweep-lights", "method=sweep,highlight=4", "the same, clipped lamps four times as bright"),
+    ("best", "method=sweep,rays=128,highlight=4",
+     "128 rays, light given back to clipped lamps"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "the paper to the letter: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
@@ -32,16 +33,9 @@ METHODS = [
     ("search-T2-back", "method=search,iterations=2,background=1",
      "two tests, 64 rays, hidden rays take the background layer"),
     ("raytrace", "method=raytrace", "ray tracing, 64 rays, hidden rays mirrored"),
-    ("lightfield", "method=lightfield", "64 views, warped and summed"),
-    ("blur", "method=blur", "image-space filter"),
-    ("scatter", "method=scatter", "samples spread over their discs"),
-    ("foveated", "method=foveated", "exact in the middle, pyramids elsewhere"),
-    ("interpolated", "method=interpolated", "between blurred pictures"),
-    ("diffusion", "method=diffusion", "heat through a blur field"),
 ]
 # Many seconds a view, and so for the twelve views only.
 SLOW = [
-    ("jittered", "method=jittered", "ray tracing, one ray of each 2x2 of the mask"),
     ("raytrace-full", "method=raytrace,rays=full",
      "ray tracing, every ray, hidden rays mirrored (the oracle)"),
 ]
@@ -49,7 +43,7 @@ RAYS = [
     ("sweep-full", "rays=full", "every ray"),
     ("sweep-32", "rays=32", "preview"),
     ("sweep-64", "rays=64", "standard"),
-    ("sweep-128", "rays=128", "best"),
+    ("sweep-128", "rays=128", "best without highlights"),
     ("sweep-64-raw", "rays=64,prefilter=0", "64 rays without the pre-filter"),
 ]
 LIGHTS = [
