@@ -89,14 +89,6 @@ static bool region_of(const struct refocus_renderer *r,
     return true;
 }
 
-static void reblend_band(void *context, int band, int worker)
-{
-    const struct rf_frame *f = context;
-
-    (void)worker;
-    rf_reblend_rows(f->r, f->params->blend, rf_band_start(band), rf_band_end(f->r, band));
-}
-
 static void blur_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -228,12 +220,9 @@ static void run_passes(struct rf_frame *f)
     const bool layers = method->layers || f->params->background;
     struct rf_exact exact;
 
-    if (r->blend != f->params->blend) {
-        rf_pool_run(&r->pool, reblend_band, f, rf_bands(r));
-        if (rf_cancelled(r)) {
-            r->prepared = false; /* planes are in two blends now */
-            return;
-        }
+    if (r->blend != f->params->blend) { /* whole or not at all: not to be cancelled */
+        for (int band = 0; band < rf_bands(r); band++)
+            rf_reblend_rows(r, f->params->blend, rf_band_start(band), rf_band_end(r, band));
         r->blend = f->params->blend;
         r->highlights_found = false;
     }
