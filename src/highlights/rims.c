@@ -52,11 +52,30 @@ static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
     return contrast >= (int64_t)CONTRAST * CONTRAST && 10 * along > 6 * contrast;
 }
 
+/* Whether something next to (x, y) is much farther. */
+static bool beside_jump(const struct refocus_renderer *r, int x, int y)
+{
+    const int x0 = x > 0 ? -1 : 0, x1 = x + 1 < r->width ? 1 : 0;
+    const uint16_t *up = r->disparity + (y > 0 ? y - 1 : y) * r->stride + x;
+    const uint16_t *row = r->disparity + y * r->stride + x;
+    const uint16_t *down = r->disparity + (y + 1 < r->height ? y + 1 : y) * r->stride + x;
+    int least = row[0];
+
+    for (int i = x0; i <= x1; i++) {
+        least = up[i] < least ? up[i] : least;
+        least = row[i] < least ? row[i] : least;
+        least = down[i] < least ? down[i] : least;
+    }
+    return least + JUMP < row[0];
+}
+
 /* The rims around a bright pixel. */
 static void find_around(struct refocus_renderer *r, int x, int y, uint64_t capacity)
 {
     const ptrdiff_t n = y * r->stride + x;
 
+    if (!beside_jump(r, x, y))
+        return;
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
             const int px = clamp(x + i, r->width - 1), py = clamp(y + j, r->height - 1);
@@ -68,24 +87,40 @@ static void find_around(struct refocus_renderer *r, int x, int y, uint64_t capac
     }
 }
 
+/* Brightest value of n pixels. Signed: baseline x86 has a signed 16-bit maximum only. */
+static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
+{
+    const int16_t *a = (const int16_t *)r->front.light[0] + at;
+    const int16_t *b = (const int16_t *)r->front.light[1] + at;
+    const int16_t *c = (const int16_t *)r->front.light[2] + at;
+    int16_t most = 0;
+
+    for (int x = 0; x < n; x++) {
+        most = a[x] > most ? a[x] : most;
+        most = b[x] > most ? b[x] : most;
+        most = c[x] > most ? c[x] : most;
+    }
+    return most;
+}
+
 void rf_find_rims(struct refocus_renderer *r)
 {
+    enum { RUN = 64 }; /* most runs of pixels hold nothing bright */
     const uint64_t capacity = rf_rim_capacity(r->max_width, r->max_height);
 
     r->rims = 0;
     for (int y = 0; y < r->height; y++) {
         const ptrdiff_t at = y * r->stride;
-        uint16_t most = 0;
 
-        for (int x = 0; x < r->width; x++) { /* most rows hold nothing bright */
-            const uint16_t a = r->front.light[0][at + x], b = r->front.light[1][at + x];
-            const uint16_t c = r->front.light[2][at + x];
+        for (int x0 = 0; x0 < r->width; x0 += RUN) {
+            const int x1 = x0 + RUN < r->width ? x0 + RUN : r->width;
 
-            most = (uint16_t)(most | (a >= LEVEL) | (b >= LEVEL) | (c >= LEVEL));
+            if (brightest(r, at + x0, x1 - x0) < LEVEL)
+                continue;
+            for (int x = x0; x < x1; x++)
+                if (is_bright(r, at + x))
+                    find_around(r, x, y, capacity);
         }
-        for (int x = 0; most && x < r->width; x++)
-            if (is_bright(r, at + x))
-                find_around(r, x, y, capacity);
     }
 }
 
