@@ -153,7 +153,34 @@ typedef void rf_cluster_fn(uint16_t out[RF_BATCH + RF_BATCH_SPARE],
 typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
                            const uint16_t *after, int n);
 
+/*
+ * search: rays of one tile by the randomized intersection search, plain sums.
+ *
+ *     for each ray and pixel p of the tile:
+ *         guess = blur[p + start]
+ *         repeat: q = p + round(u guess), seen = blur[q], until |seen - guess| <= within or
+ *                 `tests` are made; guess = seen before each further one
+ *         sum += light[q], or light[p] if the last test failed and seen > blur[p]
+ *
+ * round() is half up, of Q15 times Q7.8. Pointers are to the tile's first pixel.
+ */
+struct rf_search_ray {
+    int32_t start; /* elements */
+    int16_t u, v;  /* Q15 */
+    int32_t within; /* Q7.8 */
+};
+struct rf_search_job {
+    const int16_t *blur;
+    const uint16_t *light[3];
+    ptrdiff_t stride;
+    int tests, rays;
+    int lanes; /* RF_TILE */
+    const struct rf_search_ray *ray;
+};
+typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_search_job *job);
+
 struct rf_kernels {
+    rf_search_fn *search;
     rf_sweep_fn *sweep;
     rf_signed_blur_fn *signed_blur;
     rf_smooth3_fn *smooth3;
@@ -182,5 +209,7 @@ rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
+rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
+    rf_search_use_avx2;
 
 #endif

@@ -141,4 +141,5 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
 {
     kernels->sweep = RF_VEC(rf_sweep);
     RF_VEC(rf_rows_use)(kernels);
+    RF_VEC(rf_search_use)(kernels);
 }

@@ -68,19 +68,72 @@ static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p,
     return p;
 }
 
-void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+/* s of the nearest plane, d = 1. */
+static int nearest_blur(const struct rf_frame *f)
+{
+    return -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >>
+                  16);
+}
+
+/* The paper's own rule, by the kernel: some rays of equal weight into `run`. */
+static void search_run(const struct rf_frame *f, ptrdiff_t origin,
+                       const struct refocus_ray *ray, int rays,
+                       uint32_t run[3][RF_TILE * RF_TILE])
 {
     const struct refocus_renderer *r = f->r;
-    /* s of the nearest plane, d = 1 */
-    const int nearest = -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius +
-                                (1 << 15)) >> 16);
-    const struct rf_ray_set *set = &r->set[r->preset];
-    struct rf_sums sums;
+    const int nearest = nearest_blur(f);
+    struct rf_search_ray own[RF_RAY_CHUNK];
+    struct rf_search_job job = {
+        .blur = r->front.blur + origin,
+        .light = {r->front.light[0] + origin, r->front.light[1] + origin,
+                  r->front.light[2] + origin},
+        .stride = r->stride,
+        .tests = f->params->iterations,
+        .rays = rays,
+        .lanes = RF_TILE,
+        .ray = own,
+    };
 
-    (void)tx;
-    (void)ty;
-    (void)worker;
-    memset(&sums, 0, sizeof sums);
+    for (int n = 0; n < rays; n++)
+        own[n] = (struct rf_search_ray){
+            .start = rf_offset(ray[n].v, nearest) * (int32_t)r->stride +
+                     rf_offset(ray[n].u, nearest),
+            .u = ray[n].u,
+            .v = ray[n].v,
+            .within = tolerance(&ray[n]),
+        };
+    r->kernels.search(run, &job);
+}
+
+static void search_runs(const struct rf_frame *f, ptrdiff_t origin,
+                        const struct rf_ray_set *set, struct rf_sums *sums)
+{
+    uint32_t run[3][RF_TILE * RF_TILE];
+
+    for (int n = 0, rays; n < set->count; n += rays) {
+        const struct refocus_ray *ray = &set->ray[n];
+
+        rays = 1;
+        while (rays < RF_RAY_CHUNK && n + rays < set->count &&
+               ray[rays].weight == ray->weight)
+            rays++;
+        memset(run, 0, sizeof run);
+        search_run(f, origin, ray, rays, run);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < RF_TILE * RF_TILE; i++)
+                sums->light[c][i] += (uint64_t)ray->weight * run[c][i];
+    }
+    for (int i = 0; i < RF_TILE * RF_TILE; i++)
+        sums->weight[i] = set->total_weight;
+}
+
+/* With weights, the mirrored pixel or the background layer: pixel by pixel. */
+static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
+                          const struct rf_ray_set *set, struct rf_sums *sums)
+{
+    const struct refocus_renderer *r = f->r;
+    const int nearest = nearest_blur(f);
+
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
         const ptrdiff_t start = rf_offset(ray->v, nearest) * r->stride +
@@ -97,11 +150,24 @@ void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
                 const ptrdiff_t q = resolve(f, p, ray, hit, &light);
                 const uint64_t w = (uint64_t)rf_weight_of(f, light, q) * ray->weight;
 
-                sums.weight[i] += w;
+                sums->weight[i] += w;
                 for (int c = 0; c < 3; c++)
-                    sums.light[c][i] += w * light[c][q];
+                    sums->light[c][i] += w * light[c][q];
             }
         }
     }
+}
+
+void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+{
+    const struct rf_ray_set *set = &f->r->set[f->r->preset];
+    struct rf_sums sums;
+
+    (void)worker;
+    memset(&sums, 0, sizeof sums);
+    if (f->weighted || f->params->mirror || f->params->background)
+        search_pixels(f, rect, set, &sums);
+    else
+        search_runs(f, ty * RF_TILE * f->r->stride + tx * RF_TILE, set, &sums);
     rf_encode_tile(f, rect, &sums);
 }
