@@ -30,6 +30,7 @@ static inline int noise_between(uint32_t *seed, int least, int most)
 /* Each prints a line that begins with "ok" or "FAIL" for each kernel; the number of failures. */
 int check_rows(const struct subject *subject);
 int check_sweep(const struct subject *subject);
+int check_search(const struct subject *subject);
 int check_focus(void);
 
 /* Prints a line with the time of each kernel, in plain C and by the subject. */

@@ -239,7 +239,7 @@ def main():
              "720x540, a mask of 41x41 pixels" + (
                  " (64 rays of it for all but `jittered`: --quick)" if args.quick else "")
              + ". Theirs on a tablet's GPU, ours on "
-             f"{first['blur']['threads']} threads of a processor, plain C but for `sweep`.\n",
+             f"{first['blur']['threads']} threads of a processor, plain C but for `sweep` and `search`.\n",
              table_1(first, 20)]
     count = len(next(iter(rays.values()))["found_after"])
     plot(pictures / "fig3a.svg", "Rays that have found an intersection", "tests T", "share",

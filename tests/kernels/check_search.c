@@ -1,0 +1,161 @@
+/* The search over one tile, against the contract's words, one pixel and ray at a time. */
+#include "check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "guarded.h"
+
+enum {
+    PAD = 12,
+    SIDE = RF_TILE + 2 * PAD,
+    LANES = RF_TILE * RF_TILE,
+    MOST_BLUR = PAD * 256,
+    ORIGIN = PAD * SIDE + PAD,
+};
+
+struct stage {
+    struct guarded plane[4]; /* blur, light */
+    struct rf_search_ray ray[RF_RAY_CHUNK];
+    struct rf_search_job job;
+    uint32_t sum[3][LANES], expected[3][LANES];
+};
+
+/* floor(x + 1/2) of Q15 times Q7.8, by division. */
+static int rounded(int u, int blur)
+{
+    const int64_t x = (int64_t)u * blur + (1 << 22);
+
+    return (int)(x >= 0 ? x / (1 << 23) : -((-x + (1 << 23) - 1) / (1 << 23)));
+}
+
+static void follow(struct stage *s, int pixel, const struct rf_search_ray *ray)
+{
+    const struct rf_search_job *job = &s->job;
+    const ptrdiff_t p = pixel / RF_TILE * SIDE + pixel % RF_TILE;
+    int guess = job->blur[p + ray->start], tests = job->tests;
+    ptrdiff_t q;
+
+    for (;;) {
+        int apart;
+
+        q = p + rounded(ray->v, guess) * SIDE + rounded(ray->u, guess);
+        apart = job->blur[q] - guess;
+        apart = apart < 0 ? -apart : apart;
+        if (apart <= ray->within)
+            break;
+        if (--tests == 0) {
+            if (job->blur[q] > job->blur[p])
+                q = p;
+            break;
+        }
+        guess = job->blur[q];
+    }
+    for (int c = 0; c < 3; c++)
+        s->expected[c][pixel] += job->light[c][q];
+}
+
+/* Two surfaces, or noise, or one: so that rows agree and do not. */
+static void make_blurs(int16_t *blur, uint32_t *seed)
+{
+    const int kind = (int)(noise(seed) % 4), bound = noise_between(seed, 0, SIDE);
+    const int near = noise_between(seed, -MOST_BLUR, MOST_BLUR);
+    const int far = noise_between(seed, -MOST_BLUR, MOST_BLUR);
+
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const int flat = i % SIDE + i / SIDE / 3 < bound ? near : far;
+        const int any = noise_between(seed, -MOST_BLUR, MOST_BLUR);
+        const int extreme = any < 0 ? -MOST_BLUR : MOST_BLUR;
+
+        blur[i] = (int16_t)(kind == 0 ? any : kind == 1 ? extreme : kind == 2 ? near : flat);
+    }
+}
+
+static void make_stage(struct stage *s, enum place place, uint32_t seed)
+{
+    static const int counts[] = {0, 1, 2, 7, RF_RAY_CHUNK};
+    static const int within[] = {0, 1, 128, 300, 65535};
+    const size_t bytes = (size_t)SIDE * SIDE * 2;
+
+    s->job = (struct rf_search_job){
+        .stride = SIDE,
+        .tests = noise_between(&seed, 1, 5),
+        .rays = counts[noise(&seed) % 5],
+        .lanes = RF_TILE,
+        .ray = s->ray,
+    };
+    for (int i = 0; i < 4; i++) {
+        uint16_t *plane = guarded_place(&s->plane[i], bytes, 2, place, noise(&seed) % 8);
+
+        if (i == 0)
+            make_blurs((int16_t *)plane, &seed);
+        for (int j = 0; i > 0 && j < SIDE * SIDE; j++)
+            plane[j] = (uint16_t)(noise(&seed) % 4096);
+        if (i == 0)
+            s->job.blur = (const int16_t *)plane + ORIGIN;
+        else
+            s->job.light[i - 1] = plane + ORIGIN;
+    }
+    for (int n = 0; n < RF_RAY_CHUNK; n++) {
+        const int dx = noise_between(&seed, -PAD, PAD), dy = noise_between(&seed, -PAD, PAD);
+        const int corner = n < 2 ? (n ? 32767 : -32767) : 0;
+
+        s->ray[n] = (struct rf_search_ray){
+            .start = dy * SIDE + dx,
+            .u = (int16_t)(corner ? corner : noise_between(&seed, -32767, 32767)),
+            .v = (int16_t)(corner ? corner : noise_between(&seed, -32767, 32767)),
+            .within = within[noise(&seed) % 5],
+        };
+    }
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < LANES; i++)
+            s->sum[c][i] = s->expected[c][i] = noise(&seed);
+}
+
+static bool check_case(const struct subject *subject, struct stage *s, enum place place,
+                       uint32_t seed)
+{
+    make_stage(s, place, seed);
+    for (int i = 0; i < LANES; i++)
+        for (int n = 0; n < s->job.rays; n++)
+            follow(s, i, &s->ray[n]);
+    subject->kernels.search(s->sum, &s->job);
+    for (int i = 0; i < 4; i++) {
+        if (!guarded_intact(&s->plane[i])) {
+            printf("FAIL  %-12s %-6s seed %u: wrote beside plane %d\n", "search", subject->cpu,
+                   (unsigned)seed, i);
+            return false;
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < LANES; i++) {
+            if (s->sum[c][i] == s->expected[c][i])
+                continue;
+            printf("FAIL  %-12s %-6s seed %u, %d rays, %d tests: channel %d of (%d, %d) is "
+                   "%u, should be %u\n", "search", subject->cpu, (unsigned)seed, s->job.rays,
+                   s->job.tests, c, i % RF_TILE, i / RF_TILE, (unsigned)s->sum[c][i],
+                   (unsigned)s->expected[c][i]);
+            return false;
+        }
+    }
+    return true;
+}
+
+int check_search(const struct subject *subject)
+{
+    static struct stage s;
+    uint32_t seed = 1;
+    bool good = true;
+
+    for (int i = 0; i < 4; i++)
+        good = good && guarded_create(&s.plane[i], (size_t)SIDE * SIDE * 2);
+    if (!good)
+        printf("FAIL  no memory between pages\n");
+    for (; good && seed <= 300; seed++)
+        good = check_case(subject, &s, (enum place)(seed % PLACES), seed);
+    for (int i = 0; i < 4; i++)
+        guarded_destroy(&s.plane[i]);
+    if (good)
+        printf("ok    %-12s %-6s %d cases\n", "search", subject->cpu, (int)seed - 1);
+    return !good;
+}
