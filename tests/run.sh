@@ -176,6 +176,7 @@ need_packages meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-d
 need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-dnn-dev \
     libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
+need_packages libcamera-dev || skip libcamera 'its library is missing'
 
 gcc_stage
 if [ "$mode" != quick ]; then
