@@ -147,6 +147,25 @@ cross_stage() {
     same_bytes "$1"
 }
 
+# Real drivers in a virtual machine: vivid and vimc.
+camera_stage() {
+    local log=$builds/camera-vm.log rc p f
+    say 'cameras: V4L2 and libcamera drivers in a virtual machine'
+    need_packages qemu-system-x86 busybox-static xz-utils gcc-12 make v4l-utils libcamera-ipa ||
+        { skip camera-vm 'its packages cannot be had, see above'; return; }
+    "$top/tests/camera-vm/test.sh" "$builds/gcc" >"$log" 2>&1
+    rc=$?
+    if [ $rc = 77 ]; then
+        skip camera-vm "$(grep SKIPPED "$log" | head -n 1), see $log"
+        return
+    fi
+    p=$(grep -c '^ok ' "$log") f=$(grep -c '^FAILED ' "$log")
+    grep -E '^(ok|captured|recovered)' "$log" | sed 's/^/    /'
+    passed=$((passed + p))
+    [ "$rc" = 0 ] || fail 'cameras in the virtual machine' "$log"
+    [ "$f" -le 1 ] || failed=$((failed + f - 1))
+}
+
 fuzz_stage() {
     local target name
     say 'fuzz targets: their corpora again'
@@ -181,6 +200,7 @@ need_packages libcamera-dev || skip libcamera 'its library is missing'
 gcc_stage
 if [ "$mode" != quick ]; then
     clang_stage
+    camera_stage
     minimal_stage
     memory_stage
     thread_stage
