@@ -93,8 +93,7 @@ const char *engine_blend_summary(uint32_t index);
      .greatest = 1e30,                                                                      \
      .word = "off",                                                                         \
      .word_value = INFINITY,                                                                \
-     .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default off, "   \
-             "which is best in linear light"},                                              \
+     .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default off"},                                              \
     {.kind = OPTION_NUMBER,                                                                 \
      .name = "--highlights",                                                                \
      .argument = "GAIN",                                                                    \
