@@ -98,7 +98,7 @@ class Live(unittest.TestCase):
         self.assertEqual(r['colour']['corrupt'], 1)
         self.assertEqual(r['colour']['reordered'], 1)
         self.assertGreaterEqual(r['camera_dropped'], 3)
-        self.assertGreater(r['frames_out'], 20)  # it went on; a busy machine drops frames
+        self.assertGreater(r['frames_out'], 60 / SLOW)
 
     def test_depth_may_be_late_vanish_and_end(self):
         r = self.report('--camera', 'replay::size 64x48;fps 30;frames 60', '--depth',
@@ -107,7 +107,7 @@ class Live(unittest.TestCase):
         self.assertGreater(r['unpaired'], 5)
         self.assertGreater(r['paired'], 5)
         self.assertEqual(r['depth']['recoveries'], 1)
-        self.assertGreater(r['frames_out'], 15)
+        self.assertGreater(r['frames_out'], 40 / SLOW)
 
     def test_the_format_may_change(self):
         r = self.report('--camera', 'replay::size 64x48;frames 20;at 10 format YUYV,96x50',
