@@ -51,49 +51,85 @@ static void add_run(uint32_t run[3][LANES], uint64_t weight, struct rf_sums *sum
     }
 }
 
-/* Offsets of some rays at the centre of a slab, in elements of the planes. */
-static void set_offsets(int32_t offset[RF_RAY_CHUNK], const struct refocus_ray *ray, int rays,
-                        int blur, ptrdiff_t stride)
+/* Where some rays see the slabs of a tile, and the background. */
+struct sight {
+    int rays;
+    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+};
+
+static void set_sight(struct sight *sight, const struct refocus_renderer *r,
+                      const struct rf_tile_plan *plan, const struct refocus_ray *ray, int behind)
 {
-    for (int n = 0; n < rays; n++)
-        offset[n] = rf_offset(ray[n].v, blur) * (int32_t)stride + rf_offset(ray[n].u, blur);
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+
+    for (int n = 0; n < sight->rays; n++) {
+        u[n] = ray[n].u;
+        v[n] = ray[n].v;
+    }
+    for (int k = 0; k <= plan->slabs; k++)
+        r->kernels.aim(sight->offset[k], sight->cell[k], u, v,
+                       k < plan->slabs ? plan->slab[k].centre : behind, (int32_t)r->stride,
+                       (int32_t)r->range_stride, sight->rays);
+}
+
+/* Strip i of the tile at (tx, ty). */
+static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        const struct sight *sight, int tx, int ty, int i,
+                        uint32_t run[3][LANES])
+{
+    enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
+    const struct refocus_renderer *r = f->r;
+    const ptrdiff_t at = (ty * RF_TILE + i * RF_STRIP) * r->stride + tx * RF_TILE;
+    uint32_t *const sum[3] = {run[0] + i * RF_STRIP_LANES, run[1] + i * RF_STRIP_LANES,
+                              run[2] + i * RF_STRIP_LANES};
+    struct rf_sorted_rays sorted;
+    const struct rf_sort_job sort = {
+        .range = r->range + (ty * CELLS + i * STRIP_CELLS) * r->range_stride + tx * CELLS,
+        .front = r->smooth[0] + at,
+        .behind = r->behind.light[0] + at,
+        .rays = sight->rays,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+    };
+    const struct rf_sweep_job job = {
+        .blur = r->front.blur + at,
+        .stride = r->stride,
+        .pitch = r->pitch,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .rays = &sorted,
+        .bright = f->params->highlight_gain > 1,
+    };
+
+    r->kernels.sort_rays(&sorted, &sort);
+    r->kernels.sweep(sum, &job);
 }
 
 /* Rays come in runs of equal weight; a run is summed plainly and weighted once. Sums of
  * a run, 65,025 rays of Q12 light at the most, stay below 2^28. The sums of a set that is one
  * run are left in `run`; others are added up in `sums`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_ray_set *set, ptrdiff_t origin, int behind,
+                       const struct rf_ray_set *set, int tx, int ty, int behind,
                        uint32_t run[3][LANES], struct rf_sums *sums)
 {
-    const struct refocus_renderer *r = f->r;
-    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
-    struct rf_sweep_job job = {
-        .blur = r->front.blur + origin,
-        .behind = r->behind.light[0] + origin,
-        .stride = r->stride,
-        .pitch = r->pitch,
-        .slabs = plan->slabs,
-        .slab = plan->slab,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])offset,
-        .uniform = plan->uniform,
-        .bright = f->params->highlight_gain > 1,
-    };
+    struct sight sight;
 
     memset(run, 0, 3 * sizeof run[0]);
-    for (int n = 0; n < set->count; n += job.rays) {
+    for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        job.rays = 1;
-        while (job.rays < RF_RAY_CHUNK && n + job.rays < set->count &&
-               ray[job.rays].weight == ray->weight)
-            job.rays++;
-        for (int k = 0; k < plan->slabs; k++)
-            set_offsets(offset[k], ray, job.rays, plan->slab[k].centre, r->stride);
-        set_offsets(offset[plan->slabs], ray, job.rays, behind, r->stride);
-        r->kernels.sweep(run, &job);
+        sight.rays = 1;
+        while (sight.rays < RF_RAY_CHUNK && n + sight.rays < set->count &&
+               ray[sight.rays].weight == ray->weight)
+            sight.rays++;
+        set_sight(&sight, f->r, plan, ray, behind);
+        for (int i = 0; i < RF_TILE / RF_STRIP; i++)
+            sweep_strip(f, plan, &sight, tx, ty, i, run);
         if (!set->equal &&
-            (n + job.rays == set->count || ray[job.rays].weight != ray->weight))
+            (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight))
             add_run(run, ray->weight, sums);
     }
 }
@@ -128,7 +164,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     struct rf_tile_plan plan;
 
     (void)worker;
-    rf_plan_tile(r, f->scale, tx, ty, f->aperture->shape == RF_SHAPE_MASK, &plan);
+    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
     if (plan.sharp) {
         rf_copy_tile(f, rect);
         return;
@@ -139,7 +175,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         uint16_t mean[3][LANES];
         uint32_t run[3][LANES];
 
-        sweep_rays(f, &plan, set, origin, behind, run, NULL);
+        sweep_rays(f, &plan, set, tx, ty, behind, run, NULL);
         for (int c = 0; c < 3; c++)
             r->kernels.means(mean[c], run[c], scale, LANES);
         rf_encode_means(f, rect, mean);
@@ -151,7 +187,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         if (f->weighted) {
             sweep_weighted(f, &plan, set, origin, behind, &sums);
         } else {
-            sweep_rays(f, &plan, set, origin, behind, run, &sums);
+            sweep_rays(f, &plan, set, tx, ty, behind, run, &sums);
             for (int i = 0; i < LANES; i++)
                 sums.weight[i] = set->total_weight;
         }

@@ -76,6 +76,8 @@ struct refocus_renderer {
     uint16_t *disparity; /* padded, its border is not set */
     uint8_t *alpha;     /* unpadded, width a row */
     struct rf_layer front;
+    uint32_t *range;     /* blurs around the cell of pixel (0, 0); see tiles/ranges.h */
+    ptrdiff_t range_stride;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
     struct rf_highlight *highlight; /* of the photo in this blend, once they are found */
     uint64_t highlights;
