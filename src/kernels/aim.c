@@ -152,6 +152,14 @@ static inline void place(struct rf_sorted_rays *restrict sorted, const struct rf
         need &= need - 1;
         sorted->slab[t][m] = (uint8_t)k;
         sorted->offset[t][m] = job->offset[k][n];
+        if (job->weight)
+            sorted->weight_offset[t][m] = job->weight_offset[k][n];
+    }
+    if (job->weight) {
+        sorted->last_behind[m] = last == job->slabs;
+        sorted->last_weight[m] = last == job->slabs
+                                     ? job->behind_weight + job->offset[last][n]
+                                     : job->weight + job->weight_offset[last][n];
     }
     sorted->tests[m] = (uint8_t)tests;
     sorted->last[m] =

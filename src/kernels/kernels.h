@@ -52,16 +52,19 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
  *         the last is the background at offset[slabs][n]
  *
  * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
- * otherwise in their order. Nothing is lost by this: tests that are left out could not hit, or would all hit.
+ * otherwise in their order. Nothing is lost by this: tests that are left out could not hit, or
+ * would all hit.
  */
 enum { RF_SORTED_TESTS = 8 };
 
 struct rf_sort_job {
     const uint32_t *range; /* at the strip's first pixel */
     const uint16_t *front, *behind; /* first of three planes of light, there */
+    const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
     const struct rf_slab *slab;
     const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
+    const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
 };
 
 struct rf_sorted_rays {
@@ -70,6 +73,11 @@ struct rf_sorted_rays {
     uint8_t slab[RF_BINS][RF_RAY_CHUNK]; /* of test t, nearest first, */
     int32_t offset[RF_BINS][RF_RAY_CHUNK]; /* at this offset */
     const uint16_t *last[RF_RAY_CHUNK]; /* first of three planes, for the strip's first pixel */
+
+    /* Only with weights: as `offset` and `last`, of the weights. */
+    int32_t weight_offset[RF_BINS][RF_RAY_CHUNK];
+    const uint16_t *last_weight[RF_RAY_CHUNK];
+    bool last_behind[RF_RAY_CHUNK]; /* which plane last_weight is in */
 };
 typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort_job *job);
 
@@ -93,8 +101,17 @@ struct rf_sweep_job {
     const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
     bool bright;  /* highlights are in the light */
+
+    /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
+    const uint16_t *weight;
+    ptrdiff_t weight_stride;
 };
 typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
+
+/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. Those
+ * of the front lie in a plane with a stride of its own, those of the background as its light. */
+enum { RF_WEIGHT_MAX = 32767 };
+typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
 /* Focus and blur in fixed point. */
 struct rf_focus {
@@ -161,6 +178,20 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
 
     return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
 }
+
+/* weighted_means: Q14 means of n <= RF_TILE * RF_TILE sums below 2^51 of Q12 values times
+ * weights, and of their weights: 4 sum / weight half up, to 2^-35; exact where all values are
+ * the same. In double precision, whose four operations are the same everywhere. */
+typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uint64_t *weight,
+                                  int n);
+
+/* luminance: Rec. 709 in Q11, (218 R + 732 G + 74 B) / 2048 half up. */
+typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t *green,
+                             const uint16_t *blue, int n);
+
+/* brightest: the largest value of any channel of a row. */
+typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
+                                 const uint16_t *blue, int n);
 
 /* blend4: four rows by weights in Q16 that add up to 1, rounded half up. */
 typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
@@ -240,6 +271,7 @@ struct rf_kernels {
     rf_aim_fn *aim;
     rf_sort_rays_fn *sort_rays;
     rf_sweep_fn *sweep;
+    rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;
     rf_smooth3_fn *smooth3;
     rf_spread_row_fn *spread_row;
@@ -249,6 +281,9 @@ struct rf_kernels {
     rf_pull_fn *pull;
     rf_pull_blur_fn *pull_blur;
     rf_means_fn *means;
+    rf_weighted_means_fn *weighted_means;
+    rf_luminance_fn *luminance;
+    rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
     rf_steps4_fn *steps4;
     rf_cluster_fn *cluster;
@@ -261,10 +296,14 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
 rf_smooth3_fn rf_smooth3_c;
+rf_sweep_weighted_fn rf_sweep_weighted_c;
 
 /* Each set overwrites what it does better. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
+rf_kernels_use_fn rf_sweep_weighted_use_neon, rf_sweep_weighted_use_sse41,
+    rf_sweep_weighted_use_avx2;
+rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_light_use_avx2;
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;

@@ -54,7 +54,7 @@ static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_b
                                    int tx, int ty)
 {
     enum { EACH = RF_TILE / RF_CELL };
-    struct rf_bins bins = {{0}, INT16_MAX, INT16_MIN, 0};
+    struct rf_bins bins = {{0}, INT16_MAX, INT16_MIN, 0, 0};
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
         const int16_t *least = rf_cell_least(r, y), *most = rf_cell_most(r, y);
@@ -167,7 +167,7 @@ static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_
 {
     const int x0 = tx > reach->tiles ? tx - reach->tiles : 0;
     const int y0 = ty > reach->tiles ? ty - reach->tiles : 0;
-    struct rf_bins sum = {{0}, INT16_MAX, INT16_MIN, 0};
+    struct rf_bins sum = {{0}, INT16_MAX, INT16_MIN, 0, 0};
 
     for (int y = y0; y <= ty + reach->tiles && y < r->tiles_y; y++)
         for (int x = x0; x <= tx + reach->tiles && x < r->tiles_x; x++)

@@ -11,22 +11,35 @@ enum {
     SIDE = RF_TILE + 2 * PAD, /* strips are as wide as that and not as high */
     PITCH = SIDE + 5, /* between the rows of a group's planes */
     STRIDE = 4 * PITCH,
+    WEIGHT_STRIDE = SIDE + 3,
     MOST_SLABS = 12,
     LANES = RF_STRIP_LANES,
 };
 
 struct stage {
-    struct guarded front, behind; /* groups of planes: blur and light, light */
+    struct guarded front, behind; /* groups of planes: blur and light, light and weight */
+    struct guarded weight;        /* of the front */
     struct rf_slab slab[MOST_SLABS];
     struct rf_sorted_rays rays;
     struct rf_sweep_job job;
     uint32_t sum[3][LANES], expected[3][LANES];
+    uint64_t weighted[4][LANES], expected_weighted[4][LANES];
 };
+
+static void count(struct stage *s, int pixel, const uint16_t *red, uint16_t weight)
+{
+    for (int c = 0; c < 3; c++) {
+        s->expected[c][pixel] += red[c * PITCH];
+        s->expected_weighted[c][pixel] += (uint64_t)red[c * PITCH] * weight;
+    }
+    s->expected_weighted[3][pixel] += weight;
+}
 
 static void follow(struct stage *s, int pixel, int ray)
 {
     const struct rf_sweep_job *job = &s->job;
     const ptrdiff_t p = pixel / RF_TILE * STRIDE + pixel % RF_TILE;
+    const ptrdiff_t w = pixel / RF_TILE * WEIGHT_STRIDE + pixel % RF_TILE;
 
     for (int t = 0; t < s->rays.tests[ray]; t++) {
         const struct rf_slab *slab = &s->slab[s->rays.slab[t][ray]];
@@ -34,17 +47,17 @@ static void follow(struct stage *s, int pixel, int ray)
         const int above = job->blur[q] - slab->low;
 
         if (above >= 0 && above <= slab->width) {
-            for (int c = 0; c < 3; c++)
-                s->expected[c][pixel] += (uint16_t)job->blur[q + (1 + c) * PITCH];
+            count(s, pixel, (const uint16_t *)job->blur + q + PITCH,
+                  job->weight[w + s->rays.weight_offset[t][ray]]);
             return;
         }
     }
-    for (int c = 0; c < 3; c++)
-        s->expected[c][pixel] += s->rays.last[ray][p + c * PITCH];
+    count(s, pixel, s->rays.last[ray] + p,
+          s->rays.last_weight[ray][s->rays.last_behind[ray] ? p : w]);
 }
 
-/* Offsets as far as the planes reach, at first to their corners. */
-static int32_t make_offset(int n, uint32_t *seed)
+/* An offset as far as the planes reach, at first to their corners; *weight is that of weights. */
+static int32_t make_offset(int n, int32_t *weight, uint32_t *seed)
 {
     int dx = noise_between(seed, -PAD, PAD), dy = noise_between(seed, -PAD, PAD);
 
@@ -52,6 +65,7 @@ static int32_t make_offset(int n, uint32_t *seed)
         dx = n % 2 ? PAD : -PAD;
         dy = n / 2 ? PAD : -PAD;
     }
+    *weight = dy * WEIGHT_STRIDE + dx;
     return dy * STRIDE + dx;
 }
 
@@ -60,15 +74,22 @@ static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *be
                       bool same, uint32_t *seed)
 {
     static const int counts[] = {0, 1, 15, 16, 17, 24, 32, 63, RF_RAY_CHUNK};
+    struct rf_sorted_rays *rays = &s->rays;
 
-    s->rays.rays = counts[noise(seed) % 9];
-    for (int n = 0; n < s->rays.rays; n++) {
-        s->rays.tests[n] = (uint8_t)(same ? tests : noise_between(seed, 0, tests));
-        for (int t = 0; t < s->rays.tests[n]; t++) {
-            s->rays.slab[t][n] = (uint8_t)noise_between(seed, 0, MOST_SLABS - 1);
-            s->rays.offset[t][n] = make_offset(n, seed);
+    rays->rays = counts[noise(seed) % 9];
+    for (int n = 0; n < rays->rays; n++) {
+        int32_t offset, weight_offset;
+
+        rays->tests[n] = (uint8_t)(same ? tests : noise_between(seed, 0, tests));
+        for (int t = 0; t < rays->tests[n]; t++) {
+            rays->slab[t][n] = (uint8_t)noise_between(seed, 0, MOST_SLABS - 1);
+            rays->offset[t][n] = make_offset(n, &rays->weight_offset[t][n], seed);
         }
-        s->rays.last[n] = (noise(seed) % 2 ? front + PITCH : behind) + make_offset(n, seed);
+        offset = make_offset(n, &weight_offset, seed);
+        rays->last_behind[n] = noise(seed) % 2;
+        rays->last[n] = (rays->last_behind[n] ? behind : front + PITCH) + offset;
+        rays->last_weight[n] = rays->last_behind[n] ? behind + 3 * PITCH + offset
+                                                    : s->job.weight + weight_offset;
     }
 }
 
@@ -115,9 +136,18 @@ static void make_blurs(struct stage *s, int16_t *blur, uint32_t *seed)
     }
 }
 
+static void make_weights(uint16_t *weight, ptrdiff_t stride, bool extreme, uint32_t *seed)
+{
+    for (int y = -PAD; y < RF_TILE + PAD; y++)
+        for (int x = -PAD; x < RF_TILE + PAD; x++)
+            weight[y * stride + x] =
+                (uint16_t)(extreme ? RF_WEIGHT_MAX : noise_between(seed, 1, RF_WEIGHT_MAX));
+}
+
 static void make_stage(struct stage *s, int tests, bool same, enum place place, uint32_t seed)
 {
-    uint16_t *front, *behind;
+    const size_t weights = (SIDE - 1) * WEIGHT_STRIDE + SIDE;
+    uint16_t *front, *behind, *weight;
     bool extreme;
     int most;
 
@@ -127,12 +157,18 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
         .slabs = MOST_SLABS,
         .slab = s->slab,
         .rays = &s->rays,
+        .weight_stride = WEIGHT_STRIDE,
     };
     make_slabs(s, &seed);
     extreme = noise(&seed) % 4 == 0;
     s->job.bright = noise(&seed) % 4 == 0;
     most = s->job.bright ? 4 * 4095 : 4095;
-    behind = make_group(&s->behind, 3, 0, most, extreme, place, &seed);
+    behind = make_group(&s->behind, 4, 0, most, extreme, place, &seed);
+    make_weights(behind + 3 * PITCH, STRIDE, extreme, &seed);
+    weight = guarded_place(&s->weight, weights * 2, 2, place, noise(&seed) % 17);
+    weight += PAD * (WEIGHT_STRIDE + 1);
+    make_weights(weight, WEIGHT_STRIDE, extreme, &seed);
+    s->job.weight = weight;
     front = make_group(&s->front, 4, 1, most, extreme, place, &seed);
     make_blurs(s, (int16_t *)front, &seed);
     make_rays(s, front, behind, tests, same, &seed);
@@ -140,42 +176,66 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++)
             s->sum[c][i] = s->expected[c][i] = noise(&seed);
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i < LANES; i++)
+            s->weighted[c][i] = s->expected_weighted[c][i] = noise(&seed);
+}
+
+/* The first difference, said; `which` is the kernel. */
+static bool is_same(const struct subject *subject, const struct stage *s, const char *which,
+                    uint32_t seed, int c, int i, uint64_t is, uint64_t should)
+{
+    if (is == should)
+        return true;
+    printf("FAIL  %-12s %-6s seed %u, %d rays: channel %d of (%d, %d) is "
+           "%llu, should be %llu\n", which, subject->cpu, (unsigned)seed, s->rays.rays, c,
+           i % RF_TILE, i / RF_TILE, (unsigned long long)is, (unsigned long long)should);
+    return false;
+}
+
+static void run(const struct rf_kernels *kernels, struct stage *s, bool weighted)
+{
+    uint64_t *const sum[4] = {s->weighted[0], s->weighted[1], s->weighted[2], s->weighted[3]};
+
+    if (weighted)
+        kernels->sweep_weighted(sum, &s->job);
+    else
+        kernels->sweep((uint32_t *const[3]){s->sum[0], s->sum[1], s->sum[2]}, &s->job);
 }
 
 static bool check_case(const struct subject *subject, struct stage *s, int tests, bool same,
                        enum place place, uint32_t seed)
 {
-    uint32_t *const sum[3] = {s->sum[0], s->sum[1], s->sum[2]};
-
     make_stage(s, tests, same, place, seed);
     for (int i = 0; i < LANES; i++)
         for (int n = 0; n < s->rays.rays; n++)
             follow(s, i, n);
-    subject->kernels.sweep(sum, &s->job);
-    for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < LANES; i++) {
-            if (s->sum[c][i] == s->expected[c][i])
-                continue;
-            printf("FAIL  %-12s %-6s seed %u, %d tests, %d rays: channel %d of (%d, %d) is "
-                   "%u, should be %u\n", "sweep", subject->cpu, (unsigned)seed, tests,
-                   s->rays.rays, c, i % RF_TILE, i / RF_TILE, (unsigned)s->sum[c][i],
-                   (unsigned)s->expected[c][i]);
-            return false;
-        }
-    }
+    run(&subject->kernels, s, false);
+    run(&subject->kernels, s, true);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < LANES; i++)
+            if (!is_same(subject, s, "sweep", seed, c, i, s->sum[c][i], s->expected[c][i]))
+                return false;
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i < LANES; i++)
+            if (!is_same(subject, s, "sweep_weighted", seed, c, i, s->weighted[c][i],
+                         s->expected_weighted[c][i]))
+                return false;
     return true;
 }
 
 static bool create(struct stage *s)
 {
     return guarded_create(&s->front, SIDE * STRIDE * 2) &&
-           guarded_create(&s->behind, SIDE * STRIDE * 2);
+           guarded_create(&s->behind, SIDE * STRIDE * 2) &&
+           guarded_create(&s->weight, SIDE * WEIGHT_STRIDE * 2);
 }
 
 static void destroy(struct stage *s)
 {
     guarded_destroy(&s->front);
     guarded_destroy(&s->behind);
+    guarded_destroy(&s->weight);
 }
 
 int check_sweep(const struct subject *subject)
@@ -196,22 +256,23 @@ int check_sweep(const struct subject *subject)
         }
     }
     destroy(&s);
-    printf("ok    %-12s %-6s %d cases\n", "sweep", subject->cpu, (int)seed - 1);
+    printf("ok    %-12s %-6s %d cases, plain and weighted\n", "sweep", subject->cpu,
+           (int)seed - 1);
     return 0;
 }
 
 struct bench {
     struct stage *stage;
-    rf_sweep_fn *sweep;
+    const struct rf_kernels *kernels;
+    bool weighted;
 };
 
 static void call(void *context)
 {
     const struct bench *b = context;
-    uint32_t *const sum[3] = {b->stage->sum[0], b->stage->sum[1], b->stage->sum[2]};
 
     for (int i = 0; i < 50; i++)
-        b->sweep(sum, &b->stage->job);
+        run(b->kernels, b->stage, b->weighted);
 }
 
 /* The seed's rays are repeated until a chunk is full. */
@@ -222,12 +283,33 @@ static void fill_chunk(struct rf_sorted_rays *rays)
 
         rays->tests[n] = rays->tests[like];
         rays->last[n] = rays->last[like];
+        rays->last_weight[n] = rays->last_weight[like];
+        rays->last_behind[n] = rays->last_behind[like];
         for (int t = 0; t < rays->tests[n]; t++) {
             rays->slab[t][n] = rays->slab[t][like];
             rays->offset[t][n] = rays->offset[t][like];
+            rays->weight_offset[t][n] = rays->weight_offset[t][like];
         }
     }
     rays->rays = RF_RAY_CHUNK;
+}
+
+static void bench_case(const struct subject *subject, struct stage *s, int tests, bool weighted)
+{
+    const double samples = 50.0 * RF_RAY_CHUNK * LANES;
+    struct bench b = {s, &subject->plain, weighted};
+    double plain, own;
+    char name[24];
+
+    for (uint32_t seed = 5; seed == 5 || s->rays.rays < 15 || s->job.bright; seed++)
+        make_stage(s, tests, true, INSIDE, seed);
+    fill_chunk(&s->rays);
+    snprintf(name, sizeof name, "%s, %d", weighted ? "weighted" : "sweep", tests);
+    plain = best_time(call, &b);
+    b.kernels = &subject->kernels;
+    own = best_time(call, &b);
+    printf("ok    %-12s %-6s c %.3f  %s %.3f ns/ray sample\n", name, subject->cpu,
+           plain * 1e9 / samples, subject->cpu, own * 1e9 / samples);
 }
 
 void bench_sweep(const struct subject *subject)
@@ -236,21 +318,8 @@ void bench_sweep(const struct subject *subject)
 
     if (!create(&s))
         return;
-    for (int tests = 0; tests <= 5; tests++) {
-        struct bench b = {&s, subject->plain.sweep};
-        char name[24];
-        double plain, own;
-
-        for (uint32_t seed = 5; seed == 5 || s.rays.rays < 15 || s.job.bright; seed++)
-            make_stage(&s, tests, true, INSIDE, seed);
-        fill_chunk(&s.rays);
-        snprintf(name, sizeof name, "sweep, %d", tests);
-        plain = best_time(call, &b);
-        b.sweep = subject->kernels.sweep;
-        own = best_time(call, &b);
-        printf("ok    %-12s %-6s c %.3f  %s %.3f ns/ray sample\n", name, subject->cpu,
-               plain * 1e9 / (50.0 * RF_RAY_CHUNK * LANES), subject->cpu,
-               own * 1e9 / (50.0 * RF_RAY_CHUNK * LANES));
-    }
+    for (int tests = 0; tests <= 5; tests++)
+        for (int weighted = 0; weighted < 2; weighted++)
+            bench_case(subject, &s, tests, weighted);
     destroy(&s);
 }
