@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/renderer.h"
+#include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
 enum {
@@ -255,6 +256,7 @@ static void widen(struct refocus_renderer *r, const struct rf_highlight *lamp,
             if (*s > own && abs(*s) > BLURRED) {
                 *s = own;
                 rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, own);
+                rf_add_to_cell(r, x, y, own);
             }
         }
     }
