@@ -316,3 +316,30 @@ void rf_cut_solve(struct rf_cut *cut)
             adopt(cut, orphan);
     }
 }
+
+void rf_cut_settle(struct rf_cut *cut)
+{
+    enum { ROUNDS = 12 };
+    bool changed = true;
+
+    for (int round = 0; round < ROUNDS && changed; round++) {
+        changed = false;
+        for (int32_t i = 0; i < cut->count; i++) {
+            struct rf_cut_node *const p = &cut->nodes[i];
+            int32_t sum = p->terminal, tree;
+
+            for (int d = 0; d < RF_CUT_NEIGHBOURS; d++)
+                if (p->neighbour[d] >= 0)
+                    sum += cut->nodes[p->neighbour[d]].tree == OBJECT ? p->capacity[d]
+                                                                      : -p->capacity[d];
+            tree = sum > 0 ? OBJECT : FREE;
+            changed |= tree != p->tree;
+            p->tree = tree;
+        }
+    }
+}
+
+void rf_cut_guess(struct rf_cut *cut, int32_t node, int inside)
+{
+    cut->nodes[node].tree = inside ? OBJECT : FREE;
+}

@@ -44,6 +44,12 @@ void rf_cut_free(struct rf_cut *cut);
 /* The caller has set neighbour, capacity and terminal of nodes 0 to count - 1. */
 void rf_cut_solve(struct rf_cut *cut);
 
+/* Instead, where the guesses of rf_cut_guess() are good: let each node in turn take the side that
+ * costs it less, until none changes. A cut that no single node makes better, in a tenth of
+ * the time. */
+void rf_cut_guess(struct rf_cut *cut, int32_t node, int inside);
+void rf_cut_settle(struct rf_cut *cut);
+
 /* Whether a node belongs to the object. */
 int rf_cut_inside(const struct rf_cut *cut, int32_t node);
 

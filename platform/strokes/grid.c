@@ -107,6 +107,7 @@ static void build(struct rf_grid *grid, struct rf_selector *selector,
             node->terminal = selector->likeness.score[rf_bin(colour)] + place_score(grid, x, y);
             node->place = (uint32_t)y << 16 | (uint32_t)x;
             index_of[(size_t)(y & 1) * (size_t)w + (size_t)x] = cut->count;
+            rf_cut_guess(cut, cut->count, *at & RF_INSIDE);
             tie(cut, cut->count, grid, pyramid, colour, x, y, index_of);
             cut->count++;
         }
@@ -164,7 +165,7 @@ static void weigh(struct rf_cut *cut)
 }
 
 int rf_grid_cut(struct rf_grid *grid, struct rf_selector *selector,
-                const struct rf_pyramid *pyramid)
+                const struct rf_pyramid *pyramid, bool settle)
 {
     struct rf_cut *const cut = &selector->cut;
     int32_t *const index_of =
@@ -175,7 +176,10 @@ int rf_grid_cut(struct rf_grid *grid, struct rf_selector *selector,
         return REFOCUS_ERR_MEMORY;
     build(grid, selector, pyramid, index_of);
     weigh(cut);
-    rf_cut_solve(cut);
+    if (settle)
+        rf_cut_settle(cut);
+    else
+        rf_cut_solve(cut);
     for (int32_t i = 0; i < cut->count; i++) {
         const uint32_t place = cut->nodes[i].place;
 

@@ -22,9 +22,10 @@ struct rf_grid {
     int place_shift;
 };
 
-/* Find the least cut among the open pixels; they are not open afterwards. */
+/* Find the least cut among the open pixels, or settle for a good one near their labels; they
+ * are not open afterwards. */
 int rf_grid_cut(struct rf_grid *grid, struct rf_selector *selector,
-                const struct rf_pyramid *pyramid);
+                const struct rf_pyramid *pyramid, bool settle);
 
 /* The next finer level: labels from the coarser one, open where its edge is. */
 void rf_grid_refine(struct rf_grid *fine, struct rf_grid *coarse,

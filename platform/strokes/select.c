@@ -5,7 +5,10 @@
 
 /* Pixels of the level at which a selection begins: enough for thin parts, few enough for a
  * cut of all of them in some milliseconds. */
-enum { FIRST_PIXELS = 20000, ROUNDS = 3 };
+enum { FIRST_PIXELS = 12000, ROUNDS = 3 };
+
+/* Levels that are not worth an exact cut: a coarser one has found the edge to a pixel or two. */
+enum { SETTLED_LEVELS = 2 };
 
 /* Scores of where a pixel lies. */
 enum { UNDER_BRUSH = RF_BIT, FARTHEST = -3 * RF_BIT, OUT_OF_REACH = -1000 };
@@ -167,7 +170,7 @@ static int select_coarse(struct rf_grid *grid, struct rf_selector *selector,
         status = count_colours(grid, place, i == 0, selector, pyramid);
         open_reach(grid, place);
         if (status == REFOCUS_OK)
-            status = rf_grid_cut(grid, selector, pyramid);
+            status = rf_grid_cut(grid, selector, pyramid, false);
         rf_grid_connect(grid, stack);
     }
     return status;
@@ -192,7 +195,7 @@ int rf_select(struct rf_selector *selector, const struct rf_pyramid *pyramid,
             return REFOCUS_ERR_MEMORY;
         rf_grid_refine(&fine, &grid, pyramid);
         grid = fine;
-        status = rf_grid_cut(&grid, selector, pyramid);
+        status = rf_grid_cut(&grid, selector, pyramid, grid.level < SETTLED_LEVELS);
     }
     if (status != REFOCUS_OK)
         return status;
