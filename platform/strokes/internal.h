@@ -100,9 +100,11 @@ int rf_select(struct rf_selector *selector, const struct rf_pyramid *pyramid,
 /* Memory that is kept for the next time; what is in it is lost. NULL: there is none. */
 void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count, size_t size);
 
-/* strokes.c: to go back to the first count strokes without any need for memory, what the last of
- * their layers covers is kept. */
-int rf_strokes_keep(const struct refocus_strokes *strokes, struct rf_spans *kept);
+/* strokes.c: between hold and release strokes are only listed, so that each layer is selected and
+ * painted once. Instead of release, return goes back to the first count strokes and needs no
+ * memory for it: what the last of their layers covers is kept. */
+int rf_strokes_hold(struct refocus_strokes *strokes, struct rf_spans *kept);
+int rf_strokes_release(struct refocus_strokes *strokes);
 void rf_strokes_return(struct refocus_strokes *strokes, int count, struct rf_spans *kept);
 void rf_strokes_size(const struct refocus_strokes *strokes, int32_t *width, int32_t *height);
 

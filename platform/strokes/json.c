@@ -276,12 +276,17 @@ static int paint_all(struct reading *reading, json_t *root)
     json_t *const list = json_object_get(root, "strokes");
     const int before = refocus_strokes_count(reading->strokes);
     struct rf_spans kept;
-    int status = rf_strokes_keep(reading->strokes, &kept);
+    int status = rf_strokes_hold(reading->strokes, &kept);
 
     if (status != REFOCUS_OK)
         return no_memory(reading->reason);
     for (size_t i = 0; i < json_array_size(list) && status == REFOCUS_OK; i++)
         status = paint(reading, (int)i, json_array_get(list, i));
+    if (status == REFOCUS_OK) {
+        status = rf_strokes_release(reading->strokes);
+        if (status != REFOCUS_OK)
+            no_memory(reading->reason);
+    }
     if (status != REFOCUS_OK)
         rf_strokes_return(reading->strokes, before, &kept);
     rf_spans_free(&kept);
@@ -308,7 +313,9 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, siz
                       (int)MAX_BYTES);
     root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
     if (!root) {
-        if (json_error_code(&error) == json_error_out_of_memory)
+        /* Where memory fails jansson has no words. */
+        if (json_error_code(&error) == json_error_out_of_memory || error.line < 1 ||
+            !error.text[0])
             return no_memory(reading.reason);
         return refuse(reading.reason, REFOCUS_ERR_FORMAT, "line %d is no JSON: %s", error.line,
                       error.text);

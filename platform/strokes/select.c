@@ -144,6 +144,38 @@ static void open_reach(struct rf_grid *grid, const int16_t *place)
             grid->state[i] = place[i] == OUT_OF_REACH ? 0 : RF_OPEN;
 }
 
+/* What is out of reach but closed in by what is not, as the middle of a large object that was
+ * painted along its border, is in reach after all. */
+static void close_reach(struct rf_area area, int16_t *place, int32_t *stack)
+{
+    enum { AROUND = OUT_OF_REACH - 1 };
+    const int32_t w = area.width, h = area.height, pixels = w * h;
+    int32_t depth = 0;
+
+    for (int32_t i = 0; i < pixels; i++) {
+        const int32_t x = i % w, y = i / w;
+
+        if (place[i] == OUT_OF_REACH && (x == 0 || y == 0 || x == w - 1 || y == h - 1)) {
+            place[i] = AROUND;
+            stack[depth++] = i;
+        }
+    }
+    while (depth > 0) {
+        const int32_t at = stack[--depth], x = at % w, y = at / w;
+        const int32_t next[4] = {x > 0 ? at - 1 : at, x + 1 < w ? at + 1 : at,
+                                 y > 0 ? at - w : at, y + 1 < h ? at + w : at};
+
+        for (int i = 0; i < 4; i++) {
+            if (place[next[i]] == OUT_OF_REACH) {
+                place[next[i]] = AROUND;
+                stack[depth++] = next[i];
+            }
+        }
+    }
+    for (int32_t i = 0; i < pixels; i++)
+        place[i] = place[i] == OUT_OF_REACH ? FARTHEST : place[i] == AROUND ? OUT_OF_REACH : place[i];
+}
+
 static int select_coarse(struct rf_grid *grid, struct rf_selector *selector,
                          const struct rf_pyramid *pyramid, const struct rf_stroke *strokes,
                          int count)
@@ -163,6 +195,7 @@ static int select_coarse(struct rf_grid *grid, struct rf_selector *selector,
     for (int i = 0; i < count; i++)
         if (strokes[i].count > 0)
             read_stroke(&strokes[i], grid, place, distance);
+    close_reach(grid->area, place, stack);
     grid->place = place;
     grid->place_area = grid->area;
     grid->place_shift = 0;

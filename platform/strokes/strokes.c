@@ -8,6 +8,7 @@
 /* The strokes of a layer follow each other in the list. */
 struct layer {
     int first, count;
+    bool stale; /* its strokes are others than its spans */
     struct rf_spans spans;
 };
 
@@ -21,6 +22,7 @@ struct refocus_strokes {
     int count, layer_count;
     int room, layer_room;
     int points;
+    bool held; /* nothing is selected or painted until rf_strokes_release() */
 };
 
 static bool in_range(float value, float least, float greatest)
@@ -85,6 +87,22 @@ static const struct refocus_fill *fill_of(const struct refocus_strokes *strokes,
     return &strokes->strokes[i].stroke.fill;
 }
 
+/* The topmost layer that hides all below it between two columns, or 0. */
+static int lowest_visible(const struct refocus_strokes *strokes, int32_t y, int32_t from,
+                          int32_t to)
+{
+    int i = strokes->layer_count - 1;
+
+    for (; i > 0; i--) {
+        const int32_t *x = NULL;
+
+        if (fill_of(strokes, &strokes->layers[i])->kind != REFOCUS_FILL_NONE &&
+            rf_spans_row(&strokes->layers[i].spans, y, &x) == 2 && x[0] <= from && x[1] >= to)
+            break;
+    }
+    return i > 0 ? i : 0;
+}
+
 /* One row from x to the pixel before end, from the bottom up. */
 static void paint_row(struct refocus_strokes *strokes, int32_t y, int32_t from, int32_t to)
 {
@@ -96,7 +114,7 @@ static void paint_row(struct refocus_strokes *strokes, int32_t y, int32_t from, 
                (size_t)(to - from) * sizeof *row);
     else
         memset(row + from, 0, (size_t)(to - from) * sizeof *row);
-    for (int i = 0; i < strokes->layer_count; i++) {
+    for (int i = lowest_visible(strokes, y, from, to); i < strokes->layer_count; i++) {
         const struct refocus_fill *const fill = fill_of(strokes, &strokes->layers[i]);
         const int32_t *x = NULL;
         const int64_t numbers = rf_spans_row(&strokes->layers[i].spans, y, &x);
@@ -191,8 +209,12 @@ static int update(struct refocus_strokes *strokes, bool all, struct refocus_chan
 {
     struct layer *const layer = last_layer(strokes);
     struct rf_spans spans, before = layer->spans;
-    const int status = cover(strokes, layer, &spans);
+    int status;
 
+    layer->stale = strokes->held;
+    if (strokes->held)
+        return REFOCUS_OK;
+    status = cover(strokes, layer, &spans);
     if (status != REFOCUS_OK)
         return status;
     layer->spans = spans;
@@ -266,7 +288,8 @@ int refocus_strokes_begin(struct refocus_strokes *strokes, const struct refocus_
     added->stroke.struct_size = sizeof *stroke;
     if (stroke->kind == REFOCUS_STROKE_ALL)
         status = update(strokes, false, changed);
-    else if (!begins_layer(stroke->kind) && stroke->fill.kind != REFOCUS_FILL_NONE)
+    else if (!begins_layer(stroke->kind) && stroke->fill.kind != REFOCUS_FILL_NONE &&
+             !strokes->held)
         repaint(strokes, &last_layer(strokes)->spans, &last_layer(strokes)->spans, true, changed);
     if (status != REFOCUS_OK)
         drop_stroke(strokes);
@@ -349,25 +372,57 @@ int refocus_strokes_undo(struct refocus_strokes *strokes, struct refocus_changed
     return REFOCUS_OK;
 }
 
-int rf_strokes_keep(const struct refocus_strokes *strokes, struct rf_spans *kept)
+static void paint_all(struct refocus_strokes *strokes)
+{
+    for (int32_t y = 0; y < strokes->pyramid.height[0]; y++)
+        paint_row(strokes, y, 0, strokes->pyramid.width[0]);
+}
+
+int rf_strokes_hold(struct refocus_strokes *strokes, struct rf_spans *kept)
 {
     const struct layer *const layer = last_layer(strokes);
+    int status = REFOCUS_OK;
 
     memset(kept, 0, sizeof *kept);
-    return layer && layer->spans.first ? rf_spans_copy(kept, &layer->spans) : REFOCUS_OK;
+    if (layer && layer->spans.first)
+        status = rf_spans_copy(kept, &layer->spans);
+    strokes->held = status == REFOCUS_OK;
+    return status;
+}
+
+int rf_strokes_release(struct refocus_strokes *strokes)
+{
+    strokes->held = false;
+    for (int i = 0; i < strokes->layer_count; i++) {
+        struct layer *const layer = &strokes->layers[i];
+        struct rf_spans spans;
+        int status;
+
+        if (!layer->stale)
+            continue;
+        status = cover(strokes, layer, &spans);
+        if (status != REFOCUS_OK)
+            return status;
+        rf_spans_free(&layer->spans);
+        layer->spans = spans;
+        layer->stale = false;
+    }
+    paint_all(strokes);
+    return REFOCUS_OK;
 }
 
 void rf_strokes_return(struct refocus_strokes *strokes, int count, struct rf_spans *kept)
 {
+    strokes->held = false;
     while (strokes->count > count)
         drop_stroke(strokes);
     if (last_layer(strokes)) {
         rf_spans_free(&last_layer(strokes)->spans);
         last_layer(strokes)->spans = *kept;
+        last_layer(strokes)->stale = false;
         memset(kept, 0, sizeof *kept);
     }
-    for (int32_t y = 0; y < strokes->pyramid.height[0]; y++)
-        paint_row(strokes, y, 0, strokes->pyramid.width[0]);
+    paint_all(strokes);
 }
 
 void rf_strokes_size(const struct refocus_strokes *strokes, int32_t *width, int32_t *height)

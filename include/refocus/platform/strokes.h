@@ -74,7 +74,7 @@ static inline struct refocus_stroke refocus_stroke_default(uint32_t kind, float 
     stroke.struct_size = sizeof stroke;
     stroke.kind = kind;
     stroke.radius = radius;
-    stroke.reach = 6;
+    stroke.reach = 4;
     return stroke;
 }
 
