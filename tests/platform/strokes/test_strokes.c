@@ -276,6 +276,39 @@ static void test_refusals(void **unused)
     assert_null(strokes);
 }
 
+/* Where colours mix a selection is a matter of every bit: the same one on every processor. */
+static void test_same_everywhere(void **unused)
+{
+    const float path[] = {60.3f, 170, 100.7f, 70.25f, 240, 60, 250.5f, 180};
+    struct refocus_image noise = make_picture(W, H);
+    struct refocus_stroke stroke = make_stroke(REFOCUS_STROKE_OBJECT, 9.3f, 0);
+    struct refocus_strokes *strokes;
+    uint64_t hash = UINT64_C(14695981039346656037);
+    uint32_t state = 3;
+    int inside = 0;
+
+    (void)unused;
+    for (int i = 0; i < 3 * W * H; i++) {
+        state = state * 1664525 + 1013904223;
+        noise.plane[0][i] =
+            (uint8_t)((noise.plane[0][i] + 3 * (int)(state >> 26) + i / 3 % W / 2) / 3);
+    }
+    assert_int_equal(refocus_strokes_create(&strokes, &noise, NULL), REFOCUS_OK);
+    stroke.fill = (struct refocus_fill){REFOCUS_FILL_GRADIENT, 0.2f, 0.7f, 3, 9, 300, 211};
+    assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_strokes_extend(strokes, path, 4, NULL), REFOCUS_OK);
+    paint(strokes, REFOCUS_STROKE_BRUSH, 20.2f, 0.9f, path, 2);
+    for (int i = 0; i < W * H; i++) {
+        inside += refocus_strokes_disparity(strokes)[i] != 0;
+        hash = (hash ^ refocus_strokes_disparity(strokes)[i]) * UINT64_C(1099511628211);
+    }
+    printf("%d pixels, hash %016llx\n", inside, (unsigned long long)hash);
+    assert_true(inside > 1000 && inside < W * H / 2);
+    assert_true(hash == UINT64_C(0x4109180b8bf2d06e));
+    refocus_strokes_destroy(&strokes);
+    free(noise.plane[0]);
+}
+
 /* Pictures of a pixel, a row, a column. */
 static void test_small(void **unused)
 {
@@ -371,6 +404,7 @@ int main(void)
         cmocka_unit_test(test_changed),             cmocka_unit_test(test_gradient),
         cmocka_unit_test(test_brush),               cmocka_unit_test(test_base_and_selection),
         cmocka_unit_test(test_formats),             cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_same_everywhere),
         cmocka_unit_test(test_small),               cmocka_unit_test(test_scene),
     };
     int failed;
