@@ -219,7 +219,9 @@ void live_render(struct live *live);
 /* live_report.c: print it, when all threads have ended; an exit code. */
 int live_report(struct live *live);
 
-/* live_calibration.c: exit code, and prints why. */
+/* live_calibration.c: what is wrong with it, or NULL. */
+const char *live_parse_calibration(const json_t *root, struct refocus_calibration *calibration);
+/* An exit code, and prints why. */
 int live_read_calibration(struct refocus_calibration **calibration, const char *file);
 
 #endif
