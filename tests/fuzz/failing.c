@@ -69,16 +69,6 @@ void __wrap_free(void *memory)
     __real_free(memory);
 }
 
-void *fuzz_malloc(size_t size)
-{
-    return __wrap_malloc(size);
-}
-
-void fuzz_free(void *memory)
-{
-    __wrap_free(memory);
-}
-
 int fuzz_open(const uint8_t *data, size_t size, char name[64])
 {
     const int fd = memfd_create("fuzz", MFD_CLOEXEC);

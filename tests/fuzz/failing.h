@@ -12,10 +12,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 void fuzz_run_failing(void (*run)(const uint8_t *data, size_t size), const uint8_t *data,
                       size_t size);
 
-/* For libraries that can be told what to allocate with. */
-void *fuzz_malloc(size_t size);
-void fuzz_free(void *memory);
-
 /* A file in memory: its descriptor, and its name. */
 int fuzz_open(const uint8_t *data, size_t size, char name[64]);
 

