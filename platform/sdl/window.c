@@ -156,6 +156,7 @@ static void *run(void *argument)
         serve(window);
         SDL_QuitSubSystem(SDL_INIT_VIDEO);
     }
+    SDL_TLSCleanup(); /* what SDL keeps for a thread that it did not start */
     pthread_mutex_lock(&window->lock);
     if (window->state == OPEN)
         window->state = CLOSED;
