@@ -67,6 +67,17 @@ no_permission() {
         cat refused.txt && [ "$(wc -l <refused.txt)" = 1 ] && grep -q "group 'video'" refused.txt
 }
 
+# What the kernel's own checker says of a node is the same before and after we used it.
+compliance() {
+    v4l2-compliance -d0 >before.txt
+    live --camera v4l2:0 --format YUYV --size 320x180 --depth still-0-depth.pgm --frames 3 \
+        >compliance.json || return
+    live --camera v4l2:0 --dmabuf --depth still-0-depth.pgm --frames 3 >compliance.json || return
+    v4l2-compliance -d0 >after.txt
+    grep '^Total' before.txt && diff <(grep -E 'test |^Total' before.txt) \
+        <(grep -E 'test |^Total' after.txt)
+}
+
 # A virtual camera that goes while frames flow into it is opened again.
 sink_replugged() {
     v4l2-ctl -d1 --set-dv-bt-timings index=0
@@ -171,6 +182,7 @@ case $part in
         check vivid-replugged replug
         check vivid-sink-replugged sink_replugged
         check vivid-no-permission no_permission
+        check vivid-compliance compliance
         check vivid-pulled-out rebind
         ;;
     loopback)

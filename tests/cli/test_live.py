@@ -384,8 +384,8 @@ class Live(unittest.TestCase):
         self.fails(1, 'it is not there', '--camera', 'y4m:none.y4m', '--depth', DEPTH)
         self.fails(1, 'not understood', '--camera', 'replay::jump', '--depth', DEPTH)
         if 'RF_WINDOW' in os.environ:
-            none = {'SDL_VIDEODRIVER': 'none-such'}
-            self.fails(1, 'no display', *camera, '--depth', DEPTH, '--out', 'window', env=none)
+            for none in ({'SDL_VIDEODRIVER': 'none-such'}, {'DISPLAY': ':none'}):
+                self.fails(1, 'no display', *camera, '--depth', DEPTH, '--out', 'window', env=none)
         else:
             self.fails(1, 'this build has no window', *camera, '--depth', DEPTH, '--out', 'window')
         if 'RF_OPENCV' not in os.environ:
