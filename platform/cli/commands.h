@@ -10,5 +10,6 @@ extern const struct command info_command;
 extern const struct command bench_command;
 extern const struct command compare_command;
 extern const struct command live_command;
+extern const struct command view_command;
 
 #endif

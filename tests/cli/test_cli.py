@@ -86,7 +86,7 @@ class Case(unittest.TestCase):
 
 
 class Usage(Case):
-    SUBCOMMANDS = ('render', 'depth', 'info', 'compare', 'bench')
+    SUBCOMMANDS = ('render', 'depth', 'info', 'compare', 'bench', 'view')
     PAPERS = ('--cell --seed --spread --airy-radius --depth-ratio --star --star-length '
               '--star-angle --star-strength --sharp-radius --middle-ratio --last-ratio '
               '--attention --attention-angle --picture-angle --attention-depth --field '
@@ -98,7 +98,7 @@ class Usage(Case):
         self.assertEqual(text, self.succeeds('-h'))
         for name in self.SUBCOMMANDS:
             self.assertRegex(text, r'(?m)^  %s +\S' % name)
-        for name in ('sheet', 'pull', 'view'):
+        for name in ('sheet', 'pull'):
             self.assertNotRegex(text, r'(?m)^  %s ' % name)
             self.fails(2, re.compile(r'^refocus: %s: unknown subcommand; ' % name), name,
                        'photo.ppm')

@@ -21,7 +21,7 @@ def start_display(folder):
     """A display of its own; its number comes through a pipe."""
     read_end, write_end = os.pipe()
     server = subprocess.Popen(
-        ['Xvfb', '-displayfd', str(write_end), '-screen', '0', '640x480x24', '-fbdir', folder,
+        ['Xvfb', '-displayfd', str(write_end), '-screen', '0', '800x640x24', '-fbdir', folder,
          '-nolisten', 'tcp', '-ac'], pass_fds=[write_end], stderr=subprocess.DEVNULL)
     os.close(write_end)
     with os.fdopen(read_end) as pipe:
