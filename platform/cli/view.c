@@ -67,8 +67,11 @@ static bool interrupted(void *unused)
 
 static json_t *time_json(const struct rf_view_time *time)
 {
-    return json_pack("{s:s, s:o, s:o}", "cause", time->cause, "first_ms",
-                     report_number_json(time->first_ms < 0 ? NAN : time->first_ms), "full_ms",
+    const bool shown = time->first_ms >= 0;
+
+    return json_pack("{s:s, s:o, s:o, s:o}", "cause", time->cause, "first_ms",
+                     report_number_json(shown ? time->first_ms : NAN), "first_cpu_ms",
+                     report_number_json(shown ? time->first_cpu_ms : NAN), "full_ms",
                      report_number_json(time->full_ms < 0 ? NAN : time->full_ms));
 }
 

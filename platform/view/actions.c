@@ -1,4 +1,5 @@
 #include <math.h>
+#include <time.h>
 #include <refocus/status.h>
 #include "window.h"
 
@@ -17,6 +18,14 @@ static double photo_y(const struct rf_window *w, double y)
     return w->state.y + y / w->state.scale - 0.5;
 }
 
+double rf_window_cpu_ms(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
 void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause)
 {
     const double now = (double)SDL_GetPerformanceCounter() * 1000 /
@@ -29,6 +38,7 @@ void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause)
     /* Until they are answered the two hold the time of the question, below 0. */
     time->cause = cause;
     time->first_ms = time->full_ms = -now;
+    time->first_cpu_ms = -rf_window_cpu_ms();
     w->pending[w->pending_count].request = request;
     w->pending[w->pending_count++].time = w->report->count++;
 }

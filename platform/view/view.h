@@ -9,6 +9,7 @@
 struct rf_view_time {
     const char *cause; /* "open", "tap", "aperture", "paint", "zoom" or the name of a key's action */
     double first_ms, full_ms;
+    double first_cpu_ms; /* processor time of all threads up to the first one */
 };
 
 struct rf_view_setup {

@@ -233,8 +233,10 @@ static void note_times(struct rf_window *w)
             w->pending[kept++] = *one;
             continue;
         }
-        if (time->first_ms < 0)
+        if (time->first_ms < 0) {
             time->first_ms += now_ms();
+            time->first_cpu_ms += rf_window_cpu_ms();
+        }
         if (w->frame->full && w->frame->request == one->request) {
             time->full_ms += now_ms();
         } else if (w->frame->request == one->request) {

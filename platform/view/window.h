@@ -94,6 +94,7 @@ void rf_window_fit(struct rf_window *w);
 void rf_window_stroke(struct rf_window *w, double x, double y, uint32_t kind);
 void rf_window_stroke_to(struct rf_window *w, double x, double y);
 void rf_window_gradient(struct rf_window *w, double x, double y);
+double rf_window_cpu_ms(void);
 /* A request was made now; cause is a literal. */
 void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause);
 

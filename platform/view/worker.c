@@ -49,18 +49,23 @@ static float focus_at(const struct rf_session *s, double at_x, double at_y)
     return (float)values[n / 2] / 65535;
 }
 
-/* The lens of a state, in pixels of a picture that is smaller by `reduction`. */
+/* The lens of a state, for the full picture or for the reduced one. */
 static struct refocus_render_params lens_of(const struct rf_session *s,
-                                            const struct rf_view_state *state, int reduction)
+                                            const struct rf_view_state *state, bool full)
 {
+    const int reduction = full ? 1 : s->reduction;
     struct refocus_render_params params = s->setup.params;
 
     params.method = state->method;
     params.focus_disparity = state->focus;
     params.field_disparity = state->focus;
     params.max_blur_radius = state->blur / (float)reduction;
-    if (reduction > 1 && params.rays > PREVIEW_RAYS)
-        params.rays = PREVIEW_RAYS;
+    if (!full) {
+        /* The quickest; the full picture is by the method that was asked for. */
+        params.method = REFOCUS_METHOD_SWEEP;
+        if (params.rays > PREVIEW_RAYS || params.rays == REFOCUS_RAYS_FULL)
+            params.rays = PREVIEW_RAYS;
+    }
     return params;
 }
 
@@ -218,7 +223,7 @@ static int prepare_small(struct rf_session *s)
 
 static int render_small(struct rf_session *s, const struct rf_view_state *state)
 {
-    const struct refocus_render_params params = lens_of(s, state, s->reduction);
+    const struct refocus_render_params params = lens_of(s, state, false);
     const struct refocus_image out = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->small_out, s->width, s->height, 3 * (ptrdiff_t)s->width);
     const int status = prepare_small(s);
@@ -230,7 +235,7 @@ static int render_small(struct rf_session *s, const struct rf_view_state *state)
 static int render_full(struct rf_session *s, const struct rf_view_state *state)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_render_params params = lens_of(s, state, 1);
+    const struct refocus_render_params params = lens_of(s, state, true);
     const struct refocus_image out =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height,
                              3 * (ptrdiff_t)photo->width);
@@ -276,7 +281,7 @@ static void end_full(struct rf_session *s)
  * done, or cannot be. */
 static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t request)
 {
-    const struct refocus_render_params params = lens_of(s, state, 1);
+    const struct refocus_render_params params = lens_of(s, state, true);
     int status = REFOCUS_OK;
 
     if (state->mode != RF_VIEW_RESULT) {
@@ -310,7 +315,7 @@ static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t r
 static void save(struct rf_session *s, const struct rf_view_state *state, uint32_t what)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_render_params params = lens_of(s, state, 1);
+    const struct refocus_render_params params = lens_of(s, state, true);
     const struct refocus_image picture =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height,
                              3 * (ptrdiff_t)photo->width);
