@@ -221,7 +221,7 @@ need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev lib
     libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
-need_packages libsdl2-dev xvfb || skip 'the window' 'SDL2 or Xvfb is missing'
+need_packages libsdl2-dev xvfb xdotool || skip 'the window' 'SDL2, Xvfb or xdotool is missing'
 
 gcc_stage
 if [ "$mode" != quick ]; then

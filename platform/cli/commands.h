@@ -11,5 +11,6 @@ extern const struct command bench_command;
 extern const struct command pull_command;
 extern const struct command compare_command;
 extern const struct command live_command;
+extern const struct command view_command;
 
 #endif
