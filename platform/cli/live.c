@@ -43,6 +43,14 @@ static const struct option options[] = {
      .help = "depth beside it: such a source of Y16, Z16 or GREY, or the file of one fixed "
              "depth map"},
     DEPTH_UNIT_OPTIONS(struct live_settings, depth),
+    {.kind = OPTION_NUMBER,
+     .name = "--steady",
+     .argument = "S",
+     .offset = offsetof(struct live_settings, steady),
+     .least = 0,
+     .greatest = 0.95,
+     .help = "calm the flicker of depth: share of the past where nothing moves, 0 (default) "
+             "to 0.95"},
     {.kind = OPTION_TEXT,
      .name = "--calibration",
      .argument = "FILE",
@@ -406,10 +414,11 @@ static int print_report(struct live *live)
         json_object_set_new(json, "lens_dioptres", report_number_json(live->lens_dioptres));
         json_object_set_new(
             json, "stages_ms",
-            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
+            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
                       live_times_json(&live->capture.times), "depth",
                       live_times_json(&live->depth.times), "pair",
-                      live_times_json(&live->pair.times), "prepare",
+                      live_times_json(&live->pair.times), "steady",
+                      live_times_json(&live->steady.times), "prepare",
                       live_times_json(&live->prepare.times), "render",
                       live_times_json(&live->render.times), "output",
                       live_times_json(&live->output.times)));
