@@ -1,5 +1,6 @@
 #include <refocus/render.h>
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,6 +11,7 @@
 #include "renderer/bands.h"
 #include "renderer/params.h"
 #include "renderer/rays.h"
+#include "tiles/ranges.h"
 
 struct method {
     const char *name, *summary;
@@ -95,6 +97,7 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
 }
 
@@ -116,8 +119,9 @@ static void smooth_band(void *context, int band, int worker)
     uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
-    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
-                      band);
+    if (i == 0)
+        rf_range_rows(r, rf_scratch(r, worker), band);
+    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
@@ -136,6 +140,14 @@ static void mark_band(void *context, int band, int worker)
 
     rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
                             rf_band_end(f->r, band));
+}
+
+static void weigh_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_weigh_rows(f->r, band);
 }
 
 static int larger(int a, int b)
@@ -182,19 +194,29 @@ static void set_weights(struct rf_frame *f)
     r->weight_blend = r->blend;
 }
 
+static void find_lamps(void *context, int part, int worker)
+{
+    const struct rf_frame *f = context;
+
+    rf_find_highlights(f->r, part, rf_scratch(f->r, worker));
+}
+
 static void prefilter_with_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     const float gain = f->params->highlight_gain;
+    const int rays = f->params->rays == REFOCUS_RAYS_FULL ? INT_MAX : f->params->rays;
 
-    if (gain > 1) {
-        if (!r->highlights_found)
-            rf_find_highlights(r);
-        rf_mark_highlights(r);
-        rf_add_highlights(r, gain, 1);
+    if (gain > 1 && !r->highlights_found) {
+        rf_pool_run(&r->pool, find_lamps, f, rf_lamp_parts(r->height));
+        r->highlights_found = !rf_cancelled(r);
     }
+    f->bright = gain > 1 && r->highlights_found &&
+                rf_mark_highlights(r, f->scale, sqrt(3.14159265358979 / rays));
+    if (f->bright)
+        rf_add_highlights(r, gain, 1);
     prefilter(f);
-    if (gain > 1)
+    if (f->bright)
         rf_add_highlights(r, gain, -1);
 }
 
@@ -241,6 +263,8 @@ static void run_passes(struct rf_frame *f)
         rf_pool_run(&r->pool, dilate_item, f, 2);
         rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
         rf_background_fill(r);
+        if (f->weighted && method->layers)
+            rf_pool_run(&r->pool, weigh_band, f, rf_bands(r));
     }
     if (method->frame && f->params->max_blur_radius > 0) {
         if (!rf_cancelled(r))
@@ -265,6 +289,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
     f.scale = rf_bin_scale_of(params->max_blur_radius);
+    rf_reach_init(&f.reach, f.scale, r->pad, f.aperture->shape == RF_SHAPE_MASK);
     f.first_tx = f.region.x0 / RF_TILE;
     f.first_ty = f.region.y0 / RF_TILE;
     f.count_tx = (f.region.x1 - 1) / RF_TILE - f.first_tx + 1;

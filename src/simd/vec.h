@@ -9,13 +9,23 @@
  *     vec_u16_add(a, b)       (uint16_t)(a + b)
  *     vec_u16_sub(a, b)       (uint16_t)(a - b)
  *     vec_u16_and(a, b)       a & b
+ *     vec_u16_or(a, b)        a | b
  *     vec_u16_without(a, b)   a & ~b
  *     vec_u16_mul(a, b)       (uint16_t)(a * b)
- *     vec_u16_mul_high(a, b)  a * b >> 16
  *     vec_u16_least(a, b)     a < b ? a : b
  *     vec_u16_most(a, b)      a > b ? a : b
  *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
+ *     vec_u16_xor(a, b)       a ^ b
+ *     vec_u16_mul_high(a, b)  (a * b) >> 16
+ *     vec_u16_half(a)         a >> 1
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
+ *
+ * A vec_u32 holds as many lanes of 32 bits, in an order of its own.
+ *
+ *     vec_u32_zero()          every lane = 0
+ *     vec_u32_add_products(sum, a, b, c, d)
+ *                             sum + a * b + c * d, factors below 2^15
+ *     vec_u32_add_to(to, v)   to[i] += v[i], 64-bit sums
  *
  * and VEC_U8 = 2 VEC_U16 lanes of bytes:
  *

@@ -38,6 +38,11 @@ static inline vec_u16 vec_u16_and(vec_u16 a, vec_u16 b)
     return vandq_u16(a, b);
 }
 
+static inline vec_u16 vec_u16_or(vec_u16 a, vec_u16 b)
+{
+    return vorrq_u16(a, b);
+}
+
 static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
 {
     return vbicq_u16(a, b);
@@ -46,6 +51,22 @@ static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
 static inline vec_u16 vec_u16_at_most(vec_u16 a, vec_u16 b)
 {
     return vcleq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_xor(vec_u16 a, vec_u16 b)
+{
+    return veorq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
+{
+    return vcombine_u16(vshrn_n_u32(vmull_u16(vget_low_u16(a), vget_low_u16(b)), 16),
+                        vshrn_n_u32(vmull_u16(vget_high_u16(a), vget_high_u16(b)), 16));
+}
+
+static inline vec_u16 vec_u16_half(vec_u16 a)
+{
+    return vshrq_n_u16(a, 1);
 }
 
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
@@ -57,12 +78,6 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
 {
     return vmulq_u16(a, b);
-}
-
-static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
-{
-    return vcombine_u16(vshrn_n_u32(vmull_u16(vget_low_u16(a), vget_low_u16(b)), 16),
-                        vshrn_n_u32(vmull_u16(vget_high_u16(a), vget_high_u16(b)), 16));
 }
 
 static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
@@ -134,6 +149,37 @@ static inline void vec_u8_store_wide(uint16_t *p, const vec_u16 sum[2])
 {
     vec_u16_store(p, sum[0]);
     vec_u16_store(p + 8, sum[1]);
+}
+
+typedef struct {
+    uint32x4_t low, high;
+} vec_u32;
+
+static inline vec_u32 vec_u32_zero(void)
+{
+    return (vec_u32){vdupq_n_u32(0), vdupq_n_u32(0)};
+}
+
+static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
+                                           vec_u16 d)
+{
+    sum.low = vmlal_u16(sum.low, vget_low_u16(a), vget_low_u16(b));
+    sum.high = vmlal_u16(sum.high, vget_high_u16(a), vget_high_u16(b));
+    sum.low = vmlal_u16(sum.low, vget_low_u16(c), vget_low_u16(d));
+    sum.high = vmlal_u16(sum.high, vget_high_u16(c), vget_high_u16(d));
+    return sum;
+}
+
+static inline void vec_u64_add_four(uint64_t *to, uint32x4_t v)
+{
+    vst1q_u64(to, vaddw_u32(vld1q_u64(to), vget_low_u32(v)));
+    vst1q_u64(to + 2, vaddw_u32(vld1q_u64(to + 2), vget_high_u32(v)));
+}
+
+static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
+{
+    vec_u64_add_four(to, v.low);
+    vec_u64_add_four(to + 4, v.high);
 }
 
 #endif

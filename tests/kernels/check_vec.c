@@ -35,6 +35,11 @@ static uint16_t c_and(uint16_t a, uint16_t b)
     return a & b;
 }
 
+static uint16_t c_or(uint16_t a, uint16_t b)
+{
+    return a | b;
+}
+
 static uint16_t c_without(uint16_t a, uint16_t b)
 {
     return (uint16_t)(a & ~b);
@@ -43,6 +48,28 @@ static uint16_t c_without(uint16_t a, uint16_t b)
 static uint16_t c_at_most(uint16_t a, uint16_t b)
 {
     return a <= b ? 0xffff : 0;
+}
+
+static uint16_t c_xor(uint16_t a, uint16_t b)
+{
+    return a ^ b;
+}
+
+static uint16_t c_mul_high(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(((uint32_t)a * b) >> 16);
+}
+
+static vec_u16 half(vec_u16 a, vec_u16 b)
+{
+    (void)b;
+    return vec_u16_half(a);
+}
+
+static uint16_t c_half(uint16_t a, uint16_t b)
+{
+    (void)b;
+    return a >> 1;
 }
 
 static vec_u16 first(vec_u16 a, vec_u16 b)
@@ -60,11 +87,6 @@ static uint16_t c_first(uint16_t a, uint16_t b)
 static uint16_t c_mul(uint16_t a, uint16_t b)
 {
     return (uint16_t)((uint32_t)a * b);
-}
-
-static uint16_t c_mul_high(uint16_t a, uint16_t b)
-{
-    return (uint16_t)((uint32_t)a * b >> 16);
 }
 
 static uint16_t c_least(uint16_t a, uint16_t b)
@@ -85,8 +107,10 @@ static const struct {
     {"load, store", first, c_first},         {"add", vec_u16_add, c_add},
     {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
-    {"mul", vec_u16_mul, c_mul},             {"mul_high", vec_u16_mul_high, c_mul_high},
-    {"least", vec_u16_least, c_least},       {"most", vec_u16_most, c_most},
+    {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
+    {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
+    {"mul", vec_u16_mul, c_mul},             {"least", vec_u16_least, c_least},
+    {"most", vec_u16_most, c_most},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)
@@ -206,15 +230,48 @@ static int check_bytes(void)
     return 0;
 }
 
+/* a b + c d, added up twice: lanes come out in their order. */
+static int check_products(void)
+{
+    uint32_t seed = 10;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t factor[4][MOST_LANES];
+        uint64_t sum[MOST_LANES] = {0};
+        vec_u32 v = vec_u32_zero();
+
+        for (int i = 0; i < 4; i++)
+            for (int lane = 0; lane < (int)VEC_U16; lane++)
+                factor[i][lane] = pick(round, lane, i % 2, &seed) & 0x7fff;
+        for (int twice = 0; twice < 2; twice++)
+            v = vec_u32_add_products(v, vec_u16_load(factor[0]), vec_u16_load(factor[1]),
+                                     vec_u16_load(factor[2 - 2 * twice]),
+                                     vec_u16_load(factor[1]));
+        sum[0] = UINT32_MAX;
+        vec_u32_add_to(sum, v);
+        for (int lane = 0; lane < (int)VEC_U16; lane++) {
+            const uint64_t should = (lane ? 0 : (uint64_t)UINT32_MAX) +
+                                    (uint32_t)((3u * factor[0][lane] + factor[2][lane]) *
+                                               (uint32_t)factor[1][lane]);
+
+            if (sum[lane] != should) {
+                printf("FAIL  vec_u32_add_products, %s\n", TEXT(RF_VEC_SET));
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
-    int failures = check_set() + check_add_to() + check_bytes();
+    int failures = check_set() + check_add_to() + check_products() + check_bytes();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
         printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 2, (int)VEC_U16);
+               count + 3, (int)VEC_U16);
     return failures;
 }
