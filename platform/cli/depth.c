@@ -50,6 +50,13 @@ static const struct option options[] = {
      .name = "--full",
      .offset = offsetof(struct settings, depth.full),
      .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_CHOICE,
+     .name = "--upsample",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, depth.upsample),
+     .choice = made_upsampler,
+     .help = "how --full does it: the library's own way, or one of OpenCV's filters to compare "
+             "with; the last three need the module refocus-ximgproc"},
     {.kind = OPTION_TEXT,
      .name = "--estimate",
      .argument = "MODEL.onnx",

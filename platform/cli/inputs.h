@@ -14,6 +14,7 @@ struct depth_settings {
     double speckle;       /* patches of fewer samples are removed; 0: none */
     const char *invalid;  /* names of codes for "no value", or NULL */
     bool full;            /* bring the depth to the photo's size */
+    int upsample;         /* how; 0: as the core does, else 1 + enum refocus_cv_filter */
 };
 
 struct lens_settings {
@@ -21,7 +22,7 @@ struct lens_settings {
     double blur, f_number, focal_length, sensor_width;
 };
 
-#define DEPTH_SETTINGS_NONE {NULL, NULL, NAN, NAN, 0, NULL, false}
+#define DEPTH_SETTINGS_NONE {NULL, NULL, NAN, NAN, 0, NULL, false, 0}
 #define LENS_SETTINGS_NONE {NAN, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN}
 
 /* Rows of tables of options, for settings with a member of the types above. */

@@ -117,6 +117,23 @@ const char *made_preset(uint32_t index)
 {
     return refocus_cv_network_name(index);
 }
+const char *made_upsampler(uint32_t index)
+{
+    return index ? refocus_cv_filter_name(index - 1) : "core";
+}
+
+int made_upsample(uint32_t filter, const struct refocus_image *photo,
+                  const struct refocus_disparity *map, uint16_t *out, const char *name)
+{
+    struct refocus_cv_reason reason = {""};
+    const int status = refocus_cv_upsample_by(filter, photo, map, out, &reason);
+
+    if (status == REFOCUS_OK)
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, name, "--upsample %s: %s",
+                          refocus_cv_filter_name(filter),
+                          reason.text[0] ? reason.text : refocus_strerror(status));
+}
 #else
 static int absent(const char *what)
 {
@@ -144,5 +161,20 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 const char *made_preset(uint32_t index)
 {
     return index == 0 ? "none" : NULL;
+}
+
+const char *made_upsampler(uint32_t index)
+{
+    return index ? NULL : "core";
+}
+
+int made_upsample(uint32_t filter, const struct refocus_image *photo,
+                  const struct refocus_disparity *map, uint16_t *out, const char *name)
+{
+    (void)filter;
+    (void)photo;
+    (void)map;
+    (void)out;
+    return absent(name);
 }
 #endif
