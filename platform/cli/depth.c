@@ -17,7 +17,8 @@ struct settings {
     struct depth_settings depth;
     double focus_at[2], blur;
     const char *output, *model, *strokes;
-    int view, preset;
+    struct network_settings network;
+    int view;
     bool side_by_side;
     bool json;
 };
@@ -65,9 +66,38 @@ static const struct option options[] = {
     {.kind = OPTION_CHOICE,
      .name = "--preset",
      .argument = "NAME",
-     .offset = offsetof(struct settings, preset),
+     .offset = offsetof(struct settings, network.preset),
      .choice = made_preset,
-     .help = "which network it is: size and range of its input"},
+     .help = "which network it is: range of its input, and its size where the file leaves "
+             "it open"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--input-size",
+     .argument = "W,H",
+     .offset = offsetof(struct settings, network.size),
+     .least = 32,
+     .greatest = 2048,
+     .count = 2,
+     .help = "of the picture that the network takes; default: what the file says, else the "
+             "preset"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--input-mean",
+     .argument = "R,G,B",
+     .offset = offsetof(struct settings, network.mean),
+     .least = -1000,
+     .greatest = 1000,
+     .count = 3,
+     .help = "codes that the network takes as 0; default: the preset's"},
+    {.kind = OPTION_NUMBER,
+     .name = "--input-scale",
+     .argument = "S",
+     .offset = offsetof(struct settings, network.scale),
+     .least = -1000,
+     .greatest = 1000,
+     .help = "and what a code is worth: value = (code - mean) S; default: the preset's"},
+    {.kind = OPTION_FLAG,
+     .name = "--far-is-large",
+     .offset = offsetof(struct settings, network.inverse),
+     .help = "the network gives distances: larger = farther"},
     {.kind = OPTION_TEXT,
      .name = "--strokes",
      .argument = "FILE.json",
@@ -286,7 +316,7 @@ static int read_input(const struct settings *settings, const char *const *files,
                       struct input *input)
 {
     if (settings->model)
-        return input_read_estimate(input, files[0], settings->model, settings->preset,
+        return input_read_estimate(input, files[0], settings->model, &settings->network,
                                    &settings->depth);
     if (is_made(settings, files))
         return input_read_stereo(input, files[0], files[1], &settings->depth);
@@ -301,7 +331,8 @@ static int read_input(const struct settings *settings, const char *const *files,
 static int run(int argc, char **argv)
 {
     struct settings settings = {
-        .depth = DEPTH_SETTINGS_NONE, .focus_at = {NAN, NAN}, .blur = NAN};
+        .network = NETWORK_SETTINGS_NONE, .depth = DEPTH_SETTINGS_NONE,
+        .focus_at = {NAN, NAN}, .blur = NAN};
     struct input input = {0};
     const char *files[3] = {NULL};
     int status;

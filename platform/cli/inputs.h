@@ -8,6 +8,8 @@
 #include <refocus/platform/file.h>
 #include "options.h"
 
+struct network_settings;
+
 struct depth_settings {
     const char *file, *unit;
     double near_m, far_m; /* NAN: not given */
@@ -160,7 +162,8 @@ int input_read_depth(struct input *input, const char *file,
  * side by side in one; or by a network. */
 int input_read_stereo(struct input *input, const char *left, const char *right,
                       const struct depth_settings *settings);
-int input_read_estimate(struct input *input, const char *photo, const char *model, int preset,
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *network,
                         const struct depth_settings *settings);
 /* The last steps of both: input->made is of the photo. */
 int input_convert(struct input *input, const struct depth_settings *settings);

@@ -91,7 +91,23 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
     return take(input, samples, input->photo->image.width, input->photo->image.height, settings);
 }
 
-int input_read_estimate(struct input *input, const char *photo, const char *model, int preset,
+static void adjust(struct refocus_network *network, const struct network_settings *how)
+{
+    if (!isnan(how->size[0])) {
+        network->width = (int32_t)how->size[0];
+        network->height = (int32_t)how->size[1];
+    }
+    if (!isnan(how->mean[0]))
+        for (int i = 0; i < 3; i++)
+            network->mean[i] = (float)how->mean[i];
+    if (!isnan(how->scale))
+        network->scale = (float)how->scale;
+    if (how->inverse)
+        network->inverse = !network->inverse;
+}
+
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *how,
                         const struct depth_settings *settings)
 {
     struct refocus_estimate estimate;
@@ -104,9 +120,13 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
     status = read_photo(&input->photo, photo);
     if (status != EXIT_DONE)
         return status;
-    refocus_cv_network((uint32_t)preset, &network);
+    refocus_cv_network((uint32_t)how->preset, &network);
+    status = refocus_cv_network_fit(&network, model, &reason);
+    adjust(&network, how);
     report_progress("estimating", 0.2);
-    status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate, &reason);
+    if (status == REFOCUS_OK)
+        status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate,
+                                     &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -148,11 +168,12 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
     return absent(right ? right : left);
 }
 
-int input_read_estimate(struct input *input, const char *photo, const char *model, int preset,
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *how,
                         const struct depth_settings *settings)
 {
     (void)photo;
-    (void)preset;
+    (void)how;
     (void)settings;
     memset(input, 0, sizeof *input);
     return absent(model);

@@ -77,6 +77,16 @@ struct refocus_network {
 REFOCUS_API const char *refocus_cv_network_name(uint32_t index);
 REFOCUS_API int refocus_cv_network(uint32_t index, struct refocus_network *network);
 
+/**
+ * Take width and height from the shape of the input that an ONNX file states; a side that is
+ * left open there, or no such shape, leaves what @p network holds.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file), REFOCUS_ERR_FORMAT
+ *         (the shape is beyond 32 to 2048)
+ */
+REFOCUS_API int refocus_cv_network_fit(struct refocus_network *network, const char *model,
+                                       struct refocus_cv_reason *reason);
+
 /** Depth of one picture, without a unit. */
 struct refocus_estimate {
     float *samples; /**< packed, larger = nearer; freed by refocus_cv_estimate_free() */

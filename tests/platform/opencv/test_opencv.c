@@ -194,7 +194,7 @@ static void estimate(void **state)
 {
     static uint8_t pixels[3 * W * H];
     const struct refocus_image photo = picture(pixels);
-    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0};
+    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0}, fitted;
     struct refocus_estimate result;
     struct refocus_cv_reason reason;
     char path[] = "/tmp/refocus-onnx-XXXXXX";
@@ -208,6 +208,12 @@ static void estimate(void **state)
         pixels[3 * i + 2] = 255;
     }
     write_network(path);
+    /* The file says 48 x 32, whatever the preset does. */
+    assert_int_equal(refocus_cv_network(0, &fitted), REFOCUS_OK);
+    assert_int_equal(refocus_cv_network_fit(&fitted, path, &reason), REFOCUS_OK);
+    assert_int_equal(fitted.width, 48);
+    assert_int_equal(fitted.height, 32);
+    assert_int_equal(refocus_cv_network_fit(&fitted, "/no/such/file", &reason), REFOCUS_ERR_IO);
     for (network.inverse = 0; network.inverse < 2; network.inverse++) {
         const float sign = network.inverse ? -1 : 1;
 
@@ -227,6 +233,9 @@ static void estimate(void **state)
         assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
                          REFOCUS_ERR_FORMAT);
         assert_null(result.samples);
+        fitted.width = 77; /* cut off: it stays */
+        assert_int_equal(refocus_cv_network_fit(&fitted, path, &reason), REFOCUS_OK);
+        assert_int_equal(fitted.width, 77);
     }
     close(file);
     unlink(path);
