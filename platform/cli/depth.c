@@ -19,7 +19,7 @@ struct settings {
     const char *output, *model, *strokes;
     struct network_settings network;
     int view;
-    bool side_by_side;
+    bool side_by_side, stereo_file;
     bool json;
 };
 
@@ -104,6 +104,10 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, strokes),
      .help = "paint these strokes: over nothing, or over the depth of --depth, --estimate or a "
              "stereo pair"},
+    {.kind = OPTION_FLAG,
+     .name = "--stereo-file",
+     .offset = offsetof(struct settings, stereo_file),
+     .help = "FILE holds both pictures of a stereo pair: an MPO or a stereo HEIC"},
     {.kind = OPTION_FLAG,
      .name = "--side-by-side",
      .offset = offsetof(struct settings, side_by_side),
@@ -281,7 +285,7 @@ static int write_output(const struct settings *settings, const struct input *inp
 
 static bool is_made(const struct settings *settings, const char *const *files)
 {
-    return files[1] || settings->side_by_side || settings->model;
+    return files[1] || settings->side_by_side || settings->stereo_file || settings->model;
 }
 
 static int check(const struct settings *settings, const char *const *files)
@@ -295,10 +299,12 @@ static int check(const struct settings *settings, const char *const *files)
     if (status == EXIT_DONE)
         status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
     if (status == EXIT_DONE &&
-        (files[1] != NULL) + settings->side_by_side + (settings->model != NULL) +
+        (files[1] != NULL) + settings->side_by_side + settings->stereo_file +
+                (settings->model != NULL) +
                 (settings->depth.file != NULL) > 1)
         return report_failure(EXIT_WRONG, files[0],
                               "its depth is given twice; give one of RIGHT, --side-by-side, "
+                              "--stereo-file, "
                               "--estimate and --depth");
     if (status == EXIT_DONE && is_made(settings, files) && is_jpeg(settings->output) &&
         settings->side_by_side && settings->view == VIEW_NONE)
@@ -319,7 +325,8 @@ static int read_input(const struct settings *settings, const char *const *files,
         return input_read_estimate(input, files[0], settings->model, &settings->network,
                                    &settings->depth);
     if (is_made(settings, files))
-        return input_read_stereo(input, files[0], files[1], &settings->depth);
+        return input_read_stereo(input, files[0], files[1], settings->stereo_file,
+                                 &settings->depth);
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);
     if (settings->depth.file || settings->depth.full ||

@@ -159,9 +159,9 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
 int input_read_depth(struct input *input, const char *file,
                      const struct depth_settings *settings);
 /* Read a photo, and make depth: of it and the right one of a stereo pair, NULL when they lie
- * side by side in one; or by a network. */
+ * side by side in one, or within the file as two pictures; or by a network. */
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct depth_settings *settings);
+                      bool within, const struct depth_settings *settings);
 int input_read_estimate(struct input *input, const char *photo, const char *model,
                         const struct network_settings *network,
                         const struct depth_settings *settings);

@@ -8,10 +8,11 @@
 #ifdef RF_HAVE_OPENCV
 #include <refocus/platform/opencv.h>
 
-static int read_photo(struct refocus_photo **photo, const char *name)
+static int read_photo(struct refocus_photo **photo, const char *name, bool second)
 {
     struct refocus_reason reason = {""};
-    const int status = refocus_photo_read(photo, name, NULL, &reason);
+    const int status = second ? refocus_photo_read_second(photo, name, NULL, &reason)
+                              : refocus_photo_read(photo, name, NULL, &reason);
 
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, name, "%s",
@@ -51,7 +52,7 @@ static void halve(struct refocus_image *left, struct refocus_image *right)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct depth_settings *settings)
+                      bool within, const struct depth_settings *settings)
 {
     const struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_stereo_report report;
@@ -62,12 +63,12 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
 
     memset(input, 0, sizeof *input);
     input->photo_name = input->depth_name = left;
-    status = read_photo(&input->photo, left);
-    if (status == EXIT_DONE && right)
-        status = read_photo(&input->side, right);
+    status = read_photo(&input->photo, left, false);
+    if (status == EXIT_DONE && (right || within))
+        status = read_photo(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
         return status;
-    if (right)
+    if (input->side)
         other = input->side->image;
     else
         halve(&input->photo->image, &other);
@@ -117,7 +118,7 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 
     memset(input, 0, sizeof *input);
     input->photo_name = input->depth_name = photo;
-    status = read_photo(&input->photo, photo);
+    status = read_photo(&input->photo, photo, false);
     if (status != EXIT_DONE)
         return status;
     refocus_cv_network((uint32_t)how->preset, &network);
@@ -161,9 +162,10 @@ static int absent(const char *what)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct depth_settings *settings)
+                      bool within, const struct depth_settings *settings)
 {
     (void)settings;
+    (void)within;
     memset(input, 0, sizeof *input);
     return absent(right ? right : left);
 }
