@@ -156,8 +156,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
     r->taps = rf_arena_take(arena, (uint64_t)w + h, sizeof *r->taps);
-    r->near_by = rf_arena_take(arena, RF_TAPS * ((uint64_t)w + RF_BATCH_SPARE), 2);
-    r->column = rf_arena_take(arena, (uint64_t)w + 4, sizeof *r->column);
+    r->near_by = rf_arena_take(arena, (RF_TAPS + 1) * ((uint64_t)w + RF_BATCH_SPARE), 2);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
     r->work = rf_arena_take(arena, work_bytes(params), 1);
 }

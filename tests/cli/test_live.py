@@ -106,6 +106,19 @@ class Live(unittest.TestCase):
         self.assertEqual(len(outs[0]), 6 * 64 * 48 * 3)
         self.assertEqual(outs[0], outs[1])
 
+    def test_steady_depth(self):
+        outs = []
+        for more in [], ['--steady', '0'], ['--steady', '0.9']:
+            r = self.report('--camera', 'replay::size 64x48;frames 12', '--depth', DEPTH, '--fast',
+                            '--frames-policy', 'every', '--focus', '0.7', '--out', 'raw:out.rgb',
+                            *more)
+            self.assertEqual((r['frames_out'], r['paired']), (12, 12))
+            self.assertEqual(r['stages_ms']['steady'] is not None, '0.9' in more)
+            outs.append(content('out.rgb'))
+        self.assertEqual(outs[0], outs[1])
+        self.assertEqual(len(outs[0]), len(outs[2]))
+        self.fails(2, '--steady', '--camera', 'replay:', '--depth', DEPTH, '--steady', '0.99')
+
     def test_live_is_what_render_makes(self):
         self.report('--camera', 'replay::format RGB24;size 64x48;frames 1', '--depth', DEPTH,
                     '--fast', '--frames-policy', 'every', '--blur', '0', '--out', 'sharp-%d.ppm')

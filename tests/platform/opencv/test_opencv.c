@@ -194,7 +194,7 @@ static void estimate(void **state)
 {
     static uint8_t pixels[3 * W * H];
     const struct refocus_image photo = picture(pixels);
-    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0};
+    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0}, fitted;
     struct refocus_estimate result;
     struct refocus_cv_reason reason;
     char path[] = "/tmp/refocus-onnx-XXXXXX";
@@ -208,6 +208,12 @@ static void estimate(void **state)
         pixels[3 * i + 2] = 255;
     }
     write_network(path);
+    /* The file says 48 x 32, whatever the preset does. */
+    assert_int_equal(refocus_cv_network(0, &fitted), REFOCUS_OK);
+    assert_int_equal(refocus_cv_network_fit(&fitted, path, &reason), REFOCUS_OK);
+    assert_int_equal(fitted.width, 48);
+    assert_int_equal(fitted.height, 32);
+    assert_int_equal(refocus_cv_network_fit(&fitted, "/no/such/file", &reason), REFOCUS_ERR_IO);
     for (network.inverse = 0; network.inverse < 2; network.inverse++) {
         const float sign = network.inverse ? -1 : 1;
 
@@ -227,6 +233,9 @@ static void estimate(void **state)
         assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
                          REFOCUS_ERR_FORMAT);
         assert_null(result.samples);
+        fitted.width = 77; /* cut off: it stays */
+        assert_int_equal(refocus_cv_network_fit(&fitted, path, &reason), REFOCUS_OK);
+        assert_int_equal(fitted.width, 77);
     }
     close(file);
     unlink(path);
@@ -302,11 +311,44 @@ static void upsample(void **state)
     assert_int_equal(refocus_cv_upsample(&photo, &coarse, 0, out, NULL), REFOCUS_ERR_ARGUMENT);
 }
 
+/* Every filter keeps a plane; those of contrib are there, or say what is missing. */
+static void upsample_by(void **state)
+{
+    static uint8_t pixels[3 * W * H];
+    static uint16_t map[40 * 25], out[W * H];
+    const struct refocus_image photo = picture(pixels);
+    struct refocus_disparity coarse = refocus_disparity16(map, 40, 25, 80);
+    struct refocus_cv_reason reason;
+    uint32_t filter;
+
+    (void)state;
+    for (int i = 0; i < 40 * 25; i++)
+        map[i] = 30000;
+    for (filter = 0; refocus_cv_filter_name(filter); filter++) {
+        const int status = refocus_cv_upsample_by(filter, &photo, &coarse, out, &reason);
+
+        if (status == REFOCUS_ERR_UNSUPPORTED && filter >= REFOCUS_CV_GUIDED) {
+            assert_non_null(strstr(reason.text, "-Dximgproc=enabled"));
+            continue;
+        }
+        assert_int_equal(status, REFOCUS_OK);
+        for (int i = 0; i < W * H; i++)
+            assert_in_range(out[i], 29998, 30002);
+    }
+    assert_int_equal(filter, 5);
+    assert_int_equal(refocus_cv_upsample_by(filter, &photo, &coarse, out, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+    coarse.bits = 12;
+    assert_int_equal(refocus_cv_upsample_by(0, &photo, &coarse, out, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(stereo), cmocka_unit_test(stereo_refuses),
                                        cmocka_unit_test(estimate), cmocka_unit_test(estimator),
-                                       cmocka_unit_test(upsample)};
+                                       cmocka_unit_test(upsample),
+                                       cmocka_unit_test(upsample_by)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
