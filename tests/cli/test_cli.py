@@ -48,7 +48,8 @@ class Usage(Case):
                       '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
                       '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--estimate --preset --strokes --side-by-side --view --focus-at --blur --json -h --help',
+                     '--estimate --preset --input-size --input-scale --input-mean --far-is-large '
+                     '--stereo-file --upsample --strokes --side-by-side --view --focus-at --blur --json -h --help',
             'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
                     '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--focus --focus-at --focus-distance --blur --f-number --focal-length '
@@ -534,6 +535,7 @@ class DepthAndInfo(Case):
                                  r'small|this build has no OpenCV)'),
                    'depth', 'photo.ppm', 'depth.pgm', '-o', 'd.png')
         self.fails(2, 'photo.ppm: its depth is given twice; give one of RIGHT, --side-by-side, '
+                   '--stereo-file, '
                    '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
                    '--depth', 'depth.pgm')
         self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '
