@@ -42,6 +42,23 @@ struct refocus_log {
     void *user;
 };
 
+/**
+ * The caller's threads in place of the renderer's own, for programs that have a pool.
+ *
+ * parallel_for(user, work, context, count) calls work(context, i) once for each i = 0 ..
+ * count - 1 and returns when all calls have returned. In any order, on any threads, one after
+ * the other or all at once. An item is a worker, not a piece of the picture: it takes
+ * pieces for as long as there are any, so the first few items may do all the work, and the
+ * last ones nothing. count is at most params.threads. It is called from the thread that called
+ * refocus_prepare() or refocus_render(), some dozens of times a picture, and never from
+ * within itself. An item that is called twice or not at all makes the result undefined.
+ */
+struct refocus_parallel {
+    void (*parallel_for)(void *user, void (*work)(void *context, int32_t item), void *context,
+                         int32_t count);
+    void *user;
+};
+
 /** Instruction sets. AUTO is the best that the processor has. */
 enum refocus_cpu {
     REFOCUS_CPU_AUTO = 0,
@@ -57,7 +74,8 @@ struct refocus_renderer_params {
     int32_t max_width;       /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
     int32_t max_height;      /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
     float max_blur_radius;   /**< largest K, 0 to REFOCUS_MAX_BLUR_RADIUS */
-    int32_t threads;         /**< 1 to 64; 0 = one for each processor */
+    int32_t threads;         /**< 1 to 64; 0 = one for each processor. With `parallel`: the most
+                                  that work at once */
     uint32_t cpu;            /**< enum refocus_cpu */
     uint64_t max_memory;     /**< bytes; creation fails above; 0 = no limit */
     struct refocus_allocator allocator; /**< all NULL: malloc and free */
@@ -66,6 +84,7 @@ struct refocus_renderer_params {
                                   of their own (sweep, search, raytrace, jittered, blur):
                                   REFOCUS_METHOD_BIT() of each, or-ed */
     uint32_t reserved;       /**< 0 */
+    struct refocus_parallel parallel;   /**< parallel_for NULL: threads of its own */
 };
 
 static inline struct refocus_renderer_params

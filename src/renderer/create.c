@@ -83,8 +83,8 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->work_owner = RF_NO_METHOD;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
-    atomic_init(&r->run, RF_RUN_IDLE);
-    status = rf_pool_start(&r->pool, rf_threads_for(&own), &r->run);
+    atomic_init(&r->run.state, RF_RUN_IDLE);
+    status = rf_pool_start(&r->pool, rf_threads_for(&own), &own.parallel, &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);
         return status;
@@ -110,7 +110,7 @@ void refocus_cancel(struct refocus_renderer *renderer)
     int running = RF_RUN_RUNNING;
 
     if (renderer)
-        atomic_compare_exchange_strong(&renderer->run, &running, RF_RUN_CANCELLED);
+        atomic_compare_exchange_strong(&renderer->run.state, &running, RF_RUN_CANCELLED);
 }
 
 void refocus_renderer_get_info(const struct refocus_renderer *renderer,

@@ -64,7 +64,7 @@ struct refocus_renderer {
     float max_blur_radius;
 
     struct rf_pool pool;
-    atomic_int run; /* enum rf_run */
+    struct rf_run run;
 
     /* The prepared photo. */
     bool prepared;
