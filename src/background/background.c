@@ -22,6 +22,8 @@ void rf_background_dilate(struct refocus_renderer *r, bool upwards)
     uint16_t *row = r->behind.light[upwards] + first * r->stride;
 
     for (int i = 0; i < r->height; i++, row += step * r->stride) {
+        if (i % 16 == 0 && rf_cancelled(r))
+            return;
         bias_row(r, row, first + i * step);
         if (i > 0)
             r->kernels.dilate_from(row, row - step * r->stride, r->width);

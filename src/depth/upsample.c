@@ -234,6 +234,8 @@ static void fill_cell(const struct rf_upsampler *up, int x0, int x1, int y0, int
         const int64_t at = position(y, up->photo->height, up->rows);
         uint16_t down[RF_TAPS];
 
+        if (rf_run_cancelled(up->run))
+            return;
         for (int i = 0; i < RF_TAPS; i++)
             down[i] = nearness(at - ((int64_t)up->down[y].first + i) * 256);
         for (int x = x0; x < x1; x += RUN) {
@@ -281,7 +283,7 @@ static void fill_rows(void *context, int item, int worker)
     }
     up->kernels->steps4(across - PAD, down - PAD, coarse, up->columns + 2 * PAD - 1);
     down[up->columns + PAD - 1] = down[up->columns + PAD - 2];
-    for (int y = y0; y < y1; y++)
+    for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++)
         up->kernels->blend4(up->raw + y * up->raw_stride, wide,
                             up->down[y].share, width);
     for (int x0 = 0, x1; x0 < width; x0 = x1) {
@@ -315,6 +317,7 @@ void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
 {
     const int width = up->photo->width, height = up->photo->height;
 
+    up->run = pool->run;
     for (int x = 0; x < width; x++) {
         const int64_t at = position(x, width, up->columns);
 

@@ -43,6 +43,7 @@ struct rf_upsampler {
     int32_t *column; /* -2 to columns + 1: where in a row of the photo a sample is, in bytes */
     uint16_t *(*scratch)(void *context, int worker); /* 2 (columns + 8) elements */
     void *context;
+    struct rf_run *run;
 
     uint16_t *out;
     ptrdiff_t out_stride; /* elements */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/bands.h"
 #include "renderer/renderer.h"
 
 enum {
@@ -118,6 +119,8 @@ void rf_find_highlights(struct refocus_renderer *r)
         int last = 0;
 
         for (int x = 0; x < r->width; x++) {
+            if (x % 64 == 0 && rf_cancelled(r))
+                return;
             if (brightest(r, y * r->stride + x) <= LEVEL)
                 continue;
             if (sum < 0 || x - last > AROUND) {

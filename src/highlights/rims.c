@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 
+#include "renderer/bands.h"
 #include "tiles/tiles.h"
 
 enum {
@@ -112,11 +113,15 @@ void rf_find_rims(struct refocus_renderer *r)
     for (int y = 0; y < r->height; y++) {
         const ptrdiff_t at = y * r->stride;
 
+        if (rf_cancelled(r))
+            return;
         for (int x0 = 0; x0 < r->width; x0 += RUN) {
             const int x1 = x0 + RUN < r->width ? x0 + RUN : r->width;
 
             if (brightest(r, at + x0, x1 - x0) < LEVEL)
                 continue;
+            if (rf_cancelled(r))
+                return;
             for (int x = x0; x < x1; x++)
                 if (is_bright(r, at + x))
                     find_around(r, x, y, capacity);

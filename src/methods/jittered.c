@@ -7,6 +7,7 @@
  * and cell, so that a picture can be made again.
  */
 #include "methods/trace.h"
+#include "renderer/bands.h"
 
 #include <math.h>
 #include <string.h>
@@ -58,6 +59,8 @@ void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
                 drawn[y % RF_TILE * RF_TILE + x % RF_TILE] = (uint8_t)(
                     draw(f->params->seed, (uint32_t)(y << 16 | x), (uint32_t)cell) %
                     (uint32_t)(a * a));
+        if (rf_cancelled(f->r))
+            return;
         for (int member = 0; member < a * a; member++)
             follow(f, rect, mx + member % a, my + member / a, member, drawn, &sums);
     }

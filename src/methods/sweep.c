@@ -11,6 +11,7 @@
  * not matter.
  */
 #include "methods/method.h"
+#include "renderer/bands.h"
 
 #include <string.h>
 
@@ -84,6 +85,8 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     for (int n = 0; n < set->count; n += job.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
+        if (rf_cancelled(r))
+            return;
         job.rays = 1;
         while (job.rays < RF_RAY_CHUNK && n + job.rays < set->count &&
                ray[job.rays].weight == ray->weight)
@@ -107,6 +110,8 @@ static void sweep_weighted(const struct rf_frame *f, const struct rf_tile_plan *
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
 
+        if (rf_cancelled(f->r))
+            return;
         memset(is_free, 0xff, sizeof is_free);
         for (int i = 0; i < plan->slabs; i++)
             weigh_hits(f, f->r->smooth, &plan->slab[i],
@@ -155,6 +160,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
             for (int i = 0; i < LANES; i++)
                 sums.weight[i] = set->total_weight;
         }
-        rf_encode_tile(f, rect, &sums);
+        if (!rf_cancelled(r)) /* else no weights */
+            rf_encode_tile(f, rect, &sums);
     }
 }

@@ -25,9 +25,11 @@ struct rf_run {
     void *user;
 };
 
-/* Asked by everything that takes long, a few times a millisecond. */
+/* Asked by everything that takes long, at least once a millisecond or two. NULL: never. */
 static inline bool rf_run_cancelled(struct rf_run *run)
 {
+    if (!run)
+        return false;
     if (run->looked_at)
         run->looked_at(run->user);
     return atomic_load_explicit(&run->state, memory_order_relaxed) == RF_RUN_CANCELLED;
