@@ -85,6 +85,9 @@ struct refocus_renderer_params {
                                   REFOCUS_METHOD_BIT() of each, or-ed */
     uint32_t reserved;       /**< 0 */
     struct refocus_parallel parallel;   /**< parallel_for NULL: threads of its own */
+    uint32_t previews;       /**< 1: refocus_prepare() also makes the photo at 1/2, 1/4 and 1/8 of
+                                  its size, for `reduce` of struct refocus_render_params */
+    uint32_t reserved2;      /**< 0 */
 };
 
 static inline struct refocus_renderer_params
@@ -269,6 +272,13 @@ struct refocus_render_params {
     uint32_t solver;        /**< diffusion: enum refocus_solver */
     float conductivity;     /**< diffusion: weight W where blur is strongest, 0.01 to 1 */
     const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size */
+
+    int32_t reduce;         /**< 1, or with a renderer for previews 2, 4 or 8: the picture at that
+                                 part of its size, rounded up. The photo is reduced by halves, in
+                                 linear light, pixels of other surfaces left out. The region, if
+                                 any, and `out` are in reduced pixels, all other lengths in
+                                 those of the photo: the result is that of the reduced photo
+                                 with K / reduce */
 };
 
 /** Sweep, 64 rays, linear light, a disc, the whole picture. */
@@ -302,6 +312,7 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
     params.field_falloff = (float)0.3;
     params.layers = 4;
     params.conductivity = (float)0.125;
+    params.reduce = 1;
     return params;
 }
 

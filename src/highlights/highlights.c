@@ -111,9 +111,10 @@ static bool is_lamp(const struct refocus_renderer *r, int x, int y, int64_t sum,
 /* Sum of the luminances of the surroundings, kept up to date along a row. */
 void rf_find_highlights(struct refocus_renderer *r)
 {
-    const uint64_t capacity = rf_highlight_capacity(r->max_width, r->max_height);
+    struct rf_photo *photo = &r->photo[r->used];
 
-    r->highlights = 0;
+    photo->highlights_blend = RF_NO_BLEND;
+    photo->highlights = 0;
     for (int y = 0; y < r->height; y++) {
         int64_t sum = -1; /* not known here */
         int last = 0;
@@ -138,23 +139,24 @@ void rf_find_highlights(struct refocus_renderer *r)
                                          clamp(y + j, r->height - 1));
             }
             last = x;
-            if (r->highlights < capacity && is_lamp(r, x, y, sum, &r->highlight[r->highlights]))
-                r->highlights++;
+            if (photo->highlights < photo->capacity &&
+                is_lamp(r, x, y, sum, &photo->highlight[photo->highlights]))
+                photo->highlights++;
         }
     }
-    r->highlights_found = true;
+    photo->highlights_blend = r->blend;
 }
 
-/* Whether a bright pixel of another depth is beside it: then this one is the edge of that,
+/* Whether a bright pixel of another depth is beside (x, y): then this one is the edge of that,
  * and only its depth says otherwise. */
-static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight *lamp)
+static bool is_edge(const struct refocus_renderer *r, int x, int y)
 {
-    const int own = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+    const int own = abs(r->front.blur[y * r->stride + x]);
 
     for (int j = -2; j <= 2; j++) {
         for (int i = -2; i <= 2; i++) {
-            const ptrdiff_t at = clamp(lamp->y + j, r->height - 1) * r->stride +
-                                 clamp(lamp->x + i, r->width - 1);
+            const ptrdiff_t at =
+                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
 
             if (abs(r->front.blur[at]) < own - 256 && brightest(r, at) >= LEVEL)
                 return true;
@@ -163,33 +165,71 @@ static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight 
     return false;
 }
 
+/* Where in the window a highlight is; false: not in it. */
+static bool place_of(const struct refocus_renderer *r, const struct rf_highlight *lamp, int *x,
+                     int *y)
+{
+    *x = lamp->x - r->origin_x;
+    *y = lamp->y - r->origin_y;
+    return *x >= 0 && *y >= 0 && *x < r->width && *y < r->height;
+}
+
 void rf_mark_highlights(struct refocus_renderer *r)
 {
-    for (uint64_t i = 0; i < r->highlights; i++) {
-        struct rf_highlight *lamp = &r->highlight[i];
-        struct rf_bins *bins =
-            &r->bins[(size_t)(lamp->y / RF_TILE) * r->tiles_x + lamp->x / RF_TILE];
-        const int blur = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+    struct rf_photo *photo = &r->photo[r->used];
 
-        lamp->is_edge = is_edge(r, lamp);
+    for (uint64_t i = 0; i < photo->highlights; i++) {
+        struct rf_highlight *lamp = &photo->highlight[i];
+        struct rf_bins *bins;
+        int x, y, blur;
+
+        if (i % 1024 == 0 && rf_cancelled(r))
+            return;
+        if (!place_of(r, lamp, &x, &y))
+            continue;
+        bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
+        blur = abs(r->front.blur[y * r->stride + x]);
+        lamp->is_edge = is_edge(r, x, y);
         if (!lamp->is_edge && blur > bins->lamp)
             bins->lamp = (int16_t)blur;
     }
 }
 
-void rf_add_highlights(struct refocus_renderer *r, float gain, int sign)
+/* Add (sign 1) or take away again (-1) what highlights from .. to - 1 lost. */
+static void change(struct refocus_renderer *r, float gain, int sign, uint64_t from, uint64_t to)
 {
     const int share = (int)((gain - 1) * (256 / GAIN) + 0.5f);
 
-    for (uint64_t i = 0; i < r->highlights; i++) {
-        const struct rf_highlight *lamp = &r->highlight[i];
-        const ptrdiff_t at = lamp->y * r->stride + lamp->x;
-        /* from half a pixel of blur on, all of it from one pixel and a half on */
-        const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
+    for (uint64_t i = from; i < to; i++) {
+        const struct rf_highlight *lamp = &r->photo[r->used].highlight[i];
+        ptrdiff_t at;
+        int x, y, blurred;
 
+        if (!place_of(r, lamp, &x, &y))
+            continue;
+        at = y * r->stride + x;
+        /* from half a pixel of blur on, all of it from one pixel and a half on */
+        blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
         for (int c = 0; c < 3; c++)
             r->front.light[c][at] =
                 (uint16_t)(r->front.light[c][at] +
                            sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
     }
+}
+
+uint64_t rf_add_highlights(struct refocus_renderer *r, float gain)
+{
+    const uint64_t count = r->photo[r->used].highlights;
+
+    for (uint64_t i = 0; i < count; i += 1024) {
+        if (rf_cancelled(r))
+            return i;
+        change(r, gain, 1, i, i + 1024 < count ? i + 1024 : count);
+    }
+    return count;
+}
+
+void rf_remove_highlights(struct refocus_renderer *r, float gain, uint64_t count)
+{
+    change(r, gain, -1, 0, count);
 }

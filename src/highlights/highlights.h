@@ -32,14 +32,16 @@ static inline uint64_t rf_highlight_capacity(int width, int height)
     return (uint64_t)width * height / 64 + 64;
 }
 
-/* Find the highlights of the prepared photo, r->highlight[0 .. r->highlights - 1]. */
+/* Find the highlights of the photo in use, all of which is the window, in its blend. */
 void rf_find_highlights(struct refocus_renderer *r);
 
-/* For the lens setting of r->front.blur and r->bins: tell edges from lamps, and note in its
+/* In the window, for the lens setting of r->front.blur and r->bins: tell edges from lamps, and note in its
  * tile how far a lamp is blurred. */
 void rf_mark_highlights(struct refocus_renderer *r);
 
-/* Add (sign 1) or take away again (-1) what they lost; gain 1 to 4. */
-void rf_add_highlights(struct refocus_renderer *r, float gain, int sign);
+/* Add what they lost, gain 1 to 4: returns how many were done before the run was cancelled, all
+ * if it was not. And take it away again. */
+uint64_t rf_add_highlights(struct refocus_renderer *r, float gain);
+void rf_remove_highlights(struct refocus_renderer *r, float gain, uint64_t count);
 
 #endif

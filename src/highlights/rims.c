@@ -71,7 +71,8 @@ static bool beside_jump(const struct refocus_renderer *r, int x, int y)
 }
 
 /* The rims around a bright pixel. */
-static void find_around(struct refocus_renderer *r, int x, int y, uint64_t capacity)
+static void find_around(const struct refocus_renderer *r, int x, int y,
+                        struct rf_photo *photo)
 {
     const ptrdiff_t n = y * r->stride + x;
 
@@ -82,8 +83,8 @@ static void find_around(struct refocus_renderer *r, int x, int y, uint64_t capac
             const int px = clamp(x + i, r->width - 1), py = clamp(y + j, r->height - 1);
 
             if (r->disparity[py * r->stride + px] + JUMP < r->disparity[n] &&
-                r->rims < capacity && is_rim(r, px, py, n))
-                r->rim[r->rims++] = (struct rf_rim){px, py, r->disparity[n]};
+                photo->rims < photo->capacity && is_rim(r, px, py, n))
+                photo->rim[photo->rims++] = (struct rf_rim){px, py, r->disparity[n]};
         }
     }
 }
@@ -107,9 +108,9 @@ static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
 void rf_find_rims(struct refocus_renderer *r)
 {
     enum { RUN = 64 }; /* most runs of pixels hold nothing bright */
-    const uint64_t capacity = rf_rim_capacity(r->max_width, r->max_height);
+    struct rf_photo *photo = &r->photo[r->used];
 
-    r->rims = 0;
+    photo->rims = 0;
     for (int y = 0; y < r->height; y++) {
         const ptrdiff_t at = y * r->stride;
 
@@ -124,7 +125,7 @@ void rf_find_rims(struct refocus_renderer *r)
                 return;
             for (int x = x0; x < x1; x++)
                 if (is_bright(r, at + x))
-                    find_around(r, x, y, capacity);
+                    find_around(r, x, y, photo);
         }
     }
 }
@@ -132,11 +133,18 @@ void rf_find_rims(struct refocus_renderer *r)
 void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
                    struct rf_bin_scale scale)
 {
-    for (uint64_t i = 0; i < r->rims; i++) {
-        const struct rf_rim *rim = &r->rim[i];
-        int16_t *s = r->front.blur + rim->y * r->stride + rim->x;
+    const struct rf_photo *photo = &r->photo[r->used];
 
+    for (uint64_t i = 0; i < photo->rims; i++) {
+        const struct rf_rim *rim = &photo->rim[i];
+        const int x = rim->x - r->origin_x, y = rim->y - r->origin_y;
+        int16_t *s = r->front.blur + y * r->stride + x;
+
+        if (i % 1024 == 0 && rf_cancelled(r))
+            return;
+        if (x < 0 || y < 0 || x >= r->width || y >= r->height)
+            continue;
         r->kernels.signed_blur(s, &rim->disparity, focus, 1);
-        rf_add_bin(r, scale, rim->x / RF_TILE, rim->y / RF_TILE, *s);
+        rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, *s);
     }
 }

@@ -30,10 +30,10 @@ static inline uint64_t rf_rim_capacity(int width, int height)
     return (uint64_t)width * height / 64 + 64;
 }
 
-/* Find the rims of the prepared photo, r->rim[0 .. r->rims - 1]. */
+/* Find the rims of the photo in use, all of which is the window, in linear light. */
 void rf_find_rims(struct refocus_renderer *r);
 
-/* Put them into r->front.blur and r->bins. */
+/* Put those in the window into r->front.blur and r->bins. */
 void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
                    struct rf_bin_scale scale);
 

@@ -22,6 +22,12 @@ static uint32_t draw(uint32_t seed, uint32_t place, uint32_t cell)
     return (uint32_t)(h >> 32 ^ h);
 }
 
+/* A number for each pixel of the photo. */
+static uint32_t place_of(const struct refocus_renderer *r, int x, int y)
+{
+    return (uint32_t)(y + r->origin_y) << 16 | (uint32_t)(x + r->origin_x);
+}
+
 /* Follow the ray through mask pixel (mx, my) for the pixels that drew it. */
 static void follow(const struct rf_frame *f, struct rf_rect rect, int mx, int my, int member,
                    const uint8_t *drawn, struct rf_exact_sums *sums)
@@ -57,7 +63,7 @@ void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
         for (int y = rect.y0; y < rect.y1; y++)
             for (int x = rect.x0; x < rect.x1; x++)
                 drawn[y % RF_TILE * RF_TILE + x % RF_TILE] = (uint8_t)(
-                    draw(f->params->seed, (uint32_t)(y << 16 | x), (uint32_t)cell) %
+                    draw(f->params->seed, place_of(f->r, x, y), (uint32_t)cell) %
                     (uint32_t)(a * a));
         if (rf_cancelled(f->r))
             return;

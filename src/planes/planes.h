@@ -11,8 +11,8 @@
 void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0,
                      int y1);
 
-/* Change light planes from the blend they are in to another. */
-void rf_reblend_rows(struct refocus_renderer *r, uint32_t blend, int y0, int y1);
+/* Change light planes from one blend to another. */
+void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int y0, int y1);
 
 /* Disparities of the photo's size, copied. */
 void rf_disparity_rows(struct refocus_renderer *r, const struct refocus_disparity *map,
@@ -31,7 +31,6 @@ void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int 
  * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 1 closes gaps from
  * 1.5 pixels on; steps of 2 and 4 after it close those twice and four times as wide.
  */
-enum { RF_PREFILTER_STEPS = 3 };
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
                        uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty);
 

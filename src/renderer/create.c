@@ -29,7 +29,7 @@ static bool read_params(struct refocus_renderer_params *own,
            own->max_blur_radius >= 0 && own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS &&
            own->threads >= 0 && own->threads <= RF_MAX_THREADS &&
            own->cpu <= REFOCUS_CPU_AVX2 && (own->methods & ~REFOCUS_METHODS_ALL) == 0 &&
-           own->reserved == 0 &&
+           own->reserved == 0 && own->previews <= 1 && own->reserved2 == 0 &&
            !own->allocator.allocate == !own->allocator.release;
 }
 
@@ -81,6 +81,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
     r->work_owner = RF_NO_METHOD;
+    r->previews = own.previews;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
     atomic_init(&r->run.state, RF_RUN_IDLE);

@@ -42,19 +42,80 @@ static void take_level(struct rf_arena *arena, struct rf_level *level, int width
     level->blur = rf_arena_take(arena, pixels, 2);
 }
 
-/* A group of padded planes: row y of plane i is at group + y * stride + i * pitch, so that
- * what is read together lies together. Returns pixel (0, 0) of plane 0. */
-static uint16_t *take_group(struct rf_arena *arena, const struct refocus_renderer *r,
-                            uint64_t rows)
+/* Elements of a group of padded planes: row y of plane i is at group + y * stride + i * pitch,
+ * so that what is read together lies together. */
+static uint64_t group_size(const struct rf_photo *photo, int height)
 {
-    uint16_t *group = rf_arena_take(arena, (uint64_t)r->stride * rows, 2);
-
-    return group ? group + r->pad * (r->stride + 1) : NULL;
+    return (uint64_t)photo->stride * ((uint64_t)height + 2 * (uint64_t)photo->pad + RF_TILE);
 }
 
-static uint16_t *plane_of(uint16_t *group, const struct refocus_renderer *r, int i)
+/* What a photo of at most this size has beside its planes. */
+static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
 {
-    return group ? group + i * r->pitch : NULL;
+    photo->capacity = rf_rim_capacity(width, height);
+    photo->rim = rf_arena_take(arena, photo->capacity, sizeof *photo->rim);
+    photo->highlight = rf_arena_take(arena, photo->capacity, sizeof *photo->highlight);
+    photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
+}
+
+/* Planes of a photo in a group; NULL: only counting. */
+static void place_photo(struct rf_photo *photo, uint16_t *group, uint8_t *alpha)
+{
+    photo->alpha = alpha;
+    if (!group)
+        return;
+    group += photo->pad * (photo->stride + 1);
+    for (int c = 0; c < 3; c++)
+        photo->light[c] = group + c * photo->pitch;
+    photo->disparity = group + 3 * photo->pitch;
+}
+
+/* A photo of at most this size with memory of its own. */
+static void take_photo(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
+{
+    uint16_t *group = rf_arena_take(arena, group_size(photo, height), 2);
+
+    place_photo(photo, group,
+                rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 1));
+    take_lists(arena, photo, width, height);
+}
+
+static void shape_photo(struct rf_photo *photo, int width, float max_blur_radius)
+{
+    photo->pad = rf_padding_for(max_blur_radius);
+    photo->pitch = rf_pitch_for(width, photo->pad);
+    photo->stride = RF_GROUP * photo->pitch;
+}
+
+/*
+ * The photo, and what a lens setting makes of it. The photo reduced to a half lies in what a
+ * half of the size leaves free of the memory of the background layer, so the whole photo's
+ * background layer overwrites it; those reduced further have memory of their own.
+ */
+static void take_photos(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+                        struct rf_arena *arena)
+{
+    const int w = params->max_width, h = params->max_height;
+    uint64_t behind, half, used;
+
+    for (int i = 0; i < RF_PHOTOS; i++)
+        shape_photo(&r->photo[i], rf_reduced(w, i), params->max_blur_radius / (float)(1 << i));
+    take_photo(arena, &r->photo[0], w, h);
+    behind = group_size(&r->photo[0], h);
+    r->seen_group = rf_arena_take(arena, behind, 2);
+    half = group_size(&r->photo[1], rf_reduced(h, 1));
+    used = 2 * half + (uint64_t)rf_reduced(w, 1) * (uint64_t)rf_reduced(h, 1) / 2 + 1;
+    if (params->previews && used > behind)
+        behind = used;
+    r->behind_group = rf_arena_take(arena, behind, 2);
+    if (!params->previews)
+        return;
+    if (r->behind_group)
+        place_photo(&r->photo[1], r->behind_group + half,
+                    (uint8_t *)(r->behind_group + 2 * half));
+    take_lists(arena, &r->photo[1], rf_reduced(w, 1), rf_reduced(h, 1));
+    for (int i = 2; i < RF_PHOTOS; i++)
+        take_photo(arena, &r->photo[i], rf_reduced(w, i), rf_reduced(h, i));
 }
 
 /* The pyramid of a picture of this size, for sizes alone or with memory. */
@@ -104,36 +165,17 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
                     struct rf_arena *arena)
 {
     const int w = params->max_width, h = params->max_height;
-    const int pad = rf_padding_for(params->max_blur_radius);
-    const uint64_t rows = (uint64_t)h + 2 * pad + RF_TILE;
-    uint16_t *photo, *seen, *behind;
     const uint64_t tiles = (uint64_t)((w + RF_TILE - 1) / RF_TILE) *
                            (uint64_t)((h + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
     const int levels = rf_pyramid(level, w, h);
     const int threads = rf_threads_for(params);
 
-    r->pad = pad;
-    r->pitch = rf_pitch_for(w, pad);
-    r->stride = RF_GROUP * r->pitch;
-    photo = take_group(arena, r, rows);
-    seen = take_group(arena, r, rows);
-    behind = take_group(arena, r, rows);
-    for (int c = 0; c < 3; c++) {
-        r->front.light[c] = plane_of(photo, r, c);
-        r->smooth[c] = plane_of(seen, r, 1 + c);
-        r->behind.light[c] = plane_of(behind, r, 1 + c);
-    }
-    r->disparity = plane_of(photo, r, 3);
-    r->front.blur = (int16_t *)seen;
-    r->behind.blur = (int16_t *)behind;
-    r->alpha = rf_arena_take(arena, (uint64_t)w * h, 1);
+    take_photos(r, params, arena);
     for (int i = 0; i < levels; i++) {
         take_level(arena, &level[i], level[i].width, level[i].height);
         r->level[i] = level[i];
     }
-    r->highlight = rf_arena_take(arena, rf_highlight_capacity(w, h), sizeof *r->highlight);
-    r->rim = rf_arena_take(arena, rf_rim_capacity(w, h), sizeof *r->rim);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);

@@ -1,11 +1,14 @@
 #include <refocus/render.h>
 
+#include <string.h>
+
 #include "depth/upsample.h"
 #include "planes/format.h"
 #include "planes/planes.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
 #include "renderer/params.h"
+#include "renderer/reduce.h"
 
 struct job {
     struct refocus_renderer *r;
@@ -70,16 +73,18 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
-    r->prepared = r->blurred = r->highlights_found = false;
+    r->prepared = r->blurred = false;
+    memset(&r->made, 0, sizeof r->made);
     if (!rf_good_image(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
-    r->width = photo->width;
-    r->height = photo->height;
-    r->tiles_x = (r->width + RF_TILE - 1) / RF_TILE;
-    r->tiles_y = (r->height + RF_TILE - 1) / RF_TILE;
-    r->levels = rf_pyramid(r->level, r->width, r->height);
+    r->photo[0].width = photo->width;
+    r->photo[0].height = photo->height;
+    r->photo[0].highlights_blend = RF_NO_BLEND;
+    rf_use(r, 0, rf_whole(r, 0));
+    r->blend = REFOCUS_BLEND_LINEAR; /* that rims are found in, whatever came before */
+    memset(r->photo[0].band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(r));
     rf_run_begin(r);
     rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
     if (disparity->width == r->width && disparity->height == r->height)
@@ -88,6 +93,8 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         upsample(r, &job);
     if (!rf_cancelled(r))
         rf_find_rims(r);
+    if (r->previews && !rf_cancelled(r))
+        rf_reduce_all(r);
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->prepared = true;

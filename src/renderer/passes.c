@@ -1,0 +1,317 @@
+#include "renderer/passes.h"
+
+#include <limits.h>
+#include <string.h>
+
+#include "background/background.h"
+#include "renderer/bands.h"
+#include "renderer/reduce.h"
+
+static void reblend_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    uint8_t *blend = &r->photo[r->used].band_blend[band];
+
+    (void)worker;
+    if (*blend == f->params->blend)
+        return;
+    rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band), rf_band_end(r, band));
+    *blend = (uint8_t)f->params->blend;
+}
+
+/* Eq. 5 over the Q12 values of the blend in use. */
+static void set_weights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    uint16_t weight[256];
+    const float sigma = f->params->sigma;
+
+    f->weighted = sigma < 1e6f; /* beyond it all weights round to 1 */
+    if (!f->weighted || (r->weight_sigma == sigma && r->weight_blend == r->blend))
+        return;
+    rf_highlight_weights(weight, sigma);
+    for (int light = 0; light <= RF_LIGHT_MAX; light++)
+        r->light_weight[light] = weight[r->transfer[r->blend].to_code[4 * light]];
+    r->weight_sigma = sigma;
+    r->weight_blend = r->blend;
+}
+
+static void blur_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_bin_tiles(f->r, f->scale, band);
+}
+
+static void smooth_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    const int i = f->prefilter_step;
+    /* from the photo to r->smooth, and from there by way of the background's planes, which
+     * are not in use yet */
+    uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
+    uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
+
+    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
+                      band);
+}
+
+/* All three steps or the first alone, so that the result is in r->smooth. */
+static void prefilter(struct rf_frame *f)
+{
+    const int largest = f->focus.radius;
+    const int steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1;
+
+    for (f->prefilter_step = 0; f->prefilter_step < steps; f->prefilter_step++)
+        rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
+}
+
+/* The light is the photo's again afterwards, whatever happens. */
+static void prefilter_with_highlights(struct rf_frame *f)
+{
+    const float gain = f->params->highlight_gain;
+    uint64_t added;
+
+    rf_mark_highlights(f->r);
+    added = rf_add_highlights(f->r, gain);
+    prefilter(f);
+    rf_remove_highlights(f->r, gain, added);
+}
+
+static void dilate_item(void *context, int upwards, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_background_dilate(f->r, upwards);
+}
+
+static void mark_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+                            rf_band_end(f->r, band));
+}
+
+static bool contains(struct rf_rect a, struct rf_rect b)
+{
+    return a.x0 <= b.x0 && a.y0 <= b.y0 && a.x1 >= b.x1 && a.y1 >= b.y1;
+}
+
+static bool same_lens(const struct rf_frame *f, int number)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return m->blur && m->photo == number && m->focus.disparity == f->focus.disparity &&
+           m->focus.radius == f->focus.radius && m->shift == f->scale.shift;
+}
+
+static bool same_light(const struct rf_frame *f)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return m->smooth && m->blend == f->params->blend && m->gain == f->params->highlight_gain &&
+           !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
+}
+
+/* Whether all that is needed for this part of the photo is there. */
+static bool is_there(const struct rf_frame *f, int number, struct rf_rect part, bool layers)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return same_lens(f, number) && contains(m->exact, part) &&
+           (layers ? m->behind && same_light(f) : !m->rims);
+}
+
+/* Blur, bins and rims of the window. */
+static void make_blur(struct rf_frame *f, bool layers)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_made *m = &r->made;
+    const struct rf_rect window = {r->origin_x, r->origin_y, r->origin_x + r->width,
+                                   r->origin_y + r->height};
+
+    if (!same_lens(f, r->used) || !contains(m->window, window) ||
+        !contains(window, m->window) || (m->rims && !layers)) {
+        *m = (struct rf_made){.half = m->half, .photo = r->used, .window = window,
+                              .focus = f->focus, .shift = f->scale.shift};
+        rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
+        m->blur = !rf_cancelled(r);
+        m->exact = window;
+    }
+    if (m->blur && layers && !m->rims) {
+        m->blur = false; /* until all rims are in */
+        rf_patch_rims(r, f->focus, f->scale);
+        m->blur = m->rims = !rf_cancelled(r);
+    }
+}
+
+static void forget_lamps(struct refocus_renderer *r)
+{
+    for (int i = 0; i < r->tiles_x * r->tiles_y; i++)
+        r->bins[i].lamp = 0;
+}
+
+static void make_smooth(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_made *m = &r->made;
+
+    if (same_light(f))
+        return;
+    m->smooth = m->behind = false;
+    if (r->used == 0)
+        m->half = false; /* it lies where the background layer does */
+    if (m->lamps)
+        forget_lamps(r);
+    m->lamps = f->params->highlight_gain > 1;
+    if (m->lamps)
+        prefilter_with_highlights(f);
+    else
+        prefilter(f);
+    m->blend = f->params->blend;
+    m->gain = f->params->highlight_gain;
+    memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
+    m->smooth = !rf_cancelled(r);
+}
+
+/* `part` of the photo in the window. */
+static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
+{
+    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y,
+                            part.x1 - r->origin_x, part.y1 - r->origin_y};
+}
+
+/* How far from the window's sides the mark and the smooth light are those of the whole photo:
+ * a cone's reach and the three steps of the pre-filter; at the photo's own sides, all. */
+static struct rf_rect sure_part(const struct refocus_renderer *r)
+{
+    const struct rf_photo *photo = &r->photo[r->used];
+    const int margin = 2 * r->pad + 8;
+
+    return (struct rf_rect){
+        r->origin_x ? margin : 0,
+        r->origin_y ? margin : 0,
+        r->origin_x + r->width < photo->width ? r->width - margin : INT_MAX,
+        r->origin_y + r->height < photo->height ? r->height - margin : INT_MAX,
+    };
+}
+
+/* The background layer of the window; true: `part` is as if made for the whole photo. */
+static bool make_behind(struct rf_frame *f, struct rf_rect part)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_made *m = &r->made;
+
+    if (m->behind && contains(m->exact, part))
+        return true;
+    m->behind = false;
+    if (r->used == 0)
+        m->half = false;
+    rf_pool_run(&r->pool, dilate_item, f, 2);
+    rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
+    rf_background_push(r);
+    if (rf_cancelled(r))
+        return false;
+    if (!contains(m->window, rf_whole(r, r->used)) &&
+        !rf_background_is_exact(r, in_window(r, part), sure_part(r)))
+        return false;
+    m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : part;
+    rf_background_pull(r);
+    m->behind = !rf_cancelled(r);
+    return m->behind;
+}
+
+static int floor_to(int v, int step)
+{
+    return v < 0 ? 0 : v / step * step;
+}
+
+static int ceil_to(int v, int step, int most)
+{
+    return v > most - step ? most : (v + step - 1) / step * step;
+}
+
+/* A part of the photo, grown by so many pixels each way and on to whole `step`s. */
+static struct rf_rect grown(const struct refocus_renderer *r, int number, struct rf_rect part,
+                            int by, int step)
+{
+    const struct rf_photo *photo = &r->photo[number];
+
+    return (struct rf_rect){floor_to(part.x0 - by, step), floor_to(part.y0 - by, step),
+                            ceil_to(part.x1 + by, step, photo->width),
+                            ceil_to(part.y1 + by, step, photo->height)};
+}
+
+/* Large windows save nothing. */
+static bool is_large(const struct refocus_renderer *r, int number, struct rf_rect window)
+{
+    const struct rf_rect all = rf_whole(r, number);
+    const int64_t part = (int64_t)(window.x1 - window.x0) * (window.y1 - window.y0);
+
+    return 10 * part > 7 * (int64_t)all.x1 * all.y1;
+}
+
+/* `part`: the region and the tiles that its rays reach. */
+static void make_in_window(struct rf_frame *f, int number, struct rf_rect part, bool layers)
+{
+    struct refocus_renderer *r = f->r;
+    const struct rf_rect all = rf_whole(r, number);
+    struct rf_rect window = part;
+    int around = 2 * r->pad, step = RF_TILE;
+
+    if (same_lens(f, number) && contains(r->made.window, all))
+        window = all; /* much of it is there */
+    for (;;) {
+        if (layers && !contains(window, all)) {
+            while (step < around / 2)
+                step *= 2;
+            window = grown(r, number, part, 2 * r->pad + 8 + around, step);
+        }
+        if (is_large(r, number, window))
+            window = all;
+        rf_use(r, number, window);
+        make_blur(f, layers);
+        if (!layers || rf_cancelled(r))
+            return;
+        make_smooth(f);
+        if (rf_cancelled(r) || make_behind(f, part) || rf_cancelled(r))
+            return;
+        around *= 2;
+    }
+}
+
+void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
+                   bool whole)
+{
+    struct refocus_renderer *r = f->r;
+    const bool layers = need == RF_NEED_LAYERS;
+    struct rf_rect part = rf_whole(r, number);
+
+    if (number == 1 && !r->made.half)
+        rf_reduce_once(r);
+    rf_use(r, number, rf_whole(r, number));
+    f->region = region;
+    rf_pool_run(&r->pool, reblend_band, f, rf_bands(r));
+    if (rf_cancelled(r))
+        return;
+    r->blend = f->params->blend;
+    set_weights(f);
+    if (layers && f->params->highlight_gain > 1 &&
+        r->photo[number].highlights_blend != r->blend)
+        rf_find_highlights(r);
+    if (need == RF_NEED_LIGHT || rf_cancelled(r))
+        return;
+    if (!whole)
+        part = grown(r, number, region, r->pad + 2 * RF_TILE, RF_TILE);
+    if (is_there(f, number, part, layers))
+        rf_use(r, number, r->made.window);
+    else
+        make_in_window(f, number, part, layers);
+    f->region = in_window(r, region);
+}
