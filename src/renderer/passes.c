@@ -119,13 +119,20 @@ static bool same_light(const struct rf_frame *f)
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
-/* Whether all that is needed for this part of the photo is there. */
-static bool is_there(const struct rf_frame *f, int number, struct rf_rect part, bool layers)
+/* What a region needs of the photo. */
+struct parts {
+    struct rf_rect seen; /* where its rays go: the background layer */
+    struct rf_rect bins; /* and the tiles that may reach it */
+};
+
+/* Whether all of that is there. */
+static bool is_there(const struct rf_frame *f, int number, const struct parts *parts,
+                     bool layers)
 {
     const struct rf_made *m = &f->r->made;
 
-    return same_lens(f, number) && contains(m->exact, part) &&
-           (layers ? m->behind && same_light(f) : !m->rims);
+    return same_lens(f, number) && contains(m->window, parts->bins) &&
+           (layers ? m->behind && same_light(f) && contains(m->exact, parts->seen) : !m->rims);
 }
 
 /* Blur, bins and rims of the window. */
@@ -142,7 +149,6 @@ static void make_blur(struct rf_frame *f, bool layers)
                               .focus = f->focus, .shift = f->scale.shift};
         rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
         m->blur = !rf_cancelled(r);
-        m->exact = window;
     }
     if (m->blur && layers && !m->rims) {
         m->blur = false; /* until all rims are in */
@@ -202,13 +208,13 @@ static struct rf_rect sure_part(const struct refocus_renderer *r)
     };
 }
 
-/* The background layer of the window; true: `part` is as if made for the whole photo. */
-static bool make_behind(struct rf_frame *f, struct rf_rect part)
+/* The background layer of the window; true: `seen` is as if made for the whole photo. */
+static bool make_behind(struct rf_frame *f, struct rf_rect seen)
 {
     struct refocus_renderer *r = f->r;
     struct rf_made *m = &r->made;
 
-    if (m->behind && contains(m->exact, part))
+    if (m->behind && contains(m->exact, seen))
         return true;
     m->behind = false;
     if (r->used == 0)
@@ -219,9 +225,9 @@ static bool make_behind(struct rf_frame *f, struct rf_rect part)
     if (rf_cancelled(r))
         return false;
     if (!contains(m->window, rf_whole(r, r->used)) &&
-        !rf_background_is_exact(r, in_window(r, part), sure_part(r)))
+        !rf_background_is_exact(r, in_window(r, seen), sure_part(r)))
         return false;
-    m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : part;
+    m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
     rf_background_pull(r);
     m->behind = !rf_cancelled(r);
     return m->behind;
@@ -257,12 +263,18 @@ static bool is_large(const struct refocus_renderer *r, int number, struct rf_rec
     return 10 * part > 7 * (int64_t)all.x1 * all.y1;
 }
 
-/* `part`: the region and the tiles that its rays reach. */
-static void make_in_window(struct rf_frame *f, int number, struct rf_rect part, bool layers)
+static struct rf_rect around_both(struct rf_rect a, struct rf_rect b)
+{
+    return (struct rf_rect){a.x0 < b.x0 ? a.x0 : b.x0, a.y0 < b.y0 ? a.y0 : b.y0,
+                            a.x1 > b.x1 ? a.x1 : b.x1, a.y1 > b.y1 ? a.y1 : b.y1};
+}
+
+static void make_in_window(struct rf_frame *f, int number, const struct parts *parts,
+                           bool layers)
 {
     struct refocus_renderer *r = f->r;
     const struct rf_rect all = rf_whole(r, number);
-    struct rf_rect window = part;
+    struct rf_rect window = parts->bins;
     int around = 2 * r->pad, step = RF_TILE;
 
     if (same_lens(f, number) && contains(r->made.window, all))
@@ -271,7 +283,8 @@ static void make_in_window(struct rf_frame *f, int number, struct rf_rect part, 
         if (layers && !contains(window, all)) {
             while (step < around / 2)
                 step *= 2;
-            window = grown(r, number, part, 2 * r->pad + 8 + around, step);
+            window = grown(r, number, parts->seen, 2 * r->pad + 8 + around, step);
+            window = around_both(window, grown(r, number, parts->bins, 0, step));
         }
         if (is_large(r, number, window))
             window = all;
@@ -280,7 +293,7 @@ static void make_in_window(struct rf_frame *f, int number, struct rf_rect part, 
         if (!layers || rf_cancelled(r))
             return;
         make_smooth(f);
-        if (rf_cancelled(r) || make_behind(f, part) || rf_cancelled(r))
+        if (rf_cancelled(r) || make_behind(f, parts->seen) || rf_cancelled(r))
             return;
         around *= 2;
     }
@@ -291,7 +304,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum r
 {
     struct refocus_renderer *r = f->r;
     const bool layers = need == RF_NEED_LAYERS;
-    struct rf_rect part = rf_whole(r, number);
+    struct parts parts = {rf_whole(r, number), rf_whole(r, number)};
 
     if (number == 1 && !r->made.half)
         rf_reduce_once(r);
@@ -307,11 +320,13 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum r
         rf_find_highlights(r);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
-    if (!whole)
-        part = grown(r, number, region, r->pad + 2 * RF_TILE, RF_TILE);
-    if (is_there(f, number, part, layers))
+    if (!whole) {
+        parts.seen = grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad, 1);
+        parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE, RF_TILE);
+    }
+    if (is_there(f, number, &parts, layers))
         rf_use(r, number, r->made.window);
     else
-        make_in_window(f, number, part, layers);
+        make_in_window(f, number, &parts, layers);
     f->region = in_window(r, region);
 }

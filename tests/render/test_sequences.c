@@ -160,6 +160,8 @@ static void sequence(uint32_t seed, int steps, int previews)
             renderer->run.looked_at = cancel_later;
             cancelled += render(renderer, &other, out) == REFOCUS_ERR_CANCELLED;
             renderer->run.looked_at = NULL;
+            if (pick(&state, 2))
+                s = other; /* the same again, to its end */
         }
         assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
         fresh = create(1, previews);
@@ -183,15 +185,50 @@ static void sequences(void **state)
         sequence(seed, 40, seed % 2);
 }
 
-/* A region is that part of the whole, though only a window was worked on. */
-static void regions(void **state)
+/* Before what is far, bars wide enough for whole blocks of several levels of the background's
+ * pyramid to be unknown. */
+static struct picture wide_bars(void)
 {
     struct picture p = picture_make(WIDTH, HEIGHT, 9);
+
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        p.disparity[i] = i % WIDTH / 19 % 2 ? 65000 : 2000;
+    return p;
+}
+
+/* A region is that part of the whole, though only a window was worked on. */
+/* The background layer of a window, where it says that it is that of the whole photo. */
+static void assert_same_background(const struct refocus_renderer *part,
+                                   const struct refocus_renderer *whole)
+{
+    const struct rf_rect e = part->made.exact;
+    const ptrdiff_t at = -part->origin_y * part->stride - part->origin_x;
+
+    if (!part->made.behind)
+        return;
+    assert_true(whole->made.behind && part->stride == whole->stride);
+    for (int y = e.y0; y < e.y1; y++) {
+        for (int x = e.x0; x < e.x1; x++) {
+            const ptrdiff_t p = y * part->stride + x;
+            int differ = part->behind.blur[at + p] != whole->behind.blur[p];
+
+            for (int c = 0; c < 3; c++)
+                differ |= part->behind.light[c][at + p] != whole->behind.light[c][p];
+            if (differ)
+                fail_msg("window %d,%d..%d,%d: the background at %d,%d is another",
+                         part->made.window.x0, part->made.window.y0, part->made.window.x1,
+                         part->made.window.y1, x, y);
+        }
+    }
+}
+
+static void regions_of(struct picture p)
+{
     uint8_t *whole = malloc(MOST), *out = malloc(MOST);
+    struct refocus_renderer *part;
     uint32_t random = 5;
     int windows = 0;
 
-    (void)state;
     assert_true(whole && out);
     for (int i = 0; i < 60; i++) {
         struct refocus_renderer *renderer = create(1 + i % 3, 0);
@@ -203,15 +240,16 @@ static void regions(void **state)
             s.style = &styles[0];
         prepare(renderer, &p);
         assert_int_equal(render(renderer, &s, whole), REFOCUS_OK);
-        refocus_renderer_destroy(&renderer);
         x = i % 6 == 1 ? 0 : i % 6 == 2 ? WIDTH - w : (int)pick(&random, (uint32_t)(WIDTH - w));
         y = i % 7 == 1 ? 0 : i % 7 == 2 ? HEIGHT - h : (int)pick(&random, (uint32_t)(HEIGHT - h));
         s.x = x, s.y = y, s.width = w, s.height = h;
-        renderer = create(1, 0);
-        prepare(renderer, &p);
-        assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
-        windows += renderer->made.window.x1 - renderer->made.window.x0 < WIDTH;
+        part = create(1, 0);
+        prepare(part, &p);
+        assert_int_equal(render(part, &s, out), REFOCUS_OK);
+        windows += part->made.window.x1 - part->made.window.x0 < WIDTH;
+        assert_same_background(part, renderer);
         refocus_renderer_destroy(&renderer);
+        refocus_renderer_destroy(&part);
         for (int row = 0; row < h; row++)
             if (memcmp(out + 3 * row * w, whole + 3 * ((y + row) * WIDTH + x), 3 * (size_t)w))
                 fail_msg("%s, focus %g, blur %g: %dx%d at %d,%d, row %d differs",
@@ -221,6 +259,13 @@ static void regions(void **state)
     free(whole);
     free(out);
     picture_free(&p);
+}
+
+static void regions(void **state)
+{
+    (void)state;
+    regions_of(picture_make(WIDTH, HEIGHT, 9));
+    regions_of(wide_bars());
 }
 
 /* The photo at half its size, by what reduce.h says, from the curve of the standard. */
@@ -336,6 +381,56 @@ static void reduced(void **state)
     free(expected);
 }
 
+/* Cancelled at each of the moments at which it looks, a render leaves nothing half made. */
+static void every_moment(void **state)
+{
+    struct picture p[2] = {picture_make(97, 83, 31), picture_make(97, 83, 32)};
+    const struct refocus_image photo[2] = {picture_image(&p[0]), picture_image(&p[1])};
+    const struct refocus_disparity disparity[2] = {picture_disparity(&p[0]),
+                                                   picture_disparity(&p[1])};
+    struct refocus_render_params params = refocus_render_params_default(0.3f, 12);
+    uint8_t expected[3 * 97 * 83], out[3 * 97 * 83];
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 97, 83, 3 * 97);
+    struct refocus_renderer *renderer = prepared(&p[0], 12, 1);
+    struct canceller canceller = {renderer, 0, 0};
+    int status = REFOCUS_ERR_CANCELLED, cancelled = 0;
+
+    (void)state;
+    params.rays = 16;
+    params.highlight_gain = 3;
+    params.blend = REFOCUS_BLEND_GAMMA;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    memcpy(expected, out, sizeof out);
+    renderer->run.user = &canceller;
+    for (int n = 1; status != REFOCUS_OK; n++) {
+        /* another photo and another lens before */
+        params.focus_disparity = 0.8f;
+        params.blend = REFOCUS_BLEND_LINEAR;
+        assert_int_equal(refocus_prepare(renderer, &photo[1], &disparity[1]), REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        params.focus_disparity = 0.3f;
+        params.blend = REFOCUS_BLEND_GAMMA;
+        atomic_store(&canceller.left, n);
+        renderer->run.looked_at = cancel_later;
+        status = refocus_prepare(renderer, &photo[0], &disparity[0]);
+        if (status == REFOCUS_OK)
+            status = refocus_render(renderer, &params, &image);
+        else
+            assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
+        renderer->run.looked_at = NULL;
+        cancelled += status == REFOCUS_ERR_CANCELLED;
+        if (!renderer->prepared)
+            assert_int_equal(refocus_prepare(renderer, &photo[0], &disparity[0]), REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        assert_same_pixels(out, expected, 97, 83, "after a cancelled one");
+    }
+    assert_true(cancelled > 50);
+    refocus_renderer_destroy(&renderer);
+    for (int i = 0; i < 2; i++)
+        picture_free(&p[i]);
+}
+
 /* Refused without previews, and for other parts. */
 static void refused(void **state)
 {
@@ -366,6 +461,7 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(sequences), cmocka_unit_test(regions),
+                                       cmocka_unit_test(every_moment),
                                        cmocka_unit_test(reduced), cmocka_unit_test(refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
