@@ -101,25 +101,23 @@ static bool is_lamp(const struct refocus_renderer *r, int x, int y, int64_t sum,
         return false;
     surroundings(r, x, y, around);
     rim_hue(r, x, y, around, hue);
-    lamp->x = x;
-    lamp->y = y;
+    lamp->x = x + r->origin_x;
+    lamp->y = y + r->origin_y;
     for (int c = 0; c < 3; c++)
         lamp->added[c] = (uint16_t)(GAIN * hue[c] * strength / 256);
     return true;
 }
 
 /* Sum of the luminances of the surroundings, kept up to date along a row. */
-void rf_find_highlights(struct refocus_renderer *r)
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect part)
 {
     struct rf_photo *photo = &r->photo[r->used];
 
-    photo->highlights_blend = RF_NO_BLEND;
-    photo->highlights = 0;
-    for (int y = 0; y < r->height; y++) {
+    for (int y = part.y0; y < part.y1; y++) {
         int64_t sum = -1; /* not known here */
         int last = 0;
 
-        for (int x = 0; x < r->width; x++) {
+        for (int x = part.x0; x < part.x1; x++) {
             if (x % 64 == 0 && rf_cancelled(r))
                 return;
             if (brightest(r, y * r->stride + x) <= LEVEL)
@@ -144,7 +142,6 @@ void rf_find_highlights(struct refocus_renderer *r)
                 photo->highlights++;
         }
     }
-    photo->highlights_blend = r->blend;
 }
 
 /* Whether a bright pixel of another depth is beside (x, y): then this one is the edge of that,

@@ -19,6 +19,7 @@
 #include <stdint.h>
 
 struct refocus_renderer;
+struct rf_rect;
 
 struct rf_highlight {
     int32_t x, y;
@@ -32,8 +33,9 @@ static inline uint64_t rf_highlight_capacity(int width, int height)
     return (uint64_t)width * height / 64 + 64;
 }
 
-/* Find the highlights of the photo in use, all of which is the window, in its blend. */
-void rf_find_highlights(struct refocus_renderer *r);
+/* Add to the highlights of the photo in use those in a part of the window, in its blend. Pixels 12
+ * away from the part are looked at. */
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect part);
 
 /* In the window, for the lens setting of r->front.blur and r->bins: tell edges from lamps, and note in its
  * tile how far a lamp is blurred. */

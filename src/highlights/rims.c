@@ -84,7 +84,8 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
 
             if (r->disparity[py * r->stride + px] + JUMP < r->disparity[n] &&
                 photo->rims < photo->capacity && is_rim(r, px, py, n))
-                photo->rim[photo->rims++] = (struct rf_rim){px, py, r->disparity[n]};
+                photo->rim[photo->rims++] = (struct rf_rim){
+                    px + r->origin_x, py + r->origin_y, r->disparity[n]};
         }
     }
 }
@@ -105,19 +106,18 @@ static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
     return most;
 }
 
-void rf_find_rims(struct refocus_renderer *r)
+void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
 {
     enum { RUN = 64 }; /* most runs of pixels hold nothing bright */
     struct rf_photo *photo = &r->photo[r->used];
 
-    photo->rims = 0;
-    for (int y = 0; y < r->height; y++) {
+    for (int y = part.y0; y < part.y1; y++) {
         const ptrdiff_t at = y * r->stride;
 
         if (rf_cancelled(r))
             return;
-        for (int x0 = 0; x0 < r->width; x0 += RUN) {
-            const int x1 = x0 + RUN < r->width ? x0 + RUN : r->width;
+        for (int x0 = part.x0; x0 < part.x1; x0 += RUN) {
+            const int x1 = x0 + RUN < part.x1 ? x0 + RUN : part.x1;
 
             if (brightest(r, at + x0, x1 - x0) < LEVEL)
                 continue;
@@ -138,13 +138,14 @@ void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
     for (uint64_t i = 0; i < photo->rims; i++) {
         const struct rf_rim *rim = &photo->rim[i];
         const int x = rim->x - r->origin_x, y = rim->y - r->origin_y;
-        int16_t *s = r->front.blur + y * r->stride + x;
+        int16_t *s = r->front.blur + y * r->stride + x, blur;
 
         if (i % 1024 == 0 && rf_cancelled(r))
             return;
         if (x < 0 || y < 0 || x >= r->width || y >= r->height)
             continue;
-        r->kernels.signed_blur(s, &rim->disparity, focus, 1);
-        rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, *s);
+        r->kernels.signed_blur(&blur, &rim->disparity, focus, 1);
+        *s = blur < *s ? blur : *s;
+        rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, blur);
     }
 }

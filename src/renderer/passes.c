@@ -299,6 +299,20 @@ static void make_in_window(struct rf_frame *f, int number, const struct parts *p
     }
 }
 
+/* The window is all of the photo. */
+static void find_highlights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_photo *photo = &r->photo[r->used];
+
+    if (f->params->highlight_gain <= 1 || photo->highlights_blend == r->blend)
+        return;
+    photo->highlights_blend = RF_NO_BLEND;
+    photo->highlights = 0;
+    rf_find_highlights(r, rf_whole(r, r->used));
+    photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
+}
+
 void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
                    bool whole)
 {
@@ -315,9 +329,8 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum r
         return;
     r->blend = f->params->blend;
     set_weights(f);
-    if (layers && f->params->highlight_gain > 1 &&
-        r->photo[number].highlights_blend != r->blend)
-        rf_find_highlights(r);
+    if (layers)
+        find_highlights(f);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
     if (!whole) {

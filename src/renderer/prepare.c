@@ -91,8 +91,9 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
     else
         upsample(r, &job);
+    r->photo[0].rims = 0;
     if (!rf_cancelled(r))
-        rf_find_rims(r);
+        rf_find_rims(r, rf_whole(r, 0));
     if (r->previews && !rf_cancelled(r))
         rf_reduce_all(r);
     if (rf_run_end(r))

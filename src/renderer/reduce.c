@@ -88,8 +88,9 @@ static void reduce(struct refocus_renderer *r, int to)
     job.to->highlights_blend = RF_NO_BLEND;
     rf_use(r, to, rf_whole(r, to));
     rf_pool_run(&r->pool, reduce_band, &job, rf_bands(r));
+    job.to->rims = 0;
     if (!rf_cancelled(r))
-        rf_find_rims(r);
+        rf_find_rims(r, rf_whole(r, to));
 }
 
 void rf_reduce_once(struct refocus_renderer *r)

@@ -6,13 +6,31 @@
 #include "planes/format.h"
 #include "renderer/renderer.h"
 
-/* |s| of n pixels, as the last render had it. */
-static void blur_run(const struct refocus_renderer *r, const uint16_t *disparity, uint16_t *out,
-                     int n)
+static void read_disparity(const struct refocus_renderer *r, int y, uint16_t *out)
 {
-    r->kernels.signed_blur((int16_t *)out, disparity, r->last_focus, n);
-    for (int x = 0; x < n; x++)
-        out[x] = (uint16_t)abs((int16_t)out[x]);
+    const struct rf_photo *photo = &r->photo[0];
+
+    memcpy(out, photo->disparity + y * photo->stride, (size_t)photo->width * 2);
+}
+
+/* Signed blurs of the last render in place of disparities, then without their signs. */
+static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
+{
+    const struct rf_photo *photo = &r->photo[0];
+    const uint64_t rims = r->last_rims ? photo->rims : 0;
+    int16_t *blur = (int16_t *)out;
+
+    for (int y = 0; y < photo->height; y++)
+        r->kernels.signed_blur(blur + y * pitch, out + y * pitch, r->last_focus, photo->width);
+    for (uint64_t i = 0; i < rims; i++) {
+        int16_t *at = blur + photo->rim[i].y * pitch + photo->rim[i].x, s;
+
+        r->kernels.signed_blur(&s, &photo->rim[i].disparity, r->last_focus, 1);
+        *at = s < *at ? s : *at;
+    }
+    for (int y = 0; y < photo->height; y++)
+        for (int x = 0; x < photo->width; x++)
+            out[y * pitch + x] = (uint16_t)abs(blur[y * pitch + x]);
 }
 
 int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out,
@@ -27,19 +45,9 @@ int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out,
     photo = &r->photo[0];
     if (!rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
-    for (int y = 0; y < photo->height; y++) {
-        const uint16_t *disparity = photo->disparity + y * photo->stride;
-        uint16_t *row = out + y * (stride / 2);
-
-        if (view == REFOCUS_VIEW_DISPARITY)
-            memcpy(row, disparity, (size_t)photo->width * 2);
-        else
-            blur_run(r, disparity, row, photo->width);
-    }
-    for (uint64_t i = 0; view == REFOCUS_VIEW_BLUR && r->last_rims && i < photo->rims; i++) {
-        const struct rf_rim *rim = &photo->rim[i];
-
-        blur_run(r, &rim->disparity, out + rim->y * (stride / 2) + rim->x, 1);
-    }
+    for (int y = 0; y < photo->height; y++)
+        read_disparity(r, y, out + y * (stride / 2));
+    if (view == REFOCUS_VIEW_BLUR)
+        to_blur(r, out, stride / 2);
     return REFOCUS_OK;
 }
