@@ -87,7 +87,12 @@ struct refocus_renderer_params {
     struct refocus_parallel parallel;   /**< parallel_for NULL: threads of its own */
     uint32_t previews;       /**< 1: refocus_prepare() also makes the photo at 1/2, 1/4 and 1/8 of
                                   its size, for `reduce` of struct refocus_render_params */
-    uint32_t reserved2;      /**< 0 */
+    uint32_t in_place;       /**< 1: strip mode, for little memory. The photo and its disparities,
+                                  which are of its size, are not copied: they stay as they are and
+                                  where they are until the next refocus_prepare() or the
+                                  renderer's end. Rendering goes through them twice, block by
+                                  block, and takes longer; the bytes are the same. For sweep,
+                                  search, raytrace, jittered and blur; not with `previews` */
 };
 
 static inline struct refocus_renderer_params
@@ -118,6 +123,15 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  *     foveated      96 (W + 16) (H + 16) + 2^18
  *     interpolated  48 (W + 16) (H + 16) + 4 (W + H + 16) T + 2^16
  *     diffusion     96 (W + 16) (H + 16) + 2^18
+ *
+ * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.
+ *
+ * Strip mode, params->in_place, takes no more than
+ *
+ *     29 (S + 63) (S + 16) + 0.6 (W + 16) (H + 16) + 4 T (W + 512) + 24 P^2 + 2^17
+ *
+ * with S = 144 + 2N - M + max(M, 2P), M = P + 20 and N = max(M, 2P + 1), M and N rounded up to
+ * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes.
  *
  * @return 0 if a parameter is out of its range. Thread-safe.
  */

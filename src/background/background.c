@@ -165,19 +165,19 @@ static void run(struct fill *fill, rf_work_fn *work, int height)
             work(fill, band, 0);
 }
 
-void rf_background_push(struct refocus_renderer *r)
+void rf_background_push(struct refocus_renderer *r, int from, int to)
 {
-    struct fill fill = {r, 0};
+    struct fill fill = {r, from};
 
-    for (; fill.level < r->levels; fill.level++)
+    for (; fill.level < to; fill.level++)
         run(&fill, push_item, level_of(r, fill.level + 1).height);
 }
 
-void rf_background_pull(struct refocus_renderer *r)
+void rf_background_pull(struct refocus_renderer *r, int from, int to)
 {
-    struct fill fill = {r, r->levels - 1};
+    struct fill fill = {r, to - 1};
 
-    for (; fill.level >= 0; fill.level--)
+    for (; fill.level >= from; fill.level--)
         run(&fill, pull_item, level_of(r, fill.level).height);
     if (r->levels == 0) /* a picture of one pixel: nothing is unknown */
         for (int c = 0; c < 4; c++)

@@ -101,8 +101,8 @@ static bool is_lamp(const struct refocus_renderer *r, int x, int y, int64_t sum,
         return false;
     surroundings(r, x, y, around);
     rim_hue(r, x, y, around, hue);
-    lamp->x = x + r->origin_x;
-    lamp->y = y + r->origin_y;
+    lamp->x = (uint16_t)(x + r->origin_x);
+    lamp->y = (uint16_t)(y + r->origin_y);
     for (int c = 0; c < 3; c++)
         lamp->added[c] = (uint16_t)(GAIN * hue[c] * strength / 256);
     return true;

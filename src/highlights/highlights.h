@@ -22,7 +22,7 @@ struct refocus_renderer;
 struct rf_rect;
 
 struct rf_highlight {
-    int32_t x, y;
+    uint16_t x, y;
     uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095 */
     uint16_t is_edge;  /* for this lens: of something bright and sharper, left alone */
 };

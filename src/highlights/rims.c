@@ -85,7 +85,7 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
             if (r->disparity[py * r->stride + px] + JUMP < r->disparity[n] &&
                 photo->rims < photo->capacity && is_rim(r, px, py, n))
                 photo->rim[photo->rims++] = (struct rf_rim){
-                    px + r->origin_x, py + r->origin_y, r->disparity[n]};
+                    (uint16_t)(px + r->origin_x), (uint16_t)(py + r->origin_y), r->disparity[n]};
         }
     }
 }

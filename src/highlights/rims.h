@@ -21,7 +21,7 @@ struct rf_focus;
 struct rf_bin_scale;
 
 struct rf_rim {
-    int32_t x, y;
+    uint16_t x, y;
     uint16_t disparity; /* of the bright pixel beside it */
 };
 

@@ -62,6 +62,7 @@ static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width
 static void place_photo(struct rf_photo *photo, uint16_t *group, uint8_t *alpha)
 {
     photo->alpha = alpha;
+    photo->group = group;
     if (!group)
         return;
     group += photo->pad * (photo->stride + 1);
@@ -92,7 +93,7 @@ static void shape_photo(struct rf_photo *photo, int width, float max_blur_radius
  * half of the size leaves free of the memory of the background layer, so the whole photo's
  * background layer overwrites it; those reduced further have memory of their own.
  */
-static void take_photos(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+static void take_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                         struct rf_arena *arena)
 {
     const int w = params->max_width, h = params->max_height;
@@ -134,6 +135,57 @@ int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height)
     return levels;
 }
 
+static int up_to_tiles(int v)
+{
+    return (v + RF_TILE - 1) / RF_TILE * RF_TILE;
+}
+
+/*
+ * The mark of a pixel depends on pixels 2 K + 1 away; the fill of one, by way of levels below
+ * RF_KEPT, on known ones 12 away, whose light depends on 7 more. Margins also have room for
+ * the border of a window at the photo's side.
+ */
+static void shape_blocks(struct rf_in_place *in_place, int pad)
+{
+    enum { MARK_BLOCK = 128 };
+
+    in_place->mark_block = MARK_BLOCK;
+    in_place->mark_margin = up_to_tiles(2 * pad + 1);
+    in_place->margin = up_to_tiles(pad + 20);
+    if (in_place->mark_margin < in_place->margin)
+        in_place->mark_margin = in_place->margin;
+    in_place->block = MARK_BLOCK + 2 * (in_place->mark_margin - in_place->margin);
+}
+
+/* Planes for the window of a block, and what is kept of the whole photo. */
+static void take_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+                        struct rf_arena *arena)
+{
+    const int w = params->max_width, h = params->max_height;
+    struct rf_in_place *in_place = &r->in_place;
+    struct rf_photo *photo = &r->photo[0];
+    uint64_t size;
+    int side;
+
+    shape_blocks(in_place, rf_padding_for(params->max_blur_radius));
+    photo->pad = rf_padding_for(params->max_blur_radius);
+    side = rf_block_side(in_place, photo->pad);
+    photo->pitch = rf_pitch_for(side + RF_TILE, 0);
+    photo->stride = RF_GROUP * photo->pitch;
+    size = (uint64_t)photo->stride * (uint64_t)(side + RF_TILE + 2 * RF_SPARE_ROWS);
+    photo->group = rf_arena_take(arena, size, 2);
+    r->seen_group = rf_arena_take(arena, size, 2);
+    r->behind_group = rf_arena_take(arena, size, 2);
+    photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
+    take_lists(arena, photo, w, h);
+    in_place->known_stride = (w + 7) / 8;
+    in_place->known = rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
+    in_place->levels = rf_pyramid(in_place->kept, w, h);
+    for (int i = RF_KEPT - 1; i < in_place->levels; i++)
+        take_level(arena, &in_place->kept[i], in_place->kept[i].width,
+                   in_place->kept[i].height);
+}
+
 /* Bytes for the greediest of the methods that work on whole frames. */
 static uint64_t work_bytes(const struct refocus_renderer_params *params)
 {
@@ -160,29 +212,55 @@ static uint64_t work_bytes(const struct refocus_renderer_params *params)
     return most;
 }
 
+static int block_side(const struct refocus_renderer_params *params)
+{
+    struct rf_in_place in_place;
+
+    shape_blocks(&in_place, rf_padding_for(params->max_blur_radius));
+    return rf_block_side(&in_place, rf_padding_for(params->max_blur_radius));
+}
+
+/* As many as the largest full mask, or all sets of N, have. */
+static uint64_t few_rays(const struct refocus_renderer_params *params)
+{
+    const uint64_t side = 2 * (uint64_t)ceilf(params->max_blur_radius) + 1;
+    const uint64_t sets = 4096;
+
+    return side * side > sets ? side * side : sets;
+}
+
 /* Sets the pointers of r, or with arena->base == NULL only counts. */
 static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                     struct rf_arena *arena)
 {
+    const int side = params->in_place ? block_side(params) : INT32_MAX;
     const int w = params->max_width, h = params->max_height;
-    const uint64_t tiles = (uint64_t)((w + RF_TILE - 1) / RF_TILE) *
-                           (uint64_t)((h + RF_TILE - 1) / RF_TILE);
+    /* of the largest window */
+    const int across = w < side ? w : side, down = h < side ? h : side;
+    const uint64_t tiles = (uint64_t)((across + RF_TILE - 1) / RF_TILE) *
+                           (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
-    const int levels = rf_pyramid(level, w, h);
+    const int levels = rf_pyramid(level, across, down);
     const int threads = rf_threads_for(params);
 
-    take_photos(r, params, arena);
+    if (params->in_place)
+        take_blocks(r, params, arena);
+    else
+        take_whole(r, params, arena);
     for (int i = 0; i < levels; i++) {
         take_level(arena, &level[i], level[i].width, level[i].height);
         r->level[i] = level[i];
     }
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
-    r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
+    r->rays = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
+                            sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
+    r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
+    if (params->in_place)
+        return;
     r->taps = rf_arena_take(arena, (uint64_t)w + h, sizeof *r->taps);
     r->near_by = rf_arena_take(arena, RF_TAPS * ((uint64_t)w + RF_BATCH_SPARE), 2);
     r->column = rf_arena_take(arena, (uint64_t)w + 4, sizeof *r->column);
-    r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
     r->work = rf_arena_take(arena, work_bytes(params), 1);
 }
 

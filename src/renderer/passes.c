@@ -21,7 +21,7 @@ static void reblend_band(void *context, int band, int worker)
 }
 
 /* Eq. 5 over the Q12 values of the blend in use. */
-static void set_weights(struct rf_frame *f)
+void rf_set_weights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     uint16_t weight[256];
@@ -98,12 +98,31 @@ static void mark_band(void *context, int band, int worker)
                             rf_band_end(f->r, band));
 }
 
+void rf_pass_blur(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, blur_band, f, rf_bands(f->r));
+}
+
+void rf_pass_smooth(struct rf_frame *f)
+{
+    if (f->params->highlight_gain > 1)
+        prefilter_with_highlights(f);
+    else
+        prefilter(f);
+}
+
+void rf_pass_mark(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, dilate_item, f, 2);
+    rf_pool_run(&f->r->pool, mark_band, f, rf_bands(f->r));
+}
+
 static bool contains(struct rf_rect a, struct rf_rect b)
 {
     return a.x0 <= b.x0 && a.y0 <= b.y0 && a.x1 >= b.x1 && a.y1 >= b.y1;
 }
 
-static bool same_lens(const struct rf_frame *f, int number)
+bool rf_same_lens(const struct rf_frame *f, int number)
 {
     const struct rf_made *m = &f->r->made;
 
@@ -111,12 +130,21 @@ static bool same_lens(const struct rf_frame *f, int number)
            m->focus.radius == f->focus.radius && m->shift == f->scale.shift;
 }
 
-static bool same_light(const struct rf_frame *f)
+bool rf_same_light(const struct rf_frame *f)
 {
     const struct rf_made *m = &f->r->made;
 
     return m->smooth && m->blend == f->params->blend && m->gain == f->params->highlight_gain &&
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
+}
+
+void rf_note_light(struct rf_frame *f)
+{
+    struct rf_made *m = &f->r->made;
+
+    m->blend = f->params->blend;
+    m->gain = f->params->highlight_gain;
+    memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
 /* What a region needs of the photo. */
@@ -131,8 +159,8 @@ static bool is_there(const struct rf_frame *f, int number, const struct parts *p
 {
     const struct rf_made *m = &f->r->made;
 
-    return same_lens(f, number) && contains(m->window, parts->bins) &&
-           (layers ? m->behind && same_light(f) && contains(m->exact, parts->seen) : !m->rims);
+    return rf_same_lens(f, number) && contains(m->window, parts->bins) &&
+           (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) : !m->rims);
 }
 
 /* Blur, bins and rims of the window. */
@@ -143,11 +171,11 @@ static void make_blur(struct rf_frame *f, bool layers)
     const struct rf_rect window = {r->origin_x, r->origin_y, r->origin_x + r->width,
                                    r->origin_y + r->height};
 
-    if (!same_lens(f, r->used) || !contains(m->window, window) ||
+    if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
         !contains(window, m->window) || (m->rims && !layers)) {
         *m = (struct rf_made){.half = m->half, .photo = r->used, .window = window,
                               .focus = f->focus, .shift = f->scale.shift};
-        rf_pool_run(&r->pool, blur_band, f, rf_bands(r));
+        rf_pass_blur(f);
         m->blur = !rf_cancelled(r);
     }
     if (m->blur && layers && !m->rims) {
@@ -168,7 +196,7 @@ static void make_smooth(struct rf_frame *f)
     struct refocus_renderer *r = f->r;
     struct rf_made *m = &r->made;
 
-    if (same_light(f))
+    if (rf_same_light(f))
         return;
     m->smooth = m->behind = false;
     if (r->used == 0)
@@ -176,13 +204,8 @@ static void make_smooth(struct rf_frame *f)
     if (m->lamps)
         forget_lamps(r);
     m->lamps = f->params->highlight_gain > 1;
-    if (m->lamps)
-        prefilter_with_highlights(f);
-    else
-        prefilter(f);
-    m->blend = f->params->blend;
-    m->gain = f->params->highlight_gain;
-    memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
+    rf_pass_smooth(f);
+    rf_note_light(f);
     m->smooth = !rf_cancelled(r);
 }
 
@@ -219,16 +242,15 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     m->behind = false;
     if (r->used == 0)
         m->half = false;
-    rf_pool_run(&r->pool, dilate_item, f, 2);
-    rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
-    rf_background_push(r);
+    rf_pass_mark(f);
+    rf_background_push(r, 0, r->levels);
     if (rf_cancelled(r))
         return false;
     if (!contains(m->window, rf_whole(r, r->used)) &&
         !rf_background_is_exact(r, in_window(r, seen), sure_part(r)))
         return false;
     m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
-    rf_background_pull(r);
+    rf_background_pull(r, 0, r->levels);
     m->behind = !rf_cancelled(r);
     return m->behind;
 }
@@ -277,7 +299,7 @@ static void make_in_window(struct rf_frame *f, int number, const struct parts *p
     struct rf_rect window = parts->bins;
     int around = 2 * r->pad, step = RF_TILE;
 
-    if (same_lens(f, number) && contains(r->made.window, all))
+    if (rf_same_lens(f, number) && contains(r->made.window, all))
         window = all; /* much of it is there */
     for (;;) {
         if (layers && !contains(window, all)) {
@@ -328,7 +350,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum r
     if (rf_cancelled(r))
         return;
     r->blend = f->params->blend;
-    set_weights(f);
+    rf_set_weights(f);
     if (layers)
         find_highlights(f);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))

@@ -27,4 +27,20 @@ enum rf_need {
 void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
                    bool whole);
 
+/* The passes themselves, over the window. */
+void rf_set_weights(struct rf_frame *f);
+void rf_pass_blur(struct rf_frame *f);
+void rf_pass_smooth(struct rf_frame *f);
+void rf_pass_mark(struct rf_frame *f);
+
+/* Whether what r->made tells of is for this lens, and its light for this frame's; note the frame's
+ * there. */
+bool rf_same_lens(const struct rf_frame *f, int number);
+bool rf_same_light(const struct rf_frame *f);
+void rf_note_light(struct rf_frame *f);
+
+/* Strip mode, blocks.c: render the region, whose tiles of a block `tiles` renders. */
+void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
+                   void (*tiles)(struct rf_frame *f));
+
 #endif

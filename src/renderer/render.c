@@ -142,30 +142,39 @@ static void set_tiles(struct rf_frame *f)
     f->count_ty = (f->region.y1 - 1) / RF_TILE - f->first_ty + 1;
 }
 
+static void run_tiles(struct rf_frame *f)
+{
+    set_tiles(f);
+    rf_pool_run(&f->r->pool, tile_item, f, f->count_tx * f->count_ty);
+}
+
 static void run(struct rf_frame *f, int number, struct rf_rect region)
 {
     struct refocus_renderer *r = f->r;
     const struct method *method = &methods[f->params->method];
     const bool pinhole = f->params->max_blur_radius <= 0;
     const bool layers = method->layers || f->params->background;
+    const enum rf_need need = pinhole  ? RF_NEED_LIGHT
+                              : layers ? RF_NEED_LAYERS
+                                       : RF_NEED_BLUR;
 
-    rf_run_passes(f, number, region,
-                  pinhole  ? RF_NEED_LIGHT
-                  : layers ? RF_NEED_LAYERS
-                           : RF_NEED_BLUR,
-                  method->frame != NULL);
     r->last_rims = layers;
-    if (!pinhole && !rf_cancelled(r))
+    if (!pinhole)
         rf_make_rays(r, f->aperture, f->params->rays, f->params->highlight_gain > 1,
                      f->params->max_blur_radius);
     if (rf_cancelled(r))
         return;
-    if (method->frame && !pinhole) {
-        method->frame(f);
+    if (r->in_place.on) {
+        rf_run_blocks(f, region, need, run_tiles);
         return;
     }
-    set_tiles(f);
-    rf_pool_run(&r->pool, tile_item, f, f->count_tx * f->count_ty);
+    rf_run_passes(f, number, region, need, method->frame != NULL);
+    if (rf_cancelled(r))
+        return;
+    if (method->frame && !pinhole)
+        method->frame(f);
+    else
+        run_tiles(f);
 }
 
 /* Lengths in pixels of the reduced photo. */

@@ -46,7 +46,8 @@ struct rf_photo {
     int pad;           /* pixels beyond each side that may be read */
     ptrdiff_t stride;  /* elements from row to row, of all padded planes */
     ptrdiff_t pitch;   /* elements between the planes of a group; see layout.c */
-    uint16_t *light[3], *disparity; /* pixel (0, 0) */
+    uint16_t *group;     /* of four planes: R, G, B, disparity */
+    uint16_t *light[3], *disparity; /* pixel (0, 0); not in strip mode */
     uint8_t *alpha;      /* unpadded, width a row */
     uint8_t *band_blend; /* enum refocus_blend that the light of a band of rows is in */
     uint64_t capacity;   /* of rims, and of highlights */
@@ -75,19 +76,38 @@ struct rf_made {
     int prefilter_above[RF_PREFILTER_STEPS];
 };
 
-/* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
- * negative by as much as the padding. */
-struct rf_layer {
-    uint16_t *light[3]; /* Q12; R, G, B */
-    int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
-};
-
 /* A level of the background pyramid, without padding but with an even stride. */
 struct rf_level {
     int width, height;
     ptrdiff_t stride;
     uint16_t *light[3];
     int16_t *blur; /* RF_NO_BLUR: nothing known here */
+};
+
+/*
+ * Strip mode: the photo stays with the caller, and planes hold a window of it at a time, that
+ * of a block with a margin. What is known of the background is marked for the whole photo, a
+ * bit a pixel, and the background's pyramid is kept from level RF_KEPT on.
+ */
+enum { RF_KEPT = 3 };
+
+struct rf_in_place {
+    bool on;
+    struct refocus_image photo; /* the caller's */
+    struct refocus_disparity map;
+    int block, margin;           /* pixels of a block that is rendered, and around it */
+    int mark_block, mark_margin; /* of one whose background is marked */
+    uint8_t *known;              /* known_stride bytes a row, bit x % 8 of byte x / 8 */
+    ptrdiff_t known_stride;
+    struct rf_level kept[RF_LEVELS]; /* [i]: level i + 1, from RF_KEPT on */
+    int levels;
+};
+
+/* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
+ * negative by as much as the padding. */
+struct rf_layer {
+    uint16_t *light[3]; /* Q12; R, G, B */
+    int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
 };
 
 /* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
@@ -116,6 +136,7 @@ struct refocus_renderer {
     struct rf_photo photo[RF_PHOTOS];
     uint16_t *seen_group, *behind_group;
     struct rf_made made;
+    struct rf_in_place in_place;
     struct rf_focus last_focus; /* of the last render, in pixels of photo[0], */
     bool last_rims;             /* with the rims, */
     bool blurred;               /* if there was one */
@@ -129,6 +150,7 @@ struct refocus_renderer {
     int origin_x, origin_y;
     int width, height;
     int pad;             /* pixels beyond each side that may be read */
+    struct rf_rect border; /* pixels beyond each side that rf_extend_rows() sets */
     ptrdiff_t stride;    /* elements from row to row, of all padded planes */
     ptrdiff_t pitch;     /* elements between the planes of a group; see layout.c */
     uint32_t blend;      /* that the light planes are in */

@@ -9,9 +9,19 @@
 static void read_disparity(const struct refocus_renderer *r, int y, uint16_t *out)
 {
     const struct rf_photo *photo = &r->photo[0];
+    const struct refocus_disparity *map = &r->in_place.map;
+    const uint8_t *row = (const uint8_t *)map->samples;
 
-    memcpy(out, photo->disparity + y * photo->stride, (size_t)photo->width * 2);
+    if (!r->in_place.on)
+        memcpy(out, photo->disparity + y * photo->stride, (size_t)photo->width * 2);
+    else if (map->bits == 16)
+        memcpy(out, row + y * map->stride, (size_t)photo->width * 2);
+    else
+        for (int x = 0; x < photo->width; x++)
+            out[x] = (uint16_t)(row[y * map->stride + x] * 257);
 }
+
+enum { RUN = 256 };
 
 /* Signed blurs of the last render in place of disparities, then without their signs. */
 static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
@@ -19,9 +29,16 @@ static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t p
     const struct rf_photo *photo = &r->photo[0];
     const uint64_t rims = r->last_rims ? photo->rims : 0;
     int16_t *blur = (int16_t *)out;
+    uint16_t row[RUN];
 
-    for (int y = 0; y < photo->height; y++)
-        r->kernels.signed_blur(blur + y * pitch, out + y * pitch, r->last_focus, photo->width);
+    for (int y = 0; y < photo->height; y++) {
+        for (int x = 0; x < photo->width; x += RUN) {
+            const int n = photo->width - x < RUN ? photo->width - x : RUN;
+
+            memcpy(row, out + y * pitch + x, (size_t)n * 2);
+            r->kernels.signed_blur(blur + y * pitch + x, row, r->last_focus, n);
+        }
+    }
     for (uint64_t i = 0; i < rims; i++) {
         int16_t *at = blur + photo->rim[i].y * pitch + photo->rim[i].x, s;
 

@@ -6,6 +6,8 @@
 
 enum { WIDTH = 403, HEIGHT = 299, MOST = 3 * WIDTH * HEIGHT };
 
+enum mode { PLAIN, PREVIEWS, IN_PLACE };
+
 static const float blurs[] = {0, 1.5f, 3, 6};
 
 /* A style, a lens and a part of the picture. */
@@ -16,25 +18,33 @@ struct setting {
     int x, y, width, height; /* all 0: the whole */
 };
 
+/* Not in strip mode. */
+static const uint32_t OF_FRAMES =
+    REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
+    REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |
+    REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
+    REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
+
 static uint32_t pick(uint32_t *state, uint32_t n)
 {
     return (noise(state) >> 8) % n;
 }
 
 /* Styles that take little time. */
-static const struct style *pick_style(uint32_t *state)
+static const struct style *pick_style(uint32_t *state, int in_place)
 {
     const struct style *style;
 
     do {
         style = &styles[pick(state, (uint32_t)style_count)];
     } while (style->method == REFOCUS_METHOD_RAYTRACE || style->rays == REFOCUS_RAYS_FULL ||
-             style->rays > 128 || style->method == REFOCUS_METHOD_DIFFUSION);
+             style->rays > 128 || style->method == REFOCUS_METHOD_DIFFUSION ||
+             (in_place && (OF_FRAMES & REFOCUS_METHOD_BIT(style->method))));
     return style;
 }
 
 /* Changes some of a setting, so that much of the last one can be used again. */
-static void change(struct setting *s, uint32_t *state, int previews)
+static void change(struct setting *s, uint32_t *state, enum mode mode)
 {
     const uint32_t what = pick(state, 64);
 
@@ -43,10 +53,10 @@ static void change(struct setting *s, uint32_t *state, int previews)
     if (what & 2)
         s->blur = blurs[pick(state, 4)];
     if (what & 4)
-        s->style = pick_style(state);
+        s->style = pick_style(state, mode == IN_PLACE);
     if (what & 8)
         s->gain = pick(state, 2) ? 1 : 4;
-    if (what & 16 && previews)
+    if (what & 16 && mode == PREVIEWS)
         s->reduce = 1 << pick(state, 4);
     if (what & 48 || s->reduce > 1) {
         const int w = (WIDTH + s->reduce - 1) / s->reduce;
@@ -85,14 +95,15 @@ static int render(struct refocus_renderer *renderer, const struct setting *s, ui
     return status;
 }
 
-static struct refocus_renderer *create(int threads, int previews)
+static struct refocus_renderer *create(int threads, enum mode mode)
 {
     struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 6);
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
-    limits.methods = REFOCUS_METHODS_ALL;
-    limits.previews = (uint32_t)previews;
+    limits.methods = mode == IN_PLACE ? 0 : REFOCUS_METHODS_ALL;
+    limits.previews = mode == PREVIEWS;
+    limits.in_place = mode == IN_PLACE;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     return renderer;
 }
@@ -132,13 +143,13 @@ static void assert_same(const uint8_t *is, const uint8_t *should, const struct s
                      should[i]);
 }
 
-static void sequence(uint32_t seed, int steps, int previews)
+static void sequence(uint32_t seed, int steps, enum mode mode)
 {
     struct picture p[2] = {picture_make(WIDTH, HEIGHT, seed),
                            picture_make(WIDTH, HEIGHT, seed + 1)};
     struct setting s = {&styles[0], 0.5f, 6, 1, 1, 0, 0, 0, 0};
     uint8_t *out = malloc(MOST), *expected = malloc(MOST);
-    struct refocus_renderer *renderer = create(2, previews);
+    struct refocus_renderer *renderer = create(2, mode);
     struct canceller canceller = {renderer, 0, 0};
     uint32_t state = seed;
     int shown = 0, cancelled = 0;
@@ -149,13 +160,13 @@ static void sequence(uint32_t seed, int steps, int previews)
     for (int i = 0; i < steps; i++) {
         struct refocus_renderer *fresh;
 
-        change(&s, &state, previews);
+        change(&s, &state, mode);
         if (pick(&state, 12) == 0)
             prepare(renderer, &p[shown = !shown]);
         if (pick(&state, 4) == 0) { /* this one is cancelled, or so it is meant */
             struct setting other = s;
 
-            change(&other, &state, previews);
+            change(&other, &state, mode);
             atomic_store(&canceller.left, 1 + (int)pick(&state, 200));
             renderer->run.looked_at = cancel_later;
             cancelled += render(renderer, &other, out) == REFOCUS_ERR_CANCELLED;
@@ -164,7 +175,7 @@ static void sequence(uint32_t seed, int steps, int previews)
                 s = other; /* the same again, to its end */
         }
         assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
-        fresh = create(1, previews);
+        fresh = create(1, mode == PREVIEWS ? PREVIEWS : PLAIN);
         prepare(fresh, &p[shown]);
         assert_int_equal(render(fresh, &s, expected), REFOCUS_OK);
         refocus_renderer_destroy(&fresh);
@@ -181,8 +192,8 @@ static void sequence(uint32_t seed, int steps, int previews)
 static void sequences(void **state)
 {
     (void)state;
-    for (uint32_t seed = 1; seed <= 4; seed++)
-        sequence(seed, 40, seed % 2);
+    for (uint32_t seed = 1; seed <= 6; seed++)
+        sequence(seed, 40, seed % 3);
 }
 
 /* Before what is far, bars wide enough for whole blocks of several levels of the background's
@@ -231,8 +242,8 @@ static void regions_of(struct picture p)
 
     assert_true(whole && out);
     for (int i = 0; i < 60; i++) {
-        struct refocus_renderer *renderer = create(1 + i % 3, 0);
-        struct setting s = {pick_style(&random), (float)pick(&random, 5) / 4,
+        struct refocus_renderer *renderer = create(1 + i % 3, PLAIN);
+        struct setting s = {pick_style(&random, 0), (float)pick(&random, 5) / 4,
                             blurs[1 + pick(&random, 3)], i % 5 ? 1 : 4, 1, 0, 0, 0, 0};
         int x, y, w = 1 + (int)pick(&random, 40), h = 1 + (int)pick(&random, 40);
 
@@ -243,7 +254,7 @@ static void regions_of(struct picture p)
         x = i % 6 == 1 ? 0 : i % 6 == 2 ? WIDTH - w : (int)pick(&random, (uint32_t)(WIDTH - w));
         y = i % 7 == 1 ? 0 : i % 7 == 2 ? HEIGHT - h : (int)pick(&random, (uint32_t)(HEIGHT - h));
         s.x = x, s.y = y, s.width = w, s.height = h;
-        part = create(1, 0);
+        part = create(1, PLAIN);
         prepare(part, &p);
         assert_int_equal(render(part, &s, out), REFOCUS_OK);
         windows += part->made.window.x1 - part->made.window.x0 < WIDTH;
@@ -337,7 +348,7 @@ static struct picture half_of(const struct picture *p)
 static void reduced(void **state)
 {
     struct picture p[4] = {picture_make(WIDTH, HEIGHT, 21)};
-    struct refocus_renderer *renderer = create(2, 1);
+    struct refocus_renderer *renderer = create(2, PREVIEWS);
     uint8_t *out = malloc(MOST), *expected = malloc(MOST);
 
     (void)state;
@@ -440,7 +451,7 @@ static void refused(void **state)
     (void)state;
     assert_non_null(out);
     for (int previews = 0; previews < 2; previews++) {
-        struct refocus_renderer *renderer = create(1, previews);
+        struct refocus_renderer *renderer = create(1, previews ? PREVIEWS : PLAIN);
 
         prepare(renderer, &p);
         for (int reduce = -1; reduce <= 17; reduce++) {
