@@ -6,27 +6,23 @@
 
 #include "renderer/bands.h"
 #include "renderer/renderer.h"
+#include "tiles/ranges.h"
+#include "tiles/tiles.h"
 
 enum {
     AROUND = 12,                      /* surroundings: 25 x 25 pixels */
     AREA = (2 * AROUND + 1) * (2 * AROUND + 1),
     RIM = 3,                          /* pixels around that tell the hue */
     LEVEL = RF_LIGHT_MAX * 94 / 100,  /* where clipping begins to count */
+    HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3,                         /* full gain of 4 adds three times white */
+    WIDEST = 3,                       /* pixels that a lamp is widened by */
+    BLURRED = 512,                    /* Q7.8: what it may be widened over */
 };
 
 static int clamp(int v, int most)
 {
     return v < 0 ? 0 : v > most ? most : v;
-}
-
-/* Rec. 709 luminance of linear light, Q12. */
-static int luminance(const struct refocus_renderer *r, int x, int y)
-{
-    const ptrdiff_t at = y * r->stride + x;
-
-    return (218 * r->front.light[0][at] + 732 * r->front.light[1][at] +
-            74 * r->front.light[2][at] + 512) >> 10;
 }
 
 static int brightest(const struct refocus_renderer *r, ptrdiff_t at)
@@ -83,20 +79,42 @@ static void rim_hue(const struct refocus_renderer *r, int x, int y, const int ar
 /* 0 to 256 as v goes from a to b. */
 static int ramp(int64_t v, int64_t a, int64_t b)
 {
-    return v <= a ? 0 : v >= b ? 256 : (int)(256 * (v - a) / (b - a));
+    return v >= b ? 256 : v <= a ? 0 : (int)(256 * (v - a) / (b - a));
+}
+
+/*
+ * How steep the rim is around (x, y), 0 to 256. Where a pixel is lit in part, a lamp of L times
+ * white still clips down to a share of 0.94 / L of it and is half lit only from there to 0.4 / L:
+ * the brighter, the fewer half lit pixels around it. White paint and the shine of rounded things
+ * fade out over many.
+ */
+static int steepness(const struct refocus_renderer *r, int x, int y)
+{
+    int clipped = 0, half_lit = 0;
+
+    for (int j = -RIM; j <= RIM; j++) {
+        for (int i = -RIM; i <= RIM; i++) {
+            const int b = brightest(r, clamp(y + j, r->height - 1) * r->stride +
+                                           clamp(x + i, r->width - 1));
+
+            clipped += b >= LEVEL;
+            half_lit += b < LEVEL && b >= HALF_LIT;
+        }
+    }
+    return ramp(clipped, 2 * half_lit, 4 * half_lit);
 }
 
 /* Whether pixel (x, y), whose surroundings have this sum of luminance, is a clipped lamp. */
-static bool is_lamp(const struct refocus_renderer *r, int x, int y, int64_t sum,
+static bool is_lamp(const struct refocus_renderer *r, int x, int y, int own, int64_t sum,
                     struct rf_highlight *lamp)
 {
-    const ptrdiff_t at = y * r->stride + x;
-    const int64_t own = (int64_t)luminance(r, x, y) * AREA;
-    const int level = ramp(brightest(r, at), LEVEL, RF_LIGHT_MAX);
-    const int alone = ramp(own, 3 * sum, 6 * sum);
-    const int strength = level * alone / 256;
+    const int level = ramp(brightest(r, y * r->stride + x), LEVEL, RF_LIGHT_MAX);
+    const int alone = ramp((int64_t)own * AREA, 3 * sum, 6 * sum);
+    int strength = level * alone / 256;
     int around[3], hue[3];
 
+    if (strength)
+        strength = strength * steepness(r, x, y) / 256;
     if (!strength)
         return false;
     surroundings(r, x, y, around);
@@ -108,38 +126,135 @@ static bool is_lamp(const struct refocus_renderer *r, int x, int y, int64_t sum,
     return true;
 }
 
-/* Sum of the luminances of the surroundings, kept up to date along a row. */
-void rf_find_highlights(struct refocus_renderer *r, struct rf_rect part)
+static bool has_bright(const struct refocus_renderer *r, int y)
 {
-    struct rf_photo *photo = &r->photo[r->used];
+    const ptrdiff_t at = y * r->stride;
 
-    for (int y = part.y0; y < part.y1; y++) {
-        int64_t sum = -1; /* not known here */
-        int last = 0;
+    return r->kernels.brightest(r->front.light[0] + at, r->front.light[1] + at,
+                                r->front.light[2] + at, r->width) > LEVEL;
+}
 
-        for (int x = part.x0; x < part.x1; x++) {
-            if (x % 64 == 0 && rf_cancelled(r))
-                return;
-            if (brightest(r, y * r->stride + x) <= LEVEL)
-                continue;
-            if (sum < 0 || x - last > AROUND) {
-                sum = 0;
-                for (int i = -AROUND; i <= AROUND; i++)
-                    for (int j = -AROUND; j <= AROUND; j++)
-                        sum += luminance(r, clamp(x + i, r->width - 1),
-                                         clamp(y + j, r->height - 1));
-            } else {
-                for (int from = last; from < x; from++)
-                    for (int j = -AROUND; j <= AROUND; j++)
-                        sum += luminance(r, clamp(from + 1 + AROUND, r->width - 1),
-                                         clamp(y + j, r->height - 1)) -
-                               luminance(r, clamp(from - AROUND, r->width - 1),
-                                         clamp(y + j, r->height - 1));
-            }
-            last = x;
-            if (photo->highlights < photo->capacity &&
-                is_lamp(r, x, y, sum, &photo->highlight[photo->highlights]))
-                photo->highlights++;
+static void luminance_row(const struct refocus_renderer *r, uint16_t *out, int y)
+{
+    const ptrdiff_t at = clamp(y, r->height - 1) * r->stride;
+
+    r->kernels.luminance(out, r->front.light[0] + at, r->front.light[1] + at,
+                         r->front.light[2] + at, r->width);
+}
+
+/* Sums of 25 luminances in columns around row y, from those around row y - 1 unless `afresh`.
+ * At most 25 * 2047 < 2^16. */
+static void sum_columns(const struct refocus_renderer *r, uint16_t *sum, uint16_t *row, int y,
+                        bool afresh)
+{
+    if (afresh)
+        memset(sum, 0, (size_t)r->width * sizeof *sum);
+    for (int j = afresh ? -AROUND : AROUND; j <= AROUND; j++) {
+        luminance_row(r, row, y + j);
+        for (int x = 0; x < r->width; x++)
+            sum[x] = (uint16_t)(sum[x] + row[x]);
+    }
+    if (afresh)
+        return;
+    luminance_row(r, row, y - AROUND - 1);
+    for (int x = 0; x < r->width; x++)
+        sum[x] = (uint16_t)(sum[x] - row[x]);
+}
+
+static int sum_around(const struct refocus_renderer *r, const uint16_t *columns, int x)
+{
+    int sum = 0;
+
+    for (int i = -AROUND; i <= AROUND; i++)
+        sum += columns[clamp(x + i, r->width - 1)];
+    return sum;
+}
+
+/* The lamps of a row whose columns are summed; the luminance of its pixels is in `row`. */
+static void find_in_row(struct refocus_renderer *r, struct rf_rect rect, int y,
+                        const uint16_t *columns, const uint16_t *row)
+{
+    struct rf_highlights *found =
+        &r->photo[r->used].highlights[(y + r->origin_y) / RF_LAMP_ROWS];
+    int sum = 0, last = -2; /* pixel that the sum is of */
+
+    for (int x = rect.x0; x < rect.x1; x++) {
+        if (brightest(r, y * r->stride + x) <= LEVEL)
+            continue;
+        if (x == last + 1)
+            sum += columns[clamp(x + AROUND, r->width - 1)] -
+                   columns[clamp(last - AROUND, r->width - 1)];
+        else
+            sum = sum_around(r, columns, x);
+        last = x;
+        if (found->count < found->capacity &&
+            is_lamp(r, x, y, row[x], sum, &found->lamp[found->count]))
+            found->count++;
+    }
+}
+
+void rf_forget_highlights(struct refocus_renderer *r)
+{
+    for (int part = 0; part < RF_LAMP_PARTS; part++)
+        r->photo[r->used].highlights[part].count = 0;
+}
+
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect, uint16_t *scratch)
+{
+    uint16_t *columns = scratch, *row = scratch + r->width;
+    int summed = -2 * AROUND; /* row that the columns are summed around */
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        if (rf_cancelled(r))
+            return;
+        if (!has_bright(r, y))
+            continue;
+        if (y - summed > AROUND) {
+            sum_columns(r, columns, row, y, true);
+        } else {
+            while (summed < y)
+                sum_columns(r, columns, row, ++summed, false);
+        }
+        summed = y;
+        luminance_row(r, row, y);
+        find_in_row(r, rect, y, columns, row);
+    }
+}
+
+/* Whether a comes after b, row by row. */
+static bool is_after(const struct rf_highlight *a, const struct rf_highlight *b)
+{
+    return a->y > b->y || (a->y == b->y && a->x > b->x);
+}
+
+/* What is at i of a heap of n sinks to where it belongs. */
+static void sink(struct rf_highlight *lamp, uint32_t i, uint32_t n)
+{
+    const struct rf_highlight own = lamp[i];
+
+    for (uint32_t child; (child = 2 * i + 1) < n; i = child) {
+        child += child + 1 < n && is_after(&lamp[child + 1], &lamp[child]);
+        if (!is_after(&lamp[child], &own))
+            break;
+        lamp[i] = lamp[child];
+    }
+    lamp[i] = own;
+}
+
+void rf_sort_highlights(struct refocus_renderer *r)
+{
+    for (int part = 0; part < RF_LAMP_PARTS && !rf_cancelled(r); part++) {
+        struct rf_highlight *lamp = r->photo[r->used].highlights[part].lamp;
+        const uint32_t n = r->photo[r->used].highlights[part].count;
+
+        for (uint32_t i = n / 2; i-- > 0;)
+            sink(lamp, i, n);
+        for (uint32_t left = n; left > 1;) {
+            const struct rf_highlight last = lamp[0];
+
+            lamp[0] = lamp[--left];
+            lamp[left] = last;
+            sink(lamp, 0, left);
         }
     }
 }
@@ -171,62 +286,114 @@ static bool place_of(const struct refocus_renderer *r, const struct rf_highlight
     return *x >= 0 && *y >= 0 && *x < r->width && *y < r->height;
 }
 
-void rf_mark_highlights(struct refocus_renderer *r)
+/* The parts that the window has rows of: first to last. */
+static int first_part(const struct refocus_renderer *r)
 {
-    struct rf_photo *photo = &r->photo[r->used];
+    return r->origin_y / RF_LAMP_ROWS;
+}
 
-    for (uint64_t i = 0; i < photo->highlights; i++) {
-        struct rf_highlight *lamp = &photo->highlight[i];
-        struct rf_bins *bins;
-        int x, y, blur;
+static int last_part(const struct refocus_renderer *r)
+{
+    return (r->origin_y + r->height - 1) / RF_LAMP_ROWS;
+}
 
-        if (i % 1024 == 0 && rf_cancelled(r))
-            return;
-        if (!place_of(r, lamp, &x, &y))
-            continue;
-        bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
-        blur = abs(r->front.blur[y * r->stride + x]);
-        lamp->is_edge = is_edge(r, x, y);
-        if (!lamp->is_edge && blur > bins->lamp)
-            bins->lamp = (int16_t)blur;
+/*
+ * Rays whose gaps are wider than a lamp would show it as a disc of dots. What is around it within
+ * half a gap, farther away and blurred itself, takes its blur: then the pre-filter spreads its
+ * light over that.
+ */
+static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_bin_scale scale,
+                  double gap)
+{
+    const int16_t own = r->front.blur[lamp_y * r->stride + lamp_x];
+    const int half = (int)(gap * abs(own) / 512), reach = half < WIDEST ? half : WIDEST;
+
+    for (int y = lamp_y - reach; y <= lamp_y + reach; y++) {
+        for (int x = lamp_x - reach; x <= lamp_x + reach; x++) {
+            const int dx = x - lamp_x, dy = y - lamp_y;
+            int16_t *s;
+
+            if (x < 0 || y < 0 || x >= r->width || y >= r->height ||
+                dx * dx + dy * dy > reach * reach + 1)
+                continue;
+            s = r->front.blur + y * r->stride + x;
+            if (*s > own && abs(*s) > BLURRED) {
+                *s = own;
+                rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, own);
+                rf_add_to_cell(r, x, y, own);
+            }
+        }
     }
 }
 
-/* Add (sign 1) or take away again (-1) what highlights from .. to - 1 lost. */
-static void change(struct refocus_renderer *r, float gain, int sign, uint64_t from, uint64_t to)
+static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
 {
+    struct rf_bins *bins;
+    int x, y, blur;
+
+    if (!place_of(r, lamp, &x, &y))
+        return;
+    bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
+    blur = abs(r->front.blur[y * r->stride + x]);
+    lamp->is_edge = is_edge(r, x, y);
+    if (!lamp->is_edge && blur > bins->lamp)
+        bins->lamp = (int16_t)blur;
+}
+
+bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap)
+{
+    bool any = false;
+
+    for (int part = first_part(r); part <= last_part(r) && !rf_cancelled(r); part++) {
+        const struct rf_highlights *found = &r->photo[r->used].highlights[part];
+        int x, y;
+
+        for (uint32_t i = 0; i < found->count; i++)
+            mark(r, &found->lamp[i]);
+        for (uint32_t i = 0; i < found->count; i++)
+            if (place_of(r, &found->lamp[i], &x, &y) && !found->lamp[i].is_edge)
+                widen(r, x, y, scale, gap);
+        any = any || found->count;
+    }
+    return any;
+}
+
+static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share, int sign)
+{
+    ptrdiff_t at;
+    int x, y, blurred;
+
+    if (!place_of(r, lamp, &x, &y))
+        return;
+    at = y * r->stride + x;
+    /* from half a pixel of blur on, all of it from one pixel and a half on */
+    blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
+    for (int c = 0; c < 3; c++)
+        r->front.light[c][at] =
+            (uint16_t)(r->front.light[c][at] +
+                       sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
+}
+
+static void add_part(struct refocus_renderer *r, float gain, int sign, int part)
+{
+    const struct rf_highlights *found = &r->photo[r->used].highlights[part];
     const int share = (int)((gain - 1) * (256 / GAIN) + 0.5f);
 
-    for (uint64_t i = from; i < to; i++) {
-        const struct rf_highlight *lamp = &r->photo[r->used].highlight[i];
-        ptrdiff_t at;
-        int x, y, blurred;
-
-        if (!place_of(r, lamp, &x, &y))
-            continue;
-        at = y * r->stride + x;
-        /* from half a pixel of blur on, all of it from one pixel and a half on */
-        blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
-        for (int c = 0; c < 3; c++)
-            r->front.light[c][at] =
-                (uint16_t)(r->front.light[c][at] +
-                           sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
-    }
+    for (uint32_t i = 0; i < found->count; i++)
+        add(r, &found->lamp[i], share, sign);
 }
 
-uint64_t rf_add_highlights(struct refocus_renderer *r, float gain)
+int rf_add_highlights(struct refocus_renderer *r, float gain)
 {
-    const uint64_t count = r->photo[r->used].highlights;
+    int part = first_part(r);
 
-    for (uint64_t i = 0; i < count; i += 1024) {
-        if (rf_cancelled(r))
-            return i;
-        change(r, gain, 1, i, i + 1024 < count ? i + 1024 : count);
-    }
-    return count;
+    for (; part <= last_part(r) && !rf_cancelled(r); part++)
+        add_part(r, gain, 1, part);
+    return part - first_part(r);
 }
 
-void rf_remove_highlights(struct refocus_renderer *r, float gain, uint64_t count)
+void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts)
 {
-    change(r, gain, -1, 0, count);
+    for (int part = first_part(r); parts > 0; part++, parts--)
+        add_part(r, gain, -1, part);
 }

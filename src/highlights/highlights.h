@@ -7,7 +7,8 @@
  *
  *     level      ramp of max(R, G, B) from 0.94 to 1
  *     isolation  ramp of luminance / mean luminance of the 25x25 pixels around, 3 to 6
- *     added      (gain - 1) * level * isolation * hue
+ *     steepness  ramp of clipped / half lit pixels in 7x7 around, 2 to 4
+ *     added      (gain - 1) * level * isolation * steepness * hue
  *
  * The hue is that of the lamp's rim: the pixels around that are brighter than their
  * surroundings but not clipped. What is added acts on pixels that are blurred; the sharp ones
@@ -16,10 +17,14 @@
 #ifndef RF_HIGHLIGHTS_H
 #define RF_HIGHLIGHTS_H
 
+#include <stdbool.h>
 #include <stdint.h>
+
+#include <refocus/image.h>
 
 struct refocus_renderer;
 struct rf_rect;
+struct rf_bin_scale;
 
 struct rf_highlight {
     uint16_t x, y;
@@ -27,23 +32,44 @@ struct rf_highlight {
     uint16_t is_edge;  /* for this lens: of something bright and sharper, left alone */
 };
 
-/* Most highlights of a picture; further ones, row by row, stay as they are. */
-static inline uint64_t rf_highlight_capacity(int width, int height)
+/* Highlights are looked for in parts of so many rows, each with room for one pixel in 32;
+ * further ones, row by row, stay as they are. */
+enum { RF_LAMP_ROWS = 64, RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS };
+
+struct rf_highlights {
+    struct rf_highlight *lamp;
+    uint32_t count, capacity;
+};
+
+static inline int rf_lamp_parts(int height)
 {
-    return (uint64_t)width * height / 64 + 64;
+    return (height + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS;
 }
 
-/* Add to the highlights of the photo in use those in a part of the window, in its blend. Pixels 12
- * away from the part are looked at. */
-void rf_find_highlights(struct refocus_renderer *r, struct rf_rect part);
+static inline uint32_t rf_lamp_capacity(int width)
+{
+    return (uint32_t)width * RF_LAMP_ROWS / 32 + 8;
+}
 
-/* In the window, for the lens setting of r->front.blur and r->bins: tell edges from lamps, and note in its
- * tile how far a lamp is blurred. */
-void rf_mark_highlights(struct refocus_renderer *r);
+/* Forget the highlights of the photo in use. */
+void rf_forget_highlights(struct refocus_renderer *r);
 
-/* Add what they lost, gain 1 to 4: returns how many were done before the run was cancelled, all
- * if it was not. And take it away again. */
-uint64_t rf_add_highlights(struct refocus_renderer *r, float gain);
-void rf_remove_highlights(struct refocus_renderer *r, float gain, uint64_t count);
+/* Add those of a rectangle of the window, in r->blend, to the lists of the parts of the photo in
+ * use. Pixels 12 away from it are looked at. Rectangles of different parts may run at once.
+ * `scratch` is rf_scratch() of the worker. */
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect, uint16_t *scratch);
+
+/* Put lists that were found in several rectangles in the order of the rows. */
+void rf_sort_highlights(struct refocus_renderer *r);
+
+/* In the window, for the lens setting of r->front.blur and r->bins: tell edges from lamps, note in its tile how
+ * far a lamp is blurred, and widen lamps that rays `gap` times their blur apart would miss.
+ * False: there are none. */
+bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
+
+/* Add what those in the window lost, gain 1 to 4, to the light. Returns the number of parts that
+ * were done before the run was cancelled, all if it was not: to take it away again from. */
+int rf_add_highlights(struct refocus_renderer *r, float gain);
+void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts);
 
 #endif

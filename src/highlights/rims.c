@@ -3,6 +3,7 @@
 #include <stdbool.h>
 
 #include "renderer/bands.h"
+#include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
 enum {
@@ -147,5 +148,6 @@ void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
         r->kernels.signed_blur(&blur, &rim->disparity, focus, 1);
         *s = blur < *s ? blur : *s;
         rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, blur);
+        rf_add_to_cell(r, x, y, blur);
     }
 }

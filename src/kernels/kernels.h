@@ -14,32 +14,104 @@
 #include "tiles/slab.h"
 
 /*
- * sweep: rays of one tile of RF_TILE x RF_TILE pixels.
+ * Rays of a tile are a chunk at a time; what they look at is found out for strips of the tile,
+ * RF_STRIP rows each.
+ */
+enum { RF_RAY_CHUNK = 64, RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
+
+/*
+ * ranges: the least and the greatest blur of cells of RF_CELL x RF_CELL pixels, and then of
+ * windows of RF_WINDOW_X x RF_WINDOW_Y cells to the right of and below a cell: whatever a
+ * strip that begins in that cell covers. A range is (least & 0xffff) | most << 16.
  *
- *     for each ray n and pixel p of the tile:
- *         for k = 0 .. slabs - 1:
- *             q = p + offset[k][n]
+ * cells: one row of n cells from the four rows at `blur`.
+ * windows: one row of windows from RF_WINDOW_Y rows of n cells, whose ends are repeated: the
+ * first begins `border` cells to the left, the last n - 1 + border to the right. The scratch is
+ * 2 (n + 2 border + RF_WINDOW_X - 1) long.
+ */
+enum { RF_CELL = 4, RF_WINDOW_X = RF_TILE / RF_CELL + 1, RF_WINDOW_Y = RF_STRIP / RF_CELL + 1 };
+typedef void rf_cells_fn(int16_t *least, int16_t *most, const int16_t *blur, ptrdiff_t stride,
+                         int n);
+typedef void rf_windows_fn(uint32_t *range, const int16_t *const least[RF_WINDOW_Y],
+                           const int16_t *const most[RF_WINDOW_Y], int16_t *scratch, int n,
+                           int border);
+
+/* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset
+ * x + y stride, and as one of cells: floor(x / RF_CELL) + floor(y / RF_CELL) cell_stride. */
+typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const int16_t *v,
+                       int blur, int32_t stride, int32_t cell_stride, int n);
+
+/*
+ * sort_rays: what the rays of a strip have to look at.
+ *
+ *     for each ray n:
+ *         for k = 0 .. slabs - 1, with the range at range[cell[k][n]]:
+ *             no blur in the range is in slab k: go on
+ *             all blurs are:                     take its light as the last, offset[k][n]; end
+ *             else:                              test slab k at offset[k][n]
+ *         the last is the background at offset[slabs][n]
+ *
+ * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
+ * otherwise in their order. Nothing is lost by this: tests that are left out could not hit, or
+ * would all hit.
+ */
+enum { RF_SORTED_TESTS = 8 };
+
+struct rf_sort_job {
+    const uint32_t *range; /* at the strip's first pixel */
+    const uint16_t *front, *behind; /* first of three planes of light, there */
+    const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
+    int rays, slabs;
+    const struct rf_slab *slab;
+    const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
+    const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
+};
+
+struct rf_sorted_rays {
+    int rays;
+    uint8_t tests[RF_RAY_CHUNK];
+    uint8_t slab[RF_BINS][RF_RAY_CHUNK]; /* of test t, nearest first, */
+    int32_t offset[RF_BINS][RF_RAY_CHUNK]; /* at this offset */
+    const uint16_t *last[RF_RAY_CHUNK]; /* first of three planes, for the strip's first pixel */
+
+    /* Only with weights: as `offset` and `last`, of the weights. */
+    int32_t weight_offset[RF_BINS][RF_RAY_CHUNK];
+    const uint16_t *last_weight[RF_RAY_CHUNK];
+    bool last_behind[RF_RAY_CHUNK]; /* which plane last_weight is in */
+};
+typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort_job *job);
+
+/*
+ * sweep: rays of one strip.
+ *
+ *     for each ray n and pixel p of the strip:
+ *         for t = 0 .. tests[n] - 1:
+ *             q = p + offset[t][n], k = slab[t][n]
  *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
  *                 sum += light[q]; next ray
- *         sum += behind[p + offset[slabs][n]], where no slab was hit
+ *         sum += last[n][p]
  *
  * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
- * tile's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
+ * strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
  */
-enum { RF_RAY_CHUNK = 64 };
-
 struct rf_sweep_job {
     const int16_t *blur;     /* light is in the three planes after it, pitch apart */
-    const uint16_t *behind;  /* the first of three planes */
     ptrdiff_t stride, pitch; /* elements */
-    int rays;                                /* at most RF_RAY_CHUNK */
     int slabs;
     const struct rf_slab *slab;
-    const int32_t (*offset)[RF_RAY_CHUNK];   /* [slabs + 1], of elements */
-    bool uniform; /* slabs == 1, and whatever is looked at is in it */
+    const struct rf_sorted_rays *rays;
     bool bright;  /* highlights are in the light */
+
+    /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
+    const uint16_t *weight;
+    ptrdiff_t weight_stride;
 };
-typedef void rf_sweep_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_sweep_job *job);
+typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
+
+/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. Those
+ * of the front lie in a plane with a stride of its own, those of the background as its light. */
+enum { RF_WEIGHT_MAX = 32767 };
+typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
 /* Focus and blur in fixed point. */
 struct rf_focus {
@@ -55,13 +127,12 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
                                struct rf_focus focus, int n);
 
 /*
- * smooth3: where |blur| > least, the mean of a pixel and those of its two neighbours whose
- * blur is within one pixel (256) of its own; the pixel itself elsewhere. Half up; light is at
- * most 4 * 4095 here and below.
+ * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its two
+ * neighbours, `apart` elements before and after, whose blur is within one pixel (256) of its
+ * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below.
  */
-typedef void rf_smooth3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
-                           const uint16_t *after, const int16_t *blur_before,
-                           const int16_t *blur, const int16_t *blur_after, int least, int n);
+typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
+                           const int16_t *blur, ptrdiff_t apart, int least, int n);
 
 /* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
 enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
@@ -107,6 +178,20 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
 
     return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
 }
+
+/* weighted_means: Q14 means of n <= RF_TILE * RF_TILE sums below 2^51 of Q12 values times
+ * weights, and of their weights: 4 sum / weight half up, to 2^-35; exact where all values are
+ * the same. In double precision, whose four operations are the same everywhere. */
+typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uint64_t *weight,
+                                  int n);
+
+/* luminance: Rec. 709 in Q11, (218 R + 732 G + 74 B) / 2048 half up. */
+typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t *green,
+                             const uint16_t *blue, int n);
+
+/* brightest: the largest value of any channel of a row. */
+typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
+                                 const uint16_t *blue, int n);
 
 /* blend4: four rows by weights in Q16 that add up to 1, rounded half up. */
 typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
@@ -181,7 +266,12 @@ typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_se
 
 struct rf_kernels {
     rf_search_fn *search;
+    rf_cells_fn *cells;
+    rf_windows_fn *windows;
+    rf_aim_fn *aim;
+    rf_sort_rays_fn *sort_rays;
     rf_sweep_fn *sweep;
+    rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;
     rf_smooth3_fn *smooth3;
     rf_spread_row_fn *spread_row;
@@ -191,6 +281,9 @@ struct rf_kernels {
     rf_pull_fn *pull;
     rf_pull_blur_fn *pull_blur;
     rf_means_fn *means;
+    rf_weighted_means_fn *weighted_means;
+    rf_luminance_fn *luminance;
+    rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
     rf_steps4_fn *steps4;
     rf_cluster_fn *cluster;
@@ -202,14 +295,25 @@ struct rf_kernels {
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
+rf_smooth3_fn rf_smooth3_c;
+rf_push_fn rf_push_c;
+rf_pull_fn rf_pull_c;
+rf_pull_blur_fn rf_pull_blur_c;
+rf_sweep_weighted_fn rf_sweep_weighted_c;
 
 /* Each set overwrites what it does better. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
+rf_kernels_use_fn rf_sweep_weighted_use_neon, rf_sweep_weighted_use_sse41,
+    rf_sweep_weighted_use_avx2;
+rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_light_use_avx2;
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
     rf_search_use_avx2;
+rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;
+rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
+rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;
 
 #endif

@@ -42,8 +42,15 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     if (!has(*cpu))
         return false;
     kernels->sweep = rf_sweep_c;
+    kernels->smooth3 = rf_smooth3_c;
+    kernels->push = rf_push_c;
+    kernels->pull = rf_pull_c;
+    kernels->pull_blur = rf_pull_blur_c;
+    rf_aim_use_c(kernels);
+    kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
     rf_search_use_c(kernels);
+    rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
 #if defined(RF_WITH_NEON)
     if (*cpu == REFOCUS_CPU_NEON) {

@@ -17,150 +17,177 @@
 
 enum { LANES = RF_TILE * RF_TILE };
 
-/* Hits with eq. 5's weights: each pixel counts w times. Slab NULL: whatever is there. */
-static void weigh_hits(const struct rf_frame *f, uint16_t *const light[3],
-                       const struct rf_slab *slab, ptrdiff_t from, uint32_t ray_weight,
-                       uint16_t *is_free, struct rf_sums *sums)
-{
-    for (int i = 0; i < LANES; i++) {
-        const ptrdiff_t q = from + i / RF_TILE * f->r->stride + i % RF_TILE;
-        uint64_t w;
+/* Where some rays see the slabs of a tile, and the background. */
+struct sight {
+    int rays;
+    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
+};
 
-        if (!is_free[i] ||
-            (slab && (uint16_t)(f->r->front.blur[q] - slab->low) > slab->width))
-            continue;
-        w = (uint64_t)rf_weight_of(f, light, q) * ray_weight;
-        is_free[i] = 0;
-        sums->weight[i] += w;
-        for (int c = 0; c < 3; c++)
-            sums->light[c][i] += w * light[c][q];
-    }
-}
-
-static ptrdiff_t shifted(const struct rf_frame *f, ptrdiff_t origin,
-                         const struct refocus_ray *ray, int blur)
-{
-    return origin + rf_offset(ray->v, blur) * f->r->stride + rf_offset(ray->u, blur);
-}
-
-static void add_run(uint32_t run[3][LANES], uint64_t weight, struct rf_sums *sums)
-{
-    for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < LANES; i++)
-            sums->light[c][i] += weight * run[c][i];
-        memset(run[c], 0, sizeof run[c]);
-    }
-}
-
-/* Offsets of some rays at the centre of a slab, in elements of the planes. */
-static void set_offsets(int32_t offset[RF_RAY_CHUNK], const struct refocus_ray *ray, int rays,
-                        int blur, ptrdiff_t stride)
-{
-    for (int n = 0; n < rays; n++)
-        offset[n] = rf_offset(ray[n].v, blur) * (int32_t)stride + rf_offset(ray[n].u, blur);
-}
-
-/* Rays come in runs of equal weight; a run is summed plainly and weighted once. Sums of
- * a run, 65,025 rays of Q12 light at the most, stay below 2^28. The sums of a set that is one
- * run are left in `run`; others are added up in `sums`. */
-static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_ray_set *set, ptrdiff_t origin, int behind,
-                       uint32_t run[3][LANES], struct rf_sums *sums)
+static void set_sight(struct sight *sight, const struct rf_frame *f,
+                      const struct rf_tile_plan *plan, const struct refocus_ray *ray, int behind)
 {
     const struct refocus_renderer *r = f->r;
-    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
-    struct rf_sweep_job job = {
-        .blur = r->front.blur + origin,
-        .behind = r->behind.light[0] + origin,
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+
+    for (int n = 0; n < sight->rays; n++) {
+        u[n] = ray[n].u;
+        v[n] = ray[n].v;
+    }
+    for (int k = 0; k <= plan->slabs; k++)
+        r->kernels.aim(sight->offset[k], sight->cell[k], u, v,
+                       k < plan->slabs ? plan->slab[k].centre : behind, (int32_t)r->stride,
+                       (int32_t)r->range_stride, sight->rays);
+    for (int k = 0; f->weighted && k < plan->slabs; k++)
+        for (int n = 0; n < sight->rays; n++)
+            sight->weight_offset[k][n] =
+                rf_offset(v[n], plan->slab[k].centre) * (int32_t)r->weight_stride +
+                rf_offset(u[n], plan->slab[k].centre);
+}
+
+/* What is summed of a tile: plainly, or light times weight and weights. */
+union tally {
+    uint32_t plain[3][LANES];
+    uint64_t weighted[4][LANES];
+};
+
+/* Strip i of the tile at (tx, ty). */
+static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        const struct sight *sight, int tx, int ty, int i, union tally *run)
+{
+    enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
+    const struct refocus_renderer *r = f->r;
+    const int first = i * RF_STRIP_LANES, y = ty * RF_TILE + i * RF_STRIP, x = tx * RF_TILE;
+    const ptrdiff_t at = y * r->stride + x, weight_at = y * r->weight_stride + x;
+    struct rf_sorted_rays sorted;
+    const struct rf_sort_job sort = {
+        .range = r->range + (ty * CELLS + i * STRIP_CELLS) * r->range_stride + tx * CELLS,
+        .front = r->smooth[0] + at,
+        .behind = r->behind.light[0] + at,
+        .weight = f->weighted ? r->weight + weight_at : NULL,
+        .behind_weight = (const uint16_t *)r->behind.blur + at,
+        .rays = sight->rays,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->weight_offset,
+    };
+    const struct rf_sweep_job job = {
+        .blur = r->front.blur + at,
         .stride = r->stride,
         .pitch = r->pitch,
         .slabs = plan->slabs,
         .slab = plan->slab,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])offset,
-        .uniform = plan->uniform,
-        .bright = f->params->highlight_gain > 1,
+        .rays = &sorted,
+        .bright = f->bright,
+        .weight = r->weight + weight_at,
+        .weight_stride = r->weight_stride,
     };
 
-    memset(run, 0, 3 * sizeof run[0]);
-    for (int n = 0; n < set->count; n += job.rays) {
+    r->kernels.sort_rays(&sorted, &sort);
+    if (f->weighted)
+        r->kernels.sweep_weighted((uint64_t *const[4]){run->weighted[0] + first,
+                                                       run->weighted[1] + first,
+                                                       run->weighted[2] + first,
+                                                       run->weighted[3] + first}, &job);
+    else
+        r->kernels.sweep((uint32_t *const[3]){run->plain[0] + first, run->plain[1] + first,
+                                              run->plain[2] + first}, &job);
+}
+
+/* A run of rays of equal weight is at its end: it counts that often. */
+static void add_run(const struct rf_frame *f, const union tally *run, uint64_t ray_weight,
+                    uint64_t rays, struct rf_sums *sums)
+{
+    for (int i = 0; i < LANES; i++) {
+        for (int c = 0; c < 3; c++)
+            sums->light[c][i] +=
+                ray_weight * (f->weighted ? run->weighted[c][i] : run->plain[c][i]);
+        sums->weight[i] += ray_weight * (f->weighted ? run->weighted[3][i] : rays);
+    }
+}
+
+/* Rays from `first` on that weigh the same, RF_RAY_CHUNK at the most. */
+static int chunk_of(const struct rf_ray_set *set, int first)
+{
+    int n = 1;
+
+    while (n < RF_RAY_CHUNK && first + n < set->count &&
+           set->ray[first + n].weight == set->ray[first].weight)
+        n++;
+    return n;
+}
+
+/* Rays come in runs of equal weight; a run is summed plainly and counts as often as it weighs.
+ * Sums of a run, 65,025 rays of Q12 light at the most, stay below 2^30. That of a set of equal
+ * rays is left in `run`; others are added up in `sums`. */
+static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                       const struct rf_ray_set *set, int tx, int ty, union tally *run,
+                       struct rf_sums *sums)
+{
+    const struct refocus_renderer *r = f->r;
+    /* One blur of the background for the tile, that of its middle, keeps the offsets of a
+     * ray constant; looking it up for each pixel measured no better. */
+    const int behind = r->bins[(size_t)ty * r->tiles_x + tx].behind;
+    struct sight sight;
+    const size_t used = f->weighted ? sizeof run->weighted : sizeof run->plain;
+    int rays = 0; /* in this run */
+
+    memset(run, 0, used);
+    for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
         if (rf_cancelled(r))
             return;
-        job.rays = 1;
-        while (job.rays < RF_RAY_CHUNK && n + job.rays < set->count &&
-               ray[job.rays].weight == ray->weight)
-            job.rays++;
-        for (int k = 0; k < plan->slabs; k++)
-            set_offsets(offset[k], ray, job.rays, plan->slab[k].centre, r->stride);
-        set_offsets(offset[plan->slabs], ray, job.rays, behind, r->stride);
-        r->kernels.sweep(run, &job);
+        sight.rays = chunk_of(set, n);
+        rays += sight.rays;
+        set_sight(&sight, f, plan, ray, behind);
+        for (int i = 0; i < RF_TILE / RF_STRIP; i++)
+            sweep_strip(f, plan, &sight, tx, ty, i, run);
         if (!set->equal &&
-            (n + job.rays == set->count || ray[job.rays].weight != ray->weight))
-            add_run(run, ray->weight, sums);
-    }
-}
-
-static void sweep_weighted(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                           const struct rf_ray_set *set, ptrdiff_t origin, int behind,
-                           struct rf_sums *sums)
-{
-    uint16_t is_free[LANES];
-
-    for (int n = 0; n < set->count; n++) {
-        const struct refocus_ray *ray = &set->ray[n];
-
-        if (rf_cancelled(f->r))
-            return;
-        memset(is_free, 0xff, sizeof is_free);
-        for (int i = 0; i < plan->slabs; i++)
-            weigh_hits(f, f->r->smooth, &plan->slab[i],
-                       shifted(f, origin, ray, plan->slab[i].centre), ray->weight, is_free,
-                       sums);
-        weigh_hits(f, f->r->behind.light, NULL, shifted(f, origin, ray, behind),
-                   ray->weight, is_free, sums);
+            (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight)) {
+            add_run(f, run, ray->weight, (uint64_t)rays, sums);
+            memset(run, 0, used);
+            rays = 0;
+        }
     }
 }
 
 void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct refocus_renderer *r = f->r;
-    const ptrdiff_t origin = ty * RF_TILE * r->stride + tx * RF_TILE;
-    /* One blur of the background for the tile, that of its middle, keeps the offsets of a
-     * ray constant; looking it up for each pixel measured no better. */
-    const int behind = r->behind.blur[origin + RF_TILE / 2 * (r->stride + 1)];
     const struct rf_ray_set *set;
     struct rf_tile_plan plan;
+    uint16_t mean[3][LANES];
+    union tally run;
 
     (void)worker;
-    rf_plan_tile(r, f->scale, tx, ty, f->aperture->shape == RF_SHAPE_MASK, &plan);
+    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
     if (plan.sharp) {
         rf_copy_tile(f, rect);
         return;
     }
     set = rf_rays_for(r, plan.reach, plan.lamp);
-    if (set->equal && !f->weighted) {
-        const uint32_t scale = rf_mean_scale((uint64_t)set->count);
-        uint16_t mean[3][LANES];
-        uint32_t run[3][LANES];
-
-        sweep_rays(f, &plan, set, origin, behind, run, NULL);
-        for (int c = 0; c < 3; c++)
-            r->kernels.means(mean[c], run[c], scale, LANES);
-        rf_encode_means(f, rect, mean);
-    } else {
+    if (!set->equal) {
         struct rf_sums sums;
-        uint32_t run[3][LANES];
 
         memset(&sums, 0, sizeof sums);
-        if (f->weighted) {
-            sweep_weighted(f, &plan, set, origin, behind, &sums);
-        } else {
-            sweep_rays(f, &plan, set, origin, behind, run, &sums);
-            for (int i = 0; i < LANES; i++)
-                sums.weight[i] = set->total_weight;
-        }
+        sweep_rays(f, &plan, set, tx, ty, &run, &sums);
         if (!rf_cancelled(r)) /* else no weights */
             rf_encode_tile(f, rect, &sums);
+        return;
     }
+    sweep_rays(f, &plan, set, tx, ty, &run, NULL);
+    if (rf_cancelled(r))
+        return;
+    for (int c = 0; c < 3; c++) {
+        if (f->weighted)
+            r->kernels.weighted_means(mean[c], run.weighted[c], run.weighted[3], LANES);
+        else
+            r->kernels.means(mean[c], run.plain[c], rf_mean_scale((uint64_t)set->count),
+                             LANES);
+    }
+    rf_encode_means(f, rect, mean);
 }

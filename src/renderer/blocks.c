@@ -89,6 +89,17 @@ void rf_find_rims_in_blocks(struct refocus_renderer *r)
     }
 }
 
+/* Highlights in a block, by the parts that they are listed in. */
+static void find_in_block(struct refocus_renderer *r, struct rf_rect block)
+{
+    for (int y = block.y0, end; y < block.y1; y = end) {
+        end = (y / RF_LAMP_ROWS + 1) * RF_LAMP_ROWS;
+        end = end < block.y1 ? end : block.y1;
+        rf_find_highlights(r, in_window(r, (struct rf_rect){block.x0, y, block.x1, end}),
+                           rf_scratch(r, 0));
+    }
+}
+
 static void find_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
@@ -97,14 +108,16 @@ static void find_highlights(struct rf_frame *f)
     if (f->params->highlight_gain <= 1 || photo->highlights_blend == r->blend)
         return;
     photo->highlights_blend = RF_NO_BLEND;
-    photo->highlights = 0;
+    r->used = 0;
+    rf_forget_highlights(r);
     for (int i = 0; i < blocks(r, r->in_place.block) && !rf_cancelled(r); i++) {
         const struct rf_rect block = block_of(r, r->in_place.block, i);
 
         load(r, around(r, block, RF_TILE));
         if (!rf_cancelled(r))
-            rf_find_highlights(r, in_window(r, block));
+            find_in_block(r, block);
     }
+    rf_sort_highlights(r);
     if (!rf_cancelled(r))
         photo->highlights_blend = r->blend;
 }
@@ -223,7 +236,7 @@ static void make_behind(struct rf_frame *f)
     if (blocks(r, r->in_place.block) == 1) { /* the window is all of the photo */
         rf_pass_mark(f);
         rf_background_push(r, 0, r->levels);
-        rf_background_pull(r, 0, r->levels);
+        rf_pass_behind(f, r->levels);
         return;
     }
     rf_pool_run(&r->pool, known_band, r, rf_bands(r));
@@ -234,7 +247,7 @@ static void make_behind(struct rf_frame *f)
         r->level[RF_KEPT - 1].light[c] = kept->light[c] + at;
     r->level[RF_KEPT - 1].blur = kept->blur + at;
     r->level[RF_KEPT - 1].stride = kept->stride;
-    rf_background_pull(r, 0, RF_KEPT);
+    rf_pass_behind(f, RF_KEPT);
     r->level[RF_KEPT - 1] = own;
 }
 
@@ -284,6 +297,9 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         make_window(f, around(r, b, in_place->margin), need);
         if (need == RF_NEED_LAYERS && !rf_cancelled(r))
             make_behind(f);
+        if (need == RF_NEED_LAYERS && f->weighted && !rf_cancelled(r) &&
+            f->params->method == REFOCUS_METHOD_SWEEP)
+            rf_pass_weights(f);
         image = image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
                                                  part.x1 - region.x0, part.y1 - region.y0});
         f->out = &image;

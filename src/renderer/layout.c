@@ -8,6 +8,7 @@
 #include "depth/upsample.h"
 #include "methods/frame.h"
 #include "support/arena.h"
+#include "tiles/ranges.h"
 
 /* Pixels that may be read beyond the picture: the largest offset, one for the pre-filter,
  * one for rounding. */
@@ -54,7 +55,11 @@ static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width
 {
     photo->capacity = rf_rim_capacity(width, height);
     photo->rim = rf_arena_take(arena, photo->capacity, sizeof *photo->rim);
-    photo->highlight = rf_arena_take(arena, photo->capacity, sizeof *photo->highlight);
+    for (int i = 0; i < rf_lamp_parts(height); i++) {
+        photo->highlights[i].capacity = rf_lamp_capacity(width);
+        photo->highlights[i].lamp = rf_arena_take(arena, photo->highlights[i].capacity,
+                                                  sizeof(struct rf_highlight));
+    }
     photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
@@ -142,16 +147,16 @@ static int up_to_tiles(int v)
 
 /*
  * The mark of a pixel depends on pixels 2 K + 1 away; the fill of one, by way of levels below
- * RF_KEPT, on known ones 12 away, whose light depends on 7 more. Margins also have room for
- * the border of a window at the photo's side.
+ * RF_KEPT, on known ones 12 away, whose light depends on 7 more; blur, where there are lamps, on
+ * 5 more. Margins also have room for the border of a window at the photo's side.
  */
 static void shape_blocks(struct rf_in_place *in_place, int pad)
 {
     enum { MARK_BLOCK = 128 };
 
     in_place->mark_block = MARK_BLOCK;
-    in_place->mark_margin = up_to_tiles(2 * pad + 1);
-    in_place->margin = up_to_tiles(pad + 20);
+    in_place->mark_margin = up_to_tiles(2 * pad + 9);
+    in_place->margin = up_to_tiles(pad + 28);
     if (in_place->mark_margin < in_place->margin)
         in_place->mark_margin = in_place->margin;
     in_place->block = MARK_BLOCK + 2 * (in_place->mark_margin - in_place->margin);
@@ -241,16 +246,30 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
                            (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
     const int levels = rf_pyramid(level, across, down);
-    const int threads = rf_threads_for(params);
+    const int threads = rf_threads_for(params), pad = rf_padding_for(params->max_blur_radius);
+    uint64_t before, after;
 
     if (params->in_place)
         take_blocks(r, params, arena);
     else
         take_whole(r, params, arena);
+    before = arena->used;
     for (int i = 0; i < levels; i++) {
         take_level(arena, &level[i], level[i].width, level[i].height);
         r->level[i] = level[i];
     }
+    after = arena->used;
+    arena->used = before; /* the pyramid is done with before there are weights */
+    r->weight_stride = rf_pitch_for(across, pad);
+    r->weight = rf_arena_take(
+        arena, (uint64_t)r->weight_stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
+    r->weight = r->weight ? r->weight + pad * (r->weight_stride + 1) : NULL;
+    arena->used = arena->used > after ? arena->used : after;
+    r->range_stride = rf_range_width(across, pad);
+    r->range = rf_arena_take(arena, (uint64_t)r->range_stride *
+                                        (uint64_t)rf_range_width(down, pad), sizeof *r->range);
+    if (r->range)
+        r->range += rf_range_border(pad) * (r->range_stride + 1);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
                             sizeof *r->rays);

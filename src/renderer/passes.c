@@ -1,11 +1,13 @@
 #include "renderer/passes.h"
 
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 #include "background/background.h"
 #include "renderer/bands.h"
 #include "renderer/reduce.h"
+#include "tiles/ranges.h"
 
 static void reblend_band(void *context, int band, int worker)
 {
@@ -43,7 +45,15 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
+}
+
+static void range_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    rf_range_rows(f->r, rf_scratch(f->r, worker), band);
 }
 
 static void smooth_band(void *context, int band, int worker)
@@ -56,8 +66,8 @@ static void smooth_band(void *context, int band, int worker)
     uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
-    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
-                      band);
+    (void)worker;
+    rf_prefilter_rows(r, out, in, f->prefilter_above, i, band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
@@ -70,14 +80,20 @@ static void prefilter(struct rf_frame *f)
         rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
 }
 
+static void mark_lamps(struct rf_frame *f)
+{
+    const int rays = f->params->rays == REFOCUS_RAYS_FULL ? INT_MAX : f->params->rays;
+
+    f->bright = f->params->highlight_gain > 1 &&
+                rf_mark_highlights(f->r, f->scale, sqrt(3.14159265358979 / rays));
+}
+
 /* The light is the photo's again afterwards, whatever happens. */
 static void prefilter_with_highlights(struct rf_frame *f)
 {
     const float gain = f->params->highlight_gain;
-    uint64_t added;
+    const int added = f->bright ? rf_add_highlights(f->r, gain) : 0;
 
-    rf_mark_highlights(f->r);
-    added = rf_add_highlights(f->r, gain);
     prefilter(f);
     rf_remove_highlights(f->r, gain, added);
 }
@@ -105,10 +121,34 @@ void rf_pass_blur(struct rf_frame *f)
 
 void rf_pass_smooth(struct rf_frame *f)
 {
-    if (f->params->highlight_gain > 1)
-        prefilter_with_highlights(f);
-    else
-        prefilter(f);
+    mark_lamps(f);
+    rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
+    prefilter_with_highlights(f);
+}
+
+static void note_band(void *context, int band, int worker)
+{
+    (void)worker;
+    rf_note_behind(context, band);
+}
+
+static void weigh_band(void *context, int band, int worker)
+{
+    (void)worker;
+    rf_weigh_rows(context, band);
+}
+
+void rf_pass_behind(struct rf_frame *f, int levels)
+{
+    struct refocus_renderer *r = f->r;
+
+    rf_background_pull(r, 0, levels);
+    rf_pool_run(&r->pool, note_band, r, rf_bands(r));
+}
+
+void rf_pass_weights(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, weigh_band, f->r, rf_bands(f->r));
 }
 
 void rf_pass_mark(struct rf_frame *f)
@@ -135,6 +175,7 @@ bool rf_same_light(const struct rf_frame *f)
     const struct rf_made *m = &f->r->made;
 
     return m->smooth && m->blend == f->params->blend && m->gain == f->params->highlight_gain &&
+           (!m->lamps || m->rays == f->params->rays) &&
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
@@ -144,7 +185,15 @@ void rf_note_light(struct rf_frame *f)
 
     m->blend = f->params->blend;
     m->gain = f->params->highlight_gain;
+    m->lamps = m->gain > 1;
+    m->bright = f->bright;
+    m->rays = f->params->rays;
     memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
+}
+
+static bool is_sweep(const struct rf_frame *f)
+{
+    return f->params->method == REFOCUS_METHOD_SWEEP;
 }
 
 /* What a region needs of the photo. */
@@ -160,7 +209,9 @@ static bool is_there(const struct rf_frame *f, int number, const struct parts *p
     const struct rf_made *m = &f->r->made;
 
     return rf_same_lens(f, number) && contains(m->window, parts->bins) &&
-           (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) : !m->rims);
+           (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
+                         (!m->weighed || is_sweep(f))
+                   : !m->rims);
 }
 
 /* Blur, bins and rims of the window. */
@@ -172,8 +223,9 @@ static void make_blur(struct rf_frame *f, bool layers)
                                    r->origin_y + r->height};
 
     if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
-        !contains(window, m->window) || (m->rims && !layers)) {
-        *m = (struct rf_made){.half = m->half, .photo = r->used, .window = window,
+        !contains(window, m->window) || (m->rims && !layers) ||
+        (layers && !rf_same_light(f) && (m->lamps || f->params->highlight_gain > 1))) {
+        *m = (struct rf_made){.half = m->half && r->used, .photo = r->used, .window = window,
                               .focus = f->focus, .shift = f->scale.shift};
         rf_pass_blur(f);
         m->blur = !rf_cancelled(r);
@@ -185,26 +237,28 @@ static void make_blur(struct rf_frame *f, bool layers)
     }
 }
 
-static void forget_lamps(struct refocus_renderer *r)
-{
-    for (int i = 0; i < r->tiles_x * r->tiles_y; i++)
-        r->bins[i].lamp = 0;
-}
-
+/* Lamps change the blur: they are marked in one that is new, make_blur(). */
 static void make_smooth(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     struct rf_made *m = &r->made;
 
-    if (rf_same_light(f))
+    if (rf_same_light(f)) {
+        f->bright = m->bright;
         return;
+    }
     m->smooth = m->behind = false;
     if (r->used == 0)
         m->half = false; /* it lies where the background layer does */
-    if (m->lamps)
-        forget_lamps(r);
     m->lamps = f->params->highlight_gain > 1;
-    rf_pass_smooth(f);
+    if (m->ranges) {
+        f->bright = false;
+        prefilter(f);
+    } else {
+        rf_pass_smooth(f);
+        m->ranges = !rf_cancelled(r);
+        m->blur = m->ranges; /* else its cells may be gone */
+    }
     rf_note_light(f);
     m->smooth = !rf_cancelled(r);
 }
@@ -237,7 +291,7 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     struct refocus_renderer *r = f->r;
     struct rf_made *m = &r->made;
 
-    if (m->behind && contains(m->exact, seen))
+    if (m->behind && contains(m->exact, seen) && (!m->weighed || is_sweep(f)))
         return true;
     m->behind = false;
     if (r->used == 0)
@@ -250,8 +304,9 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
         !rf_background_is_exact(r, in_window(r, seen), sure_part(r)))
         return false;
     m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
-    rf_background_pull(r, 0, r->levels);
+    rf_pass_behind(f, r->levels);
     m->behind = !rf_cancelled(r);
+    m->weighed = false;
     return m->behind;
 }
 
@@ -321,6 +376,30 @@ static void make_in_window(struct rf_frame *f, int number, const struct parts *p
     }
 }
 
+/* The sweep takes the background's blur from the bins. */
+static void make_weights(struct rf_frame *f)
+{
+    struct rf_made *m = &f->r->made;
+
+    if (rf_cancelled(f->r) || (m->weighed && m->sigma == f->params->sigma))
+        return;
+    m->weighed = true;
+    m->sigma = -1; /* until they are all there */
+    rf_pass_weights(f);
+    if (!rf_cancelled(f->r))
+        m->sigma = f->params->sigma;
+}
+
+static void find_part(void *context, int part, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    const int y0 = part * RF_LAMP_ROWS, y1 = y0 + RF_LAMP_ROWS;
+
+    rf_find_highlights(r, (struct rf_rect){0, y0, r->width, y1 < r->height ? y1 : r->height},
+                       rf_scratch(r, worker));
+}
+
 /* The window is all of the photo. */
 static void find_highlights(struct rf_frame *f)
 {
@@ -330,8 +409,8 @@ static void find_highlights(struct rf_frame *f)
     if (f->params->highlight_gain <= 1 || photo->highlights_blend == r->blend)
         return;
     photo->highlights_blend = RF_NO_BLEND;
-    photo->highlights = 0;
-    rf_find_highlights(r, rf_whole(r, r->used));
+    rf_forget_highlights(r);
+    rf_pool_run(&r->pool, find_part, f, rf_lamp_parts(r->height));
     photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
 }
 
@@ -359,9 +438,13 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum r
         parts.seen = grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad, 1);
         parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE, RF_TILE);
     }
-    if (is_there(f, number, &parts, layers))
+    if (is_there(f, number, &parts, layers)) {
         rf_use(r, number, r->made.window);
-    else
+        f->bright = layers && r->made.bright;
+    } else {
         make_in_window(f, number, &parts, layers);
+    }
+    if (layers && f->weighted && is_sweep(f))
+        make_weights(f);
     f->region = in_window(r, region);
 }

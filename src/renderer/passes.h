@@ -32,6 +32,8 @@ void rf_set_weights(struct rf_frame *f);
 void rf_pass_blur(struct rf_frame *f);
 void rf_pass_smooth(struct rf_frame *f);
 void rf_pass_mark(struct rf_frame *f);
+void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
+void rf_pass_weights(struct rf_frame *f);
 
 /* Whether what r->made tells of is for this lens, and its light for this frame's; note the frame's
  * there. */

@@ -218,6 +218,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         rf_exact_init(&exact, own.blend, own.sigma);
         f.exact = &exact;
     }
+    rf_reach_init(&f.reach, f.scale, r->photo[number].pad, f.aperture->shape == RF_SHAPE_MASK);
     set_prefilter(&f);
     r->blurred = false;
     r->last_focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);

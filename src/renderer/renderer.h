@@ -50,11 +50,10 @@ struct rf_photo {
     uint16_t *light[3], *disparity; /* pixel (0, 0); not in strip mode */
     uint8_t *alpha;      /* unpadded, width a row */
     uint8_t *band_blend; /* enum refocus_blend that the light of a band of rows is in */
-    uint64_t capacity;   /* of rims, and of highlights */
+    uint64_t capacity;   /* of rims */
     struct rf_rim *rim;
     uint64_t rims;
-    struct rf_highlight *highlight;
-    uint64_t highlights;
+    struct rf_highlights highlights[RF_LAMP_PARTS];
     uint32_t highlights_blend; /* that they were found in, or RF_NO_BLEND */
 };
 
@@ -62,9 +61,14 @@ struct rf_photo {
 struct rf_made {
     bool blur;   /* front.blur and bins, */
     bool rims;   /* with the rims in them, */
-    bool lamps;  /* and the highlights in the bins */
+    bool lamps;  /* and highlights marked and widened in them */
+    bool ranges; /* its ranges; before, its cells are where the background's blur will be */
     bool smooth; /* the pre-filtered light */
-    bool behind; /* the background layer */
+    bool bright; /* with light given back to lamps */
+    bool behind; /* the background layer, */
+    bool weighed; /* but with weights of `sigma` in place of its blur */
+    float sigma;
+    int rays;    /* that lamps were widened for */
     bool half;   /* photo[1], which lies in memory of the background layer of photo[0] */
     int photo;
     struct rf_rect window; /* of that photo, to which all of it is limited */
@@ -115,6 +119,7 @@ struct rf_bins {
     uint64_t word[RF_BINS / 64];
     int16_t least, most; /* Q7.8 */
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
+    int16_t behind;      /* blur of the background in the middle, once that is filled */
 };
 
 struct refocus_renderer {
@@ -162,6 +167,10 @@ struct refocus_renderer {
     struct rf_layer behind; /* the background layer */
     struct rf_level level[RF_LEVELS];
     int levels;
+    uint16_t *weight;        /* of smooth, eq. 5, once the background is filled: its memory */
+    ptrdiff_t weight_stride; /* is the pyramid's. Those of behind are where its blur was. */
+    uint32_t *range;         /* blurs around the cell of pixel (0, 0); see tiles/ranges.h */
+    ptrdiff_t range_stride;
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
 
@@ -171,7 +180,7 @@ struct refocus_renderer {
     uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
-    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q16 */
+    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 

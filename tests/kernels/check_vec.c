@@ -34,6 +34,11 @@ static uint16_t c_and(uint16_t a, uint16_t b)
     return a & b;
 }
 
+static uint16_t c_or(uint16_t a, uint16_t b)
+{
+    return a | b;
+}
+
 static uint16_t c_without(uint16_t a, uint16_t b)
 {
     return (uint16_t)(a & ~b);
@@ -42,6 +47,33 @@ static uint16_t c_without(uint16_t a, uint16_t b)
 static uint16_t c_at_most(uint16_t a, uint16_t b)
 {
     return a <= b ? 0xffff : 0;
+}
+
+static uint16_t c_xor(uint16_t a, uint16_t b)
+{
+    return a ^ b;
+}
+
+static uint16_t c_mul_high(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(((uint32_t)a * b) >> 16);
+}
+
+static uint16_t c_max(uint16_t a, uint16_t b)
+{
+    return a > b ? a : b;
+}
+
+static vec_u16 half(vec_u16 a, vec_u16 b)
+{
+    (void)b;
+    return vec_u16_half(a);
+}
+
+static uint16_t c_half(uint16_t a, uint16_t b)
+{
+    (void)b;
+    return a >> 1;
 }
 
 static vec_u16 first(vec_u16 a, vec_u16 b)
@@ -64,6 +96,9 @@ static const struct {
     {"load, store", first, c_first},         {"add", vec_u16_add, c_add},
     {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
+    {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
+    {"max", vec_u16_max, c_max},
+    {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)
@@ -118,6 +153,39 @@ static int check_set(void)
     return 0;
 }
 
+/* Operations that move lanes, and any(). */
+static int check_order(void)
+{
+    enum { N = (int)VEC_U16 };
+    uint16_t in[2 * MOST_LANES], out[4][MOST_LANES];
+    vec_u16 a, b;
+
+    for (int i = 0; i < 2 * N; i++)
+        in[i] = (uint16_t)(0x8000 + 257 * i);
+    a = vec_u16_load(in);
+    b = vec_u16_load(in + N);
+    vec_u16_store(out[0], vec_u16_even(a, b));
+    vec_u16_store(out[1], vec_u16_odd(a, b));
+    vec_u16_store(out[2], vec_u16_zip_low(a, b));
+    vec_u16_store(out[3], vec_u16_zip_high(a, b));
+    for (int i = 0; i < N; i++) {
+        if (out[0][i] != in[2 * i] || out[1][i] != in[2 * i + 1] ||
+            out[2][i] != in[i / 2 + i % 2 * N] || out[3][i] != in[N / 2 + i / 2 + i % 2 * N]) {
+            printf("FAIL  vec_u16_even, odd or zip, %s: lane %d\n", TEXT(RF_VEC_SET), i);
+            return 1;
+        }
+    }
+    for (int i = 0; i <= N; i++) { /* one lane alone, then none */
+        memset(in, 0, sizeof in);
+        in[i] = i % 2 ? 1 : 0x8000;
+        if (!vec_u16_any(vec_u16_load(in)) != (i == N)) {
+            printf("FAIL  vec_u16_any, %s: lane %d\n", TEXT(RF_VEC_SET), i);
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static int check_add_to(void)
 {
     uint32_t seed = 5, sum[MOST_LANES + 2], before[MOST_LANES + 2];
@@ -143,15 +211,48 @@ static int check_add_to(void)
     return 0;
 }
 
+/* a b + c d, added up twice: lanes come out in their order. */
+static int check_products(void)
+{
+    uint32_t seed = 10;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t factor[4][MOST_LANES];
+        uint64_t sum[MOST_LANES] = {0};
+        vec_u32 v = vec_u32_zero();
+
+        for (int i = 0; i < 4; i++)
+            for (int lane = 0; lane < (int)VEC_U16; lane++)
+                factor[i][lane] = pick(round, lane, i % 2, &seed) & 0x7fff;
+        for (int twice = 0; twice < 2; twice++)
+            v = vec_u32_add_products(v, vec_u16_load(factor[0]), vec_u16_load(factor[1]),
+                                     vec_u16_load(factor[2 - 2 * twice]),
+                                     vec_u16_load(factor[1]));
+        sum[0] = UINT32_MAX;
+        vec_u32_add_to(sum, v);
+        for (int lane = 0; lane < (int)VEC_U16; lane++) {
+            const uint64_t should = (lane ? 0 : (uint64_t)UINT32_MAX) +
+                                    (uint32_t)((3u * factor[0][lane] + factor[2][lane]) *
+                                               (uint32_t)factor[1][lane]);
+
+            if (sum[lane] != should) {
+                printf("FAIL  vec_u32_add_products, %s\n", TEXT(RF_VEC_SET));
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
-    int failures = check_set() + check_add_to();
+    int failures = check_set() + check_order() + check_add_to() + check_products();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
         printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 2, (int)VEC_U16);
+               count + 3, (int)VEC_U16);
     return failures;
 }

@@ -40,29 +40,37 @@ static void expect_signed_blur(void *const *row, int parameter, int n)
     }
 }
 
+/* The parameter holds where the neighbours are, too. */
+static int apart_of(int parameter)
+{
+    return 1 + parameter % 4;
+}
+
 static void run_smooth3(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    k->smooth3(row[0], row[1], row[2], row[3], row[4], row[5], row[6], parameter, n);
+    uint16_t *const out[3] = {row[0], row[1], row[2]};
+    const uint16_t *const light[3] = {row[3], row[4], row[5]};
+
+    k->smooth3(out, light, row[6], apart_of(parameter), parameter, n);
 }
 
 static void expect_smooth3(void *const *row, int parameter, int n)
 {
-    uint16_t *out = row[0];
+    const int16_t *blur = row[6];
 
-    for (int x = 0; x < n; x++) {
-        const int own = ((const int16_t *)row[5])[x];
+    for (int i = 0; i < 3 * n; i++) {
+        const int c = i / n, x = i % n;
+        const uint16_t *light = row[3 + c];
         int sum = 0, count = 0;
 
-        for (int i = 0; i < 3; i++) {
-            const int light = ((const uint16_t *)row[1 + i])[x];
-            const int blur = ((const int16_t *)row[4 + i])[x];
-
-            if (i == 1 || (abs(own) > parameter && abs(blur - own) <= 256)) {
-                sum += light;
+        for (int at = x - apart_of(parameter); at <= x + apart_of(parameter);
+             at += apart_of(parameter)) {
+            if (at == x || (abs(blur[x]) > parameter && abs(blur[at] - blur[x]) <= 256)) {
+                sum += light[at];
                 count++;
             }
         }
-        out[x] = (uint16_t)((2 * sum + count) / (2 * count));
+        ((uint16_t *)row[c])[x] = (uint16_t)((2 * sum + count) / (2 * count));
     }
 }
 
@@ -245,12 +253,29 @@ static void expect_means(void *const *row, int parameter, int n)
     }
 }
 
+static void run_luminance(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->luminance(row[0], row[1], row[2], row[3], n);
+}
+
+static void expect_luminance(void *const *row, int parameter, int n)
+{
+    const uint16_t *r = row[1], *g = row[2], *b = row[3];
+    uint16_t *out = row[0];
+
+    (void)parameter;
+    for (int x = 0; x < n; x++)
+        out[x] = (uint16_t)((218 * (int64_t)r[x] + 732 * (int64_t)g[x] + 74 * (int64_t)b[x]) /
+                                1024 + 1) / 2;
+}
+
 const struct row_kernel row_kernels[] = {
     {"signed_blur", 2, {{BLUR, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, 30000,
      run_signed_blur, expect_signed_blur},
     {"smooth3", 7,
-     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0},
-      {BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}}, 0, INT16_MAX,
+     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 4, 0},
+      {LIGHT, 1, 4, 0}, {LIGHT, 1, 4, 0}, {BLUR, 1, 4, 0}}, 0, INT16_MAX,
      run_smooth3, expect_smooth3},
     {"spread_row", 2,
      {{RAISED, 1, 0, RF_SPREAD_MARGIN}, {SCRATCH, 1, 0, RF_SPREAD_MARGIN}}, 1, 258,
@@ -269,5 +294,7 @@ const struct row_kernel row_kernels[] = {
     {"pull_blur", 2, {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}}, 0, 0,
      run_pull_blur, expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
+    {"luminance", 4, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}},
+     0, 0, run_luminance, expect_luminance},
 };
 const int row_kernel_count = sizeof row_kernels / sizeof row_kernels[0];

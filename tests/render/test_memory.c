@@ -113,12 +113,12 @@ static void every_failure(void **state)
     }
 }
 
-/* render.h: 24 (W + 2P + 79)(H + 2P + 16) + 5 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20 */
+/* render.h: 27 (W + 2P + 79)(H + 2P + 16) + 3 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20 */
 static double stated(int width, int height, float blur, int threads)
 {
     const double p = 2 * (ceil((double)blur) + 2);
 
-    return 24 * (width + p + 79) * (height + p + 16) + 5.0 * (width + 16) * (height + 16) +
+    return 27 * (width + p + 79) * (height + p + 16) + 3.0 * (width + 16) * (height + 16) +
            4.0 * threads * (width + 512) + 24.0 * width + 12.0 * height + 1048576.0;
 }
 
@@ -159,11 +159,11 @@ static double stated_previews(int width, int height, float blur)
 /* And strip mode takes at the most. */
 static double stated_in_place(int width, int height, float blur, int threads)
 {
-    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + 20) / 16);
-    const double n = fmax(16 * ceil((2 * p + 1) / 16), m);
+    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + 28) / 16);
+    const double n = fmax(16 * ceil((2 * p + 9) / 16), m);
     const double s = 144 + 2 * n - m + fmax(m, 2 * p);
 
-    return 29 * (s + 63) * (s + 16) + 0.6 * (width + 16.0) * (height + 16.0) +
+    return 28 * (s + 63) * (s + 16) + 0.78 * (width + 16.0) * (height + 64.0) +
            4.0 * threads * (width + 512) + 24 * p * p + 131072;
 }
 
