@@ -213,10 +213,44 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
     place_all(sorted, job, &s);
 }
 
+static void RF_VEC(rf_settle)(uint8_t *settled, int32_t *offset, const uint32_t *range,
+                              const int32_t *start, const struct rf_search_ray *ray,
+                              int32_t stride, int32_t cell_stride, int n)
+{
+    int32_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK], within[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
+    uint32_t guess[RF_RAY_CHUNK], seen[RF_RAY_CHUNK], same[RF_RAY_CHUNK];
+
+    for (int i = 0; i < n; i++) {
+        u[i] = ray[i].u;
+        v[i] = ray[i].v;
+        within[i] = ray[i].within;
+        guess[i] = range[start[i]];
+    }
+    for (int i = 0; i < n; i++) {
+        const int32_t least = (int16_t)guess[i], most = (int32_t)guess[i] >> 16;
+        const int32_t x = (u[i] * least + (1 << 22)) >> 23, x1 = (u[i] * most + (1 << 22)) >> 23;
+        const int32_t y = (v[i] * least + (1 << 22)) >> 23, y1 = (v[i] * most + (1 << 22)) >> 23;
+
+        same[i] = (uint32_t)((x == x1) & (y == y1));
+        offset[i] = x + y * stride;
+        cell[i] = (x >> 2) + (y >> 2) * cell_stride;
+    }
+    for (int i = 0; i < n; i++)
+        seen[i] = range[cell[i]];
+    for (int i = 0; i < n; i++) {
+        const int32_t least = (int16_t)guess[i], most = (int32_t)guess[i] >> 16;
+        const int32_t low = (int16_t)seen[i], high = (int32_t)seen[i] >> 16;
+
+        settled[i] = (uint8_t)(same[i] & (high - least <= within[i]) &
+                               (most - low <= within[i]));
+    }
+}
+
 void RF_VEC(rf_aim_use)(struct rf_kernels *kernels)
 {
     kernels->cells = RF_VEC(rf_cells);
     kernels->windows = RF_VEC(rf_windows);
     kernels->aim = RF_VEC(rf_aim);
     kernels->sort_rays = RF_VEC(rf_sort_rays);
+    kernels->settle = RF_VEC(rf_settle);
 }

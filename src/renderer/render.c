@@ -18,6 +18,7 @@ struct method {
     rf_tile_fn *tile;   /* called for each tile, or */
     rf_frame_fn *frame; /* once for the whole frame */
     bool layers; /* it needs the pre-filter, the bins of tiles and the background */
+    bool ranges; /* and of these, but for the bins, only r->range */
     bool exact;  /* it works in double precision */
 };
 
@@ -25,7 +26,7 @@ static const struct method methods[REFOCUS_METHOD_COUNT] = {
     [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
                               .tile = rf_sweep_tile, .layers = true},
     [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               .tile = rf_search_tile},
+                               .tile = rf_search_tile, .ranges = true},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace",
                                  "full image-space ray tracing, Yang et al. 2016; slow",
                                  .tile = rf_raytrace_tile, .exact = true},
@@ -99,6 +100,13 @@ static void blur_band(void *context, int band, int worker)
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
     rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
+}
+
+static void range_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    rf_range_rows(f->r, rf_scratch(f->r, worker), band);
 }
 
 static void dilate_item(void *context, int upwards, int worker)
@@ -265,6 +273,8 @@ static void run_passes(struct rf_frame *f)
         rf_background_fill(r);
         if (f->weighted && method->layers)
             rf_pool_run(&r->pool, weigh_band, f, rf_bands(r));
+    } else if (method->ranges) {
+        rf_pool_run(&r->pool, range_band, f, rf_bands(r));
     }
     if (method->frame && f->params->max_blur_radius > 0) {
         if (!rf_cancelled(r))

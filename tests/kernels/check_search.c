@@ -1,4 +1,4 @@
-/* The search over one tile, against the contract's words, one pixel and ray at a time. */
+/* The search over one strip, against the contract's words, one pixel and ray at a time. */
 #include "check.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 enum {
     PAD = 12,
     SIDE = RF_TILE + 2 * PAD,
-    LANES = RF_TILE * RF_TILE,
+    LANES = RF_STRIP_LANES,
     MOST_BLUR = PAD * 256,
     ORIGIN = PAD * SIDE + PAD,
 };
@@ -81,7 +81,6 @@ static void make_stage(struct stage *s, enum place place, uint32_t seed)
         .stride = SIDE,
         .tests = noise_between(&seed, 1, 5),
         .rays = counts[noise(&seed) % 5],
-        .lanes = RF_TILE,
         .ray = s->ray,
     };
     for (int i = 0; i < 4; i++) {
@@ -119,7 +118,7 @@ static bool check_case(const struct subject *subject, struct stage *s, enum plac
     for (int i = 0; i < LANES; i++)
         for (int n = 0; n < s->job.rays; n++)
             follow(s, i, &s->ray[n]);
-    subject->kernels.search(s->sum, &s->job);
+    subject->kernels.search((uint32_t *const[3]){s->sum[0], s->sum[1], s->sum[2]}, &s->job);
     for (int i = 0; i < 4; i++) {
         if (!guarded_intact(&s->plane[i])) {
             printf("FAIL  %-12s %-6s seed %u: wrote beside plane %d\n", "search", subject->cpu,
