@@ -2,6 +2,7 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
+#include <math.h>
 #include <string.h>
 
 static inline int16_t lesser(int16_t a, int16_t b)
@@ -213,6 +214,18 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
     place_all(sorted, job, &s);
 }
 
+/* Square root and division are exact to the last bit everywhere. */
+static void RF_VEC(rf_tolerances)(int32_t *restrict within, const int16_t *restrict u,
+                                  const int16_t *restrict v, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const int32_t square = u[i] * u[i] + v[i] * v[i];
+        const double most = 4194304.0 / sqrt(square); /* 2^22 = half in Q23 */
+
+        within[i] = (int32_t)(most < 65535 ? most : 65535);
+    }
+}
+
 static void RF_VEC(rf_settle)(uint8_t *settled, int32_t *offset, const uint32_t *range,
                               const int32_t *start, const struct rf_search_ray *ray,
                               int32_t stride, int32_t cell_stride, int n)
@@ -253,4 +266,5 @@ void RF_VEC(rf_aim_use)(struct rf_kernels *kernels)
     kernels->aim = RF_VEC(rf_aim);
     kernels->sort_rays = RF_VEC(rf_sort_rays);
     kernels->settle = RF_VEC(rf_settle);
+    kernels->tolerances = RF_VEC(rf_tolerances);
 }

@@ -263,6 +263,10 @@ struct rf_search_job {
 };
 typedef void rf_search_fn(uint32_t *const sum[3], const struct rf_search_job *job);
 
+/* tolerances: the largest |s - s'| that half a pixel allows a ray: 1/2 / |u|, in Q7.8, rounded down;
+ * at most 65535. */
+typedef void rf_tolerances_fn(int32_t *within, const int16_t *u, const int16_t *v, int n);
+
 /*
  * settle: which of n rays the first test of a search settles for a whole strip: those whose first
  * guesses all lead the same way, to blurs that confirm them all, by the ranges there
@@ -280,6 +284,7 @@ struct rf_kernels {
     rf_aim_fn *aim;
     rf_sort_rays_fn *sort_rays;
     rf_settle_fn *settle;
+    rf_tolerances_fn *tolerances;
     rf_sweep_fn *sweep;
     rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;

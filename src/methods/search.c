@@ -10,17 +10,7 @@
  */
 #include "methods/method.h"
 
-#include <math.h>
 #include <string.h>
-
-/* Largest |s - s'| that half a pixel allows a ray: 1/2 / |u|, in Q7.8. */
-static int tolerance(const struct refocus_ray *ray)
-{
-    const double length = sqrt((double)ray->u * ray->u + (double)ray->v * ray->v);
-    const double most = length > 0 ? 4194304.0 / length : 65535; /* 2^22 = half in Q23 */
-
-    return most > 65535 ? 65535 : (int)most;
-}
 
 struct hit {
     ptrdiff_t at;
@@ -87,7 +77,7 @@ static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struc
     const struct refocus_renderer *r = f->r;
     const int nearest = nearest_blur(f);
     int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
-    int32_t start[RF_RAY_CHUNK];
+    int32_t start[RF_RAY_CHUNK], within[RF_RAY_CHUNK];
 
     for (int n = 0; n < chunk->rays; n++) {
         u[n] = ray[n].u;
@@ -95,8 +85,9 @@ static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struc
     }
     r->kernels.aim(start, chunk->cell, u, v, nearest, (int32_t)r->stride,
                    (int32_t)r->range_stride, chunk->rays);
+    r->kernels.tolerances(within, u, v, chunk->rays);
     for (int n = 0; n < chunk->rays; n++)
-        chunk->ray[n] = (struct rf_search_ray){start[n], u[n], v[n], tolerance(&ray[n])};
+        chunk->ray[n] = (struct rf_search_ray){start[n], u[n], v[n], within[n]};
 }
 
 /* The paper's own rule, by kernels: rays that are settled for the strip as a whole are added as
@@ -180,8 +171,9 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
         const struct refocus_ray *ray = &set->ray[n];
         const ptrdiff_t start = rf_offset(ray->v, nearest) * r->stride +
                                 rf_offset(ray->u, nearest);
-        const int within = tolerance(ray);
+        int32_t within;
 
+        r->kernels.tolerances(&within, &ray->u, &ray->v, 1);
         for (int y = rect.y0; y < rect.y1; y++) {
             for (int x = rect.x0; x < rect.x1; x++) {
                 const ptrdiff_t p = y * r->stride + x;

@@ -236,6 +236,32 @@ static bool check_sort(const struct subject *subject, struct sight *s, int n, ui
     return true;
 }
 
+static bool check_tolerances(const struct subject *subject, int n, uint32_t seed)
+{
+    const uint32_t first = seed;
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    int32_t within[RF_RAY_CHUNK];
+
+    for (int i = 0; i < n; i++) { /* long rays, and short ones */
+        const int most = i % 2 ? 32767 : noise_between(&seed, 0, 200);
+
+        u[i] = (int16_t)noise_between(&seed, -most, most);
+        v[i] = (int16_t)(i % 3 ? noise_between(&seed, -most, most) : 0);
+    }
+    subject->kernels.tolerances(within, u, v, n);
+    for (int i = 0; i < n; i++) {
+        const uint64_t square = (uint64_t)((int64_t)u[i] * u[i] + (int64_t)v[i] * v[i]);
+        uint64_t w = 0;
+
+        for (uint64_t bit = 1 << 15; bit; bit /= 2) /* the largest with w |u| <= 2^22 */
+            if ((w + bit) * (w + bit) * square <= UINT64_C(1) << 44)
+                w += bit;
+        if ((uint64_t)within[i] != w)
+            return fail(subject, "tolerances", first, n, i, within[i], (long)w);
+    }
+    return true;
+}
+
 /* Ranges lie all around the strip; rays reach them all. */
 static bool check_settle(const struct subject *subject, int n, uint32_t seed)
 {
@@ -301,6 +327,7 @@ int check_aim(const struct subject *subject)
 
         good = check_cells(subject, &s, n, place, seed) &&
                check_windows(subject, &s, n, place, seed) &&
+               check_tolerances(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
                check_settle(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
                check_aim_at(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
                check_sort(subject, &sight, (int)seed % (RF_RAY_CHUNK + 1), seed);
