@@ -138,8 +138,9 @@ static bool meet_slab(struct state *restrict s, uint32_t *restrict need,
 }
 
 /* Ray n becomes the m-th. */
-static inline void place(struct rf_sorted_rays *restrict sorted, const struct rf_sort_job *job,
-                         const struct state *restrict s, int n, int m)
+static inline void place(struct rf_sorted_rays *restrict sorted,
+                         const struct rf_sort_job *restrict job,
+                         const struct state *restrict s, int n, int m, const bool weighted)
 {
     const int tests = (int)s->tests[n], last = (int)s->last[n];
     uint32_t need = s->need[0][n];
@@ -153,10 +154,10 @@ static inline void place(struct rf_sorted_rays *restrict sorted, const struct rf
         need &= need - 1;
         sorted->slab[t][m] = (uint8_t)k;
         sorted->offset[t][m] = job->offset[k][n];
-        if (job->weight)
+        if (weighted)
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
     }
-    if (job->weight) {
+    if (weighted) {
         sorted->last_behind[m] = last == job->slabs;
         sorted->last_weight[m] = last == job->slabs
                                      ? job->behind_weight + job->offset[last][n]
@@ -173,8 +174,9 @@ static inline int class_of(uint32_t tests)
     return 8 * (int)(tests < RF_SORTED_TESTS ? tests : RF_SORTED_TESTS - 1);
 }
 
-static void place_all(struct rf_sorted_rays *restrict sorted, const struct rf_sort_job *job,
-                      const struct state *restrict s)
+static inline void place_all(struct rf_sorted_rays *restrict sorted,
+                             const struct rf_sort_job *restrict job,
+                             const struct state *restrict s, const bool weighted)
 {
     uint64_t count = 0, at;
 
@@ -184,7 +186,7 @@ static void place_all(struct rf_sorted_rays *restrict sorted, const struct rf_so
     for (int n = 0; n < job->rays; n++) {
         const int class = class_of(s->tests[n]);
 
-        place(sorted, job, s, n, (int)(at >> class & 255));
+        place(sorted, job, s, n, (int)(at >> class & 255), weighted);
         at += UINT64_C(1) << class;
     }
 }
@@ -211,7 +213,10 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
             break;
     }
     sorted->rays = rays;
-    place_all(sorted, job, &s);
+    if (job->weight)
+        place_all(sorted, job, &s, true);
+    else
+        place_all(sorted, job, &s, false);
 }
 
 /* Square root and division are exact to the last bit everywhere. */
