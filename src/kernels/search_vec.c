@@ -32,11 +32,11 @@ static ALWAYS_INLINE vec_u16 raised(const int16_t *blur)
     return vec_u16_xor(vec_u16_load(blur), vec_u16_set(0x8000));
 }
 
-/* One test of the lanes of `mask`, which look `offset` away. Those that are settled are no
+/* One test of the lanes of `mask` (`all`: of all), which look `offset` away. Those that are settled are no
  * longer pending; what all see is in *seen. */
 static ALWAYS_INLINE void test(struct sums *sums, const struct span *s, uint16_t within,
-                               ptrdiff_t offset, vec_u16 guess, vec_u16 mask, const bool last,
-                               vec_u16 *pending, vec_u16 *seen)
+                               ptrdiff_t offset, vec_u16 guess, vec_u16 mask, const bool all,
+                               const bool last, vec_u16 *pending, vec_u16 *seen)
 {
     const ptrdiff_t q = s->at + offset;
     const vec_u16 found = raised(s->job->blur + q);
@@ -45,9 +45,12 @@ static ALWAYS_INLINE void test(struct sums *sums, const struct span *s, uint16_t
 
     if (last)
         take = vec_u16_or(take, vec_u16_at_most(found, s->own));
+    else if (all)
+        *seen = found;
     else
         *seen = vec_u16_or(vec_u16_and(found, mask), vec_u16_without(*seen, mask));
-    take = vec_u16_and(take, mask);
+    if (!all)
+        take = vec_u16_and(take, mask);
     *pending = vec_u16_without(*pending, take);
     for (int c = 0; c < 3; c++)
         sums->light[c] = vec_u16_add(
@@ -75,10 +78,14 @@ static ALWAYS_INLINE void test_all(struct sums *sums, const struct span *s,
     uint64_t bits;
 
     if (first) {
+        const ptrdiff_t offset = offset_from(vec_u16_lane0(key), stride);
+
         mask = vec_u16_equal(key, vec_u16_spread(key));
-        test(sums, s, within, offset_from(vec_u16_lane0(key), stride), *guess, mask, last,
-             pending, &seen);
         bits = vec_u16_bits(vec_u16_without(waiting, mask));
+        if (!bits)
+            test(sums, s, within, offset, *guess, mask, true, last, pending, &seen);
+        else
+            test(sums, s, within, offset, *guess, mask, false, last, pending, &seen);
     } else {
         bits = vec_u16_bits(waiting);
     }
@@ -88,7 +95,8 @@ static ALWAYS_INLINE void test_all(struct sums *sums, const struct span *s,
         const uint16_t next = keys[__builtin_ctzll(bits) / VEC_BITS];
 
         mask = vec_u16_and(waiting, vec_u16_equal(key, vec_u16_set(next)));
-        test(sums, s, within, offset_from(next, stride), *guess, mask, last, pending, &seen);
+        test(sums, s, within, offset_from(next, stride), *guess, mask, false, last, pending,
+             &seen);
         bits &= ~vec_u16_bits(mask);
     }
     *guess = seen;
