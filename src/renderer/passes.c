@@ -114,9 +114,11 @@ static void mark_band(void *context, int band, int worker)
                             rf_band_end(f->r, band));
 }
 
-void rf_pass_blur(struct rf_frame *f)
+void rf_pass_blur(struct rf_frame *f, bool layers)
 {
     rf_pool_run(&f->r->pool, blur_band, f, rf_bands(f->r));
+    if (!layers)
+        rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
 }
 
 void rf_pass_smooth(struct rf_frame *f)
@@ -227,7 +229,7 @@ static void make_blur(struct rf_frame *f, bool layers)
         (layers && !rf_same_light(f) && (m->lamps || f->params->highlight_gain > 1))) {
         *m = (struct rf_made){.half = m->half && r->used, .photo = r->used, .window = window,
                               .focus = f->focus, .shift = f->scale.shift};
-        rf_pass_blur(f);
+        rf_pass_blur(f, layers);
         m->blur = !rf_cancelled(r);
     }
     if (m->blur && layers && !m->rims) {
