@@ -134,7 +134,7 @@ static void make_window(struct rf_frame *f, struct rf_rect window, enum rf_need 
     load(r, window);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
-    rf_pass_blur(f);
+    rf_pass_blur(f, need == RF_NEED_LAYERS);
     if (need == RF_NEED_BLUR || rf_cancelled(r))
         return;
     rf_patch_rims(r, f->focus, f->scale);

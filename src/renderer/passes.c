@@ -117,9 +117,11 @@ static void mark_band(void *context, int band, int worker)
                             rf_band_end(f->r, band));
 }
 
-void rf_pass_blur(struct rf_frame *f)
+void rf_pass_blur(struct rf_frame *f, bool layers)
 {
     rf_pool_run(&f->r->pool, blur_band, f, rf_bands(f->r));
+    if (!layers)
+        rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
 }
 
 void rf_pass_smooth(struct rf_frame *f)
@@ -234,7 +236,7 @@ static void make_blur(struct rf_frame *f, bool layers)
                               .window = window,
                               .focus = f->focus,
                               .shift = f->scale.shift};
-        rf_pass_blur(f);
+        rf_pass_blur(f, layers);
         m->blur = !rf_cancelled(r);
     }
     if (m->blur && layers && !m->rims) {

@@ -30,7 +30,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
 
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
-void rf_pass_blur(struct rf_frame *f);
+void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
 void rf_pass_smooth(struct rf_frame *f);
 void rf_pass_mark(struct rf_frame *f);
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */

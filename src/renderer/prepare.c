@@ -16,7 +16,8 @@ static uint16_t *scratch_of(void *context, int worker)
     return rf_scratch(context, worker);
 }
 
-/* The planes of the background layer are free until something is rendered. */
+/* The planes of blurs, of pre-filtered light and of the background layer are free until
+ * something is rendered. */
 static void upsample(struct refocus_renderer *r, const struct refocus_image *photo,
                      const struct refocus_disparity *map)
 {
@@ -35,9 +36,14 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
         .raw_stride = r->stride,
         .across = r->taps,
         .down = r->taps + r->width,
-        .column = r->column + 2,
+        .colour = {(uint8_t *)r->smooth[0], (uint8_t *)r->smooth[1],
+                   (uint8_t *)r->smooth[2]},
+        .colour_stride = r->stride * (ptrdiff_t)sizeof *r->smooth[0],
+        .sure = (uint8_t *)r->front.blur,
+        .sure_stride = r->stride * (ptrdiff_t)sizeof *r->front.blur,
         .near_by = {r->near_by, r->near_by + row, r->near_by + 2 * row,
                     r->near_by + 3 * row},
+        .middle = (int16_t *)r->near_by + 4 * row,
         .scratch = scratch_of,
         .context = r,
         .out = r->disparity,

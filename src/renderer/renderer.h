@@ -175,8 +175,7 @@ struct refocus_renderer {
     struct rf_bins *bins; /* of each tile */
 
     struct rf_taps *taps; /* of the depth upsampler: of columns, then of rows */
-    uint16_t *near_by;    /* how near its samples are, four rows */
-    int32_t *column;      /* and its offsets of samples in a row of the photo, from -2 on */
+    uint16_t *near_by;    /* how near its samples are, four rows, and where between, one */
     uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
