@@ -85,7 +85,7 @@ static void push_rows(struct refocus_renderer *r, int i, int y0, int y1)
     }
 }
 
-static bool all_known(const int16_t *blur, int n)
+bool rf_all_known(const int16_t *blur, int n)
 {
     int16_t least = 0;
 
@@ -104,7 +104,7 @@ static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int 
         int far_y = y % 2 ? near_y + 1 : near_y - 1;
         const ptrdiff_t at = y * fine.stride;
 
-        if (all_known(fine.blur + at, fine.width))
+        if (rf_all_known(fine.blur + at, fine.width))
             continue;
         if (far_y < 0 || far_y >= coarse.height)
             far_y = near_y;
@@ -163,14 +163,19 @@ static void run(struct fill *fill, rf_work_fn *work, int height)
             work(fill, band, 0);
 }
 
-void rf_background_fill(struct refocus_renderer *r)
+void rf_background_fill_level(struct refocus_renderer *r, int first)
 {
     struct fill fill = {r, 0};
 
-    for (fill.level = 0; fill.level < r->levels; fill.level++)
+    for (fill.level = first; fill.level < r->levels; fill.level++)
         run(&fill, push_item, level_of(r, fill.level + 1).height);
-    for (fill.level = r->levels - 1; fill.level >= 0; fill.level--)
+    for (fill.level = r->levels - 1; fill.level >= first; fill.level--)
         run(&fill, pull_item, level_of(r, fill.level).height);
+}
+
+void rf_background_fill(struct refocus_renderer *r)
+{
+    rf_background_fill_level(r, 0);
     if (r->levels == 0) /* a picture of one pixel: nothing is unknown */
         for (int c = 0; c < 4; c++)
             rf_extend_rows(r, c < 3 ? (void *)r->behind.light[c] : r->behind.blur, 0, 1);

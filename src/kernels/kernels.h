@@ -179,7 +179,52 @@ struct rf_search_job {
 };
 typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_search_job *job);
 
+/*
+ * sweep1: as sweep, of one plane and of `rows` rows of RF_TILE elements:
+ *
+ *     for each ray n and element p of the tile:
+ *         for k = 0 .. slabs - 1:
+ *             q = p + offset[k][n]
+ *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
+ *                 sum += light[q]; next ray
+ *         sum += behind[p + offset[slabs][n]], where no slab was hit
+ *
+ * Light is at most 65535 / steps, steps 4, 8 or 16; sums are exact.
+ */
+struct rf_sweep1_job {
+    const int16_t *blur;
+    const uint16_t *light, *behind;
+    ptrdiff_t stride; /* elements */
+    int rows;         /* 8 or 16 */
+    int rays;         /* at most RF_RAY_CHUNK */
+    int steps;        /* values that a 16-bit sum holds */
+    int slabs;
+    const struct rf_slab *slab;
+    const int32_t (*offset)[RF_RAY_CHUNK]; /* [slabs + 1], of elements */
+    bool uniform; /* slabs == 1, and whatever is looked at is in it */
+};
+typedef void rf_sweep1_fn(uint32_t sum[RF_TILE * RF_TILE], const struct rf_sweep1_job *job);
+
+/* nearest4: the least of 2 x 2 blurs, twice: n pairs out of rows of 2 n. */
+typedef void rf_nearest4_fn(int16_t *out, const int16_t *upper, const int16_t *lower, int n);
+
+/* push1: push, of one plane. */
+typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper,
+                         const uint16_t *lower, const int16_t *blur0, const int16_t *blur1,
+                         int n);
+
+/* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
+ * join2: pairs of them again. */
+typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
+                          const uint16_t *lower, int n);
+typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *second, int n);
+
 struct rf_kernels {
+    rf_sweep1_fn *sweep1;
+    rf_nearest4_fn *nearest4;
+    rf_push1_fn *push1;
+    rf_split2_fn *split2;
+    rf_join2_fn *join2;
     rf_search_fn *search;
     rf_sweep_fn *sweep;
     rf_signed_blur_fn *signed_blur;
@@ -202,12 +247,15 @@ struct rf_kernels {
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
+rf_sweep1_fn rf_sweep1_c;
 
 /* Each set overwrites what it does better. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
+rf_kernels_use_fn rf_yuv_use_c, rf_yuv_use_neon, rf_yuv_use_sse41, rf_yuv_use_avx2;
+rf_kernels_use_fn rf_sweep1_use_neon, rf_sweep1_use_sse41, rf_sweep1_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
     rf_search_use_avx2;

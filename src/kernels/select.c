@@ -42,25 +42,33 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     if (!has(*cpu))
         return false;
     kernels->sweep = rf_sweep_c;
+    kernels->sweep1 = rf_sweep1_c;
     rf_rows_use_c(kernels);
+    rf_yuv_use_c(kernels);
     rf_search_use_c(kernels);
     rf_upsample_use_c(kernels);
 #if defined(RF_WITH_NEON)
     if (*cpu == REFOCUS_CPU_NEON) {
         rf_kernels_use_neon(kernels);
         rf_upsample_use_neon(kernels);
+        rf_yuv_use_neon(kernels);
+        rf_sweep1_use_neon(kernels);
     }
 #endif
 #if defined(RF_WITH_SSE41)
     if (*cpu == REFOCUS_CPU_SSE41) {
         rf_kernels_use_sse41(kernels);
         rf_upsample_use_sse41(kernels);
+        rf_yuv_use_sse41(kernels);
+        rf_sweep1_use_sse41(kernels);
     }
 #endif
 #if defined(RF_WITH_AVX2)
     if (*cpu == REFOCUS_CPU_AVX2) {
         rf_kernels_use_avx2(kernels);
         rf_upsample_use_avx2(kernels);
+        rf_yuv_use_avx2(kernels);
+        rf_sweep1_use_avx2(kernels);
     }
 #endif
     return true;

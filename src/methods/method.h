@@ -78,11 +78,18 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 
+/* The same for a photo of Y, U and V: luma of a tile and, in its first rows, chroma as the
+ * planes have it. */
+void rf_encode_yuv_means(const struct rf_frame *f, struct rf_rect rect,
+                         const uint16_t luma[RF_TILE * RF_TILE],
+                         const uint16_t chroma[RF_TILE * RF_TILE]);
+void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect);
+
 /* One pixel given as codes; alpha is the photo's. */
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
 
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);
-rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
 
 #endif

@@ -120,7 +120,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     seen = take_group(arena, r, rows);
     behind = take_group(arena, r, rows);
     for (int c = 0; c < 3; c++) {
-        r->front.light[c] = plane_of(photo, r, c);
+        r->front.light[c] = r->plane[c] = plane_of(photo, r, c);
         r->smooth[c] = plane_of(seen, r, 1 + c);
         r->behind.light[c] = plane_of(behind, r, 1 + c);
     }

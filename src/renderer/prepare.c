@@ -3,6 +3,7 @@
 #include "depth/upsample.h"
 #include "planes/format.h"
 #include "planes/planes.h"
+#include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
 #include "renderer/params.h"
@@ -11,14 +12,19 @@ struct job {
     struct refocus_renderer *r;
     const struct refocus_image *photo;
     const struct refocus_disparity *map;
+    const struct refocus_image *guide; /* of a photo of Y, U and V that edges are asked of */
 };
 
 static void convert_band(void *context, int band, int worker)
 {
     const struct job *job = context;
+    struct refocus_renderer *r = job->r;
 
-    (void)worker;
-    rf_convert_rows(job->r, job->photo, rf_band_start(band), rf_band_end(job->r, band));
+    if (r->yuv.on)
+        rf_yuv_convert_rows(r, job->photo, job->guide, (uint8_t *)rf_scratch(r, worker),
+                            rf_band_start(band), rf_band_end(r, band));
+    else
+        rf_convert_rows(r, job->photo, rf_band_start(band), rf_band_end(r, band));
 }
 
 static void disparity_band(void *context, int band, int worker)
@@ -34,13 +40,20 @@ static uint16_t *scratch_of(void *context, int worker)
     return rf_scratch(context, worker);
 }
 
+/* A picture in the planes of what is seen, which are free until something is rendered. */
+static struct refocus_image guide_in(const struct refocus_renderer *r)
+{
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, r->front.blur, r->width, r->height,
+                                r->stride * (ptrdiff_t)sizeof(uint16_t));
+}
+
 /* The planes of the background layer are free until something is rendered. */
 static void upsample(struct refocus_renderer *r, const struct job *job)
 {
     const ptrdiff_t row = r->width + RF_BATCH_SPARE;
     struct rf_upsampler up = {
         .kernels = &r->kernels,
-        .photo = job->photo,
+        .photo = job->guide ? job->guide : job->photo,
         .map = job->map,
         .columns = rf_upsample_samples(job->map->width, r->width),
         .rows = rf_upsample_samples(job->map->height, r->height),
@@ -66,12 +79,14 @@ static void upsample(struct refocus_renderer *r, const struct job *job)
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
                     const struct refocus_disparity *disparity)
 {
-    struct job job = {r, photo, disparity};
+    struct job job = {r, photo, disparity, NULL};
+    struct refocus_image guide;
+    bool same_size;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
     r->prepared = r->blurred = r->highlights_found = false;
-    if (!rf_good_image(photo) || !rf_good_map(disparity))
+    if (!rf_good_picture(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
@@ -80,9 +95,13 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     r->tiles_x = (r->width + RF_TILE - 1) / RF_TILE;
     r->tiles_y = (r->height + RF_TILE - 1) / RF_TILE;
     r->levels = rf_pyramid(r->level, r->width, r->height);
+    rf_yuv_begin(r, photo);
+    same_size = disparity->width == r->width && disparity->height == r->height;
+    guide = guide_in(r);
+    job.guide = r->yuv.on && !same_size ? &guide : NULL;
     rf_run_begin(r);
     rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
-    if (disparity->width == r->width && disparity->height == r->height)
+    if (same_size)
         rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
     else
         upsample(r, &job);

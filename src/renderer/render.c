@@ -10,6 +10,7 @@
 #include "renderer/bands.h"
 #include "renderer/params.h"
 #include "renderer/rays.h"
+#include "renderer/render_yuv.h"
 
 struct method {
     const char *name, *summary;
@@ -57,19 +58,6 @@ const char *refocus_method_name(uint32_t method)
 const char *refocus_method_summary(uint32_t method)
 {
     return method < REFOCUS_METHOD_COUNT ? methods[method].summary : NULL;
-}
-
-int refocus_format_bytes(uint32_t format)
-{
-    switch (format) {
-    case REFOCUS_FORMAT_RGB8:
-    case REFOCUS_FORMAT_BGR8:
-        return 3;
-    case REFOCUS_FORMAT_RGBA8:
-    case REFOCUS_FORMAT_BGRA8:
-        return 4;
-    }
-    return 0;
 }
 
 /* The part of the picture to render; false if it is not inside. */
@@ -254,14 +242,17 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
                    const struct refocus_image *out)
 {
     struct rf_frame f = {.r = r, .params = params, .out = out};
+    int status;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
     if (!r->prepared)
         return REFOCUS_ERR_STATE;
     if (!rf_good_params(r, params) || !region_of(r, params, &f.region) ||
-        !rf_good_image(out) || out->width != f.region.x1 - f.region.x0 || out->height != f.region.y1 - f.region.y0)
+        !rf_good_picture(out) || out->width != f.region.x1 - f.region.x0 || out->height != f.region.y1 - f.region.y0)
         return REFOCUS_ERR_ARGUMENT;
+    if ((status = rf_check_yuv(&f)))
+        return status;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
     f.scale = rf_bin_scale_of(params->max_blur_radius);
@@ -272,7 +263,10 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     set_prefilter(&f);
     rf_run_begin(r);
     r->blurred = false;
-    run_passes(&f);
+    if (r->yuv.on)
+        rf_run_yuv(&f);
+    else
+        run_passes(&f);
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->blurred = true;

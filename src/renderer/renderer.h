@@ -9,6 +9,7 @@
 #include <refocus/render.h>
 
 #include "colour/transfer.h"
+#include "colour/yuv.h"
 #include "highlights/highlights.h"
 #include "highlights/rims.h"
 #include "kernels/kernels.h"
@@ -53,6 +54,29 @@ struct rf_bins {
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
 };
 
+/*
+ * A photo of Y, U and V. Luminance is in light[0] of the layers. Planes of chroma hold two
+ * values for each sample, D_b and D_r of colour/yuv.h, side by side: a tile's are as wide as the
+ * tile, and what is done to luma by rows is done to them in the same way. They take the place of
+ * the layers' light[1], and use their stride; the blur of chroma, given twice, that of
+ * smooth[2]. The codes that came in are kept: Y in place of alpha, U V in that of light[2].
+ */
+struct rf_yuv {
+    bool on;            /* else it is of R, G and B, and the rest is not valid */
+    int down;           /* rows of the photo to one of chroma: 1 << down */
+    int width, height;  /* samples of chroma */
+    uint32_t matrix, range, blend; /* that curve is for */
+    bool curve_made;
+    uint16_t *light;    /* of the photo, */
+    uint16_t *smooth;   /* pre-filtered */
+    uint16_t *behind;   /* and of the background */
+    int16_t *blur;
+    uint8_t *y;         /* width of the picture a row */
+    uint8_t *uv;        /* 2 width a row, rows uv_stride apart */
+    ptrdiff_t uv_stride;
+    struct rf_yuv_curve curve;
+};
+
 struct refocus_renderer {
     struct refocus_allocator allocator;
     struct refocus_log log;
@@ -75,6 +99,8 @@ struct refocus_renderer {
     uint32_t blend;     /* that the light planes are in */
     uint16_t *disparity; /* padded, its border is not set */
     uint8_t *alpha;     /* unpadded, width a row */
+    struct rf_yuv yuv;
+    uint16_t *plane[3]; /* of the photo; front.light[1], [2] of a YUV one are its luma, too */
     struct rf_layer front;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
     struct rf_highlight *highlight; /* of the photo in this blend, once they are found */

@@ -1,0 +1,79 @@
+/* yuv.c: loops over rows of luma and of chroma, written as those of rows.c. */
+#include "kernels/kernels.h"
+#include "simd/vec.h"
+
+static inline int16_t nearer(int16_t a, int16_t b)
+{
+    return a < b ? a : b;
+}
+
+static void RF_VEC(rf_nearest4)(int16_t *restrict out, const int16_t *restrict upper,
+                                const int16_t *restrict lower, int n)
+{
+    for (int x = 0; x < n; x++) {
+        const int16_t s = nearer(nearer(upper[2 * x], upper[2 * x + 1]),
+                                 nearer(lower[2 * x], lower[2 * x + 1]));
+
+        out[2 * x] = s;
+        out[2 * x + 1] = s;
+    }
+}
+
+static inline uint16_t known(int16_t blur)
+{
+    return (uint16_t)(blur != RF_NO_BLUR ? 0xffff : 0);
+}
+
+static inline int16_t farther(int16_t a, int16_t b)
+{
+    return a > b ? a : b;
+}
+
+static void RF_VEC(rf_push1)(uint16_t *restrict out, int16_t *restrict out_blur,
+                             const uint16_t *restrict upper, const uint16_t *restrict lower,
+                             const int16_t *restrict blur0, const int16_t *restrict blur1,
+                             int n)
+{
+    for (int x = 0; x < n; x++) {
+        const uint16_t k0 = known(blur0[2 * x]), k1 = known(blur0[2 * x + 1]);
+        const uint16_t k2 = known(blur1[2 * x]), k3 = known(blur1[2 * x + 1]);
+        const uint16_t count = (uint16_t)-(uint16_t)(k0 + k1 + k2 + k3);
+        const uint16_t sum = (uint16_t)((upper[2 * x] & k0) + (upper[2 * x + 1] & k1) +
+                                        (lower[2 * x] & k2) + (lower[2 * x + 1] & k3));
+        const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
+        /* x / 3 as in arithmetic.md */
+        const uint16_t third =
+            (uint16_t)((uint16_t)(((uint32_t)(uint16_t)(sum + 1) * 43691) >> 16) >> 1);
+        const uint16_t quarter = (uint16_t)((uint16_t)(sum + 2) >> 2);
+
+        out[x] = count == 4 ? quarter : count == 3 ? third : count == 2 ? half : sum;
+        out_blur[x] = farther(farther(blur0[2 * x], blur0[2 * x + 1]),
+                              farther(blur1[2 * x], blur1[2 * x + 1]));
+    }
+}
+
+static void RF_VEC(rf_split2)(uint16_t *restrict first, uint16_t *restrict second,
+                              const uint16_t *upper, const uint16_t *lower, int n)
+{
+    for (int x = 0; x < n; x++) {
+        first[x] = (uint16_t)((upper[2 * x] + lower[2 * x] + 1) >> 1);
+        second[x] = (uint16_t)((upper[2 * x + 1] + lower[2 * x + 1] + 1) >> 1);
+    }
+}
+
+static void RF_VEC(rf_join2)(uint16_t *restrict out, const uint16_t *restrict first,
+                             const uint16_t *restrict second, int n)
+{
+    for (int x = 0; x < n; x++) {
+        out[2 * x] = first[x];
+        out[2 * x + 1] = second[x];
+    }
+}
+
+void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)
+{
+    kernels->nearest4 = RF_VEC(rf_nearest4);
+    kernels->push1 = RF_VEC(rf_push1);
+    kernels->split2 = RF_VEC(rf_split2);
+    kernels->join2 = RF_VEC(rf_join2);
+}
