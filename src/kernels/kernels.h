@@ -205,8 +205,9 @@ struct rf_sweep1_job {
 };
 typedef void rf_sweep1_fn(uint32_t sum[RF_TILE * RF_TILE], const struct rf_sweep1_job *job);
 
-/* nearest4: the least of 2 x 2 blurs, twice: n pairs out of rows of 2 n. */
-typedef void rf_nearest4_fn(int16_t *out, const int16_t *upper, const int16_t *lower, int n);
+/* sharpest4: of 2 x 2 blurs the first with the least |s|, twice: n pairs out of rows of 2 n.
+ * Blurs are at most 127 pixels. */
+typedef void rf_sharpest4_fn(int16_t *out, const int16_t *upper, const int16_t *lower, int n);
 
 /* push1: push, of one plane. */
 typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper,
@@ -221,7 +222,7 @@ typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *s
 
 struct rf_kernels {
     rf_sweep1_fn *sweep1;
-    rf_nearest4_fn *nearest4;
+    rf_sharpest4_fn *sharpest4;
     rf_push1_fn *push1;
     rf_split2_fn *split2;
     rf_join2_fn *join2;

@@ -2,17 +2,22 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-static inline int16_t nearer(int16_t a, int16_t b)
+static inline uint16_t size(int16_t s)
 {
-    return a < b ? a : b;
+    return (uint16_t)(s < 0 ? -s : s);
 }
 
-static void RF_VEC(rf_nearest4)(int16_t *restrict out, const int16_t *restrict upper,
-                                const int16_t *restrict lower, int n)
+static inline int16_t sharper(int16_t a, int16_t b)
+{
+    return size(a) <= size(b) ? a : b;
+}
+
+static void RF_VEC(rf_sharpest4)(int16_t *restrict out, const int16_t *restrict upper,
+                                 const int16_t *restrict lower, int n)
 {
     for (int x = 0; x < n; x++) {
-        const int16_t s = nearer(nearer(upper[2 * x], upper[2 * x + 1]),
-                                 nearer(lower[2 * x], lower[2 * x + 1]));
+        const int16_t s = sharper(sharper(upper[2 * x], upper[2 * x + 1]),
+                                  sharper(lower[2 * x], lower[2 * x + 1]));
 
         out[2 * x] = s;
         out[2 * x + 1] = s;
@@ -72,7 +77,7 @@ static void RF_VEC(rf_join2)(uint16_t *restrict out, const uint16_t *restrict fi
 
 void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)
 {
-    kernels->nearest4 = RF_VEC(rf_nearest4);
+    kernels->sharpest4 = RF_VEC(rf_sharpest4);
     kernels->push1 = RF_VEC(rf_push1);
     kernels->split2 = RF_VEC(rf_split2);
     kernels->join2 = RF_VEC(rf_join2);

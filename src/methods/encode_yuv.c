@@ -97,15 +97,25 @@ static int limited(int mean)
     return mean > RF_MEAN_MAX ? RF_MEAN_MAX : mean;
 }
 
-/* Y of a pixel; light that did not change is the code that it was. */
+/* Y of a pixel; one whose luminance and chroma did not change has the code that it had. */
 static uint8_t luma_code(const struct rf_yuv_curve *curve, const struct site_row *row, int i,
-                         int x, int excess)
+                         int x, bool same_chroma, int excess)
 {
     const int mean = row->mean[i][x];
 
-    if (mean == 4 * row->own[i][x])
+    if (same_chroma && mean == 4 * row->own[i][x])
         return row->was[i][x];
     return curve->to_code[rf_clip_mean(limited(mean) - excess)];
+}
+
+/* Whether all pixels of a sample have the luminance that they had. */
+static bool same_light(const struct site_row *row, int x, int next, int rows)
+{
+    for (int i = 0; i < rows; i++)
+        if (row->mean[i][x] != 4 * row->own[i][x] ||
+            row->mean[i][next] != 4 * row->own[i][next])
+            return false;
+    return true;
 }
 
 static void encode_site(const struct rf_yuv_curve *curve, struct site_row *row, int x, int next,
@@ -116,12 +126,13 @@ static void encode_site(const struct rf_yuv_curve *curve, struct site_row *row, 
                        limited(row->mean[lower][x]) + limited(row->mean[lower][next]) + 2) >> 2;
     const struct rf_chroma_code code =
         rf_chroma_code(curve, light, row->chroma[x], row->chroma[x + 1]);
-    const bool same = row->chroma[x] == 4 * row->own_chroma[x] &&
-                      row->chroma[x + 1] == 4 * row->own_chroma[x + 1];
+    const bool same_chroma = row->chroma[x] == 4 * row->own_chroma[x] &&
+                             row->chroma[x + 1] == 4 * row->own_chroma[x + 1];
+    const bool same = same_chroma && same_light(row, x, next, rows);
 
     for (int i = 0; i < rows; i++) {
-        row->y[i][x] = luma_code(curve, row, i, x, code.excess);
-        row->y[i][next] = luma_code(curve, row, i, next, code.excess);
+        row->y[i][x] = luma_code(curve, row, i, x, same_chroma, code.excess);
+        row->y[i][next] = luma_code(curve, row, i, next, same_chroma, code.excess);
     }
     row->uv[x] = same ? row->uv_was[x] : code.u;
     row->uv[x + 1] = same ? row->uv_was[x + 1] : code.v;

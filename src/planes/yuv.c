@@ -201,7 +201,7 @@ void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)
         const int16_t *upper = r->front.blur + y * r->stride;
         const int16_t *lower = yuv->down && y + 1 < r->height ? upper + r->stride : upper;
 
-        r->kernels.nearest4(yuv->blur + cy * r->stride, upper, lower, yuv->width);
+        r->kernels.sharpest4(yuv->blur + cy * r->stride, upper, lower, yuv->width);
     }
     rf_extend_chroma(r, yuv->blur, c0, c1);
 }

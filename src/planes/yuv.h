@@ -22,8 +22,8 @@ void rf_yuv_convert_rows(struct refocus_renderer *r, const struct refocus_image 
 /* Change luma and chroma to the curve of another blend. */
 void rf_yuv_reblend(struct refocus_renderer *r, uint32_t blend);
 
-/* The blur of chroma: the nearest of its pixels, so that what it shows of an edge moves with
- * the foreground. r->front.blur is final. */
+/* The blur of chroma: that of its sharpest pixel, so that no colour of what is in focus is
+ * smeared. r->front.blur is final. */
 void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1);
 
 /* A step of the pre-filter, for a row of tiles, as rf_prefilter_rows(): of luma, and of chroma
