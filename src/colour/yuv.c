@@ -89,13 +89,12 @@ void rf_yuv_curve_init(struct rf_yuv_curve *curve, uint32_t matrix, uint32_t ran
 
         curve->luma[code] = (int16_t)tone;
         curve->light_of_luma[code] = curve->light[tone];
-        for (int i = 0; i < 2; i++) {
-            const double more = per_chroma * range_of[i] * (code - 128);
-
-            curve->chroma[i][code] = (int16_t)rounded(more);
-            curve->green[i][code] = (int16_t)rounded(-more * share[i] / kg);
-        }
     }
-    for (int i = 0; i < 2; i++)
-        curve->codes_per_tone[i] = rounded(65536 / (per_chroma * range_of[i]));
+    for (int i = 0; i < 2; i++) {
+        const double tones = per_chroma * range_of[i];
+
+        curve->tones_per_code[i] = rounded(4096 * tones);
+        curve->green_per_code[i] = rounded(4096 * tones * share[i] / kg);
+        curve->codes_per_tone[i] = rounded(65536 / tones);
+    }
 }

@@ -40,8 +40,8 @@ enum {
 struct rf_yuv_curve {
     int16_t luma[256];          /* tone of a code of Y */
     uint16_t light_of_luma[256];
-    int16_t chroma[2][256];     /* B' - Y' of a code of U, R' - Y' of one of V, in tones */
-    int16_t green[2][256];      /* and what they take from G' */
+    int32_t tones_per_code[2];  /* of B' - Y' for U, R' - Y' for V, Q12, */
+    int32_t green_per_code[2];  /* and what they take from G' */
     uint16_t light[RF_TONES];   /* Q12 */
     int16_t tone[(RF_MEAN_MAX >> 1) + 1]; /* of a Q13 mean */
     uint8_t to_code[RF_MEAN_MAX + 1];     /* Y of a Q14 mean */
@@ -65,6 +65,18 @@ static inline int rf_clip_tone(int tone)
     return tone < 0 ? 0 : tone > RF_TONES - 1 ? RF_TONES - 1 : tone;
 }
 
+/* B' - Y' of a code of U (i = 0), R' - Y' of one of V (1); Y' - G'. In tones. */
+static inline int rf_more(const struct rf_yuv_curve *curve, int i, int code)
+{
+    return ((code - 128) * curve->tones_per_code[i] + 2048) >> 12;
+}
+
+static inline int rf_less_green(const struct rf_yuv_curve *curve, int u, int v)
+{
+    return ((u - 128) * curve->green_per_code[0] + (v - 128) * curve->green_per_code[1] +
+            2048) >> 12;
+}
+
 /* What a sample of chroma gives. */
 struct rf_chroma {
     uint16_t blue, red; /* D + RF_CHROMA_ZERO, Q12 */
@@ -76,10 +88,9 @@ static inline struct rf_chroma rf_chroma_of(const struct rf_yuv_curve *curve, in
                                             int v)
 {
     const int tone = curve->tone[2 * light], own = curve->light[tone];
-    const int blue = curve->light[rf_clip_tone(tone + curve->chroma[0][u])];
-    const int red = curve->light[rf_clip_tone(tone + curve->chroma[1][v])];
-    const int green =
-        curve->light[rf_clip_tone(tone + curve->green[0][u] + curve->green[1][v])];
+    const int blue = curve->light[rf_clip_tone(tone + rf_more(curve, 0, u))];
+    const int red = curve->light[rf_clip_tone(tone + rf_more(curve, 1, v))];
+    const int green = curve->light[rf_clip_tone(tone - rf_less_green(curve, u, v))];
     const int all = (curve->kr * red + curve->kg * green + curve->kb * blue + RF_SHARE / 2) /
                     RF_SHARE;
 

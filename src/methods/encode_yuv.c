@@ -1,7 +1,6 @@
 #include "methods/method.h"
 #include "planes/format.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 /* Where samples of a row of the result are. */
@@ -84,85 +83,42 @@ void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect)
                    (rect.x1 - rect.x0 + 1) / 2);
 }
 
-/* A tile's rows that share one of chroma: of means, of what the pixels themselves were given,
- * of their codes, and of the result. */
-struct site_row {
-    const uint16_t *mean[2], *own[2], *chroma, *own_chroma;
-    const uint8_t *was[2], *uv_was;
-    uint8_t y[2][RF_TILE], uv[RF_TILE];
-};
-
-static int limited(int mean)
+/* Repeat what is there over the pixel beside an odd edge, which shares its sample. */
+static void repeat_edge(struct rf_decode_job *job, int w, int h)
 {
-    return mean > RF_MEAN_MAX ? RF_MEAN_MAX : mean;
+    if (w % 2)
+        for (int y = 0; y < h; y++)
+            job->luma[y * RF_TILE + w] = job->luma[y * RF_TILE + w - 1];
+    if (job->down && h % 2)
+        memcpy(job->luma + h * RF_TILE, job->luma + (h - 1) * RF_TILE,
+               RF_TILE * sizeof job->luma[0]);
 }
 
-/* Y of a pixel; one whose luminance and chroma did not change has the code that it had. */
-static uint8_t luma_code(const struct rf_yuv_curve *curve, const struct site_row *row, int i,
-                         int x, bool same_chroma, int excess)
-{
-    const int mean = row->mean[i][x];
-
-    if (same_chroma && mean == 4 * row->own[i][x])
-        return row->was[i][x];
-    return curve->to_code[rf_clip_mean(limited(mean) - excess)];
-}
-
-/* Whether all pixels of a sample have the luminance that they had. */
-static bool same_light(const struct site_row *row, int x, int next, int rows)
-{
-    for (int i = 0; i < rows; i++)
-        if (row->mean[i][x] != 4 * row->own[i][x] ||
-            row->mean[i][next] != 4 * row->own[i][next])
-            return false;
-    return true;
-}
-
-static void encode_site(const struct rf_yuv_curve *curve, struct site_row *row, int x, int next,
-                        int rows)
-{
-    const int lower = rows - 1;
-    const int light = (limited(row->mean[0][x]) + limited(row->mean[0][next]) +
-                       limited(row->mean[lower][x]) + limited(row->mean[lower][next]) + 2) >> 2;
-    const struct rf_chroma_code code =
-        rf_chroma_code(curve, light, row->chroma[x], row->chroma[x + 1]);
-    const bool same_chroma = row->chroma[x] == 4 * row->own_chroma[x] &&
-                             row->chroma[x + 1] == 4 * row->own_chroma[x + 1];
-    const bool same = same_chroma && same_light(row, x, next, rows);
-
-    for (int i = 0; i < rows; i++) {
-        row->y[i][x] = luma_code(curve, row, i, x, same_chroma, code.excess);
-        row->y[i][next] = luma_code(curve, row, i, next, same_chroma, code.excess);
-    }
-    row->uv[x] = same ? row->uv_was[x] : code.u;
-    row->uv[x + 1] = same ? row->uv_was[x + 1] : code.v;
-}
-
-void rf_encode_yuv_means(const struct rf_frame *f, struct rf_rect rect,
-                         const uint16_t luma[RF_TILE * RF_TILE],
-                         const uint16_t chroma[RF_TILE * RF_TILE])
+void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                         struct rf_decode_job *job)
 {
     const struct refocus_renderer *r = f->r;
     const struct rf_yuv *yuv = &r->yuv;
-    const int x0 = rect.x0 % RF_TILE, w = rect.x1 - rect.x0;
+    const int x0 = tx * RF_TILE, y0 = ty * RF_TILE, c0 = y0 >> yuv->down;
+    const int w = r->width - x0 < RF_TILE ? r->width - x0 : RF_TILE;
+    const int h = r->height - y0 < RF_TILE ? r->height - y0 : RF_TILE;
+    const int rows = (h + yuv->down) >> yuv->down;
 
-    for (int y = rect.y0; y < rect.y1; y += 1 << yuv->down) {
-        const int cy = y >> yuv->down, rows = yuv->down && y + 1 < rect.y1 ? 2 : 1;
-        struct site_row row = {
-            .chroma = chroma + (y % RF_TILE >> yuv->down) * RF_TILE + x0,
-            .own_chroma = yuv->smooth + cy * r->stride + rect.x0,
-            .uv_was = yuv->uv + cy * yuv->uv_stride + rect.x0,
-        };
-
-        for (int i = 0; i < rows; i++) {
-            row.mean[i] = luma + (y + i) % RF_TILE * RF_TILE + x0;
-            row.own[i] = r->smooth[0] + (y + i) * r->stride + rect.x0;
-            row.was[i] = yuv->y + (size_t)(y + i) * r->width + rect.x0;
-        }
-        for (int x = 0; x < w; x += 2)
-            encode_site(&yuv->curve, &row, x, x + 1 < w ? x + 1 : x, rows);
-        for (int i = 0; i < rows; i++)
-            put_luma(f, rect.x0, y + i, row.y[i], w);
-        put_chroma(f, rect.x0, y, row.uv, (w + 1) / 2);
-    }
+    job->curve = &yuv->curve;
+    job->down = yuv->down;
+    job->own_luma = r->smooth[0] + y0 * r->stride + x0;
+    job->own_chroma = yuv->smooth + c0 * r->stride + x0;
+    job->stride = r->stride;
+    for (int y = 0; y < h; y++)
+        memcpy(job->y + y * RF_TILE, yuv->y + (size_t)(y0 + y) * r->width + x0, (size_t)w);
+    for (int y = 0; y < rows; y++)
+        memcpy(job->uv + y * RF_TILE, yuv->uv + (c0 + y) * yuv->uv_stride + x0,
+               (size_t)(w + w % 2));
+    repeat_edge(job, w, h);
+    r->kernels.decode(job);
+    for (int y = rect.y0; y < rect.y1; y++)
+        put_luma(f, rect.x0, y, job->y + (y - y0) * RF_TILE + rect.x0 - x0, rect.x1 - rect.x0);
+    for (int y = rect.y0; y < rect.y1; y += 1 << yuv->down)
+        put_chroma(f, rect.x0, y, job->uv + ((y - y0) >> yuv->down) * RF_TILE + rect.x0 - x0,
+                   (rect.x1 - rect.x0 + 1) / 2);
 }

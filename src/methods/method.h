@@ -78,11 +78,9 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 
-/* The same for a photo of Y, U and V: luma of a tile and, in its first rows, chroma as the
- * planes have it. */
-void rf_encode_yuv_means(const struct rf_frame *f, struct rf_rect rect,
-                         const uint16_t luma[RF_TILE * RF_TILE],
-                         const uint16_t chroma[RF_TILE * RF_TILE]);
+/* The same for a photo of Y, U and V, from job->luma and job->chroma. */
+void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                         struct rf_decode_job *job);
 void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect);
 
 /* One pixel given as codes; alpha is the photo's. */

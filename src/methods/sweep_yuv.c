@@ -37,12 +37,20 @@ static struct place shift_of(const struct plane *plane, const struct refocus_ray
                           offset(ray->v, blur, plane->down)};
 }
 
-static int32_t elements(const struct rf_frame *f, const struct plane *plane,
-                        const struct refocus_ray *ray, int blur)
+/* Where n rays see a blur, in elements. */
+static void set_offsets(int32_t *restrict out, const struct plane *plane,
+                        const int16_t *restrict u, const int16_t *restrict v, int blur,
+                        int32_t stride, int n)
 {
-    const struct place shift = shift_of(plane, ray, blur);
+    const int across = plane->across, down = plane->down;
+    const int32_t half_x = 1 << (22 + across), half_y = 1 << (22 + down);
 
-    return shift.y * (int32_t)f->r->stride + shift.x;
+    for (int i = 0; i < n; i++) {
+        const int32_t x = (u[i] * blur + half_x) >> (23 + across);
+        const int32_t y = (v[i] * blur + half_y) >> (23 + down);
+
+        out[i] = y * stride + x * (1 << across);
+    }
 }
 
 static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
@@ -59,6 +67,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
 {
     const struct rf_ray_set *set = plane->set;
     int32_t offsets[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
     struct rf_sweep1_job job = {
         .blur = plane->blur,
         .light = plane->light,
@@ -80,12 +89,13 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
         while (job.rays < RF_RAY_CHUNK && n + job.rays < set->count &&
                ray[job.rays].weight == ray->weight)
             job.rays++;
-        for (int k = 0; k <= plan->slabs; k++) {
-            const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
-
-            for (int i = 0; i < job.rays; i++)
-                offsets[k][i] = elements(f, plane, &ray[i], blur);
+        for (int i = 0; i < job.rays; i++) {
+            u[i] = ray[i].u;
+            v[i] = ray[i].v;
         }
+        for (int k = 0; k <= plan->slabs; k++)
+            set_offsets(offsets[k], plane, u, v, k < plan->slabs ? plan->slab[k].centre : behind,
+                        (int32_t)f->r->stride, job.rays);
         f->r->kernels.sweep1(run, &job);
         if (!set->equal &&
             (n + job.rays == set->count || ray[job.rays].weight != ray->weight))
@@ -198,7 +208,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         .across = 1,
         .down = yuv->down,
     };
-    uint16_t mean[2][LANES];
+    struct rf_decode_job means;
     struct rf_tile_plan plan;
 
     (void)worker;
@@ -209,7 +219,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     }
     luma.set = rf_rays_for(r, plan.reach, plan.lamp);
     chroma.set = half_of(r, luma.set);
-    sweep_plane(f, &plan, &luma, behind, mean[0]);
-    sweep_plane(f, &plan, &chroma, behind, mean[1]);
-    rf_encode_yuv_means(f, rect, mean[0], mean[1]);
+    sweep_plane(f, &plan, &luma, behind, means.luma);
+    sweep_plane(f, &plan, &chroma, behind, means.chroma);
+    rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

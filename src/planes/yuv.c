@@ -60,33 +60,28 @@ void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int
                    first + (r->yuv.height - 1) * r->stride, bytes);
 }
 
-/* Row cy of chroma and the rows that share it, from the codes that are kept. */
-static void convert_codes(const struct refocus_renderer *r, int cy)
+/* Row cy of chroma and the rows that share it, from the codes that are kept. The pixel beside
+ * an odd edge, which planes have room for, is made of scratch: rows of codes have none. */
+static void convert_codes(const struct refocus_renderer *r, uint8_t *scratch, int cy)
 {
     const struct rf_yuv *yuv = &r->yuv;
-    const struct rf_yuv_curve *const curve = &yuv->curve;
     const int w = r->width, y = cy << yuv->down;
     const bool two = yuv->down && y + 1 < r->height;
-    const uint8_t *const upper = yuv->y + (size_t)y * w, *const lower = upper + (two ? w : 0);
-    const uint8_t *uv = yuv->uv + cy * yuv->uv_stride;
+    const uint8_t *luma[2] = {yuv->y + (size_t)y * w, yuv->y + (size_t)(y + two) * w};
     uint16_t *const out[2] = {r->plane[0] + y * r->stride,
                               r->plane[0] + (y + two) * r->stride};
-    uint16_t *chroma = yuv->light + cy * r->stride;
 
-    for (int x = 0; x < w; x += 2, uv += 2, chroma += 2) {
-        const int next = x + 1 < w ? x + 1 : x;
-        const int a = curve->light_of_luma[upper[x]], b = curve->light_of_luma[upper[next]];
-        const int c = curve->light_of_luma[lower[x]], d = curve->light_of_luma[lower[next]];
-        const struct rf_chroma sample =
-            rf_chroma_of(curve, (a + b + c + d + 2) >> 2, uv[0], uv[1]);
+    if (w % 2) {
+        for (int i = 0; i < 2; i++) {
+            uint8_t *row = scratch + i * (w + 1);
 
-        chroma[0] = sample.blue;
-        chroma[1] = sample.red;
-        out[0][x] = rf_luminance(a, sample.excess);
-        out[0][next] = rf_luminance(b, sample.excess);
-        out[1][x] = rf_luminance(c, sample.excess);
-        out[1][next] = rf_luminance(d, sample.excess);
+            memcpy(row, luma[i], (size_t)w);
+            row[w] = row[w - 1];
+            luma[i] = row;
+        }
     }
+    r->kernels.encode(out, yuv->light + cy * r->stride, luma, yuv->uv + cy * yuv->uv_stride,
+                      &yuv->curve, yuv->width);
 }
 
 static uint8_t code_of(int tone)
@@ -105,9 +100,9 @@ static void guide_row(const struct refocus_renderer *r, uint8_t *out, int y)
     for (int x = 0; x < r->width; x++, out += 3) {
         const int tone = curve->luma[luma[x]], at = x & ~1;
 
-        out[0] = code_of(tone + curve->chroma[1][uv[at + 1]]);
-        out[1] = code_of(tone + curve->green[0][uv[at]] + curve->green[1][uv[at + 1]]);
-        out[2] = code_of(tone + curve->chroma[0][uv[at]]);
+        out[0] = code_of(tone + rf_more(curve, 1, uv[at + 1]));
+        out[1] = code_of(tone - rf_less_green(curve, uv[at], uv[at + 1]));
+        out[2] = code_of(tone + rf_more(curve, 0, uv[at]));
     }
 }
 
@@ -154,12 +149,12 @@ static void keep_422(const struct refocus_renderer *r, const struct refocus_imag
         uv[x] = scratch[2 * x + 1];
 }
 
-static void convert_chroma_rows(struct refocus_renderer *r, int c0, int c1)
+static void convert_chroma_rows(struct refocus_renderer *r, uint8_t *scratch, int c0, int c1)
 {
     const int y0 = c0 << r->yuv.down, end = c1 << r->yuv.down;
 
     for (int cy = c0; cy < c1; cy++)
-        convert_codes(r, cy);
+        convert_codes(r, scratch, cy);
     rf_extend_rows(r, r->plane[0], y0, end < r->height ? end : r->height);
     rf_extend_chroma(r, r->yuv.light, c0, c1);
 }
@@ -179,7 +174,7 @@ void rf_yuv_convert_rows(struct refocus_renderer *r, const struct refocus_image 
         else
             keep_422(r, photo, scratch, cy);
     }
-    convert_chroma_rows(r, c0, c1);
+    convert_chroma_rows(r, scratch, c0, c1);
     for (int y = y0; guide && y < y1; y++)
         guide_row(r, guide->plane[0] + y * guide->stride[0], y);
 }
@@ -188,7 +183,7 @@ void rf_yuv_reblend(struct refocus_renderer *r, uint32_t blend)
 {
     rf_yuv_curve_init(&r->yuv.curve, r->yuv.matrix, r->yuv.range, blend);
     r->yuv.blend = blend;
-    convert_chroma_rows(r, 0, r->yuv.height);
+    convert_chroma_rows(r, (uint8_t *)rf_scratch(r, 0), 0, r->yuv.height);
 }
 
 void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)
