@@ -43,9 +43,11 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         return false;
     kernels->sweep = rf_sweep_c;
     kernels->sweep1 = rf_sweep1_c;
+    kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
     rf_yuv_use_c(kernels);
     rf_search_use_c(kernels);
+    rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
 #if defined(RF_WITH_NEON)
     if (*cpu == REFOCUS_CPU_NEON) {

@@ -52,6 +52,7 @@ struct rf_bins {
     uint64_t word[RF_BINS / 64];
     int16_t least, most; /* Q7.8 */
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
+    int16_t behind;      /* blur of the background in the middle, once there are weights */
 };
 
 /*
@@ -103,9 +104,8 @@ struct refocus_renderer {
     uint16_t *plane[3]; /* of the photo; front.light[1], [2] of a YUV one are its luma, too */
     struct rf_layer front;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
-    struct rf_highlight *highlight; /* of the photo in this blend, once they are found */
-    uint64_t highlights;
-    bool highlights_found;
+    struct rf_highlights highlights[RF_LAMP_PARTS]; /* of the photo in this blend, once */
+    bool highlights_found;                          /* they are found */
     struct rf_rim *rim; /* of the photo */
     uint64_t rims;
 
@@ -113,6 +113,8 @@ struct refocus_renderer {
     struct rf_layer behind; /* the background layer */
     struct rf_level level[RF_LEVELS];
     int levels;
+    uint16_t *weight;        /* of smooth, eq. 5, once the background is filled: its memory */
+    ptrdiff_t weight_stride; /* is the pyramid's. Those of behind are where its blur was. */
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
     struct rf_taps *taps; /* of the depth upsampler: of columns, then of rows */
@@ -122,7 +124,7 @@ struct refocus_renderer {
     bool blurred;         /* front.blur is valid */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
-    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q16 */
+    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 

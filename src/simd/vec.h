@@ -9,11 +9,19 @@
  *     vec_u16_add(a, b)       (uint16_t)(a + b)
  *     vec_u16_sub(a, b)       (uint16_t)(a - b)
  *     vec_u16_and(a, b)       a & b
+ *     vec_u16_or(a, b)        a | b
  *     vec_u16_without(a, b)   a & ~b
  *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
  *     vec_s16_less(a, b)      (int16_t)a < (int16_t)b ? 0xffff : 0
  *     vec_u16_select(m, a, b) m ? a : b, for lanes of m that are 0xffff or 0
+ *
+ * A vec_u32 holds as many lanes of 32 bits, in an order of its own.
+ *
+ *     vec_u32_zero()          every lane = 0
+ *     vec_u32_add_products(sum, a, b, c, d)
+ *                             sum + a * b + c * d, factors below 2^15
+ *     vec_u32_add_to(to, v)   to[i] += v[i], 64-bit sums
  */
 #ifndef RF_VEC_H
 #define RF_VEC_H

@@ -73,7 +73,7 @@ int main(int argc, char **argv)
             bench_sweep(&subject);
             bench_rows(&subject);
         } else if (!bench) {
-            failures += check_vec(cpu) + check_sweep(&subject) + check_search(&subject) +
+            failures += check_vec(cpu) + check_sweep(&subject) + check_light(&subject) + check_search(&subject) +
                         check_rows(&subject);
         }
     }
