@@ -195,7 +195,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         .weighing = r->smooth[0] + origin,
         .weighing_behind = r->behind.light[0] + origin,
         .rows = RF_TILE,
-        .steps = f->params->highlight_gain > 1 ? 4 : 16,
+        .steps = f->bright ? 4 : 16,
     };
     struct plane chroma = {
         .blur = yuv->blur + at,

@@ -71,6 +71,31 @@ static void prefilter(struct rf_frame *f)
         rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
 }
 
+static void find_lamps(void *context, int part, int worker)
+{
+    const struct rf_frame *f = context;
+
+    rf_find_highlights(f->r, part, rf_scratch(f->r, worker));
+}
+
+/* Lamps are told, and given back light, by luminance alone. */
+static void prefilter_with_highlights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    const float gain = f->params->highlight_gain;
+
+    if (gain > 1 && !r->highlights_found) {
+        rf_pool_run(&r->pool, find_lamps, f, rf_lamp_parts(r->height));
+        r->highlights_found = !rf_cancelled(r);
+    }
+    f->bright = gain > 1 && r->highlights_found && rf_mark_highlights(r);
+    if (f->bright)
+        rf_add_highlights(r, gain, 1);
+    prefilter(f);
+    if (f->bright)
+        rf_add_highlights(r, gain, -1);
+}
+
 static void dilate_item(void *context, int upwards, int worker)
 {
     const struct rf_frame *f = context;
@@ -147,7 +172,7 @@ void rf_run_yuv(struct rf_frame *f)
                      f->params->max_blur_radius);
     rf_patch_rims(r, f->focus, f->scale);
     rf_pool_run(&r->pool, chroma_blur_band, f, rf_bands(r));
-    prefilter(f);
+    prefilter_with_highlights(f);
     rf_pool_run(&r->pool, dilate_item, f, 2);
     rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
     rf_background_yuv_fill(r);
