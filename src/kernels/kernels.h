@@ -15,43 +15,104 @@
 #include "tiles/slab.h"
 
 /*
- * sweep: rays of one tile of RF_TILE x RF_TILE pixels.
- *
- *     for each ray n and pixel p of the tile:
- *         for k = 0 .. slabs - 1:
- *             q = p + offset[k][n]
- *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
- *                 sum += light[q]; next ray
- *         sum += behind[p + offset[slabs][n]], where no slab was hit
- *
- * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
- * tile's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
+ * Rays of a tile are a chunk at a time; what they look at is found out for strips of the tile,
+ * RF_STRIP rows each.
  */
-enum { RF_RAY_CHUNK = 64 };
+enum { RF_RAY_CHUNK = 64, RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
 
-struct rf_sweep_job {
-    const int16_t *blur;     /* light is in the three planes after it, pitch apart */
-    const uint16_t *behind;  /* the first of three planes */
-    ptrdiff_t stride, pitch; /* elements */
-    int rays;                                /* at most RF_RAY_CHUNK */
-    int slabs;
+/*
+ * ranges: the least and the greatest blur of cells of RF_CELL x RF_CELL pixels, and then of
+ * windows of RF_WINDOW_X x RF_WINDOW_Y cells to the right of and below a cell: whatever a
+ * strip that begins in that cell covers. A range is (least & 0xffff) | most << 16.
+ *
+ * cells: one row of n cells from the four rows at `blur`.
+ * windows: one row of windows from RF_WINDOW_Y rows of n cells, whose ends are repeated: the
+ * first begins `border` cells to the left, the last n - 1 + border to the right. The scratch is
+ * 2 (n + 2 border + RF_WINDOW_X - 1) long.
+ */
+enum { RF_CELL = 4, RF_WINDOW_X = RF_TILE / RF_CELL + 1, RF_WINDOW_Y = RF_STRIP / RF_CELL + 1 };
+typedef void rf_cells_fn(int16_t *least, int16_t *most, const int16_t *blur, ptrdiff_t stride,
+                         int n);
+typedef void rf_windows_fn(uint32_t *range, const int16_t *const least[RF_WINDOW_Y],
+                           const int16_t *const most[RF_WINDOW_Y], int16_t *scratch, int n,
+                           int border);
+
+/* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset
+ * x + y stride, and as one of cells: floor(x / RF_CELL) + floor(y / RF_CELL) cell_stride. */
+typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const int16_t *v,
+                       int blur, int32_t stride, int32_t cell_stride, int n);
+
+/*
+ * sort_rays: what the rays of a strip have to look at.
+ *
+ *     for each ray n:
+ *         for k = 0 .. slabs - 1, with the range at range[cell[k][n]]:
+ *             no blur in the range is in slab k: go on
+ *             all blurs are:                     take its light as the last, offset[k][n]; end
+ *             else:                              test slab k at offset[k][n]
+ *         the last is the background at offset[slabs][n]
+ *
+ * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
+ * otherwise in their order. Nothing is lost by this: tests that are left out could not hit, or
+ * would all hit.
+ */
+enum { RF_SORTED_TESTS = 8 };
+
+struct rf_sort_job {
+    const uint32_t *range; /* at the strip's first pixel */
+    const uint16_t *front, *behind; /* first of three planes of light, there */
+    const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
+    int rays, slabs;
     const struct rf_slab *slab;
-    const int32_t (*offset)[RF_RAY_CHUNK];   /* [slabs + 1], of elements */
-    bool uniform; /* slabs == 1, and whatever is looked at is in it */
-    bool bright;  /* highlights are in the light */
-
-    /* of sweep_weighted: each pixel's weight, 1 to RF_WEIGHT_MAX. That of the front is a plane
-     * with a stride and offsets of its own, that of `behind` lies as its light does. */
-    const uint16_t *weight, *behind_weight;
-    ptrdiff_t weight_stride;
+    const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
     const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
 };
-typedef void rf_sweep_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_sweep_job *job);
 
-/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. */
+struct rf_sorted_rays {
+    int rays;
+    uint8_t tests[RF_RAY_CHUNK];
+    uint8_t slab[RF_BINS][RF_RAY_CHUNK]; /* of test t, nearest first, */
+    int32_t offset[RF_BINS][RF_RAY_CHUNK]; /* at this offset */
+    const uint16_t *last[RF_RAY_CHUNK]; /* first of three planes, for the strip's first pixel */
+
+    /* Only with weights: as `offset` and `last`, of the weights. */
+    int32_t weight_offset[RF_BINS][RF_RAY_CHUNK];
+    const uint16_t *last_weight[RF_RAY_CHUNK];
+    bool last_behind[RF_RAY_CHUNK]; /* which plane last_weight is in */
+};
+typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort_job *job);
+
+/*
+ * sweep: rays of one strip.
+ *
+ *     for each ray n and pixel p of the strip:
+ *         for t = 0 .. tests[n] - 1:
+ *             q = p + offset[t][n], k = slab[t][n]
+ *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
+ *                 sum += light[q]; next ray
+ *         sum += last[n][p]
+ *
+ * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
+ * strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
+ */
+struct rf_sweep_job {
+    const int16_t *blur;     /* light is in the three planes after it, pitch apart */
+    ptrdiff_t stride, pitch; /* elements */
+    int slabs;
+    const struct rf_slab *slab;
+    const struct rf_sorted_rays *rays;
+    bool bright;  /* highlights are in the light */
+
+    /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
+    const uint16_t *weight;
+    ptrdiff_t weight_stride;
+};
+typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
+
+/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. Those
+ * of the front lie in a plane with a stride of its own, those of the background as its light. */
 enum { RF_WEIGHT_MAX = 32767 };
-typedef void rf_sweep_weighted_fn(uint64_t sum[4][RF_TILE * RF_TILE],
-                                  const struct rf_sweep_job *job);
+typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
 /* Focus and blur in fixed point. */
 struct rf_focus {
@@ -67,13 +128,12 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
                                struct rf_focus focus, int n);
 
 /*
- * smooth3: where |blur| > least, the mean of a pixel and those of its two neighbours whose
- * blur is within one pixel (256) of its own; the pixel itself elsewhere. Half up; light is at
- * most 4 * 4095 here and below.
+ * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its two
+ * neighbours, `apart` elements before and after, whose blur is within one pixel (256) of its
+ * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below.
  */
-typedef void rf_smooth3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
-                           const uint16_t *after, const int16_t *blur_before,
-                           const int16_t *blur, const int16_t *blur_after, int least, int n);
+typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
+                           const int16_t *blur, ptrdiff_t apart, int least, int n);
 
 /* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
 enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
@@ -206,30 +266,33 @@ struct rf_search_job {
 typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_search_job *job);
 
 /*
- * sweep1: as sweep, of one plane and of `rows` rows of RF_TILE elements:
- *
- *     for each ray n and element p of the tile:
- *         for k = 0 .. slabs - 1:
- *             q = p + offset[k][n]
- *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
- *                 sum += light[q]; next ray
- *         sum += behind[p + offset[slabs][n]], where no slab was hit
- *
- * Light is at most 65535 / steps, steps 4, 8 or 16; sums are exact.
+ * sweep1: as sweep, of one plane and of a strip of `rows` rows. Light is at most 65535 / steps;
+ * sums are exact. `last` of the rays is in that plane.
  */
 struct rf_sweep1_job {
     const int16_t *blur;
-    const uint16_t *light, *behind;
-    ptrdiff_t stride; /* elements */
-    int rows;         /* 8 or 16 */
-    int rays;         /* at most RF_RAY_CHUNK */
-    int steps;        /* values that a 16-bit sum holds */
+    const uint16_t *light;
+    ptrdiff_t stride; /* elements, of both */
+    int rows;         /* 4 or 8 */
+    int steps;        /* values that a 16-bit sum holds, 4 to 16 */
     int slabs;
     const struct rf_slab *slab;
-    const int32_t (*offset)[RF_RAY_CHUNK]; /* [slabs + 1], of elements */
-    bool uniform; /* slabs == 1, and whatever is looked at is in it */
+    const struct rf_sorted_rays *rays;
 };
-typedef void rf_sweep1_fn(uint32_t sum[RF_TILE * RF_TILE], const struct rf_sweep1_job *job);
+typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
+
+/* smooth1: smooth3, of one plane. */
+typedef void rf_smooth1_fn(uint16_t *out, const uint16_t *light, const int16_t *blur,
+                           ptrdiff_t apart, int least, int n);
+
+/*
+ * aim_chroma: aim for samples of chroma that are two pixels apart across and 1 << down of them
+ * down, two elements of a row each: x = round(u s / 2), y = round(v s / 2^down), as an offset
+ * 2 x + y stride, and of cells: floor(2 x / RF_CELL) + floor(2^down y / RF_CELL) cell_stride.
+ */
+typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *cell, const int16_t *u,
+                              const int16_t *v, int blur, int down, int32_t stride,
+                              int32_t cell_stride, int n);
 
 /* sharpest4: of 2 x 2 blurs the first with the least |s|, twice: n pairs out of rows of 2 n.
  * Blurs are at most 127 pixels. */
@@ -277,11 +340,17 @@ struct rf_kernels {
     rf_encode_fn *encode;
     rf_decode_fn *decode;
     rf_sweep1_fn *sweep1;
+    rf_smooth1_fn *smooth1;
+    rf_aim_chroma_fn *aim_chroma;
     rf_sharpest4_fn *sharpest4;
     rf_push1_fn *push1;
     rf_split2_fn *split2;
     rf_join2_fn *join2;
     rf_search_fn *search;
+    rf_cells_fn *cells;
+    rf_windows_fn *windows;
+    rf_aim_fn *aim;
+    rf_sort_rays_fn *sort_rays;
     rf_sweep_fn *sweep;
     rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;
@@ -308,6 +377,8 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
 rf_sweep1_fn rf_sweep1_c;
+rf_smooth1_fn rf_smooth1_c;
+rf_smooth3_fn rf_smooth3_c;
 rf_sweep_weighted_fn rf_sweep_weighted_c;
 
 /* Each set overwrites what it does better. */
@@ -323,5 +394,7 @@ rf_kernels_use_fn rf_sweep1_use_neon, rf_sweep1_use_sse41, rf_sweep1_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
     rf_search_use_avx2;
+rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
+rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;
 
 #endif

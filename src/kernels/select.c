@@ -43,6 +43,9 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         return false;
     kernels->sweep = rf_sweep_c;
     kernels->sweep1 = rf_sweep1_c;
+    kernels->smooth1 = rf_smooth1_c;
+    kernels->smooth3 = rf_smooth3_c;
+    rf_aim_use_c(kernels);
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
     rf_yuv_use_c(kernels);

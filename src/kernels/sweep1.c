@@ -1,25 +1,25 @@
 #include "kernels/kernels.h"
 
-void rf_sweep1_c(uint32_t sum[RF_TILE * RF_TILE], const struct rf_sweep1_job *job)
+void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
 {
+    const struct rf_sorted_rays *rays = job->rays;
     const int lanes = job->rows * RF_TILE;
 
-    for (int n = 0; n < job->rays; n++) {
-        uint16_t value[RF_TILE * RF_TILE];
+    for (int n = 0; n < rays->rays; n++) {
+        uint16_t value[RF_STRIP_LANES];
 
-        /* from behind, so that the nearest slab is the last to be written */
+        /* from the last to the nearest, which overwrites what lies behind it */
         for (int i = 0; i < lanes; i++)
-            value[i] = job->behind[i / RF_TILE * job->stride + i % RF_TILE +
-                                   job->offset[job->slabs][n]];
-        for (int k = job->slabs - 1; k >= 0; k--) {
-            const int16_t low = job->slab[k].low;
-            const uint16_t width = job->slab[k].width;
+            value[i] = rays->last[n][i / RF_TILE * job->stride + i % RF_TILE];
+        for (int t = rays->tests[n] - 1; t >= 0; t--) {
+            const struct rf_slab *slab = &job->slab[rays->slab[t][n]];
 
             for (int i = 0; i < lanes; i++) {
                 const ptrdiff_t q =
-                    i / RF_TILE * job->stride + i % RF_TILE + job->offset[k][n];
+                    i / RF_TILE * job->stride + i % RF_TILE + rays->offset[t][n];
 
-                value[i] = (uint16_t)(job->blur[q] - low) <= width ? job->light[q] : value[i];
+                if ((uint16_t)(job->blur[q] - slab->low) <= slab->width)
+                    value[i] = job->light[q];
             }
         }
         for (int i = 0; i < lanes; i++)

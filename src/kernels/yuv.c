@@ -77,6 +77,31 @@ static void RF_VEC(rf_join2)(uint16_t *restrict out, const uint16_t *restrict fi
     }
 }
 
+/* floor((u s + 2^(22 + shift)) / 2^(23 + shift)), by the high half of the product. */
+static inline int16_t rounded(int16_t u, int16_t blur, int shift)
+{
+    return (int16_t)((int16_t)((int16_t)(u * blur >> 16) + (64 << shift)) >> (7 + shift));
+}
+
+static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, int32_t *restrict cell,
+                                  const int16_t *restrict u, const int16_t *restrict v,
+                                  int blur, int down, int32_t stride, int32_t cell_stride,
+                                  int n)
+{
+    int16_t x[RF_RAY_CHUNK], y[RF_RAY_CHUNK];
+    const int16_t s = (int16_t)blur;
+    const int to_cell = 2 - down;
+
+    for (int i = 0; i < n; i++) {
+        x[i] = rounded(u[i], s, 1);
+        y[i] = rounded(v[i], s, down);
+    }
+    for (int i = 0; i < n; i++) {
+        offset[i] = 2 * x[i] + y[i] * stride;
+        cell[i] = (x[i] >> 1) + (y[i] >> to_cell) * cell_stride;
+    }
+}
+
 enum { SAMPLES = RF_TILE * RF_TILE / 2 };
 
 static inline uint16_t white_at_most(uint16_t mean)
@@ -310,6 +335,7 @@ static void RF_VEC(rf_encode)(uint16_t *const out[2], uint16_t *chroma,
 
 void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)
 {
+    kernels->aim_chroma = RF_VEC(rf_aim_chroma);
     kernels->encode = RF_VEC(rf_encode);
     kernels->decode = RF_VEC(rf_decode);
     kernels->sharpest4 = RF_VEC(rf_sharpest4);

@@ -35,24 +35,32 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     }
 }
 
+/* Codes of n means into every `bytes`-th byte. Copies of what is used, as bytes written
+ * might be any of it. */
+static void encode_row(uint8_t *restrict out, int bytes, const uint16_t *restrict mean,
+                       const uint8_t *restrict to_code, int n)
+{
+    for (int x = 0; x < n; x++)
+        out[x * bytes] = to_code[mean[x] < RF_MEAN_MAX ? mean[x] : RF_MEAN_MAX];
+}
+
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
                      uint16_t mean[3][RF_TILE * RF_TILE])
 {
     const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
+    const int n = rect.x1 - rect.x0;
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE, n = rect.x1 - rect.x0;
+        const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
         const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + rect.x0;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
-        for (int x = 0; x < n; x++, out += o.bytes) {
-            out[o.r] = code_of(to_code, mean[0][at + x]);
-            out[o.g] = code_of(to_code, mean[1][at + x]);
-            out[o.b] = code_of(to_code, mean[2][at + x]);
-            if (o.a >= 0)
-                out[o.a] = alpha[x];
-        }
+        encode_row(out + o.r, o.bytes, mean[0] + at, to_code, n);
+        encode_row(out + o.g, o.bytes, mean[1] + at, to_code, n);
+        encode_row(out + o.b, o.bytes, mean[2] + at, to_code, n);
+        for (int x = 0; o.a >= 0 && x < n; x++)
+            out[x * o.bytes + o.a] = alpha[x];
     }
 }
 

@@ -17,6 +17,7 @@ struct plane {
     const uint16_t *weighing, *weighing_behind; /* luma of the tile, for eq. 5 */
     int rows, steps;
     int across, down; /* shifts from pixels to samples */
+    const uint32_t *range; /* of the tile's first pixel */
     const struct rf_ray_set *set;
 };
 
@@ -37,20 +38,67 @@ static struct place shift_of(const struct plane *plane, const struct refocus_ray
                           offset(ray->v, blur, plane->down)};
 }
 
-/* Where n rays see a blur, in elements. */
-static void set_offsets(int32_t *restrict out, const struct plane *plane,
-                        const int16_t *restrict u, const int16_t *restrict v, int blur,
-                        int32_t stride, int n)
+/* Where some rays see the slabs of a tile, and the background. */
+struct sight {
+    int rays;
+    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+};
+
+static void set_sight(struct sight *sight, const struct refocus_renderer *r,
+                      const struct plane *plane, const struct rf_tile_plan *plan,
+                      const struct refocus_ray *ray, int behind)
 {
-    const int across = plane->across, down = plane->down;
-    const int32_t half_x = 1 << (22 + across), half_y = 1 << (22 + down);
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
 
-    for (int i = 0; i < n; i++) {
-        const int32_t x = (u[i] * blur + half_x) >> (23 + across);
-        const int32_t y = (v[i] * blur + half_y) >> (23 + down);
-
-        out[i] = y * stride + x * (1 << across);
+    for (int n = 0; n < sight->rays; n++) {
+        u[n] = ray[n].u;
+        v[n] = ray[n].v;
     }
+    for (int k = 0; k <= plan->slabs; k++) {
+        const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
+
+        if (plane->across)
+            r->kernels.aim_chroma(sight->offset[k], sight->cell[k], u, v, blur, plane->down,
+                                  (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
+        else
+            r->kernels.aim(sight->offset[k], sight->cell[k], u, v, blur, (int32_t)r->stride,
+                           (int32_t)r->range_stride, sight->rays);
+    }
+}
+
+/* Strip i of a tile. */
+static void sweep_strip(const struct refocus_renderer *r, const struct rf_tile_plan *plan,
+                        const struct plane *plane, const struct sight *sight, int i,
+                        uint32_t run[LANES])
+{
+    enum { STRIP_CELLS = RF_STRIP / RF_CELL };
+    const int rows = RF_STRIP >> plane->down;
+    const ptrdiff_t at = i * rows * r->stride;
+    struct rf_sorted_rays sorted;
+    const struct rf_sort_job sort = {
+        .range = plane->range + i * STRIP_CELLS * r->range_stride,
+        .front = plane->light + at,
+        .behind = plane->behind + at,
+        .rays = sight->rays,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+    };
+    const struct rf_sweep1_job job = {
+        .blur = plane->blur + at,
+        .light = plane->light + at,
+        .stride = r->stride,
+        .rows = rows,
+        .steps = plane->steps,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .rays = &sorted,
+    };
+
+    r->kernels.sort_rays(&sorted, &sort);
+    r->kernels.sweep1(run + i * rows * RF_TILE, &job);
 }
 
 static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
@@ -66,39 +114,21 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
                        uint64_t sum[LANES])
 {
     const struct rf_ray_set *set = plane->set;
-    int32_t offsets[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
-    struct rf_sweep1_job job = {
-        .blur = plane->blur,
-        .light = plane->light,
-        .behind = plane->behind,
-        .stride = f->r->stride,
-        .rows = plane->rows,
-        .steps = plane->steps,
-        .slabs = plan->slabs,
-        .slab = plan->slab,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])offsets,
-        .uniform = plan->uniform,
-    };
+    struct sight sight;
 
     memset(run, 0, LANES * sizeof run[0]);
-    for (int n = 0; n < set->count; n += job.rays) {
+    for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        job.rays = 1;
-        while (job.rays < RF_RAY_CHUNK && n + job.rays < set->count &&
-               ray[job.rays].weight == ray->weight)
-            job.rays++;
-        for (int i = 0; i < job.rays; i++) {
-            u[i] = ray[i].u;
-            v[i] = ray[i].v;
-        }
-        for (int k = 0; k <= plan->slabs; k++)
-            set_offsets(offsets[k], plane, u, v, k < plan->slabs ? plan->slab[k].centre : behind,
-                        (int32_t)f->r->stride, job.rays);
-        f->r->kernels.sweep1(run, &job);
+        sight.rays = 1;
+        while (sight.rays < RF_RAY_CHUNK && n + sight.rays < set->count &&
+               ray[sight.rays].weight == ray->weight)
+            sight.rays++;
+        set_sight(&sight, f->r, plane, plan, ray, behind);
+        for (int i = 0; i < RF_TILE / RF_STRIP; i++)
+            sweep_strip(f->r, plan, plane, &sight, i, run);
         if (!set->equal &&
-            (n + job.rays == set->count || ray[job.rays].weight != ray->weight))
+            (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight))
             add_run(run, ray->weight, sum);
     }
 }
@@ -187,7 +217,9 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     const struct rf_yuv *yuv = &r->yuv;
     const ptrdiff_t origin = ty * RF_TILE * r->stride + tx * RF_TILE;
     const ptrdiff_t at = (ty * RF_TILE >> yuv->down) * r->stride + tx * RF_TILE;
-    const int behind = r->behind.blur[origin + RF_TILE / 2 * (r->stride + 1)];
+    const int behind = r->behind.blur[rf_tile_middle(r, tx, ty)];
+    const uint32_t *range =
+        r->range + RF_TILE / RF_CELL * (ty * r->range_stride + tx);
     struct plane luma = {
         .blur = r->front.blur + origin,
         .light = r->smooth[0] + origin,
@@ -195,6 +227,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         .weighing = r->smooth[0] + origin,
         .weighing_behind = r->behind.light[0] + origin,
         .rows = RF_TILE,
+        .range = range,
         .steps = f->bright ? 4 : 16,
     };
     struct plane chroma = {
@@ -204,6 +237,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         .weighing = r->smooth[0] + origin,
         .weighing_behind = r->behind.light[0] + origin,
         .rows = RF_TILE >> yuv->down,
+        .range = range,
         .steps = 65535 / RF_CHROMA_MAX, /* 8 */
         .across = 1,
         .down = yuv->down,
@@ -212,7 +246,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     struct rf_tile_plan plan;
 
     (void)worker;
-    rf_plan_tile(r, f->scale, tx, ty, f->aperture->shape == RF_SHAPE_MASK, &plan);
+    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
     if (plan.sharp) {
         rf_copy_yuv_tile(f, rect);
         return;

@@ -229,10 +229,8 @@ static void smooth_run(const struct refocus_renderer *r, const struct filter *f,
     const int16_t *s = f->blur + at;
     uint16_t *const row = f->scratch + step;
 
-    r->kernels.smooth3(row - step, from - down, from, from + down, s - step - down, s - step,
-                       s - step + down, f->least, n + 2 * step);
-    r->kernels.smooth3(f->out + at, row - step, row, row + step, s - step, s, s + step,
-                       f->least, n);
+    r->kernels.smooth1(row - step, from, s - step, down, f->least, n + 2 * step);
+    r->kernels.smooth1(f->out + at, row, s, step, f->least, n);
 }
 
 /* Rows y0 to y1 - 1, as wide as w, of a row of tiles. */

@@ -11,6 +11,7 @@
 #include "renderer/params.h"
 #include "renderer/rays.h"
 #include "renderer/render_yuv.h"
+#include "tiles/ranges.h"
 
 struct method {
     const char *name, *summary;
@@ -83,6 +84,7 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
 }
 
@@ -104,8 +106,9 @@ static void smooth_band(void *context, int band, int worker)
     uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
-    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
-                      band);
+    if (i == 0)
+        rf_range_rows(r, rf_scratch(r, worker), band);
+    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
@@ -274,6 +277,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
     f.scale = rf_bin_scale_of(params->max_blur_radius);
+    rf_reach_init(&f.reach, f.scale, r->pad, f.aperture->shape == RF_SHAPE_MASK);
     f.first_tx = f.region.x0 / RF_TILE;
     f.first_ty = f.region.y0 / RF_TILE;
     f.count_tx = (f.region.x1 - 1) / RF_TILE - f.first_tx + 1;

@@ -5,6 +5,7 @@
 #include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/rays.h"
+#include "tiles/ranges.h"
 
 int rf_check_yuv(const struct rf_frame *f)
 {
@@ -31,6 +32,7 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
 }
 
@@ -56,6 +58,8 @@ static void smooth_band(void *context, int band, int worker)
     const int above = f->prefilter_above[i] < INT16_MAX ? f->prefilter_above[i] * 181 / 128
                                                         : INT16_MAX;
 
+    if (i == 0)
+        rf_range_rows(r, rf_scratch(r, worker), band);
     rf_yuv_prefilter_luma(r, luma[to], luma[i], step, f->prefilter_above[i],
                           rf_scratch(r, worker), band);
     rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], step,

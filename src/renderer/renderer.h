@@ -103,6 +103,8 @@ struct refocus_renderer {
     struct rf_yuv yuv;
     uint16_t *plane[3]; /* of the photo; front.light[1], [2] of a YUV one are its luma, too */
     struct rf_layer front;
+    uint32_t *range;     /* blurs around the cell of pixel (0, 0); see tiles/ranges.h */
+    ptrdiff_t range_stride;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
     struct rf_highlights highlights[RF_LAMP_PARTS]; /* of the photo in this blend, once */
     bool highlights_found;                          /* they are found */

@@ -70,10 +70,12 @@ int main(int argc, char **argv)
             !rf_kernels_select(&subject.plain, &plain))
             continue;
         if (bench && cpu != REFOCUS_CPU_C) {
+            bench_aim(&subject);
             bench_sweep(&subject);
             bench_rows(&subject);
         } else if (!bench) {
-            failures += check_vec(cpu) + check_sweep(&subject) + check_light(&subject) + check_search(&subject) +
+            failures += check_vec(cpu) + check_aim(&subject) + check_sweep(&subject) +
+                        check_light(&subject) + check_search(&subject) +
                         check_rows(&subject);
         }
     }
