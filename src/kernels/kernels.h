@@ -59,7 +59,8 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
 enum { RF_SORTED_TESTS = 8 };
 
 struct rf_sort_job {
-    const uint32_t *range; /* at the strip's first pixel */
+    const uint32_t *range; /* at the strip's first pixel, */
+    const uint32_t *below; /* and at that of the strip below, if both are one; else NULL */
     const uint16_t *front, *behind; /* first of three planes of light, there */
     const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
@@ -266,14 +267,14 @@ struct rf_search_job {
 typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_search_job *job);
 
 /*
- * sweep1: as sweep, of one plane and of a strip of `rows` rows. Light is at most 65535 / steps;
+ * sweep1: as sweep, of one plane and of `rows` rows. Light is at most 65535 / steps;
  * sums are exact. `last` of the rays is in that plane.
  */
 struct rf_sweep1_job {
     const int16_t *blur;
     const uint16_t *light;
     ptrdiff_t stride; /* elements, of both */
-    int rows;         /* 4 or 8 */
+    int rows;         /* 4, 8 or 16 */
     int steps;        /* values that a 16-bit sum holds, 4 to 16 */
     int slabs;
     const struct rf_slab *slab;

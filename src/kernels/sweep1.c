@@ -6,7 +6,7 @@ void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
     const int lanes = job->rows * RF_TILE;
 
     for (int n = 0; n < rays->rays; n++) {
-        uint16_t value[RF_STRIP_LANES];
+        uint16_t value[RF_TILE * RF_TILE];
 
         /* from the last to the nearest, which overwrites what lies behind it */
         for (int i = 0; i < lanes; i++)

@@ -22,7 +22,7 @@ struct limits {
 
 struct state {
     const struct rf_sweep1_job *job;
-    uint16_t light[RF_STRIP_LANES]; /* sums of the last rays */
+    uint16_t light[RF_TILE * RF_TILE]; /* sums of the last rays */
     struct limits limits[RF_BINS];
 };
 
@@ -107,7 +107,7 @@ static void RF_VEC(rf_sweep1)(uint32_t *sum, const struct rf_sweep1_job *job)
     struct state s;
 
     s.job = job;
-    memset(s.light, 0, sizeof s.light);
+    memset(s.light, 0, (size_t)job->rows * RF_TILE * sizeof s.light[0]);
     for (int k = 0; k < job->slabs; k++) {
         /* adding 2^15 makes an unsigned comparison of a signed one */
         s.limits[k].from = vec_u16_set((uint16_t)(job->slab[k].low ^ 0x8000));

@@ -67,19 +67,17 @@ static void set_sight(struct sight *sight, const struct refocus_renderer *r,
     }
 }
 
-/* Strip i of a tile. */
-static void sweep_strip(const struct refocus_renderer *r, const struct rf_tile_plan *plan,
-                        const struct plane *plane, const struct sight *sight, int i,
-                        uint32_t run[LANES])
+/* Strips of a tile together: of one plane, sorting each by itself costs more than it saves. */
+static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_plan *plan,
+                       const struct plane *plane, const struct sight *sight,
+                       uint32_t run[LANES])
 {
-    enum { STRIP_CELLS = RF_STRIP / RF_CELL };
-    const int rows = RF_STRIP >> plane->down;
-    const ptrdiff_t at = i * rows * r->stride;
     struct rf_sorted_rays sorted;
     const struct rf_sort_job sort = {
-        .range = plane->range + i * STRIP_CELLS * r->range_stride,
-        .front = plane->light + at,
-        .behind = plane->behind + at,
+        .range = plane->range,
+        .below = plane->range + RF_STRIP / RF_CELL * r->range_stride,
+        .front = plane->light,
+        .behind = plane->behind,
         .rays = sight->rays,
         .slabs = plan->slabs,
         .slab = plan->slab,
@@ -87,10 +85,10 @@ static void sweep_strip(const struct refocus_renderer *r, const struct rf_tile_p
         .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
     };
     const struct rf_sweep1_job job = {
-        .blur = plane->blur + at,
-        .light = plane->light + at,
+        .blur = plane->blur,
+        .light = plane->light,
         .stride = r->stride,
-        .rows = rows,
+        .rows = plane->rows,
         .steps = plane->steps,
         .slabs = plan->slabs,
         .slab = plan->slab,
@@ -98,7 +96,7 @@ static void sweep_strip(const struct refocus_renderer *r, const struct rf_tile_p
     };
 
     r->kernels.sort_rays(&sorted, &sort);
-    r->kernels.sweep1(run + i * rows * RF_TILE, &job);
+    r->kernels.sweep1(run, &job);
 }
 
 static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
@@ -125,8 +123,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
                ray[sight.rays].weight == ray->weight)
             sight.rays++;
         set_sight(&sight, f->r, plane, plan, ray, behind);
-        for (int i = 0; i < RF_TILE / RF_STRIP; i++)
-            sweep_strip(f->r, plan, plane, &sight, i, run);
+        sweep_tile(f->r, plan, plane, &sight, run);
         if (!set->equal &&
             (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight))
             add_run(run, ray->weight, sum);
