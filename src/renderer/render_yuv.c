@@ -1,5 +1,8 @@
 #include "renderer/render_yuv.h"
 
+#include <limits.h>
+#include <math.h>
+
 #include "background/background.h"
 #include "planes/format.h"
 #include "planes/yuv.h"
@@ -87,12 +90,14 @@ static void prefilter_with_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     const float gain = f->params->highlight_gain;
+    const int rays = f->params->rays == REFOCUS_RAYS_FULL ? INT_MAX : f->params->rays;
 
     if (gain > 1 && !r->highlights_found) {
         rf_pool_run(&r->pool, find_lamps, f, rf_lamp_parts(r->height));
         r->highlights_found = !rf_cancelled(r);
     }
-    f->bright = gain > 1 && r->highlights_found && rf_mark_highlights(r);
+    f->bright = gain > 1 && r->highlights_found &&
+                rf_mark_highlights(r, f->scale, sqrt(3.14159265358979 / rays));
     if (f->bright)
         rf_add_highlights(r, gain, 1);
     prefilter(f);
