@@ -104,6 +104,7 @@ void rf_background_yuv_fill(struct refocus_renderer *r)
         return;
     }
     rf_pool_run(&r->pool, push_band, r, rf_bands(r));
-    rf_background_fill_level(r, 1);
+    rf_background_push(r, 1, r->levels);
+    rf_background_pull(r, 1, r->levels);
     rf_pool_run(&r->pool, pull_band, r, rf_bands(r));
 }

@@ -76,7 +76,7 @@ void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect)
     const struct rf_yuv *yuv = &f->r->yuv;
 
     for (int y = rect.y0; y < rect.y1; y++)
-        put_luma(f, rect.x0, y, yuv->y + (size_t)y * f->r->width + rect.x0,
+        put_luma(f, rect.x0, y, yuv->y + y * yuv->y_stride + rect.x0,
                  rect.x1 - rect.x0);
     for (int y = rect.y0; y < rect.y1; y += 1 << yuv->down)
         put_chroma(f, rect.x0, y, yuv->uv + (y >> yuv->down) * yuv->uv_stride + rect.x0,
@@ -110,7 +110,7 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
     job->own_chroma = yuv->smooth + c0 * r->stride + x0;
     job->stride = r->stride;
     for (int y = 0; y < h; y++)
-        memcpy(job->y + y * RF_TILE, yuv->y + (size_t)(y0 + y) * r->width + x0, (size_t)w);
+        memcpy(job->y + y * RF_TILE, yuv->y + (y0 + y) * yuv->y_stride + x0, (size_t)w);
     for (int y = 0; y < rows; y++)
         memcpy(job->uv + y * RF_TILE, yuv->uv + (c0 + y) * yuv->uv_stride + x0,
                (size_t)(w + w % 2));

@@ -5,32 +5,63 @@
 #include "planes/format.h"
 #include "renderer/bands.h"
 
+void rf_yuv_set_blend(struct refocus_renderer *r, uint32_t blend)
+{
+    struct rf_yuv *yuv = &r->yuv;
+
+    if (!yuv->curve_made || yuv->blend != blend)
+        rf_yuv_curve_init(&yuv->curve, yuv->matrix, yuv->range, blend);
+    yuv->curve_made = true;
+    yuv->blend = blend;
+}
+
 void rf_yuv_begin(struct refocus_renderer *r, const struct refocus_image *photo)
 {
     struct rf_yuv *yuv = &r->yuv;
 
     yuv->on = refocus_format_is_yuv(photo->format);
-    for (int c = 1; c < 3; c++)
-        r->front.light[c] = r->plane[yuv->on ? 0 : c];
     if (!yuv->on)
         return;
     yuv->down = rf_chroma_down(photo->format);
-    yuv->width = (photo->width + 1) / 2;
-    yuv->height = (photo->height + yuv->down) >> yuv->down;
-    yuv->light = r->plane[1];
-    yuv->smooth = r->smooth[1];
-    yuv->behind = r->behind.light[1];
-    yuv->blur = (int16_t *)r->smooth[2];
-    yuv->y = r->alpha;
-    yuv->uv = (uint8_t *)r->plane[2];
-    yuv->uv_stride = r->stride * (ptrdiff_t)sizeof(uint16_t);
-    if (!yuv->curve_made || yuv->matrix != photo->matrix || yuv->range != photo->range ||
-        yuv->blend != r->blend)
-        rf_yuv_curve_init(&yuv->curve, photo->matrix, photo->range, r->blend);
-    yuv->curve_made = true;
+    yuv->curve_made =
+        yuv->curve_made && yuv->matrix == photo->matrix && yuv->range == photo->range;
     yuv->matrix = photo->matrix;
     yuv->range = photo->range;
-    yuv->blend = r->blend;
+    rf_yuv_set_blend(r, r->blend);
+}
+
+/* Pixel (0, 0) of the window is at rows that are a multiple of RF_TILE. */
+static uint16_t *chroma_of(const struct refocus_renderer *r, uint16_t *plane)
+{
+    return plane - (r->origin_y - (r->origin_y >> r->yuv.down)) * r->stride;
+}
+
+void rf_yuv_use(struct refocus_renderer *r)
+{
+    struct rf_yuv *yuv = &r->yuv;
+
+    if (!yuv->on)
+        return;
+    yuv->width = (r->width + 1) / 2;
+    yuv->height = (r->height + yuv->down) >> yuv->down;
+    yuv->light = chroma_of(r, r->front.light[1]);
+    yuv->smooth = chroma_of(r, r->smooth[1]);
+    yuv->behind = chroma_of(r, r->behind.light[1]);
+    yuv->blur = (int16_t *)chroma_of(r, r->smooth[2]);
+    yuv->y = r->alpha;
+    yuv->y_stride = r->alpha_stride;
+    yuv->uv_stride = r->stride * (ptrdiff_t)sizeof(uint16_t);
+    yuv->uv = (uint8_t *)(chroma_of(r, r->front.light[2]) - r->origin_x) + r->origin_x;
+    for (int c = 1; c < 3; c++)
+        r->front.light[c] = r->front.light[0];
+}
+
+struct refocus_image rf_yuv_guide(const struct refocus_renderer *r)
+{
+    const struct rf_yuv *yuv = &r->yuv;
+
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, yuv->uv + 2 * yuv->width, r->width,
+                                r->height, yuv->uv_stride);
 }
 
 void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int c1)
@@ -67,9 +98,9 @@ static void convert_codes(const struct refocus_renderer *r, uint8_t *scratch, in
     const struct rf_yuv *yuv = &r->yuv;
     const int w = r->width, y = cy << yuv->down;
     const bool two = yuv->down && y + 1 < r->height;
-    const uint8_t *luma[2] = {yuv->y + (size_t)y * w, yuv->y + (size_t)(y + two) * w};
-    uint16_t *const out[2] = {r->plane[0] + y * r->stride,
-                              r->plane[0] + (y + two) * r->stride};
+    const uint8_t *luma[2] = {yuv->y + y * yuv->y_stride, yuv->y + (y + two) * yuv->y_stride};
+    uint16_t *const out[2] = {r->front.light[0] + y * r->stride,
+                              r->front.light[0] + (y + two) * r->stride};
 
     if (w % 2) {
         for (int i = 0; i < 2; i++) {
@@ -94,7 +125,7 @@ static void guide_row(const struct refocus_renderer *r, uint8_t *out, int y)
 {
     const struct rf_yuv *yuv = &r->yuv;
     const struct rf_yuv_curve *const curve = &yuv->curve;
-    const uint8_t *luma = yuv->y + (size_t)y * r->width;
+    const uint8_t *luma = yuv->y + y * yuv->y_stride;
     const uint8_t *uv = yuv->uv + (y >> yuv->down) * yuv->uv_stride;
 
     for (int x = 0; x < r->width; x++, out += 3) {
@@ -140,7 +171,7 @@ static void keep_422(const struct refocus_renderer *r, const struct refocus_imag
                      uint8_t *scratch, int row)
 {
     const int w = r->width;
-    uint8_t *y = r->yuv.y + (size_t)row * w, *uv = r->yuv.uv + row * r->yuv.uv_stride;
+    uint8_t *y = r->yuv.y + row * r->yuv.y_stride, *uv = r->yuv.uv + row * r->yuv.uv_stride;
 
     memcpy(scratch, photo->plane[0] + row * photo->stride[0], 4 * (size_t)r->yuv.width);
     for (int x = 0; x < w; x++)
@@ -155,7 +186,7 @@ static void convert_chroma_rows(struct refocus_renderer *r, uint8_t *scratch, in
 
     for (int cy = c0; cy < c1; cy++)
         convert_codes(r, scratch, cy);
-    rf_extend_rows(r, r->plane[0], y0, end < r->height ? end : r->height);
+    rf_extend_rows(r, r->front.light[0], y0, end < r->height ? end : r->height);
     rf_extend_chroma(r, r->yuv.light, c0, c1);
 }
 
@@ -166,7 +197,7 @@ void rf_yuv_convert_rows(struct refocus_renderer *r, const struct refocus_image 
 
     if (r->yuv.down)
         for (int y = y0; y < y1; y++)
-            memcpy(r->yuv.y + (size_t)y * r->width, photo->plane[0] + y * photo->stride[0],
+            memcpy(r->yuv.y + y * r->yuv.y_stride, photo->plane[0] + y * photo->stride[0],
                    (size_t)r->width);
     for (int cy = c0; cy < c1; cy++) {
         if (r->yuv.down)
@@ -179,11 +210,9 @@ void rf_yuv_convert_rows(struct refocus_renderer *r, const struct refocus_image 
         guide_row(r, guide->plane[0] + y * guide->stride[0], y);
 }
 
-void rf_yuv_reblend(struct refocus_renderer *r, uint32_t blend)
+void rf_yuv_reblend_rows(struct refocus_renderer *r, uint8_t *scratch, int y0, int y1)
 {
-    rf_yuv_curve_init(&r->yuv.curve, r->yuv.matrix, r->yuv.range, blend);
-    r->yuv.blend = blend;
-    convert_chroma_rows(r, (uint8_t *)rf_scratch(r, 0), 0, r->yuv.height);
+    convert_chroma_rows(r, scratch, y0 >> r->yuv.down, rf_chroma_end(r, y1));
 }
 
 void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)

@@ -8,8 +8,15 @@
 #include "planes/planes.h"
 #include "renderer/renderer.h"
 
-/* Make the renderer's planes those of a photo: of Y, U and V, or of R, G and B again. */
+/* The renderer's planes are those of such a photo: of Y, U and V, or of R, G and B again. Before
+ * rf_use(). */
 void rf_yuv_begin(struct refocus_renderer *r, const struct refocus_image *photo);
+
+/* For rf_use(): the planes of the window. */
+void rf_yuv_use(struct refocus_renderer *r);
+
+/* A picture in RGB8 in the memory of disparities and what is free beside the codes of U and V. */
+struct refocus_image rf_yuv_guide(const struct refocus_renderer *r);
 
 /*
  * Photo rows to luma and chroma. Each byte of the photo is read once, each row of a plane in
@@ -19,8 +26,9 @@ void rf_yuv_begin(struct refocus_renderer *r, const struct refocus_image *photo)
 void rf_yuv_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo,
                          const struct refocus_image *guide, uint8_t *scratch, int y0, int y1);
 
-/* Change luma and chroma to the curve of another blend. */
-void rf_yuv_reblend(struct refocus_renderer *r, uint32_t blend);
+/* Change to the curve of another blend, and rows to the curve. */
+void rf_yuv_set_blend(struct refocus_renderer *r, uint32_t blend);
+void rf_yuv_reblend_rows(struct refocus_renderer *r, uint8_t *scratch, int y0, int y1);
 
 /* The blur of chroma: that of its sharpest pixel, so that no colour of what is in focus is
  * smeared. r->front.blur is final. */
