@@ -360,8 +360,8 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  *                R, G, B of a photo of R, G, B; any of 4:2:0 of one of 4:2:0; YUYV of YUYV. Its
  *                matrix and range are the photo's, whatever they say.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
- *         REFOCUS_ERR_UNSUPPORTED (another format than these, or another method than the sweep
- *         of a photo of Y, U and V),
+ *         REFOCUS_ERR_UNSUPPORTED (another format than these; of a photo of Y, U and V another
+ *         method than the sweep, or a reduced picture),
  *         REFOCUS_ERR_CANCELLED. On REFOCUS_ERR_CANCELLED parts of @p out are written,
  *         on the others none. Allocates nothing.
  */
