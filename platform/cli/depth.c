@@ -19,7 +19,8 @@ struct settings {
     const char *output, *model, *strokes;
     struct network_settings network;
     int view;
-    bool side_by_side, stereo_file;
+    struct stereo_settings stereo;
+    bool side_by_side;
     bool json;
 };
 
@@ -35,6 +36,22 @@ static const char *view_summary(uint32_t index)
     static const char *const words[] = {"the disparities as they are",
                                         "their picture, bright = near",
                                         "white where it was measured, black where filled"};
+
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+static const char *match_name(uint32_t index)
+{
+    static const char *const names[] = {"checked", "plain", "wls"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+static const char *match_summary(uint32_t index)
+{
+    static const char *const words[] = {
+        "both ways; what disagrees is filled", "OpenCV's semi-global matching as it is",
+        "filled by weighted least squares; needs the module refocus-ximgproc"};
 
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
@@ -106,8 +123,15 @@ static const struct option options[] = {
              "stereo pair"},
     {.kind = OPTION_FLAG,
      .name = "--stereo-file",
-     .offset = offsetof(struct settings, stereo_file),
+     .offset = offsetof(struct settings, stereo.within),
      .help = "FILE holds both pictures of a stereo pair: an MPO or a stereo HEIC"},
+    {.kind = OPTION_CHOICE,
+     .name = "--match",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, stereo.method),
+     .choice = match_name,
+     .summary = match_summary,
+     .help = "how a stereo pair is matched"},
     {.kind = OPTION_FLAG,
      .name = "--side-by-side",
      .offset = offsetof(struct settings, side_by_side),
@@ -285,7 +309,7 @@ static int write_output(const struct settings *settings, const struct input *inp
 
 static bool is_made(const struct settings *settings, const char *const *files)
 {
-    return files[1] || settings->side_by_side || settings->stereo_file || settings->model;
+    return files[1] || settings->side_by_side || settings->stereo.within || settings->model;
 }
 
 static int check(const struct settings *settings, const char *const *files)
@@ -299,7 +323,7 @@ static int check(const struct settings *settings, const char *const *files)
     if (status == EXIT_DONE)
         status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
     if (status == EXIT_DONE &&
-        (files[1] != NULL) + settings->side_by_side + settings->stereo_file +
+        (files[1] != NULL) + settings->side_by_side + settings->stereo.within +
                 (settings->model != NULL) +
                 (settings->depth.file != NULL) > 1)
         return report_failure(EXIT_WRONG, files[0],
@@ -325,7 +349,7 @@ static int read_input(const struct settings *settings, const char *const *files,
         return input_read_estimate(input, files[0], settings->model, &settings->network,
                                    &settings->depth);
     if (is_made(settings, files))
-        return input_read_stereo(input, files[0], files[1], settings->stereo_file,
+        return input_read_stereo(input, files[0], files[1], &settings->stereo,
                                  &settings->depth);
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);

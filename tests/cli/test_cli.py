@@ -49,7 +49,8 @@ class Usage(Case):
                       '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
                      '--upsample --estimate --preset --input-size --input-mean --input-scale '
-                     '--far-is-large --strokes --stereo-file --side-by-side --view --focus-at --blur --json -h --help',
+                     '--far-is-large --match --strokes --stereo-file --side-by-side --view '
+                     '--focus-at --blur --json -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-distance --blur '
@@ -529,8 +530,14 @@ class DepthAndInfo(Case):
                                  r'small|this build has no OpenCV)'),
                    'depth', 'photo.ppm', 'depth.pgm', '-o', 'd.png')
         self.fails(2, 'photo.ppm: its depth is given twice; give one of RIGHT, --side-by-side, '
-                   '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
+                   '--stereo-file, --estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
                    '--depth', 'depth.pgm')
+        self.fails(1, re.compile(r'^refocus: photo.ppm: (it is no stereo file|this build)'),
+                   'depth', 'photo.ppm', '--stereo-file', '-o', 'd.png')
+        self.fails(2, '--input-size', 'depth', 'photo.ppm', '--estimate', 'no.onnx', '--input-size',
+                   '8,8', '-o', 'd.png')
+        self.fails(2, '--upsample', 'depth', 'photo.ppm', '--depth', 'depth.pgm', '--full',
+                   '--upsample', 'magic', '-o', 'd.png')
         self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '
                                  r'build has no OpenCV)'),
                    'depth', 'photo.ppm', '-o', 'd.png', '--estimate', 'no.onnx')
