@@ -68,6 +68,14 @@ static const struct option options[] = {
      .name = "--full",
      .offset = offsetof(struct settings, depth.full),
      .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_INTEGER,
+     .name = "--snap",
+     .argument = "N",
+     .offset = offsetof(struct settings, depth.snap),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SNAP,
+     .help = "move edges of depth of the photo's size onto the photo's, where they are off by "
+             "up to N pixels; default 0: leave them"},
     {.kind = OPTION_CHOICE,
      .name = "--upsample",
      .argument = "HOW",
@@ -353,7 +361,7 @@ static int read_input(const struct settings *settings, const char *const *files,
                                  &settings->depth);
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);
-    if (settings->depth.file || settings->depth.full ||
+    if (settings->depth.file || settings->depth.full || settings->depth.snap > 0 ||
         (is_jpeg(settings->output) && settings->view == VIEW_NONE))
         return input_read(input, files[0], &settings->depth);
     return input_read_depth(input, files[0], &settings->depth);
