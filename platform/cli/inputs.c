@@ -258,6 +258,8 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
     if (settings->file) {
         status = read_side(input, settings->file, settings);
     } else {
+        if (!input->photo->depth.samples && settings->optional)
+            return EXIT_DONE;
         if (!input->photo->depth.samples)
             return report_failure(EXIT_FAILED, photo,
                                   "it carries no depth; give a depth map to --depth");

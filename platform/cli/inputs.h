@@ -17,6 +17,7 @@ struct depth_settings {
     double speckle;       /* patches of fewer samples are removed; 0: none */
     const char *invalid;  /* names of codes for "no value", or NULL */
     bool full;            /* bring the depth to the photo's size */
+    bool optional;        /* a photo without any will do: its disparities are NULL then */
     double snap;          /* edges of a map of the photo's size may be off by so much; 0: as
                              they are */
     int upsample;         /* how; 0: as the core does, else 1 + enum refocus_cv_filter */
@@ -27,7 +28,7 @@ struct lens_settings {
     double blur, f_number, focal_length, sensor_width;
 };
 
-#define DEPTH_SETTINGS_NONE {NULL, NULL, NAN, NAN, 0, NULL, false, 0, 0}
+#define DEPTH_SETTINGS_NONE {.near_m = NAN, .far_m = NAN}
 #define LENS_SETTINGS_NONE {NAN, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN}
 
 /* Rows of tables of options, for settings with a member of the types above. */

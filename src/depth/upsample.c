@@ -232,6 +232,8 @@ static void fill_cell(const struct rf_upsampler *up, struct pending *pending, in
 
     look(&pending->cell, up, up->across[x0].first, up->down[y0].first);
     for (int y = y0; y < y1; y++) {
+        if (rf_run_cancelled(up->run))
+            return;
         for (int x = x0; x < x1; x += RUN) {
             const int n = x1 - x < RUN ? x1 - x : RUN;
 
@@ -279,7 +281,7 @@ static void fill_rows(void *context, int item, int worker)
     }
     up->kernels->steps4(across - PAD, down - PAD, coarse, up->columns + 2 * PAD - 1);
     down[up->columns + PAD - 1] = down[up->columns + PAD - 2];
-    for (int y = y0; y < y1; y++) {
+    for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
         up->kernels->blend4(up->raw + y * up->raw_stride, wide, up->down[y].share, width);
         memset(up->sure + y * up->sure_stride, 255, (size_t)width);
     }
@@ -325,6 +327,7 @@ void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
 {
     const int width = up->photo->width, height = up->photo->height;
 
+    up->run = pool->run;
     for (int x = 0; x < width; x++) {
         up->across[x] = taps_at(x, width, up->columns);
         for (int i = 0; i < RF_TAPS; i++)

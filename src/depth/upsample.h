@@ -51,6 +51,7 @@ struct rf_upsampler {
     int16_t *middle; /* and where they lie between their second and third sample */
     uint16_t *(*scratch)(void *context, int worker); /* 2 (columns + 8) elements */
     void *context;
+    struct rf_run *run;
 
     uint16_t *out;
     ptrdiff_t out_stride; /* elements */

@@ -87,7 +87,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     struct rf_kernels kernels;
     struct scratch scratch;
     struct rf_pool pool;
-    atomic_int run;
+    struct rf_run run = {.looked_at = NULL};
     void *block;
     int status;
 
@@ -125,8 +125,8 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
     arena.used = 0;
     lay_out(&up, &scratch, rf_threads_for(&threads), &arena);
-    atomic_init(&run, RF_RUN_RUNNING);
-    status = rf_pool_start(&pool, rf_threads_for(&threads), &run);
+    atomic_init(&run.state, RF_RUN_RUNNING);
+    status = rf_pool_start(&pool, rf_threads_for(&threads), NULL, &run);
     if (status == REFOCUS_OK) {
         rf_upsample(&up, &pool);
         rf_pool_end(&pool);

@@ -301,6 +301,6 @@ int RF_VEC(check_vec)(void)
         failures += check_operation(i);
     if (failures == 0)
         printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 3, (int)VEC_U16);
+               count + 5, (int)VEC_U16);
     return failures;
 }

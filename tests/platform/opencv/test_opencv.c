@@ -249,6 +249,50 @@ static void estimate(void **state)
     assert_int_equal(refocus_cv_network(99, &network), REFOCUS_ERR_ARGUMENT);
 }
 
+/* Read once, run often, on pictures of any size. */
+static void estimator(void **state)
+{
+    static uint8_t pixels[3 * W * H];
+    struct refocus_image photo = picture(pixels);
+    struct refocus_network network = {48, 32, {0, 0, 0}, 1, 0};
+    struct refocus_estimator *net = NULL;
+    struct refocus_estimate result;
+    struct refocus_cv_reason reason;
+    char path[] = "/tmp/refocus-onnx-XXXXXX";
+    const int file = mkstemp(path);
+
+    (void)state;
+    assert_true(file >= 0);
+    write_network(path);
+    assert_int_equal(refocus_cv_estimator_create(&net, path, &network, &reason), REFOCUS_OK);
+    unlink(path);
+    for (int n = 1; n < 6; n++) {
+        memset(pixels, 10 * n, sizeof pixels);
+        photo.width = W / n;
+        assert_int_equal(refocus_cv_estimator_run(net, &photo, &result, &reason), REFOCUS_OK);
+        assert_int_equal(result.width, 48);
+        for (int i = 0; i < 48 * 32; i++)
+            assert_true(fabsf(result.samples[i] - (float)(30 * n)) < 0.01f);
+        refocus_cv_estimate_free(&result);
+    }
+    photo.width = 0;
+    assert_int_equal(refocus_cv_estimator_run(net, &photo, &result, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_null(result.samples);
+    assert_int_equal(refocus_cv_estimator_run(NULL, &photo, &result, NULL),
+                     REFOCUS_ERR_ARGUMENT);
+    refocus_cv_estimator_destroy(&net);
+    assert_null(net);
+    refocus_cv_estimator_destroy(&net);
+    refocus_cv_estimator_destroy(NULL);
+    assert_int_equal(refocus_cv_estimator_create(&net, path, &network, &reason), REFOCUS_ERR_IO);
+    assert_int_equal(ftruncate(file, 0), 0);
+    close(file);
+    assert_int_equal(refocus_cv_estimator_create(NULL, path, &network, NULL),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_null(net);
+}
+
 static void upsample(void **state)
 {
     static uint8_t pixels[3 * W * H];
@@ -302,7 +346,8 @@ static void upsample_by(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(stereo), cmocka_unit_test(stereo_refuses),
-                                       cmocka_unit_test(estimate), cmocka_unit_test(upsample),
+                                       cmocka_unit_test(estimate), cmocka_unit_test(estimator),
+                                       cmocka_unit_test(upsample),
                                        cmocka_unit_test(upsample_by)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
