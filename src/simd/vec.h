@@ -12,8 +12,6 @@
  *     vec_u16_or(a, b)        a | b
  *     vec_u16_without(a, b)   a & ~b
  *     vec_u16_mul(a, b)       (uint16_t)(a * b)
- *     vec_u16_least(a, b)     a < b ? a : b
- *     vec_u16_most(a, b)      a > b ? a : b
  *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
  *     vec_u16_xor(a, b)       a ^ b
  *     vec_u16_mul_high(a, b)  (a * b) >> 16

@@ -167,16 +167,6 @@ static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
     return _mm256_mullo_epi16(a, b);
 }
 
-static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
-{
-    return _mm256_min_epu16(a, b);
-}
-
-static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
-{
-    return _mm256_max_epu16(a, b);
-}
-
 enum { VEC_U8 = 32 };
 typedef __m256i vec_u8;
 

@@ -163,16 +163,6 @@ static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
     return vmulq_u16(a, b);
 }
 
-static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
-{
-    return vminq_u16(a, b);
-}
-
-static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
-{
-    return vmaxq_u16(a, b);
-}
-
 enum { VEC_U8 = 16 };
 typedef uint8x16_t vec_u8;
 

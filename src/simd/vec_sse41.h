@@ -160,16 +160,6 @@ static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
     return _mm_mullo_epi16(a, b);
 }
 
-static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
-{
-    return _mm_min_epu16(a, b);
-}
-
-static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
-{
-    return _mm_max_epu16(a, b);
-}
-
 enum { VEC_U8 = 16 };
 typedef __m128i vec_u8;
 
