@@ -35,13 +35,24 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     }
 }
 
-/* Codes of n means into every `bytes`-th byte. Copies of what is used, as bytes written
- * might be any of it. */
-static void encode_row(uint8_t *restrict out, int bytes, const uint16_t *restrict mean,
-                       const uint8_t *restrict to_code, int n)
+/* Means above white come from highlights. */
+static void clip(uint16_t *restrict mean, int n)
 {
-    for (int x = 0; x < n; x++)
-        out[x * bytes] = to_code[mean[x] < RF_MEAN_MAX ? mean[x] : RF_MEAN_MAX];
+    for (int i = 0; i < n; i++)
+        mean[i] = mean[i] < RF_MEAN_MAX ? mean[i] : RF_MEAN_MAX;
+}
+
+/* A row of n pixels, `bytes` is a constant. */
+static inline void encode_row(uint8_t *restrict out, struct rf_order o, const int bytes,
+                              const uint16_t *restrict red, const uint16_t *restrict green,
+                              const uint16_t *restrict blue, const uint8_t *restrict to_code,
+                              int n)
+{
+    for (int x = 0; x < n; x++) {
+        out[x * bytes + o.r] = to_code[red[x]];
+        out[x * bytes + o.g] = to_code[green[x]];
+        out[x * bytes + o.b] = to_code[blue[x]];
+    }
 }
 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
@@ -51,14 +62,17 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
     const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
     const int n = rect.x1 - rect.x0;
 
+    for (int c = 0; f->bright && c < 3; c++)
+        clip(mean[c], RF_TILE * RF_TILE);
     for (int y = rect.y0; y < rect.y1; y++) {
         const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
         const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + rect.x0;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
-        encode_row(out + o.r, o.bytes, mean[0] + at, to_code, n);
-        encode_row(out + o.g, o.bytes, mean[1] + at, to_code, n);
-        encode_row(out + o.b, o.bytes, mean[2] + at, to_code, n);
+        if (o.bytes == 3)
+            encode_row(out, o, 3, mean[0] + at, mean[1] + at, mean[2] + at, to_code, n);
+        else
+            encode_row(out, o, 4, mean[0] + at, mean[1] + at, mean[2] + at, to_code, n);
         for (int x = 0; o.a >= 0 && x < n; x++)
             out[x * o.bytes + o.a] = alpha[x];
     }

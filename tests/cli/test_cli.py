@@ -15,74 +15,10 @@ import time
 import unittest
 
 import pictures
-
-REFOCUS = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else 'refocus'
-ROOT = os.environ.get('REFOCUS_SOURCE_ROOT', os.path.join(os.path.dirname(__file__), '../..'))
-PHOTOS = os.environ.get('REFOCUS_PHOTOS', os.path.join(ROOT, '../shared/photos'))
-W, H = 48, 32
-
+from case import Case, H, PHOTOS, REFOCUS, ROOT, W
 
 METHODS = ('sweep', 'search', 'raytrace', 'jittered', 'lightfield', 'blur', 'scatter', 'foveated',
            'interpolated', 'diffusion')
-
-
-class Case(unittest.TestCase):
-    """Runs in a folder of its own with photo.ppm, depth.pgm and friends."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(prefix='refocus-cli-')
-        os.chdir(cls.folder)
-        pictures.ppm('photo.ppm', W, H,
-                     lambda x, y: ((x * 5) & 255, (y * 8) & 255, ((x ^ y) & 7) * 32))
-        pictures.pgm('depth.pgm', W, H, lambda x, y: 255 if x >= W // 2 else 51)
-        pictures.pgm('mm.pgm', W, H,
-                     lambda x, y: 0 if (x, y) == (3, 3) else 500 if x < 24 else 2000, 65535)
-        pictures.pfm('metres.pfm', W, H, lambda x, y: 0.5 if x < 24 else 2.0)
-        pictures.ppm('plain.ppm', W, H, lambda x, y: (90, 160, 30))
-
-    @classmethod
-    def tearDownClass(cls):
-        os.chdir('/')
-        shutil.rmtree(cls.folder)
-
-    def run_it(self, *arguments, **more):
-        return subprocess.run([REFOCUS, *arguments], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, timeout=300,
-                              stdin=subprocess.DEVNULL, **more)
-
-    def succeeds(self, *arguments):
-        result = self.run_it(*arguments)
-        self.assertEqual((result.returncode, result.stderr), (0, ''), arguments)
-        return result.stdout
-
-    def reports(self, *arguments):
-        """The object that --json prints, alone on standard output."""
-        return json.loads(self.succeeds(*arguments, '--json'))
-
-    def fails(self, status, line, *arguments):
-        """Exactly this line, this status, nothing printed, no file made or changed."""
-        before = {name: os.stat(name).st_mtime_ns for name in os.listdir('.')}
-        result = self.run_it(*arguments)
-        after = {name: os.stat(name).st_mtime_ns for name in os.listdir('.')}
-        self.assertEqual(result.stdout, '', arguments)
-        if isinstance(line, str):
-            self.assertEqual(result.stderr, 'refocus: ' + line + '\n', arguments)
-        else:
-            self.assertRegex(result.stderr, line, arguments)
-        self.assertEqual(result.stderr.count('\n'), 1, arguments)
-        self.assertTrue(result.stderr.startswith('refocus: '), arguments)
-        self.assertEqual(result.returncode, status, arguments)
-        self.assertEqual(before, after, arguments)
-
-    def differs(self, a, b, what=None):
-        self.assertFalse(a == b, what)  # without pages of samples
-
-    def same(self, a, b, what=None):
-        self.assertTrue(a == b, what)
-
-    def render(self, *arguments):
-        return ('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm') + arguments
 
 
 class Usage(Case):
@@ -110,7 +46,7 @@ class Usage(Case):
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
                       '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
-                      '-h --help',
+                      '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
                      '--estimate --preset --strokes --side-by-side --view --focus-at --blur --json -h --help',
             'info': '--json -h --help',
@@ -636,12 +572,12 @@ class DepthAndInfo(Case):
         self.strokes('s.json', {'kind': 'all', 'disparity': 2})
         self.fails(1, 's.json: strokes[0].disparity must be a number from 0 to 1', *command,
                    's.json')
-        self.fails(1, 'no.json: No such file or directory', *command, 'no.json')
-        self.fails(1, '.: Is a directory', *command, '.')
+        self.fails(1, 'no.json: cannot open it: No such file or directory', *command, 'no.json')
+        self.fails(1, '.: cannot read it: Is a directory', *command, '.')
         self.fails(1, re.compile(r'^refocus: photo.ppm: line 1 is no JSON: '), *command,
                    'photo.ppm')
         for content, why in ((b'', 'it is empty'), (b' ' * (64 << 20) + b' ',
-                                                    'it has more than 67108864 bytes')):
+                                                    'it is larger than the limit of 67108864 bytes')):
             with open('s.json', 'wb') as file:
                 file.write(content)
             self.fails(1, 's.json: ' + why, *command, 's.json')

@@ -162,8 +162,7 @@ def looked_at(refocus, folder, display):
     check(saved['method'] == 'search' and saved['blur'] > 15, saved)
     viewer.key('s')
     viewer.until(lambda: os.path.exists(folder + '/out.png'), 'the picture saved')
-    run(refocus, 'render', photo, '--depth', depth, '-o', folder + '/r.png', '--method',
-        'search', '--focus', repr(saved['focus']), '--blur', repr(saved['blur']))
+    run(refocus, 'render', photo, '--settings', settings, '-o', folder + '/r.png')
     check(read_png8(folder + '/out.png') == read_png8(folder + '/r.png'), 'what was saved')
     viewer.key('k')
     time.sleep(0.5 * SLOW)
