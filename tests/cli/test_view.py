@@ -207,8 +207,9 @@ def painted(refocus, folder, display):
     viewer.key('6', 'p')
     viewer.drag([(262, 215), (320, 190), (380, 170), (460, 180), (475, 220), (400, 230),
                  (400, 280), (400, 340)])
-    viewer.keep('painted')
     head = depth()
+    time.sleep(0.5 * SLOW if SHOTS else 0)
+    viewer.keep('painted')
     check(abs(value(head, 400, 200) - 0.6) < 1e-4 and value(head, 100, 100) < 0.21, 'the head')
     with open(strokes) as file:
         kinds = [one['kind'] for one in json.load(file)['strokes']]
