@@ -94,12 +94,13 @@ static int print_report(const struct input *input, const struct rf_view_report *
     for (int i = 0; i < report->count; i++)
         json_array_append_new(times, time_json(&report->times[i]));
     return report_print_json(json_pack(
-        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:o, s:I}", "file",
+        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}", "file",
         report_text_json(input->photo_name), "width", (int)input->photo->image.width, "height",
         (int)input->photo->image.height, "driver", report->driver, "window_width", report->width,
         "window_height", report->height, "reduction", report->reduction, "method",
         refocus_method_name(report->last.method), "focus", (double)report->last.focus, "blur",
-        (double)report->last.blur, "saved", saving->saved, "times", times, "peak_rss_kib",
+        (double)report->last.blur, "strokes", report->strokes, "saved", saving->saved,
+        "times", times, "peak_rss_kib",
         (json_int_t)report_peak_rss_kib()));
 }
 

@@ -210,6 +210,32 @@ static void test_nobody_waits(void **unused)
     assert_true(now_ms() - start < 5000.0 * slow());
 }
 
+/* While something is held no full picture is begun. */
+static void test_hold(void **unused)
+{
+    const struct timespec pause = {0, 100000000};
+    struct rf_session *session = begin();
+    struct rf_view_state state = whole(0.2f, 9);
+    const struct rf_view_frame *frame;
+    uint64_t request;
+
+    (void)unused;
+    wait_for(session, rf_session_show(session, &state), true);
+    state.hold = true;
+    for (int i = 0; i < 5; i++) {
+        state.blur = 10.0f + (float)i;
+        request = rf_session_show(session, &state);
+        frame = wait_for(session, request, false);
+        assert_false(frame->full);
+        nanosleep(&pause, NULL);
+        assert_false(rf_session_frame(session, &frame));
+    }
+    state.hold = false;
+    request = rf_session_show(session, &state);
+    expect_render(wait_for(session, request, true), REFOCUS_METHOD_SWEEP, 0.2f, 14);
+    rf_session_destroy(&session);
+}
+
 static void test_modes(void **unused)
 {
     struct rf_session *session = begin();
@@ -300,6 +326,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
+        cmocka_unit_test(test_hold),
         cmocka_unit_test(test_modes), cmocka_unit_test(test_painting)};
     int failed;
 
