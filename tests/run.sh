@@ -114,6 +114,13 @@ minimal_stage() {
     same_bytes minimal
 }
 
+bare_stage() {
+    say 'the command without cameras, windows and OpenCV: it works with what is left'
+    CC=gcc CXX=g++ build bare --buildtype=release -Dv4l2=disabled -Dlibcamera=disabled \
+        -Dsdl2=disabled -Dopencv=disabled -Dheic=disabled -Dtools=enabled || return
+    run bare --suite cli --suite capture
+}
+
 # A finding must end the program, and the reports name lines.
 memory_stage() {
     say 'address and undefined behaviour sanitizers: all tests'
@@ -221,6 +228,7 @@ if [ "$mode" != quick ]; then
     clang_stage
     camera_stage
     minimal_stage
+    bare_stage
     memory_stage
     thread_stage
     cross_stage aarch64 arm64 g++-aarch64-linux-gnu

@@ -8,6 +8,7 @@
 #include <refocus/lens.h>
 #include <refocus/render.h>
 #include <refocus/status.h>
+#include <refocus/temporal.h>
 #include <refocus/version.h>
 
 #endif

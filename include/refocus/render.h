@@ -42,6 +42,23 @@ struct refocus_log {
     void *user;
 };
 
+/**
+ * The caller's threads in place of the renderer's own, for programs that have a pool.
+ *
+ * parallel_for(user, work, context, count) calls work(context, i) once for each i = 0 ..
+ * count - 1 and returns when all calls have returned. In any order, on any threads, one after
+ * the other or all at once. An item is a worker, not a piece of the picture: it takes
+ * pieces for as long as there are any, so the first few items may do all the work, and the
+ * last ones nothing. count is at most params.threads. It is called from the thread that called
+ * refocus_prepare() or refocus_render(), some dozens of times a picture, and never from
+ * within itself. An item that is called twice or not at all makes the result undefined.
+ */
+struct refocus_parallel {
+    void (*parallel_for)(void *user, void (*work)(void *context, int32_t item), void *context,
+                         int32_t count);
+    void *user;
+};
+
 /** Instruction sets. AUTO is the best that the processor has. */
 enum refocus_cpu {
     REFOCUS_CPU_AUTO = 0,
@@ -57,7 +74,8 @@ struct refocus_renderer_params {
     int32_t max_width;       /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
     int32_t max_height;      /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
     float max_blur_radius;   /**< largest K, 0 to REFOCUS_MAX_BLUR_RADIUS */
-    int32_t threads;         /**< 1 to 64; 0 = one for each processor */
+    int32_t threads;         /**< 1 to 64; 0 = one for each processor. With `parallel`: the most
+                                  that work at once */
     uint32_t cpu;            /**< enum refocus_cpu */
     uint64_t max_memory;     /**< bytes; creation fails above; 0 = no limit */
     struct refocus_allocator allocator; /**< all NULL: malloc and free */
@@ -66,6 +84,15 @@ struct refocus_renderer_params {
                                   of their own (sweep, search, raytrace, jittered, blur):
                                   REFOCUS_METHOD_BIT() of each, or-ed */
     uint32_t reserved;       /**< 0 */
+    struct refocus_parallel parallel;   /**< parallel_for NULL: threads of its own */
+    uint32_t previews;       /**< 1: refocus_prepare() also makes the photo at 1/2, 1/4 and 1/8 of
+                                  its size, for `reduce` of struct refocus_render_params */
+    uint32_t in_place;       /**< 1: strip mode, for little memory. The photo and its disparities,
+                                  which are of its size, are not copied: they stay as they are and
+                                  where they are until the next refocus_prepare() or the
+                                  renderer's end. Rendering goes through them twice, block by
+                                  block, and takes longer; the bytes are the same. For sweep,
+                                  search, raytrace, jittered and blur; not with `previews` */
 };
 
 static inline struct refocus_renderer_params
@@ -96,6 +123,15 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  *     foveated      96 (W + 16) (H + 16) + 2^18
  *     interpolated  48 (W + 16) (H + 16) + 4 (W + H + 16) T + 2^16
  *     diffusion     96 (W + 16) (H + 16) + 2^18
+ *
+ * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.
+ *
+ * Strip mode, params->in_place, takes no more than
+ *
+ *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + 512) + 24 P^2 + 2^17
+ *
+ * with S = 144 + 2N - M + max(M, 2P), M = P + 28 and N = max(M, 2P + 9), M and N rounded up to
+ * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes.
  *
  * @return 0 if a parameter is out of its range. Thread-safe.
  */
@@ -250,6 +286,13 @@ struct refocus_render_params {
     uint32_t solver;        /**< diffusion: enum refocus_solver */
     float conductivity;     /**< diffusion: weight W where blur is strongest, 0.01 to 1 */
     const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size */
+
+    int32_t reduce;         /**< 1, or with a renderer for previews 2, 4 or 8: the picture at that
+                                 part of its size, rounded up. The photo is reduced by halves, in
+                                 linear light, pixels of other surfaces left out. The region, if
+                                 any, and `out` are in reduced pixels, all other lengths in
+                                 those of the photo: the result is that of the reduced photo
+                                 with K / reduce */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole
@@ -284,6 +327,7 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
     params.field_falloff = (float)0.3;
     params.layers = 4;
     params.conductivity = (float)0.125;
+    params.reduce = 1;
     return params;
 }
 

@@ -134,7 +134,7 @@ static void split_layers(struct work *work)
     bool cut[257] = {false}; /* cut[i]: a layer begins at bin i */
     uint8_t number[256];
 
-    for (int y = 0; y < r->height; y++)
+    for (int y = 0; y < r->height && !rf_cancelled(r); y++)
         for (int x = 0; x < r->width; x++)
             count[r->disparity[y * r->stride + x] >> 8]++;
     for (int n = 1; n < layers; n++) {
@@ -161,7 +161,7 @@ static void split_layers(struct work *work)
         n += cut[i];
         number[i] = (uint8_t)n;
     }
-    for (int y = 0; y < r->height; y++)
+    for (int y = 0; y < r->height && !rf_cancelled(r); y++)
         for (int x = 0; x < r->width; x++)
             work->member[(size_t)y * (size_t)r->width + (size_t)x] =
                 number[r->disparity[y * r->stride + x] >> 8];
@@ -237,6 +237,18 @@ static void composite_row(void *context, int item, int worker)
     }
 }
 
+/* Sets a plane to 0, border and all. */
+static void clear(const struct work *work, float *plane)
+{
+    enum { AT_ONCE = 1 << 18 };
+    float *from = plane - work->stride - 1;
+
+    for (uint64_t i = 0; i < work->planes_size && !rf_cancelled(work->f->r); i += AT_ONCE)
+        memset(from + i, 0,
+               sizeof(float) * (size_t)(work->planes_size - i < AT_ONCE ? work->planes_size - i
+                                                                        : AT_ONCE));
+}
+
 static void do_layer(struct work *work, int number)
 {
     struct rf_diffusion_layer *layer = &work->layer;
@@ -244,21 +256,21 @@ static void do_layer(struct work *work, int number)
     int rows;
 
     layer->number = number;
-    if (!rf_layer_grow(layer))
+    if (!rf_layer_grow(layer) || rf_cancelled(work->f->r))
         return;
     rows = layer->box.y1 - layer->box.y0;
     /* a pixel's radius is that of its own surface again */
     rf_pool_run(pool, radius_row, work, work->f->r->height);
     layer->edge = (struct rf_edge *)(void *)(work->scratch[0][0] - work->stride - 1);
     rf_layer_list_edge(layer);
+    if (rf_cancelled(work->f->r)) /* the list may have no end */
+        return;
     rf_pool_run(pool, extrapolate_row, work, rows);
-    memset(work->weight - work->stride - 1, 0, sizeof(float) * (size_t)work->planes_size);
+    clear(work, work->weight);
     for (int c = 0; c < CHANNELS; c++) {
-        const size_t bytes = sizeof(float) * (size_t)work->planes_size;
-
-        memset(work->plane[c] - work->stride - 1, 0, bytes);
+        clear(work, work->plane[c]);
         for (int i = 0; i < 2; i++)
-            memset(work->scratch[i][c] - work->stride - 1, 0, bytes);
+            clear(work, work->scratch[i][c]);
     }
     rf_pool_run(pool, cut_out_row, work, rows);
     if (layer->reach > 0)
@@ -297,7 +309,7 @@ static void measure(struct work *work)
     double steps;
 
     work->most_radius = 0;
-    for (int y = 0; y < r->height; y++)
+    for (int y = 0; y < r->height && !rf_cancelled(r); y++)
         for (int x = 0; x < r->width; x++)
             work->most_radius = fmaxf(work->most_radius, work->layer.radius[y * work->stride + x]);
     steps = (double)work->most_radius * work->most_radius / (2 * work->f->params->conductivity);
@@ -319,12 +331,14 @@ void rf_diffusion_frame(struct rf_frame *f)
     work->layer.tiles_y = (f->r->height + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
     rf_sincos_turns(f->params->field_angle / 360.0, &work->normal_d, &work->normal_x);
     for (int c = 0; c < CHANNELS; c++)
-        memset(work->below[c] - work->stride - 1, 0, sizeof(float) * (size_t)work->planes_size);
+        clear(work, work->below[c]);
     rf_pool_run(&f->r->pool, radius_row, work, f->r->height);
     if (rf_cancelled(f->r))
         return;
     measure(work);
     split_layers(work);
+    if (rf_cancelled(f->r))
+        return;
     if (work->steps > 0)
         rf_series_make(&work->series, work->steps, f->params->conductivity);
     if (work->most_radius < 0.5f)

@@ -1,6 +1,7 @@
 /* diffusion_layer.c: the region that a layer blurs over, and how much it is blurred there.
  * Kosloff & Barsky 2007, sections 7.1 and 7.2. */
 #include "methods/diffusion.h"
+#include "renderer/bands.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,6 +29,8 @@ static void number_rings(struct rf_diffusion_layer *layer)
         for (int j = 0; j < h; j++) {
             const int y = pass ? h - 1 - j : j, dy = pass ? 1 : -1;
 
+            if (rf_cancelled(layer->r))
+                return;
             for (int i = 0; i < w; i++) {
                 const int x = pass ? w - 1 - i : i;
                 const size_t at = (size_t)y * (size_t)w + (size_t)x;
@@ -51,7 +54,7 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
     struct rf_box box = {w, h, 0, 0, layer->stride};
     float most = -1;
 
-    for (int y = 0; y < h; y++)
+    for (int y = 0; y < h && !rf_cancelled(layer->r); y++)
         for (int x = 0; x < w; x++)
             if (layer->member[(size_t)y * (size_t)w + (size_t)x] == layer->number &&
                 layer->radius[y * layer->stride + x] > most)
@@ -61,7 +64,7 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
     /* A disc of radius r is matched by a Gaussian of sigma r / 2; 3 sigma hold 99 %. */
     layer->reach = most < 0.5f ? 0 : (int)ceilf(1.5f * most) + 2;
     number_rings(layer);
-    for (int y = 0; y < h; y++) {
+    for (int y = 0; y < h && !rf_cancelled(layer->r); y++) {
         for (int x = 0; x < w; x++) {
             if (layer->rings[(size_t)y * (size_t)w + (size_t)x] > layer->reach)
                 continue;
@@ -84,6 +87,8 @@ void rf_layer_list_edge(struct rf_diffusion_layer *layer)
         struct rf_edge_tile *tile = &layer->tile[t];
         const int x0 = t % layer->tiles_x * RF_EDGE_TILE, y0 = t / layer->tiles_x * RF_EDGE_TILE;
 
+        if (t % 64 == 0 && rf_cancelled(layer->r))
+            return;
         *tile = (struct rf_edge_tile){.first = count};
         for (int y = y0; y < lesser(y0 + RF_EDGE_TILE, h); y++) {
             for (int x = x0; x < lesser(x0 + RF_EDGE_TILE, w); x++) {
@@ -144,6 +149,8 @@ void rf_layer_extrapolate_row(const struct rf_diffusion_layer *layer, int y)
     for (int x = layer->box.x0; x < layer->box.x1; x++) {
         const int ring = layer->rings[(size_t)y * (size_t)w + (size_t)x];
 
+        if (rf_cancelled(layer->r))
+            return;
         if (ring > 0 && ring <= layer->reach)
             layer->radius[y * layer->stride + x] = extrapolate(layer, x, y);
     }

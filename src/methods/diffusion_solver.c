@@ -23,6 +23,8 @@ void rf_diffuse_steps(const struct refocus_renderer *r, const struct rf_box *box
             const float *c = from + y * box->stride, *w = weight + y * box->stride;
             float *restrict out = to + y * box->stride;
 
+            if (rf_cancelled(r))
+                return;
             if (i == steps) { /* an odd number: one more to copy back */
                 for (int x = box->x0; x < box->x1; x++)
                     out[x] = c[x];
@@ -119,6 +121,8 @@ void rf_diffuse_series(const struct refocus_renderer *r, const struct rf_box *bo
      * row y of T_(k-2), which T_(k-1) needs for its rows up to y + 1. */
     for (int first = 0; first < series->terms && !rf_cancelled(r); first += AT_ONCE) {
         for (int front = box->y0; front < box->y1 + 2 * (AT_ONCE - 1); front++) {
+            if (rf_cancelled(r))
+                return;
             for (int i = 0; i < AT_ONCE && first + i < series->terms; i++) {
                 const int y = front - 2 * i;
 

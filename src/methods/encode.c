@@ -19,7 +19,7 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width;
+        const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
@@ -66,7 +66,7 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
         clip(mean[c], RF_TILE * RF_TILE);
     for (int y = rect.y0; y < rect.y1; y++) {
         const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
-        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + rect.x0;
+        const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride + rect.x0;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         if (o.bytes == 3)
@@ -84,7 +84,7 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width;
+        const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
@@ -108,5 +108,5 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
     out[o.g] = rgb[1];
     out[o.b] = rgb[2];
     if (o.a >= 0)
-        out[o.a] = f->r->alpha[(size_t)y * f->r->width + x];
+        out[o.a] = f->r->alpha[y * f->r->alpha_stride + x];
 }

@@ -150,6 +150,8 @@ static void filter_rows(void *context, int item, int worker)
         h++;
     a = (2 * h + 1) * (variance - h * (h + 1) / 3.0) / (2 * ((h + 1.0) * (h + 1.0) - variance));
     for (int y = item * ROWS; y < (item + 1) * ROWS && y < from->height; y++) {
+        if (rf_cancelled(work->f->r))
+            return;
         for (int c = 0; c < CHANNELS; c++) {
             /* rows of both are scratch to each other until the last box */
             float *row = from->plane[c] + (size_t)y * (size_t)n;

@@ -7,6 +7,7 @@
  * and cell, so that a picture can be made again.
  */
 #include "methods/trace.h"
+#include "renderer/bands.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,6 +20,12 @@ static uint32_t draw(uint32_t seed, uint32_t place, uint32_t cell)
     h = (h ^ h >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
     h = (h ^ h >> 27) * UINT64_C(0x94d049bb133111eb);
     return (uint32_t)(h >> 32 ^ h);
+}
+
+/* A number for each pixel of the photo. */
+static uint32_t place_of(const struct refocus_renderer *r, int x, int y)
+{
+    return (uint32_t)(y + r->origin_y) << 16 | (uint32_t)(x + r->origin_x);
 }
 
 /* Follow the ray through mask pixel (mx, my) for the pixels that drew it. */
@@ -56,8 +63,10 @@ void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
         for (int y = rect.y0; y < rect.y1; y++)
             for (int x = rect.x0; x < rect.x1; x++)
                 drawn[y % RF_TILE * RF_TILE + x % RF_TILE] = (uint8_t)(
-                    draw(f->params->seed, (uint32_t)(y << 16 | x), (uint32_t)cell) %
+                    draw(f->params->seed, place_of(f->r, x, y), (uint32_t)cell) %
                     (uint32_t)(a * a));
+        if (rf_cancelled(f->r))
+            return;
         for (int member = 0; member < a * a; member++)
             follow(f, rect, mx + member % a, my + member / a, member, drawn, &sums);
     }

@@ -9,6 +9,7 @@
  * p: then p itself is (or, by option, the mirrored pixel, or the background layer).
  */
 #include "methods/method.h"
+#include "renderer/bands.h"
 
 #include <math.h>
 #include <string.h>
@@ -117,6 +118,8 @@ static void search_runs(const struct rf_frame *f, ptrdiff_t origin,
         while (rays < RF_RAY_CHUNK && n + rays < set->count &&
                ray[rays].weight == ray->weight)
             rays++;
+        if (rf_cancelled(f->r))
+            return;
         memset(run, 0, sizeof run);
         search_run(f, origin, ray, rays, run);
         for (int c = 0; c < 3; c++)
@@ -140,6 +143,8 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
                                 rf_offset(ray->u, nearest);
         const int within = tolerance(ray);
 
+        if (rf_cancelled(f->r))
+            return;
         for (int y = rect.y0; y < rect.y1; y++) {
             for (int x = rect.x0; x < rect.x1; x++) {
                 const ptrdiff_t p = y * r->stride + x;
@@ -169,5 +174,6 @@ void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
         search_pixels(f, rect, set, &sums);
     else
         search_runs(f, ty * RF_TILE * f->r->stride + tx * RF_TILE, set, &sums);
-    rf_encode_tile(f, rect, &sums);
+    if (!rf_cancelled(f->r)) /* else no weights */
+        rf_encode_tile(f, rect, &sums);
 }

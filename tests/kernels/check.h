@@ -33,6 +33,7 @@ int check_sweep(const struct subject *subject);
 int check_aim(const struct subject *subject);
 int check_search(const struct subject *subject);
 int check_light(const struct subject *subject);
+int check_surface(const struct subject *subject);
 int check_focus(void);
 
 /* Prints a line with the time of each kernel, in plain C and by the subject. */

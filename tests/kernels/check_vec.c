@@ -3,6 +3,7 @@
 #include "check.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "simd/vec.h"
@@ -88,6 +89,21 @@ static uint16_t c_first(uint16_t a, uint16_t b)
     return a;
 }
 
+static uint16_t c_mul(uint16_t a, uint16_t b)
+{
+    return (uint16_t)((uint32_t)a * b);
+}
+
+static uint16_t c_least(uint16_t a, uint16_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint16_t c_most(uint16_t a, uint16_t b)
+{
+    return a > b ? a : b;
+}
+
 static const struct {
     const char *name;
     operation *run;
@@ -99,6 +115,8 @@ static const struct {
     {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
     {"max", vec_u16_max, c_max},
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
+    {"mul", vec_u16_mul, c_mul},             {"least", vec_u16_least, c_least},
+    {"most", vec_u16_most, c_most},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)
@@ -211,6 +229,46 @@ static int check_add_to(void)
     return 0;
 }
 
+/* Every pair of bytes, at odd addresses. */
+static int check_bytes(void)
+{
+    static const char *const names[] = {"absdiff", "adds", "subs", "half", "lookup", "wide"};
+    const uint8_t codes[16] = {7, 255, 0, 128, 1, 2, 3, 4, 90, 91, 92, 93, 250, 251, 252, 253};
+    uint8_t a[VEC_U8 + 1], out[5][VEC_U8 + 1];
+    uint16_t wide[VEC_U8 + 1];
+
+    for (int pair = 0; pair < 65536; pair++) {
+        const uint8_t y = (uint8_t)(pair >> 8);
+        vec_u16 sum[2] = {vec_u16_set(0xff00), vec_u16_set(0xff00)};
+
+        for (int i = 0; i < (int)VEC_U8; i++)
+            a[1 + i] = (uint8_t)(pair + 37 * i);
+        const vec_u8 v = vec_u8_load(a + 1), w = vec_u8_set(y);
+        const vec_u8 result[5] = {vec_u8_absdiff(v, w), vec_u8_adds(v, w), vec_u8_subs(v, w),
+                                  vec_u8_half(v),
+                                  vec_u8_lookup(vec_u8_table(codes),
+                                                vec_u8_half(vec_u8_half(vec_u8_half(
+                                                    vec_u8_half(v)))))};
+        for (int k = 0; k < 5; k++)
+            memcpy(out[k], &result[k], VEC_U8);
+        vec_u8_add_wide(sum, v);
+        vec_u8_store_wide(wide + 1, sum);
+        for (int i = 0; i < (int)VEC_U8; i++) {
+            const int x = a[1 + i];
+            const int should[6] = {abs(x - y), x + y > 255 ? 255 : x + y, x > y ? x - y : 0, x / 2,
+                                   codes[x / 16], 0xff00 + x};
+
+            for (int k = 0; k < 6; k++)
+                if ((k < 5 ? out[k][i] : wide[1 + i]) != should[k]) {
+                    printf("FAIL  vec_u8_%s, %s: lane %d of %d, %d should be %d\n", names[k],
+                           TEXT(RF_VEC_SET), i, x, y, should[k]);
+                    return 1;
+                }
+        }
+    }
+    return 0;
+}
+
 /* a b + c d, added up twice: lanes come out in their order. */
 static int check_products(void)
 {
@@ -247,12 +305,13 @@ static int check_products(void)
 int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
-    int failures = check_set() + check_order() + check_add_to() + check_products();
+    int failures = check_set() + check_order() + check_add_to() + check_products() +
+                   check_bytes();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
         printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 3, (int)VEC_U16);
+               count + 5, (int)VEC_U16);
     return failures;
 }
