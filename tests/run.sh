@@ -5,7 +5,8 @@
 # 'N passed, N failed, N skipped', the sum over all builds; the exit status is 1 when
 # anything failed.
 #   --quick  one build with gcc and its tests
-#   --long   also lets each fuzz target search for a minute, opens and closes a V4L2 camera
+#   --long   also runs all tests under the thread sanitizer, lets each fuzz target search for
+#            a minute, opens and closes a V4L2 camera
 #            10,000 times, and compiles against each release of libcamera
 # Builds are kept in $REFOCUS_BUILDS (build-tests in the source folder) and reused.
 set -u -o pipefail
@@ -130,15 +131,19 @@ memory_stage() {
         run asan --timeout-multiplier 5
 }
 
+# The whole suite, most of which has one thread, takes a quarter of an hour of processor time.
 thread_stage() {
-    say 'thread sanitizer: the tests with threads'
+    local which=(--suite threads --timeout-multiplier 5)
+
+    [ "$mode" != long ] || which=(--timeout-multiplier 20)
+    say "thread sanitizer: $([ "$mode" = long ] && echo all tests || echo the tests with threads)"
     CC=gcc CXX=g++ build tsan --buildtype=debugoptimized -Db_sanitize=thread -Db_lundef=false \
         || return
     # gcc 12's run time does not know kernels that place memory more randomly.
     if setarch -R true 2>/dev/null; then
         wrap=(setarch -R)
     fi
-    TSAN_OPTIONS=halt_on_error=1 run tsan --suite threads --timeout-multiplier 5
+    TSAN_OPTIONS=halt_on_error=1 run tsan "${which[@]}"
     wrap=()
 }
 

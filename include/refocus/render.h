@@ -153,13 +153,15 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
 
 /**
  * Take a photo and its disparities in. Both are copied in the form the renderer needs; the
- * caller's memory is not used after the return.
+ * caller's memory is not used after the return. In strip mode (params.in_place) they are not
+ * copied, and stay with the renderer until the next refocus_prepare() or its end.
  *
  * @param photo      all in focus; at most max_width x max_height
  * @param disparity  of any size; covers the same view as the photo. Another size than
  *                   the photo's is brought to it by following the photo's edges.
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED.
- *         After an error nothing is prepared.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED, in strip
+ *         mode REFOCUS_ERR_UNSUPPORTED for disparities of another size. After an error nothing
+ *         is prepared.
  */
 REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
                                 const struct refocus_image *photo,
@@ -339,6 +341,11 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  * blurred reaching over them, come out as they went in; alpha always does (255 where
  * the photo has none).
  *
+ * What the last call made is kept as long as it holds: another aperture shape, sigma or region
+ * costs only the rays; other rays or highlights, what depends on them; another focus or K, all
+ * but the light of the photo. A region costs what lies in it and around it. None of this changes
+ * a byte.
+ *
  * @param params  see struct refocus_render_params
  * @param out     of the size of the region, any format and stride; may not overlap
  *                itself
@@ -352,7 +359,8 @@ REFOCUS_API int refocus_render(struct refocus_renderer *renderer,
 
 /**
  * End the refocus_prepare() or refocus_render() that is running, if any, early: it
- * returns REFOCUS_ERR_CANCELLED soon. Has no effect on later calls. Thread-safe.
+ * returns REFOCUS_ERR_CANCELLED as soon as each thread has done the few pixels that it is at, a few
+ * milliseconds at most whatever the picture. Has no effect on later calls. Thread-safe.
  */
 REFOCUS_API void refocus_cancel(struct refocus_renderer *renderer);
 

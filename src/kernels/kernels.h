@@ -129,7 +129,8 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
 /*
  * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its two
  * neighbours, `apart` elements before and after, whose blur is within one pixel (256) of its
- * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below.
+ * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows
+ * written are not among those read.
  */
 typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
                            const int16_t *blur, ptrdiff_t apart, int least, int n);
@@ -268,7 +269,7 @@ typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t
                            const uint16_t *after, const uint8_t *sure, int n);
 
 /*
- * search: rays of one tile by the randomized intersection search, plain sums.
+ * search: rays of one strip by the randomized intersection search, plain sums.
  *
  *     for each ray and pixel p of the tile:
  *         guess = blur[p + start]
@@ -276,22 +277,35 @@ typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t
  *                 `tests` are made; guess = seen before each further one
  *         sum += light[q], or light[p] if the last test failed and seen > blur[p]
  *
- * round() is half up, of Q15 times Q7.8. Pointers are to the tile's first pixel.
+ * round() is half up, of Q15 times Q7.8. Pointers are to the strip's first pixel.
  */
 struct rf_search_ray {
     int32_t start; /* elements */
     int16_t u, v;  /* Q15 */
-    int32_t within; /* Q7.8 */
+    int32_t within; /* Q7.8, 0 to 65535 */
 };
 struct rf_search_job {
     const int16_t *blur;
     const uint16_t *light[3];
     ptrdiff_t stride;
     int tests, rays;
-    int lanes; /* RF_TILE */
     const struct rf_search_ray *ray;
 };
-typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_search_job *job);
+typedef void rf_search_fn(uint32_t *const sum[3], const struct rf_search_job *job);
+
+/* tolerances: the largest |s - s'| that half a pixel allows a ray: 1/2 / |u|, in Q7.8, rounded down;
+ * at most 65535. */
+typedef void rf_tolerances_fn(int32_t *within, const int16_t *u, const int16_t *v, int n);
+
+/*
+ * settle: which of n rays the first test of a search settles for a whole strip: those whose first
+ * guesses all lead the same way, to blurs that confirm them all, by the ranges there
+ * (windows, above). settled[i] tells, 1 or 0, and then offset[i] is where the light is.
+ * `range` is at the strip's first pixel, start[i] an offset of cells; a stride is at most 2^20.
+ */
+typedef void rf_settle_fn(uint8_t *settled, int32_t *offset, const uint32_t *range,
+                          const int32_t *start, const struct rf_search_ray *ray,
+                          int32_t stride, int32_t cell_stride, int n);
 
 struct rf_kernels {
     rf_search_fn *search;
@@ -299,6 +313,8 @@ struct rf_kernels {
     rf_windows_fn *windows;
     rf_aim_fn *aim;
     rf_sort_rays_fn *sort_rays;
+    rf_settle_fn *settle;
+    rf_tolerances_fn *tolerances;
     rf_sweep_fn *sweep;
     rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;
@@ -326,6 +342,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
 rf_smooth3_fn rf_smooth3_c;
+rf_search_fn rf_search_c;
 rf_push_fn rf_push_c;
 rf_pull_fn rf_pull_c;
 rf_pull_blur_fn rf_pull_blur_c;
@@ -342,8 +359,7 @@ rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_ligh
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
-rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
-    rf_search_use_avx2;
+rf_kernels_use_fn rf_search_use_neon, rf_search_use_sse41, rf_search_use_avx2;
 rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;
 rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
 rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;

@@ -41,6 +41,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
             *cpu = best_first[i];
     if (!has(*cpu))
         return false;
+    kernels->search = rf_search_c;
     kernels->sweep = rf_sweep_c;
     kernels->smooth3 = rf_smooth3_c;
     kernels->push = rf_push_c;
@@ -49,7 +50,6 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_aim_use_c(kernels);
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
-    rf_search_use_c(kernels);
     rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
     rf_surfaces_use_c(kernels);

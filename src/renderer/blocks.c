@@ -1,10 +1,11 @@
-/* blocks.c: strip mode. The photo is in the caller's memory; the planes hold a block of it and a
- * margin at a time, and the passes work on that window.
+/* blocks.c: strip mode. The photo is in the caller's memory; the planes hold a block of
+ * it and a margin at a time, and the passes work on that window.
  *
- * The fill of the background takes its colours from all over the photo. So the photo is gone
- * through twice. First the marks of all pixels are kept, and of the pyramid the levels from
- * RF_KEPT on, which are then filled; the levels below them are made again for each block
- * that is rendered. Nothing is approximated: the bytes are those of the whole.
+ * The fill of the background takes its colours from all over the photo. So the photo is
+ * gone through twice. First the marks of all pixels are kept, and of the pyramid the
+ * levels from RF_KEPT on, which are then filled; the levels below them are made again
+ * for each block that is rendered. Nothing is approximated: the bytes are those of the
+ * whole.
  */
 #include <string.h>
 
@@ -33,7 +34,8 @@ static int blocks(const struct refocus_renderer *r, int block)
     return (all.x1 + block - 1) / block * ((all.y1 + block - 1) / block);
 }
 
-static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block, int margin)
+static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block,
+                             int margin)
 {
     const struct rf_rect all = rf_whole(r, 0);
 
@@ -50,7 +52,8 @@ static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect
 }
 
 /* A part of a picture as a picture. */
-static struct refocus_image image_part(const struct refocus_image *image, struct rf_rect part)
+static struct refocus_image image_part(const struct refocus_image *image,
+                                       struct rf_rect part)
 {
     struct refocus_image out = *image;
 
@@ -95,7 +98,8 @@ static void find_in_block(struct refocus_renderer *r, struct rf_rect block)
     for (int y = block.y0, end; y < block.y1; y = end) {
         end = (y / RF_LAMP_ROWS + 1) * RF_LAMP_ROWS;
         end = end < block.y1 ? end : block.y1;
-        rf_find_highlights(r, in_window(r, (struct rf_rect){block.x0, y, block.x1, end}),
+        rf_find_highlights(r,
+                           in_window(r, (struct rf_rect){block.x0, y, block.x1, end}),
                            rf_scratch(r, 0));
     }
 }
@@ -130,7 +134,7 @@ static void make_window(struct rf_frame *f, struct rf_rect window, enum rf_need 
     load(r, window);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
-    rf_pass_blur(f);
+    rf_pass_blur(f, need == RF_NEED_LAYERS);
     if (need == RF_NEED_BLUR || rf_cancelled(r))
         return;
     rf_patch_rims(r, f->focus, f->scale);
@@ -143,7 +147,8 @@ static void keep_known(struct refocus_renderer *r, struct rf_rect block)
     const struct rf_in_place *in_place = &r->in_place;
 
     for (int y = block.y0; y < block.y1; y++) {
-        const int16_t *blur = r->behind.blur + (y - r->origin_y) * r->stride - r->origin_x;
+        const int16_t *blur =
+            r->behind.blur + (y - r->origin_y) * r->stride - r->origin_x;
         uint8_t *known = in_place->known + y * in_place->known_stride;
 
         for (int x = block.x0; x < block.x1; x += 8) {
@@ -167,7 +172,8 @@ static void keep_level(struct refocus_renderer *r, struct rf_rect block)
     const ptrdiff_t dy = (block.y0 - r->origin_y) >> RF_KEPT;
 
     for (int y = 0; y < rf_reduced(block.y1 - block.y0, RF_KEPT); y++) {
-        const ptrdiff_t in = (dy + y) * from->stride + dx, out = (y0 + y) * to->stride + x0;
+        const ptrdiff_t in = (dy + y) * from->stride + dx,
+                        out = (y0 + y) * to->stride + x0;
 
         for (int c = 0; c < 3; c++)
             memcpy(to->light[c] + out, from->light[c] + in, (size_t)n * 2);
@@ -184,7 +190,8 @@ static void mark(struct rf_frame *f)
     struct rf_in_place *in_place = &r->in_place;
     struct rf_level own[RF_LEVELS];
 
-    in_place->levels = rf_pyramid(in_place->kept, r->photo[0].width, r->photo[0].height);
+    in_place->levels =
+        rf_pyramid(in_place->kept, r->photo[0].width, r->photo[0].height);
     for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(r); i++) {
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
@@ -210,7 +217,8 @@ static void known_band(void *context, int band, int worker)
     (void)worker;
     for (int y = rf_band_start(band); y < rf_band_end(r, band); y++) {
         const ptrdiff_t at = y * r->stride;
-        const uint8_t *known = in_place->known + (y + r->origin_y) * in_place->known_stride;
+        const uint8_t *known =
+            in_place->known + (y + r->origin_y) * in_place->known_stride;
         const int16_t *blur = r->front.blur + at;
         int16_t *out = r->behind.blur + at;
 
@@ -265,8 +273,8 @@ static void mark_once(struct rf_frame *f)
         return;
     m->behind = false;
     mark(f);
-    *m = (struct rf_made){.blur = true, .smooth = true, .focus = f->focus,
-                          .shift = f->scale.shift};
+    *m = (struct rf_made){
+        .blur = true, .smooth = true, .focus = f->focus, .shift = f->scale.shift};
     rf_note_light(f);
     m->behind = !rf_cancelled(f->r);
 }
@@ -300,8 +308,9 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         if (need == RF_NEED_LAYERS && f->weighted && !rf_cancelled(r) &&
             f->params->method == REFOCUS_METHOD_SWEEP)
             rf_pass_weights(f);
-        image = image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
-                                                 part.x1 - region.x0, part.y1 - region.y0});
+        image =
+            image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
+                                             part.x1 - region.x0, part.y1 - region.y0});
         f->out = &image;
         f->region = in_window(r, part);
         if (!rf_cancelled(r))

@@ -10,8 +10,8 @@
 #include "support/arena.h"
 #include "tiles/ranges.h"
 
-/* Pixels that may be read beyond the picture: the largest offset, one for the pre-filter,
- * one for rounding. */
+/* Pixels that may be read beyond the picture: the largest offset, one for the
+ * pre-filter, one for rounding. */
 int rf_padding_for(float max_blur_radius)
 {
     return (int)ceilf(max_blur_radius) + 2;
@@ -20,9 +20,11 @@ int rf_padding_for(float max_blur_radius)
 ptrdiff_t rf_pitch_for(int width, int pad)
 {
     const int tiles = (width + RF_TILE - 1) / RF_TILE;
-    const ptrdiff_t pitch = ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
+    const ptrdiff_t pitch =
+        ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
 
-    return pitch % 512 ? pitch : pitch + 32; /* rows a page apart would share cache sets */
+    return pitch % 512 ? pitch
+                       : pitch + 32; /* rows a page apart would share cache sets */
 }
 
 int rf_threads_for(const struct refocus_renderer_params *params)
@@ -34,7 +36,8 @@ int rf_threads_for(const struct refocus_renderer_params *params)
     return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
 }
 
-static void take_level(struct rf_arena *arena, struct rf_level *level, int width, int height)
+static void take_level(struct rf_arena *arena, struct rf_level *level, int width,
+                       int height)
 {
     const uint64_t pixels = (uint64_t)(width + 1) * height;
 
@@ -43,15 +46,17 @@ static void take_level(struct rf_arena *arena, struct rf_level *level, int width
     level->blur = rf_arena_take(arena, pixels, 2);
 }
 
-/* Elements of a group of padded planes: row y of plane i is at group + y * stride + i * pitch,
- * so that what is read together lies together. */
+/* Elements of a group of padded planes: row y of plane i is at group + y * stride + i *
+ * pitch, so that what is read together lies together. */
 static uint64_t group_size(const struct rf_photo *photo, int height)
 {
-    return (uint64_t)photo->stride * ((uint64_t)height + 2 * (uint64_t)photo->pad + RF_TILE);
+    return (uint64_t)photo->stride *
+           ((uint64_t)height + 2 * (uint64_t)photo->pad + RF_TILE);
 }
 
 /* What a photo of at most this size has beside its planes. */
-static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
+static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width,
+                       int height)
 {
     photo->capacity = rf_rim_capacity(width, height);
     photo->rim = rf_arena_take(arena, photo->capacity, sizeof *photo->rim);
@@ -60,7 +65,8 @@ static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width
         photo->highlights[i].lamp = rf_arena_take(arena, photo->highlights[i].capacity,
                                                   sizeof(struct rf_highlight));
     }
-    photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
+    photo->band_blend =
+        rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
 /* Planes of a photo in a group; NULL: only counting. */
@@ -77,7 +83,8 @@ static void place_photo(struct rf_photo *photo, uint16_t *group, uint8_t *alpha)
 }
 
 /* A photo of at most this size with memory of its own. */
-static void take_photo(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
+static void take_photo(struct rf_arena *arena, struct rf_photo *photo, int width,
+                       int height)
 {
     uint16_t *group = rf_arena_take(arena, group_size(photo, height), 2);
 
@@ -94,18 +101,21 @@ static void shape_photo(struct rf_photo *photo, int width, float max_blur_radius
 }
 
 /*
- * The photo, and what a lens setting makes of it. The photo reduced to a half lies in what a
- * half of the size leaves free of the memory of the background layer, so the whole photo's
- * background layer overwrites it; those reduced further have memory of their own.
+ * The photo, and what a lens setting makes of it. The photo reduced to a half lies in
+ * what a half of the size leaves free of the memory of the background layer, so the
+ * whole photo's background layer overwrites it; those reduced further have memory of
+ * their own.
  */
-static void take_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
-                        struct rf_arena *arena)
+static void take_whole(struct refocus_renderer *r,
+                       const struct refocus_renderer_params *params,
+                       struct rf_arena *arena)
 {
     const int w = params->max_width, h = params->max_height;
     uint64_t behind, half, used;
 
     for (int i = 0; i < RF_PHOTOS; i++)
-        shape_photo(&r->photo[i], rf_reduced(w, i), params->max_blur_radius / (float)(1 << i));
+        shape_photo(&r->photo[i], rf_reduced(w, i),
+                    params->max_blur_radius / (float)(1 << i));
     take_photo(arena, &r->photo[0], w, h);
     behind = group_size(&r->photo[0], h);
     r->seen_group = rf_arena_take(arena, behind, 2);
@@ -146,9 +156,10 @@ static int up_to_tiles(int v)
 }
 
 /*
- * The mark of a pixel depends on pixels 2 K + 1 away; the fill of one, by way of levels below
- * RF_KEPT, on known ones 12 away, whose light depends on 7 more; blur, where there are lamps, on
- * 5 more. Margins also have room for the border of a window at the photo's side.
+ * The mark of a pixel depends on pixels 2 K + 1 away; the fill of one, by way of levels
+ * below RF_KEPT, on known ones 12 away, whose light depends on 7 more; blur, where
+ * there are lamps, on 5 more. Margins also have room for the border of a window at the
+ * photo's side.
  */
 static void shape_blocks(struct rf_in_place *in_place, int pad)
 {
@@ -163,7 +174,8 @@ static void shape_blocks(struct rf_in_place *in_place, int pad)
 }
 
 /* Planes for the window of a block, and what is kept of the whole photo. */
-static void take_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+static void take_blocks(struct refocus_renderer *r,
+                        const struct refocus_renderer_params *params,
                         struct rf_arena *arena)
 {
     const int w = params->max_width, h = params->max_height;
@@ -184,7 +196,8 @@ static void take_blocks(struct refocus_renderer *r, const struct refocus_rendere
     photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
     take_lists(arena, photo, w, h);
     in_place->known_stride = (w + 7) / 8;
-    in_place->known = rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
+    in_place->known =
+        rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
     in_place->levels = rf_pyramid(in_place->kept, w, h);
     for (int i = RF_KEPT - 1; i < in_place->levels; i++)
         take_level(arena, &in_place->kept[i], in_place->kept[i].width,
@@ -202,9 +215,9 @@ static uint64_t work_bytes(const struct refocus_renderer_params *params)
                  {REFOCUS_METHOD_FOVEATED, rf_foveated_work},
                  {REFOCUS_METHOD_INTERPOLATED, rf_interpolated_work},
                  {REFOCUS_METHOD_DIFFUSION, rf_diffusion_work}};
-    const struct rf_limits limits = {
-        params->max_width, params->max_height, rf_padding_for(params->max_blur_radius),
-        rf_threads_for(params), params->max_blur_radius};
+    const struct rf_limits limits = {params->max_width, params->max_height,
+                                     rf_padding_for(params->max_blur_radius),
+                                     rf_threads_for(params), params->max_blur_radius};
     uint64_t most = 0;
 
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++) {
@@ -235,7 +248,8 @@ static uint64_t few_rays(const struct refocus_renderer_params *params)
 }
 
 /* Sets the pointers of r, or with arena->base == NULL only counts. */
-static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+static void lay_out(struct refocus_renderer *r,
+                    const struct refocus_renderer_params *params,
                     struct rf_arena *arena)
 {
     const int side = params->in_place ? block_side(params) : INT32_MAX;
@@ -246,7 +260,8 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
                            (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
     const int levels = rf_pyramid(level, across, down);
-    const int threads = rf_threads_for(params), pad = rf_padding_for(params->max_blur_radius);
+    const int threads = rf_threads_for(params),
+              pad = rf_padding_for(params->max_blur_radius);
     uint64_t before, after;
 
     if (params->in_place)
@@ -266,8 +281,9 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->weight = r->weight ? r->weight + pad * (r->weight_stride + 1) : NULL;
     arena->used = arena->used > after ? arena->used : after;
     r->range_stride = rf_range_width(across, pad);
-    r->range = rf_arena_take(arena, (uint64_t)r->range_stride *
-                                        (uint64_t)rf_range_width(down, pad), sizeof *r->range);
+    r->range = rf_arena_take(
+        arena, (uint64_t)r->range_stride * (uint64_t)rf_range_width(down, pad),
+        sizeof *r->range);
     if (r->range)
         r->range += rf_range_border(pad) * (r->range_stride + 1);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);

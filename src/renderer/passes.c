@@ -18,7 +18,8 @@ static void reblend_band(void *context, int band, int worker)
     (void)worker;
     if (*blend == f->params->blend)
         return;
-    rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band), rf_band_end(r, band));
+    rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
+                    rf_band_end(r, band));
     *blend = (uint8_t)f->params->blend;
 }
 
@@ -61,9 +62,11 @@ static void smooth_band(void *context, int band, int worker)
     const struct rf_frame *f = context;
     struct refocus_renderer *r = f->r;
     const int i = f->prefilter_step;
-    /* from the photo to r->smooth, and from there by way of the background's planes, which
-     * are not in use yet */
-    uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
+    /* from the photo to r->smooth, and from there by way of the background's planes,
+     * which are not in use yet */
+    uint16_t *const *in = i == 0   ? r->front.light
+                          : i == 1 ? r->smooth
+                                   : r->behind.light;
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
     (void)worker;
@@ -114,9 +117,11 @@ static void mark_band(void *context, int band, int worker)
                             rf_band_end(f->r, band));
 }
 
-void rf_pass_blur(struct rf_frame *f)
+void rf_pass_blur(struct rf_frame *f, bool layers)
 {
     rf_pool_run(&f->r->pool, blur_band, f, rf_bands(f->r));
+    if (!layers)
+        rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
 }
 
 void rf_pass_smooth(struct rf_frame *f)
@@ -174,7 +179,8 @@ bool rf_same_light(const struct rf_frame *f)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->smooth && m->blend == f->params->blend && m->gain == f->params->highlight_gain &&
+    return m->smooth && m->blend == f->params->blend &&
+           m->gain == f->params->highlight_gain &&
            (!m->lamps || m->rays == f->params->rays) &&
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
@@ -225,9 +231,12 @@ static void make_blur(struct rf_frame *f, bool layers)
     if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
         !contains(window, m->window) || (m->rims && !layers) ||
         (layers && !rf_same_light(f) && (m->lamps || f->params->highlight_gain > 1))) {
-        *m = (struct rf_made){.half = m->half && r->used, .photo = r->used, .window = window,
-                              .focus = f->focus, .shift = f->scale.shift};
-        rf_pass_blur(f);
+        *m = (struct rf_made){.half = m->half && r->used,
+                              .photo = r->used,
+                              .window = window,
+                              .focus = f->focus,
+                              .shift = f->scale.shift};
+        rf_pass_blur(f, layers);
         m->blur = !rf_cancelled(r);
     }
     if (m->blur && layers && !m->rims) {
@@ -270,8 +279,9 @@ static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect
                             part.x1 - r->origin_x, part.y1 - r->origin_y};
 }
 
-/* How far from the window's sides the mark and the smooth light are those of the whole photo:
- * a cone's reach and the three steps of the pre-filter; at the photo's own sides, all. */
+/* How far from the window's sides the mark and the smooth light are those of the whole
+ * photo: a cone's reach and the three steps of the pre-filter; at the photo's own
+ * sides, all. */
 static struct rf_rect sure_part(const struct refocus_renderer *r)
 {
     const struct rf_photo *photo = &r->photo[r->used];
@@ -285,7 +295,8 @@ static struct rf_rect sure_part(const struct refocus_renderer *r)
     };
 }
 
-/* The background layer of the window; true: `seen` is as if made for the whole photo. */
+/* The background layer of the window; true: `seen` is as if made for the whole photo.
+ */
 static bool make_behind(struct rf_frame *f, struct rf_rect seen)
 {
     struct refocus_renderer *r = f->r;
@@ -321,8 +332,8 @@ static int ceil_to(int v, int step, int most)
 }
 
 /* A part of the photo, grown by so many pixels each way and on to whole `step`s. */
-static struct rf_rect grown(const struct refocus_renderer *r, int number, struct rf_rect part,
-                            int by, int step)
+static struct rf_rect grown(const struct refocus_renderer *r, int number,
+                            struct rf_rect part, int by, int step)
 {
     const struct rf_photo *photo = &r->photo[number];
 
@@ -332,7 +343,8 @@ static struct rf_rect grown(const struct refocus_renderer *r, int number, struct
 }
 
 /* Large windows save nothing. */
-static bool is_large(const struct refocus_renderer *r, int number, struct rf_rect window)
+static bool is_large(const struct refocus_renderer *r, int number,
+                     struct rf_rect window)
 {
     const struct rf_rect all = rf_whole(r, number);
     const int64_t part = (int64_t)(window.x1 - window.x0) * (window.y1 - window.y0);
@@ -396,8 +408,9 @@ static void find_part(void *context, int part, int worker)
     struct refocus_renderer *r = f->r;
     const int y0 = part * RF_LAMP_ROWS, y1 = y0 + RF_LAMP_ROWS;
 
-    rf_find_highlights(r, (struct rf_rect){0, y0, r->width, y1 < r->height ? y1 : r->height},
-                       rf_scratch(r, worker));
+    rf_find_highlights(
+        r, (struct rf_rect){0, y0, r->width, y1 < r->height ? y1 : r->height},
+        rf_scratch(r, worker));
 }
 
 /* The window is all of the photo. */
@@ -414,8 +427,8 @@ static void find_highlights(struct rf_frame *f)
     photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
 }
 
-void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
-                   bool whole)
+void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
+                   enum rf_need need, bool whole)
 {
     struct refocus_renderer *r = f->r;
     const bool layers = need == RF_NEED_LAYERS;

@@ -49,8 +49,9 @@ static void reduce_row(const struct job *job, int y)
             for (int c = 0; c < 3; c++) {
                 const uint16_t v = from->light[c][at[i]];
 
-                light[c] += blend == REFOCUS_BLEND_LINEAR ? v
-                                                          : linear->to_light[to_code[4 * v]];
+                light[c] += blend == REFOCUS_BLEND_LINEAR
+                                ? v
+                                : linear->to_light[to_code[4 * v]];
             }
         }
         to->disparity[out] = (uint16_t)((2 * disparity + n) / (2 * n));
@@ -61,7 +62,8 @@ static void reduce_row(const struct job *job, int y)
             (uint8_t)((from->alpha[(ptrdiff_t)y0 * from->width + x0] +
                        from->alpha[(ptrdiff_t)y0 * from->width + x1] +
                        from->alpha[(ptrdiff_t)y1 * from->width + x0] +
-                       from->alpha[(ptrdiff_t)y1 * from->width + x1] + 2) / 4);
+                       from->alpha[(ptrdiff_t)y1 * from->width + x1] + 2) /
+                      4);
     }
 }
 

@@ -19,20 +19,23 @@ struct method {
 };
 
 static const struct method methods[REFOCUS_METHOD_COUNT] = {
-    [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
+    [REFOCUS_METHOD_SWEEP] = {"sweep",
+                              "two layers, front-most hit, swept over disparities",
                               .tile = rf_sweep_tile, .layers = true},
-    [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
+    [REFOCUS_METHOD_SEARCH] = {"search",
+                               "randomized intersection search, Yang et al. 2016",
                                .tile = rf_search_tile},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace",
                                  "full image-space ray tracing, Yang et al. 2016; slow",
                                  .tile = rf_raytrace_tile, .exact = true},
-    [REFOCUS_METHOD_JITTERED] = {"jittered",
-                                 "the same for a ray of each cell of the mask; slow, grainy",
-                                 .tile = rf_jittered_tile, .exact = true},
-    [REFOCUS_METHOD_LIGHTFIELD] = {"lightfield",
-                                   "views from all over the aperture, warped and added up",
-                                   .frame = rf_lightfield_frame},
-    [REFOCUS_METHOD_BLUR] = {"blur", "each pixel blurred by its own circle of confusion",
+    [REFOCUS_METHOD_JITTERED] =
+        {"jittered", "the same for a ray of each cell of the mask; slow, grainy",
+         .tile = rf_jittered_tile, .exact = true},
+    [REFOCUS_METHOD_LIGHTFIELD] =
+        {"lightfield", "views from all over the aperture, warped and added up",
+         .frame = rf_lightfield_frame},
+    [REFOCUS_METHOD_BLUR] = {"blur",
+                             "each pixel blurred by its own circle of confusion",
                              .tile = rf_gather_tile},
     [REFOCUS_METHOD_SCATTER] = {"scatter",
                                 "each pixel spread over its circle, Potmesil 1981",
@@ -78,7 +81,8 @@ static bool region_of(const struct refocus_renderer *r,
 {
     const int width = rf_reduced(r->photo[0].width, number);
     const int height = rf_reduced(r->photo[0].height, number);
-    const bool whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
+    const bool whole =
+        !p->region_x && !p->region_y && !p->region_width && !p->region_height;
     const int w = whole ? width : p->region_width;
     const int h = whole ? height : p->region_height;
 
@@ -104,7 +108,8 @@ static int smaller(int a, int b)
 static void tile_item(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
-    const int tx = f->first_tx + item % f->count_tx, ty = f->first_ty + item / f->count_tx;
+    const int tx = f->first_tx + item % f->count_tx,
+              ty = f->first_ty + item / f->count_tx;
     const struct rf_rect rect = {
         larger(tx * RF_TILE, f->region.x0),
         larger(ty * RF_TILE, f->region.y0),
@@ -189,7 +194,8 @@ static struct refocus_render_params reduced(const struct refocus_render_params *
     return own;
 }
 
-int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *params,
+int refocus_render(struct refocus_renderer *r,
+                   const struct refocus_render_params *params,
                    const struct refocus_image *out)
 {
     struct rf_frame f = {.r = r, .out = out};
@@ -218,7 +224,8 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         rf_exact_init(&exact, own.blend, own.sigma);
         f.exact = &exact;
     }
-    rf_reach_init(&f.reach, f.scale, r->photo[number].pad, f.aperture->shape == RF_SHAPE_MASK);
+    rf_reach_init(&f.reach, f.scale, r->photo[number].pad,
+                  f.aperture->shape == RF_SHAPE_MASK);
     set_prefilter(&f);
     r->blurred = false;
     r->last_focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);

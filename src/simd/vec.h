@@ -19,7 +19,14 @@
  *     vec_u16_mul_high(a, b)  (a * b) >> 16
  *     vec_u16_half(a)         a >> 1
  *     vec_u16_max(a, b)       a > b ? a : b
+ *     vec_u16_min(a, b)       a < b ? a : b
+ *     vec_u16_equal(a, b)     a == b ? 0xffff : 0
  *     vec_u16_any(a)          whether any lane is not 0
+ *     vec_u16_bits(mask)      VEC_BITS bits a lane, lane 0 lowest, of lanes all 0 or all 1
+ *     vec_u16_lane0(a)        lane 0
+ *     vec_u16_spread(a)       every lane = lane 0
+ *     vec_u16_offset(s, u)    of signed lanes: (s * u + 2^22) >> 23
+ *     vec_u16_bytes(a, b)     (a & 0xff) | b << 8
  *     vec_u16_even(a, b)      lanes 0, 2, 4 ... of a and then of b
  *     vec_u16_odd(a, b)       lanes 1, 3, 5 ...
  *     vec_u16_zip_low(a, b)   a[0], b[0], a[1], b[1] ... of the lower halves

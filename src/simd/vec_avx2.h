@@ -5,7 +5,7 @@
 #include <immintrin.h>
 #include <stdint.h>
 
-enum { VEC_U16 = 16 };
+enum { VEC_U16 = 16, VEC_BITS = 2 };
 typedef __m256i vec_u16;
 
 static inline vec_u16 vec_u16_load(const void *p)
@@ -66,6 +66,42 @@ static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
 static inline vec_u16 vec_u16_half(vec_u16 a)
 {
     return _mm256_srli_epi16(a, 1);
+}
+
+static inline vec_u16 vec_u16_min(vec_u16 a, vec_u16 b)
+{
+    return _mm256_min_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_equal(vec_u16 a, vec_u16 b)
+{
+    return _mm256_cmpeq_epi16(a, b);
+}
+
+static inline uint64_t vec_u16_bits(vec_u16 mask)
+{
+    return (uint32_t)_mm256_movemask_epi8(mask);
+}
+
+static inline uint16_t vec_u16_lane0(vec_u16 a)
+{
+    return (uint16_t)_mm_cvtsi128_si32(_mm256_castsi256_si128(a));
+}
+
+static inline vec_u16 vec_u16_spread(vec_u16 a)
+{
+    return _mm256_broadcastw_epi16(_mm256_castsi256_si128(a));
+}
+
+static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
+{
+    return _mm256_srai_epi16(_mm256_add_epi16(_mm256_mulhi_epi16(s, u), _mm256_set1_epi16(64)), 7);
+}
+
+static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
+{
+    return _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi16(0xff)),
+                           _mm256_slli_epi16(b, 8));
 }
 
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)

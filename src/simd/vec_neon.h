@@ -5,7 +5,7 @@
 #include <arm_neon.h>
 #include <stdint.h>
 
-enum { VEC_U16 = 8 };
+enum { VEC_U16 = 8, VEC_BITS = 8 };
 typedef uint16x8_t vec_u16;
 
 static inline vec_u16 vec_u16_load(const void *p)
@@ -67,6 +67,47 @@ static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
 static inline vec_u16 vec_u16_half(vec_u16 a)
 {
     return vshrq_n_u16(a, 1);
+}
+
+static inline vec_u16 vec_u16_min(vec_u16 a, vec_u16 b)
+{
+    return vminq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_equal(vec_u16 a, vec_u16 b)
+{
+    return vceqq_u16(a, b);
+}
+
+static inline uint64_t vec_u16_bits(vec_u16 mask)
+{
+    return vget_lane_u64(vreinterpret_u64_u8(vmovn_u16(mask)), 0);
+}
+
+static inline uint16_t vec_u16_lane0(vec_u16 a)
+{
+    return vgetq_lane_u16(a, 0);
+}
+
+static inline vec_u16 vec_u16_spread(vec_u16 a)
+{
+    return vdupq_lane_u16(vget_low_u16(a), 0);
+}
+
+/* The high half of the product first: rounding down twice is rounding down once. */
+static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
+{
+    const int16x8_t a = vreinterpretq_s16_u16(s), b = vreinterpretq_s16_u16(u);
+    const int16x8_t high =
+        vcombine_s16(vshrn_n_s32(vmull_s16(vget_low_s16(a), vget_low_s16(b)), 16),
+                     vshrn_n_s32(vmull_s16(vget_high_s16(a), vget_high_s16(b)), 16));
+
+    return vreinterpretq_u16_s16(vshrq_n_s16(vaddq_s16(high, vdupq_n_s16(64)), 7));
+}
+
+static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
+{
+    return vsliq_n_u16(a, b, 8);
 }
 
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)

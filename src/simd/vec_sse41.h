@@ -5,7 +5,7 @@
 #include <smmintrin.h>
 #include <stdint.h>
 
-enum { VEC_U16 = 8 };
+enum { VEC_U16 = 8, VEC_BITS = 2 };
 typedef __m128i vec_u16;
 
 static inline vec_u16 vec_u16_load(const void *p)
@@ -66,6 +66,42 @@ static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
 static inline vec_u16 vec_u16_half(vec_u16 a)
 {
     return _mm_srli_epi16(a, 1);
+}
+
+static inline vec_u16 vec_u16_min(vec_u16 a, vec_u16 b)
+{
+    return _mm_min_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_equal(vec_u16 a, vec_u16 b)
+{
+    return _mm_cmpeq_epi16(a, b);
+}
+
+static inline uint64_t vec_u16_bits(vec_u16 mask)
+{
+    return (uint32_t)_mm_movemask_epi8(mask);
+}
+
+static inline uint16_t vec_u16_lane0(vec_u16 a)
+{
+    return (uint16_t)_mm_cvtsi128_si32(a);
+}
+
+static inline vec_u16 vec_u16_spread(vec_u16 a)
+{
+    return _mm_shuffle_epi8(a, _mm_set1_epi16(0x0100));
+}
+
+static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
+{
+    return _mm_srai_epi16(_mm_add_epi16(_mm_mulhi_epi16(s, u), _mm_set1_epi16(64)), 7);
+}
+
+static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
+{
+    return _mm_or_si128(_mm_and_si128(a, _mm_set1_epi16(0xff)),
+                           _mm_slli_epi16(b, 8));
 }
 
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)

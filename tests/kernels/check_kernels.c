@@ -72,6 +72,7 @@ int main(int argc, char **argv)
         if (bench && cpu != REFOCUS_CPU_C) {
             bench_aim(&subject);
             bench_sweep(&subject);
+            bench_search(&subject);
             bench_rows(&subject);
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) + check_sweep(&subject) +

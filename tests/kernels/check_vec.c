@@ -65,6 +65,29 @@ static uint16_t c_max(uint16_t a, uint16_t b)
     return a > b ? a : b;
 }
 
+static uint16_t c_min(uint16_t a, uint16_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint16_t c_equal(uint16_t a, uint16_t b)
+{
+    return a == b ? 0xffff : 0;
+}
+
+/* Floor by division; the high half of -32768 * -32768 is beyond what kernels ask for. */
+static uint16_t c_offset(uint16_t a, uint16_t b)
+{
+    const int64_t x = (int64_t)(int16_t)a * (int16_t)b + (1 << 22), one = 1 << 23;
+
+    return (uint16_t)(x >= 0 ? x / one : -((-x + one - 1) / one));
+}
+
+static uint16_t c_bytes(uint16_t a, uint16_t b)
+{
+    return (uint16_t)((a & 0xff) | b << 8);
+}
+
 static vec_u16 half(vec_u16 a, vec_u16 b)
 {
     (void)b;
@@ -113,7 +136,9 @@ static const struct {
     {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
     {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
-    {"max", vec_u16_max, c_max},
+    {"max", vec_u16_max, c_max},             {"min", vec_u16_min, c_min},
+    {"equal", vec_u16_equal, c_equal},       {"offset", vec_u16_offset, c_offset},
+    {"bytes", vec_u16_bytes, c_bytes},
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
     {"mul", vec_u16_mul, c_mul},             {"least", vec_u16_least, c_least},
     {"most", vec_u16_most, c_most},
@@ -193,8 +218,19 @@ static int check_order(void)
             return 1;
         }
     }
+    if (vec_u16_lane0(b) != in[N] || vec_u16_any(vec_u16_xor(vec_u16_spread(b),
+                                                             vec_u16_set(in[N])))) {
+        printf("FAIL  vec_u16_lane0 or spread, %s\n", TEXT(RF_VEC_SET));
+        return 1;
+    }
     for (int i = 0; i <= N; i++) { /* one lane alone, then none */
         memset(in, 0, sizeof in);
+        in[i] = 0xffff;
+        if (vec_u16_bits(vec_u16_load(in)) !=
+            (i == N ? 0 : ((UINT64_C(1) << VEC_BITS) - 1) << i * VEC_BITS)) {
+            printf("FAIL  vec_u16_bits, %s: lane %d\n", TEXT(RF_VEC_SET), i);
+            return 1;
+        }
         in[i] = i % 2 ? 1 : 0x8000;
         if (!vec_u16_any(vec_u16_load(in)) != (i == N)) {
             printf("FAIL  vec_u16_any, %s: lane %d\n", TEXT(RF_VEC_SET), i);

@@ -1,5 +1,5 @@
-/* How soon a renderer answers, on a picture of 12 megapixels: the first picture after a tap,
- * changes of the lens, regions, and a cancel at any moment. Prints JSON.
+/* How soon a renderer answers, on a picture of 12 megapixels: the first picture after a
+ * tap, changes of the lens, regions, and a cancel at any moment. Prints JSON.
  *
  * usage: render-interactive [--size WxH] [--blur K] [--threads N] [--tries N] */
 #include <pthread.h>
@@ -50,8 +50,8 @@ static void *run_thread(void *user)
     return NULL;
 }
 
-/* Cancels the call at moments spread over its first two seconds; the longest time that it went
- * on, by the clock and of all threads' processors. */
+/* Cancels the call at moments spread over its first two seconds; the longest time that
+ * it went on, by the clock and of all threads' processors. */
 static void measure_cancel(struct call call, const char *name, int last)
 {
     double worst = 0, worst_cpu = 0, sum = 0, length = 2000;
@@ -78,9 +78,11 @@ static void measure_cancel(struct call call, const char *name, int last)
         worst = call.end_ms - begin > worst ? call.end_ms - begin : worst;
         worst_cpu = cpu > worst_cpu ? cpu : worst_cpu;
     }
-    printf("    {\"of\": \"%s\", \"cancelled\": %d, \"worst_ms\": %.2f, \"mean_ms\": %.2f, "
+    printf("    {\"of\": \"%s\", \"cancelled\": %d, \"worst_ms\": %.2f, \"mean_ms\": "
+           "%.2f, "
            "\"worst_cpu_ms\": %.2f}%s\n",
-           name, cancelled, worst, cancelled ? sum / cancelled : 0, worst_cpu, last ? "" : ",");
+           name, cancelled, worst, cancelled ? sum / cancelled : 0, worst_cpu,
+           last ? "" : ",");
     fflush(stdout);
 }
 
@@ -97,8 +99,9 @@ static double time_render(struct call call, const struct refocus_render_params *
 
     if (before) {
         first.params = *before;
-        first.out = part(call.out.plane[0], (width + before->reduce - 1) / before->reduce,
-                         (height + before->reduce - 1) / before->reduce);
+        first.out =
+            part(call.out.plane[0], (width + before->reduce - 1) / before->reduce,
+                 (height + before->reduce - 1) / before->reduce);
     }
     for (int i = 0; i < 5; i++) {
         double start;
@@ -126,7 +129,8 @@ static void measure_times(struct call call, uint8_t *out)
     struct refocus_render_params tap, half;
     double start = now_ms(CLOCK_MONOTONIC);
 
-    assert_int_equal(refocus_prepare(call.renderer, call.photo, call.disparity), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(call.renderer, call.photo, call.disparity),
+                     REFOCUS_OK);
     print_time("prepare", now_ms(CLOCK_MONOTONIC) - start);
     call.photo = NULL;
     tap = call.params;
@@ -142,7 +146,8 @@ static void measure_times(struct call call, uint8_t *out)
     call.out = part(out, width < 256 ? width : 256, height < 256 ? height : 256);
     call.params.region_x = (width - call.out.width) / 2 / 16 * 16 + 5;
     call.params.region_y = (height - call.out.height) / 3;
-    call.params.region_x = call.params.region_x > width - call.out.width ? 0 : call.params.region_x;
+    call.params.region_x =
+        call.params.region_x > width - call.out.width ? 0 : call.params.region_x;
     call.params.region_width = call.out.width;
     call.params.region_height = call.out.height;
     print_time("256x256, after another focus", time_render(call, &tap));
@@ -155,7 +160,8 @@ static void measure_times(struct call call, uint8_t *out)
         char name[40];
 
         call.params.reduce = reduce;
-        call.out = part(out, (width + reduce - 1) / reduce, (height + reduce - 1) / reduce);
+        call.out =
+            part(out, (width + reduce - 1) / reduce, (height + reduce - 1) / reduce);
         snprintf(name, sizeof name, "1/%d, after another focus", reduce);
         print_time(name, time_render(call, &tap));
         if (reduce == 2) {
@@ -187,9 +193,15 @@ static void measure(void **state)
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
     const struct refocus_disparity coarse = {8, 8, 6, small, 8};
-    struct refocus_renderer_params limits = refocus_renderer_params_default(width, height, blur);
-    struct call call = {NULL, &photo, &disparity, refocus_render_params_default(0.5f, blur),
-                        part(out, width, height), 0, 0};
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(width, height, blur);
+    struct call call = {NULL,
+                        &photo,
+                        &disparity,
+                        refocus_render_params_default(0.5f, blur),
+                        part(out, width, height),
+                        0,
+                        0};
     struct refocus_renderer_info info;
 
     (void)state;
@@ -201,7 +213,8 @@ static void measure(void **state)
     limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&call.renderer, &limits), REFOCUS_OK);
     refocus_renderer_get_info(call.renderer, &info);
-    printf("{\n  \"width\": %d, \"height\": %d, \"blur\": %g, \"threads\": %d, \"rays\": %d, "
+    printf("{\n  \"width\": %d, \"height\": %d, \"blur\": %g, \"threads\": %d, "
+           "\"rays\": %d, "
            "\"cpu\": \"%s\",\n  \"times\": [\n",
            width, height, (double)blur, info.threads, call.params.rays,
            refocus_cpu_name(info.cpu));

@@ -1,7 +1,8 @@
 /* Strip mode: the photo stays with the caller, and the bytes are those of the whole. */
 #include "pictures.h"
 
-static struct refocus_renderer *create(const struct picture *p, float blur, int in_place)
+static struct refocus_renderer *create(const struct picture *p, float blur,
+                                       int in_place)
 {
     struct refocus_renderer_params limits =
         refocus_renderer_params_default(p->width, p->height, blur);
@@ -41,11 +42,13 @@ static void same_bytes(void **state)
     static const struct {
         int width, height;
         float blur;
-        int bars; /* their width, of every other picture; else what picture_make() draws */
-    } views[] = {{403, 299, 6, 0},   {1, 1, 6, 1},       {1, 700, 6, 0},     {700, 1, 6, 11},
-                 {160, 160, 6, 0},   {161, 175, 6, 13},  {191, 333, 6, 0},   {193, 17, 6, 9},
-                 {640, 480, 20, 0},  {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
-                 {70, 50, 127, 0},   {700, 90, 127, 99}, {250, 301, 40, 0},  {601, 290, 33, 61}};
+        int bars; /* their width, of every other picture; else what picture_make() draws
+                   */
+    } views[] = {
+        {403, 299, 6, 0},  {1, 1, 6, 1},       {1, 700, 6, 0},      {700, 1, 6, 11},
+        {160, 160, 6, 0},  {161, 175, 6, 13},  {191, 333, 6, 0},    {193, 17, 6, 9},
+        {640, 480, 20, 0}, {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
+        {70, 50, 127, 0},  {700, 90, 127, 99}, {250, 301, 40, 0},   {601, 290, 33, 61}};
 
     (void)state;
     for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
@@ -66,9 +69,11 @@ static void same_bytes(void **state)
             if (v > 0 && !is_quick(&styles[i]))
                 continue;
             for (int f = 0; f < 3; f++) {
-                render_style(whole, &p, &styles[i], 0.5f * (float)f, views[v].blur, expected);
+                render_style(whole, &p, &styles[i], 0.5f * (float)f, views[v].blur,
+                             expected);
                 memset(out, 0x5a, size);
-                render_style(strips, &p, &styles[i], 0.5f * (float)f, views[v].blur, out);
+                render_style(strips, &p, &styles[i], 0.5f * (float)f, views[v].blur,
+                             out);
                 assert_same_pixels(out, expected, p.width, p.height, styles[i].name);
             }
         }
@@ -91,8 +96,8 @@ static void formats(void **state)
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 9);
     const struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
     /* bottom up */
-    struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_BGRA8, photo + 5 * W * (H - 1), W, H, -5 * W);
+    struct refocus_image image = refocus_image_packed(
+        REFOCUS_FORMAT_BGRA8, photo + 5 * W * (H - 1), W, H, -5 * W);
     const struct refocus_disparity disparity = {8, W, H, map, W};
 
     (void)state;
@@ -100,7 +105,8 @@ static void formats(void **state)
     for (int i = 0; i < W * H; i++) {
         map[i] = (uint8_t)(p.disparity[i] >> 8);
         for (int c = 0; c < 4; c++)
-            photo[i / W * 5 * W + i % W * 4 + c] = c < 3 ? p.rgb[3 * i + c] : (uint8_t)i;
+            photo[i / W * 5 * W + i % W * 4 + c] =
+                c < 3 ? p.rgb[3 * i + c] : (uint8_t)i;
     }
     for (int in_place = 0; in_place < 2; in_place++) {
         struct refocus_renderer *renderer;
@@ -112,8 +118,9 @@ static void formats(void **state)
         assert_int_equal(refocus_prepare(renderer, &image, &disparity), REFOCUS_OK);
         assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
         for (uint32_t i = 0; i < 2; i++)
-            assert_int_equal(refocus_get_view(renderer, i, view[in_place] + i * W * H, 2 * W),
-                             REFOCUS_OK);
+            assert_int_equal(
+                refocus_get_view(renderer, i, view[in_place] + i * W * H, 2 * W),
+                REFOCUS_OK);
         refocus_renderer_destroy(&renderer);
     }
     assert_memory_equal(out[0], out[1], 5 * W * H);
@@ -151,11 +158,12 @@ static void refused(void **state)
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
     limits.methods = 0;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
-    assert_int_equal(refocus_prepare(renderer, &photo, &coarse), REFOCUS_ERR_UNSUPPORTED);
+    assert_int_equal(refocus_prepare(renderer, &photo, &coarse),
+                     REFOCUS_ERR_UNSUPPORTED);
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
     params.method = REFOCUS_METHOD_SCATTER;
-    assert_int_equal(refocus_prepare(renderer, &photo, &(struct refocus_disparity){
-                                                            8, 40, 30, p.rgb, 40}),
+    assert_int_equal(refocus_prepare(renderer, &photo,
+                                     &(struct refocus_disparity){8, 40, 30, p.rgb, 40}),
                      REFOCUS_OK);
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     refocus_renderer_destroy(&renderer);
@@ -164,7 +172,8 @@ static void refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes), cmocka_unit_test(formats),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes),
+                                       cmocka_unit_test(formats),
                                        cmocka_unit_test(refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

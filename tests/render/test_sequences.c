@@ -1,5 +1,5 @@
-/* Whatever was rendered or cancelled before, a picture is that of a new renderer; and a region
- * that of the whole, a reduced picture that of the reduced photo. */
+/* Whatever was rendered or cancelled before, a picture is that of a new renderer; and a
+ * region that of the whole, a reduced picture that of the reduced photo. */
 #include "pictures.h"
 
 #include "renderer/renderer.h"
@@ -19,11 +19,11 @@ struct setting {
 };
 
 /* Not in strip mode. */
-static const uint32_t OF_FRAMES =
-    REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
-    REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |
-    REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
-    REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
+static const uint32_t OF_FRAMES = REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
 
 static uint32_t pick(uint32_t *state, uint32_t n)
 {
@@ -37,8 +37,9 @@ static const struct style *pick_style(uint32_t *state, int in_place)
 
     do {
         style = &styles[pick(state, (uint32_t)style_count)];
-    } while (style->method == REFOCUS_METHOD_RAYTRACE || style->rays == REFOCUS_RAYS_FULL ||
-             style->rays > 128 || style->method == REFOCUS_METHOD_DIFFUSION ||
+    } while (style->method == REFOCUS_METHOD_RAYTRACE ||
+             style->rays == REFOCUS_RAYS_FULL || style->rays > 128 ||
+             style->method == REFOCUS_METHOD_DIFFUSION ||
              (in_place && (OF_FRAMES & REFOCUS_METHOD_BIT(style->method))));
     return style;
 }
@@ -72,7 +73,8 @@ static void change(struct setting *s, uint32_t *state, enum mode mode)
     }
 }
 
-static int render(struct refocus_renderer *renderer, const struct setting *s, uint8_t *out)
+static int render(struct refocus_renderer *renderer, const struct setting *s,
+                  uint8_t *out)
 {
     struct refocus_render_params params = style_params(s->style, s->focus, s->blur);
     struct refocus_aperture *aperture = style_aperture(s->style);
@@ -97,7 +99,8 @@ static int render(struct refocus_renderer *renderer, const struct setting *s, ui
 
 static struct refocus_renderer *create(int threads, enum mode mode)
 {
-    struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 6);
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(WIDTH, HEIGHT, 6);
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
@@ -131,16 +134,17 @@ static void cancel_later(void *user)
         refocus_cancel(canceller->renderer);
 }
 
-static void assert_same(const uint8_t *is, const uint8_t *should, const struct setting *s,
-                        uint32_t seed, int step)
+static void assert_same(const uint8_t *is, const uint8_t *should,
+                        const struct setting *s, uint32_t seed, int step)
 {
     for (size_t i = 0; i < MOST; i++)
         if (is[i] != should[i])
-            fail_msg("seed %u, step %d, %s, focus %g, blur %g, gain %g, 1/%d, region %d,%d "
-                     "%dx%d: byte %zu is %d, should be %d",
-                     seed, step, s->style->name, (double)s->focus, (double)s->blur,
-                     (double)s->gain, s->reduce, s->x, s->y, s->width, s->height, i, is[i],
-                     should[i]);
+            fail_msg(
+                "seed %u, step %d, %s, focus %g, blur %g, gain %g, 1/%d, region %d,%d "
+                "%dx%d: byte %zu is %d, should be %d",
+                seed, step, s->style->name, (double)s->focus, (double)s->blur,
+                (double)s->gain, s->reduce, s->x, s->y, s->width, s->height, i, is[i],
+                should[i]);
 }
 
 static void sequence(uint32_t seed, int steps, enum mode mode)
@@ -196,8 +200,8 @@ static void sequences(void **state)
         sequence(seed, 40, seed % 3);
 }
 
-/* Before what is far, bars wide enough for whole blocks of several levels of the background's
- * pyramid to be unknown. */
+/* Before what is far, bars wide enough for whole blocks of several levels of the
+ * background's pyramid to be unknown. */
 static struct picture wide_bars(void)
 {
     struct picture p = picture_make(WIDTH, HEIGHT, 9);
@@ -208,7 +212,8 @@ static struct picture wide_bars(void)
 }
 
 /* A region is that part of the whole, though only a window was worked on. */
-/* The background layer of a window, where it says that it is that of the whole photo. */
+/* The background layer of a window, where it says that it is that of the whole photo.
+ */
 static void assert_same_background(const struct refocus_renderer *part,
                                    const struct refocus_renderer *whole)
 {
@@ -227,8 +232,8 @@ static void assert_same_background(const struct refocus_renderer *part,
                 differ |= part->behind.light[c][at + p] != whole->behind.light[c][p];
             if (differ)
                 fail_msg("window %d,%d..%d,%d: the background at %d,%d is another",
-                         part->made.window.x0, part->made.window.y0, part->made.window.x1,
-                         part->made.window.y1, x, y);
+                         part->made.window.x0, part->made.window.y0,
+                         part->made.window.x1, part->made.window.y1, x, y);
         }
     }
 }
@@ -243,16 +248,27 @@ static void regions_of(struct picture p)
     assert_true(whole && out);
     for (int i = 0; i < 60; i++) {
         struct refocus_renderer *renderer = create(1 + i % 3, PLAIN);
-        struct setting s = {pick_style(&random, 0), (float)pick(&random, 5) / 4,
-                            blurs[1 + pick(&random, 3)], i % 5 ? 1 : 4, 1, 0, 0, 0, 0};
+        struct setting s = {pick_style(&random, 0),
+                            (float)pick(&random, 5) / 4,
+                            blurs[1 + pick(&random, 3)],
+                            i % 5 ? 1 : 4,
+                            1,
+                            0,
+                            0,
+                            0,
+                            0};
         int x, y, w = 1 + (int)pick(&random, 40), h = 1 + (int)pick(&random, 40);
 
         if (i % 2)
             s.style = &styles[0];
         prepare(renderer, &p);
         assert_int_equal(render(renderer, &s, whole), REFOCUS_OK);
-        x = i % 6 == 1 ? 0 : i % 6 == 2 ? WIDTH - w : (int)pick(&random, (uint32_t)(WIDTH - w));
-        y = i % 7 == 1 ? 0 : i % 7 == 2 ? HEIGHT - h : (int)pick(&random, (uint32_t)(HEIGHT - h));
+        x = i % 6 == 1   ? 0
+            : i % 6 == 2 ? WIDTH - w
+                         : (int)pick(&random, (uint32_t)(WIDTH - w));
+        y = i % 7 == 1   ? 0
+            : i % 7 == 2 ? HEIGHT - h
+                         : (int)pick(&random, (uint32_t)(HEIGHT - h));
         s.x = x, s.y = y, s.width = w, s.height = h;
         part = create(1, PLAIN);
         prepare(part, &p);
@@ -262,9 +278,11 @@ static void regions_of(struct picture p)
         refocus_renderer_destroy(&renderer);
         refocus_renderer_destroy(&part);
         for (int row = 0; row < h; row++)
-            if (memcmp(out + 3 * row * w, whole + 3 * ((y + row) * WIDTH + x), 3 * (size_t)w))
+            if (memcmp(out + 3 * row * w, whole + 3 * ((y + row) * WIDTH + x),
+                       3 * (size_t)w))
                 fail_msg("%s, focus %g, blur %g: %dx%d at %d,%d, row %d differs",
-                         s.style->name, (double)s.focus, (double)s.blur, w, h, x, y, row);
+                         s.style->name, (double)s.focus, (double)s.blur, w, h, x, y,
+                         row);
     }
     assert_true(windows > 10);
     free(whole);
@@ -326,7 +344,8 @@ static struct picture half_of(const struct picture *p)
                 most = d[i] > d[most] ? i : most;
             }
             own = -1;
-            for (int i = 0; i < 4; i++) /* the second nearest: the nearest of the others */
+            for (int i = 0; i < 4;
+                 i++) /* the second nearest: the nearest of the others */
                 own = i != most && d[i] > own ? d[i] : own;
             for (int i = 0; i < 4; i++) {
                 if (abs(d[i] - own) > 65535 / 32)
@@ -344,7 +363,8 @@ static struct picture half_of(const struct picture *p)
     return half;
 }
 
-/* Within a code of the reduction in real numbers; and rendered as a photo of that size is. */
+/* Within a code of the reduction in real numbers; and rendered as a photo of that size
+ * is. */
 static void reduced(void **state)
 {
     struct picture p[4] = {picture_make(WIDTH, HEIGHT, 21)};
@@ -380,7 +400,8 @@ static void reduced(void **state)
                 s.style->method == REFOCUS_METHOD_INTERPOLATED)
                 continue; /* these have other lengths that are reduced too */
             assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
-            render_style(small, &p[i], s.style, s.focus, s.blur / (float)s.reduce, expected);
+            render_style(small, &p[i], s.style, s.focus, s.blur / (float)s.reduce,
+                         expected);
             assert_same_pixels(out, expected, p[i].width, p[i].height, s.style->name);
         }
         refocus_renderer_destroy(&small);
@@ -392,7 +413,8 @@ static void reduced(void **state)
     free(expected);
 }
 
-/* Cancelled at each of the moments at which it looks, a render leaves nothing half made. */
+/* Cancelled at each of the moments at which it looks, a render leaves nothing half
+ * made. */
 static void every_moment(void **state)
 {
     struct picture p[2] = {picture_make(97, 83, 31), picture_make(97, 83, 32)};
@@ -418,7 +440,8 @@ static void every_moment(void **state)
         /* another photo and another lens before */
         params.focus_disparity = 0.8f;
         params.blend = REFOCUS_BLEND_LINEAR;
-        assert_int_equal(refocus_prepare(renderer, &photo[1], &disparity[1]), REFOCUS_OK);
+        assert_int_equal(refocus_prepare(renderer, &photo[1], &disparity[1]),
+                         REFOCUS_OK);
         assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
         params.focus_disparity = 0.3f;
         params.blend = REFOCUS_BLEND_GAMMA;
@@ -428,11 +451,13 @@ static void every_moment(void **state)
         if (status == REFOCUS_OK)
             status = refocus_render(renderer, &params, &image);
         else
-            assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
+            assert_int_equal(refocus_render(renderer, &params, &image),
+                             REFOCUS_ERR_STATE);
         renderer->run.looked_at = NULL;
         cancelled += status == REFOCUS_ERR_CANCELLED;
         if (!renderer->prepared)
-            assert_int_equal(refocus_prepare(renderer, &photo[0], &disparity[0]), REFOCUS_OK);
+            assert_int_equal(refocus_prepare(renderer, &photo[0], &disparity[0]),
+                             REFOCUS_OK);
         assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
         assert_same_pixels(out, expected, 97, 83, "after a cancelled one");
     }
@@ -471,8 +496,9 @@ static void refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sequences), cmocka_unit_test(regions),
-                                       cmocka_unit_test(every_moment),
-                                       cmocka_unit_test(reduced), cmocka_unit_test(refused)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sequences), cmocka_unit_test(regions),
+        cmocka_unit_test(every_moment), cmocka_unit_test(reduced),
+        cmocka_unit_test(refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
