@@ -590,12 +590,12 @@ class DepthAndInfo(Case):
         self.strokes('s.json', {'kind': 'all', 'disparity': 2})
         self.fails(1, 's.json: strokes[0].disparity must be a number from 0 to 1', *command,
                    's.json')
-        self.fails(1, 'no.json: No such file or directory', *command, 'no.json')
-        self.fails(1, '.: Is a directory', *command, '.')
+        self.fails(1, 'no.json: cannot open it: No such file or directory', *command, 'no.json')
+        self.fails(1, '.: cannot read it: Is a directory', *command, '.')
         self.fails(1, re.compile(r'^refocus: photo.ppm: line 1 is no JSON: '), *command,
                    'photo.ppm')
         for content, why in ((b'', 'it is empty'), (b' ' * (64 << 20) + b' ',
-                                                    'it has more than 67108864 bytes')):
+                                                    'it is larger than the limit of 67108864 bytes')):
             with open('s.json', 'wb') as file:
                 file.write(content)
             self.fails(1, 's.json: ' + why, *command, 's.json')
