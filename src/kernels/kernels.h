@@ -179,6 +179,22 @@ struct rf_search_job {
 };
 typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_search_job *job);
 
+/*
+ * series_row: a row of a step of Clenshaw's recursion, on a field V of which a pixel passes
+ * some on to its four neighbours,
+ *
+ *     row = share start + (across (up + down + (left + right)) + own here) - row
+ *
+ * in single precision; elements -1 and n of `here` are read, and the rows `stride` before and
+ * after it. Nothing overlaps.
+ */
+struct rf_series_job {
+    const float *here, *start, *across, *own;
+    ptrdiff_t stride; /* elements */
+    float share;
+};
+typedef void rf_series_row_fn(float *row, const struct rf_series_job *job, int n);
+
 struct rf_kernels {
     rf_search_fn *search;
     rf_sweep_fn *sweep;
@@ -195,6 +211,7 @@ struct rf_kernels {
     rf_steps4_fn *steps4;
     rf_cluster_fn *cluster;
     rf_median3_fn *median3;
+    rf_series_row_fn *series_row;
 };
 
 /* The best kernels of an instruction set, enum refocus_cpu; false: this processor or build does
@@ -211,5 +228,7 @@ rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
     rf_search_use_avx2;
+rf_kernels_use_fn rf_series_use_c, rf_series_use_neon, rf_series_use_sse41,
+    rf_series_use_avx2;
 
 #endif

@@ -45,22 +45,26 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_rows_use_c(kernels);
     rf_search_use_c(kernels);
     rf_upsample_use_c(kernels);
+    rf_series_use_c(kernels);
 #if defined(RF_WITH_NEON)
     if (*cpu == REFOCUS_CPU_NEON) {
         rf_kernels_use_neon(kernels);
         rf_upsample_use_neon(kernels);
+        rf_series_use_neon(kernels);
     }
 #endif
 #if defined(RF_WITH_SSE41)
     if (*cpu == REFOCUS_CPU_SSE41) {
         rf_kernels_use_sse41(kernels);
         rf_upsample_use_sse41(kernels);
+        rf_series_use_sse41(kernels);
     }
 #endif
 #if defined(RF_WITH_AVX2)
     if (*cpu == REFOCUS_CPU_AVX2) {
         rf_kernels_use_avx2(kernels);
         rf_upsample_use_avx2(kernels);
+        rf_series_use_avx2(kernels);
     }
 #endif
     return true;

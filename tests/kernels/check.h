@@ -31,6 +31,7 @@ static inline int noise_between(uint32_t *seed, int least, int most)
 int check_rows(const struct subject *subject);
 int check_sweep(const struct subject *subject);
 int check_search(const struct subject *subject);
+int check_series(const struct subject *subject);
 int check_focus(void);
 
 /* Prints a line with the time of each kernel, in plain C and by the subject. */

@@ -74,7 +74,7 @@ int main(int argc, char **argv)
             bench_rows(&subject);
         } else if (!bench) {
             failures += check_vec(cpu) + check_sweep(&subject) + check_search(&subject) +
-                        check_rows(&subject);
+                        check_series(&subject) + check_rows(&subject);
         }
     }
     return failures > 0;
