@@ -35,24 +35,30 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     }
 }
 
-void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
-                     uint16_t mean[3][RF_TILE * RF_TILE])
+void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
 {
     const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
+    const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + x0;
+    uint8_t *out = pixel(f, o.bytes, x0, y);
 
+    for (int x = 0; x < n; x++, out += o.bytes) {
+        out[o.r] = code_of(to_code, mean[0][x]);
+        out[o.g] = code_of(to_code, mean[1][x]);
+        out[o.b] = code_of(to_code, mean[2][x]);
+        if (o.a >= 0)
+            out[o.a] = alpha[x];
+    }
+}
+
+void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
+                     uint16_t mean[3][RF_TILE * RF_TILE])
+{
     for (int y = rect.y0; y < rect.y1; y++) {
-        const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE, n = rect.x1 - rect.x0;
-        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + rect.x0;
-        uint8_t *out = pixel(f, o.bytes, rect.x0, y);
+        const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
-        for (int x = 0; x < n; x++, out += o.bytes) {
-            out[o.r] = code_of(to_code, mean[0][at + x]);
-            out[o.g] = code_of(to_code, mean[1][at + x]);
-            out[o.b] = code_of(to_code, mean[2][at + x]);
-            if (o.a >= 0)
-                out[o.a] = alpha[x];
-        }
+        rf_encode_row(f, rect.x0, y, rect.x1 - rect.x0,
+                      (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at});
     }
 }
 

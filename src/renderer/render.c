@@ -95,7 +95,8 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
-    rf_bin_tiles(f->r, f->scale, band);
+    if (!methods[f->params->method].frame || f->params->max_blur_radius <= 0)
+        rf_bin_tiles(f->r, f->scale, band); /* tiles are what others plan by */
 }
 
 static void dilate_item(void *context, int upwards, int worker)
