@@ -195,10 +195,11 @@ static void add_near(const struct rf_diffusion_layer *layer, int tx, int ty, int
 {
     for (int j = ty - 1; j <= ty + 1; j++) {
         for (int i = tx - 1; i <= tx + 1; i++) {
-            const struct rf_edge_tile *tile = &layer->tile[j * layer->tiles_x + i];
+            const struct rf_edge_tile *tile;
 
             if (i < 0 || j < 0 || i >= layer->tiles_x || j >= layer->tiles_y)
                 continue;
+            tile = &layer->tile[j * layer->tiles_x + i];
             for (int k = tile->first; k < tile->first + tile->count; k++)
                 add_edge(sums, layer->edge_x[k] - (float)(tx * RF_EDGE_TILE),
                          layer->edge_y[k] - (float)y, 1, 1, layer->edge_radius[k],
