@@ -530,6 +530,32 @@ class Papers(Case):
         self.assertGreater(blur['psnr'], photo['psnr'])
         self.fails(2, "--methods: 'swep' is no method; did you mean 'sweep'?", 'compare', *common,
                    '--reference', 'gt.ppm', '--methods', 'blur,swep')
+        report = self.reports(
+            'compare', *common, '--reference', 'gt.ppm', '--iterations', '3', '--methods',
+            'search:rays=full:iterations=1,search,jittered:cell=4:seed=7,search:mirror,sweep:rays=8')
+        self.assertEqual([m['label'] for m in report['methods'][1:]],
+                         ['search:rays=full:iterations=1', 'search', 'jittered:cell=4:seed=7',
+                          'search:mirror', 'sweep:rays=8'])
+        self.assertEqual([m['method'] for m in report['methods'][1:4]],
+                         ['search', 'search', 'jittered'])
+        # each is what render makes of the same options
+        for row, options in ((1, ('--method', 'search', '--rays', 'full', '--iterations', '1')),
+                             (2, ('--method', 'search', '--iterations', '3')),
+                             (3, ('--method', 'jittered', '--cell', '4', '--seed', '7')),
+                             (5, ('--rays', '8'))):
+            self.succeeds('render', *common, *options, '-o', 'own.ppm')
+            own = self.reports('compare', *common, '--reference', 'own.ppm', '--iterations', '3',
+                               '--methods', report['methods'][row]['label'])
+            self.assertEqual(own['methods'][1]['rmse'], 0)
+        for why, methods in (("--rays: 'none' cannot be used; give", 'search:rays=none'),
+                             ('--ray: unknown option; did you mean --rays?', 'search:ray=3'),
+                             ('--mirror: takes no value', 'search:mirror=1'),
+                             ('--threads: unknown option', 'search:threads=1'),
+                             ("--aperture: 'disk' is not known", 'sweep:aperture=disk'),
+                             ('--methods: there are too many; give at most 32',
+                              ','.join('sweep:rays=%d' % i for i in range(1, 40)))):
+            self.fails(2, re.compile('^refocus: ' + re.escape(why)), 'compare', *common,
+                       '--reference', 'gt.ppm', '--methods', methods)
         self.fails(2, '--reference: there is nothing to compare with; give --reference GT',
                    'compare', *common)
         pictures.ppm('tiny.ppm', 4, 3, lambda x, y: (x, y, 0))
