@@ -86,7 +86,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     24 (W + 2P + 79) (H + 2P + 16) + 5 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
+ *     26 (W + 2P + 79) (H + 2P + 16) + 3 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
  *
  * with P = ceil(K) + 2 and T threads is never exceeded. On top of it comes the most that one
  * of params->methods needs:
@@ -199,7 +199,7 @@ struct refocus_render_params {
     float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
                                  eq. 5: >= 1; INFINITY = plain average */
     float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 4
-                                 times white */
+                                 times white, where they are blurred */
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
     uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
     uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
@@ -252,7 +252,8 @@ struct refocus_render_params {
     const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size */
 };
 
-/** Sweep, 64 rays, linear light, a disc, the whole picture. */
+/** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole
+ *  picture. */
 static inline struct refocus_render_params
 refocus_render_params_default(float focus_disparity, float max_blur_radius)
 {

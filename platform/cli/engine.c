@@ -10,10 +10,10 @@
 static const struct {
     const char *name, *summary;
     int rays;
-    float highlight_gain;
-} qualities[] = {{"preview", "32 rays", 32, 1},
-                 {"standard", "64 rays", 64, 1},
-                 {"best", "128 rays, and light given back to clipped lamps", 128, 4}};
+    float highlight_gain, sigma;
+} qualities[] = {{"preview", "32 rays", 32, 4, 1e30f},
+                 {"standard", "64 rays", 64, 4, 1e30f},
+                 {"best", "128 rays, and bright samples count more (--sigma 400)", 128, 4, 400}};
 
 static const struct {
     const char *name, *summary;
@@ -134,8 +134,8 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
                                          : (int32_t)settings->rays;
     if (!isnan(settings->iterations))
         params->iterations = (int32_t)settings->iterations;
-    if (!isnan(settings->sigma))
-        params->sigma = (float)settings->sigma;
+    params->sigma = isnan(settings->sigma) ? qualities[settings->quality].sigma
+                                           : (float)settings->sigma;
     params->highlight_gain = isnan(settings->highlights)
                                  ? qualities[settings->quality].highlight_gain
                                  : (float)settings->highlights;

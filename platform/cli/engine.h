@@ -93,7 +93,8 @@ const char *engine_blend_summary(uint32_t index);
      .greatest = 1e30,                                                                      \
      .word = "off",                                                                         \
      .word_value = INFINITY,                                                                \
-     .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default off"},                                              \
+     .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default by "     \
+             "--quality"},                                                                  \
     {.kind = OPTION_NUMBER,                                                                 \
      .name = "--highlights",                                                                \
      .argument = "GAIN",                                                                    \

@@ -2,6 +2,8 @@
 
 #include <refocus/render.h>
 
+#include "kernels/kernels.h"
+
 #include "tables/transfer.inc"
 
 void rf_transfer_init(struct rf_transfer *transfer, int blend)
@@ -43,7 +45,7 @@ void rf_highlight_weights(uint16_t weight[256], double sigma)
 {
     for (int c = 0; c < 256; c++) {
         const double below = (255 - c) / sigma;
-        const double w = 65535 * exp_minus(below * below / 2) + 0.5;
+        const double w = RF_WEIGHT_MAX * exp_minus(below * below / 2) + 0.5;
 
         weight[c] = w < 1 ? 1 : (uint16_t)w;
     }

@@ -22,11 +22,11 @@ struct rf_transfer {
 void rf_transfer_init(struct rf_transfer *transfer, int blend);
 
 /*
- * Highlight weights of Yang et al. 2016, eq. 5, in Q16 of the largest:
+ * Highlight weights of Yang et al. 2016, eq. 5, in Q15 of the largest:
  *
  *     w[c] = exp(-(c - 255)^2 / 2 sigma^2),  c = max(R, G, B)
  *
- * at least 1/65536, so that no average is ever empty.
+ * at least 1/32767, so that no average is ever empty.
  */
 void rf_highlight_weights(uint16_t weight[256], double sigma);
 

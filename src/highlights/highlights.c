@@ -11,21 +11,13 @@ enum {
     AREA = (2 * AROUND + 1) * (2 * AROUND + 1),
     RIM = 3,                          /* pixels around that tell the hue */
     LEVEL = RF_LIGHT_MAX * 94 / 100,  /* where clipping begins to count */
+    HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3,                         /* full gain of 4 adds three times white */
 };
 
 static int clamp(int v, int most)
 {
     return v < 0 ? 0 : v > most ? most : v;
-}
-
-/* Rec. 709 luminance of linear light, Q12. */
-static int luminance(const struct refocus_renderer *r, int x, int y)
-{
-    const ptrdiff_t at = y * r->stride + x;
-
-    return (218 * r->front.light[0][at] + 732 * r->front.light[1][at] +
-            74 * r->front.light[2][at] + 512) >> 10;
 }
 
 static int brightest(const struct refocus_renderer *r, ptrdiff_t at)
@@ -82,64 +74,140 @@ static void rim_hue(const struct refocus_renderer *r, int x, int y, const int ar
 /* 0 to 256 as v goes from a to b. */
 static int ramp(int64_t v, int64_t a, int64_t b)
 {
-    return v <= a ? 0 : v >= b ? 256 : (int)(256 * (v - a) / (b - a));
+    return v >= b ? 256 : v <= a ? 0 : (int)(256 * (v - a) / (b - a));
+}
+
+/*
+ * How steep the rim is around (x, y), 0 to 256. Where a pixel is lit in part, a lamp of L times
+ * white still clips down to a share of 0.94 / L of it and is half lit only from there to 0.4 / L:
+ * the brighter, the fewer half lit pixels around it. White paint and the shine of rounded things
+ * fade out over many.
+ */
+static int steepness(const struct refocus_renderer *r, int x, int y)
+{
+    int clipped = 0, half_lit = 0;
+
+    for (int j = -RIM; j <= RIM; j++) {
+        for (int i = -RIM; i <= RIM; i++) {
+            const int b = brightest(r, clamp(y + j, r->height - 1) * r->stride +
+                                           clamp(x + i, r->width - 1));
+
+            clipped += b >= LEVEL;
+            half_lit += b < LEVEL && b >= HALF_LIT;
+        }
+    }
+    return ramp(clipped, 2 * half_lit, 4 * half_lit);
 }
 
 /* Whether pixel (x, y), whose surroundings have this sum of luminance, is a clipped lamp. */
-static bool is_lamp(const struct refocus_renderer *r, int x, int y, int64_t sum,
+static bool is_lamp(const struct refocus_renderer *r, int x, int y, int own, int64_t sum,
                     struct rf_highlight *lamp)
 {
-    const ptrdiff_t at = y * r->stride + x;
-    const int64_t own = (int64_t)luminance(r, x, y) * AREA;
-    const int level = ramp(brightest(r, at), LEVEL, RF_LIGHT_MAX);
-    const int alone = ramp(own, 3 * sum, 6 * sum);
-    const int strength = level * alone / 256;
+    const int level = ramp(brightest(r, y * r->stride + x), LEVEL, RF_LIGHT_MAX);
+    const int alone = ramp((int64_t)own * AREA, 3 * sum, 6 * sum);
+    int strength = level * alone / 256;
     int around[3], hue[3];
 
+    if (strength)
+        strength = strength * steepness(r, x, y) / 256;
     if (!strength)
         return false;
     surroundings(r, x, y, around);
     rim_hue(r, x, y, around, hue);
-    lamp->x = x;
-    lamp->y = y;
+    lamp->x = (uint16_t)x;
+    lamp->y = (uint16_t)y;
     for (int c = 0; c < 3; c++)
         lamp->added[c] = (uint16_t)(GAIN * hue[c] * strength / 256);
     return true;
 }
 
-/* Sum of the luminances of the surroundings, kept up to date along a row. */
-void rf_find_highlights(struct refocus_renderer *r)
+static bool has_bright(const struct refocus_renderer *r, int y)
 {
-    const uint64_t capacity = rf_highlight_capacity(r->max_width, r->max_height);
+    const ptrdiff_t at = y * r->stride;
 
-    r->highlights = 0;
-    for (int y = 0; y < r->height; y++) {
-        int64_t sum = -1; /* not known here */
-        int last = 0;
+    return r->kernels.brightest(r->front.light[0] + at, r->front.light[1] + at,
+                                r->front.light[2] + at, r->width) > LEVEL;
+}
 
-        for (int x = 0; x < r->width; x++) {
-            if (brightest(r, y * r->stride + x) <= LEVEL)
-                continue;
-            if (sum < 0 || x - last > AROUND) {
-                sum = 0;
-                for (int i = -AROUND; i <= AROUND; i++)
-                    for (int j = -AROUND; j <= AROUND; j++)
-                        sum += luminance(r, clamp(x + i, r->width - 1),
-                                         clamp(y + j, r->height - 1));
-            } else {
-                for (int from = last; from < x; from++)
-                    for (int j = -AROUND; j <= AROUND; j++)
-                        sum += luminance(r, clamp(from + 1 + AROUND, r->width - 1),
-                                         clamp(y + j, r->height - 1)) -
-                               luminance(r, clamp(from - AROUND, r->width - 1),
-                                         clamp(y + j, r->height - 1));
-            }
-            last = x;
-            if (r->highlights < capacity && is_lamp(r, x, y, sum, &r->highlight[r->highlights]))
-                r->highlights++;
-        }
+static void luminance_row(const struct refocus_renderer *r, uint16_t *out, int y)
+{
+    const ptrdiff_t at = clamp(y, r->height - 1) * r->stride;
+
+    r->kernels.luminance(out, r->front.light[0] + at, r->front.light[1] + at,
+                         r->front.light[2] + at, r->width);
+}
+
+/* Sums of 25 luminances in columns around row y, from those around row y - 1 unless `afresh`.
+ * At most 25 * 2047 < 2^16. */
+static void sum_columns(const struct refocus_renderer *r, uint16_t *sum, uint16_t *row, int y,
+                        bool afresh)
+{
+    if (afresh)
+        memset(sum, 0, (size_t)r->width * sizeof *sum);
+    for (int j = afresh ? -AROUND : AROUND; j <= AROUND; j++) {
+        luminance_row(r, row, y + j);
+        for (int x = 0; x < r->width; x++)
+            sum[x] = (uint16_t)(sum[x] + row[x]);
     }
-    r->highlights_found = true;
+    if (afresh)
+        return;
+    luminance_row(r, row, y - AROUND - 1);
+    for (int x = 0; x < r->width; x++)
+        sum[x] = (uint16_t)(sum[x] - row[x]);
+}
+
+static int sum_around(const struct refocus_renderer *r, const uint16_t *columns, int x)
+{
+    int sum = 0;
+
+    for (int i = -AROUND; i <= AROUND; i++)
+        sum += columns[clamp(x + i, r->width - 1)];
+    return sum;
+}
+
+/* The lamps of a row whose columns are summed; the luminance of its pixels is in `row`. */
+static void find_in_row(struct refocus_renderer *r, struct rf_highlights *found, int y,
+                        const uint16_t *columns, const uint16_t *row)
+{
+    int sum = 0, last = -2; /* pixel that the sum is of */
+
+    for (int x = 0; x < r->width; x++) {
+        if (brightest(r, y * r->stride + x) <= LEVEL)
+            continue;
+        if (x == last + 1)
+            sum += columns[clamp(x + AROUND, r->width - 1)] -
+                   columns[clamp(last - AROUND, r->width - 1)];
+        else
+            sum = sum_around(r, columns, x);
+        last = x;
+        if (found->count < found->capacity &&
+            is_lamp(r, x, y, row[x], sum, &found->lamp[found->count]))
+            found->count++;
+    }
+}
+
+void rf_find_highlights(struct refocus_renderer *r, int part, uint16_t *scratch)
+{
+    const int y0 = part * RF_LAMP_ROWS;
+    const int y1 = y0 + RF_LAMP_ROWS < r->height ? y0 + RF_LAMP_ROWS : r->height;
+    struct rf_highlights *found = &r->highlights[part];
+    uint16_t *columns = scratch, *row = scratch + r->width;
+    int summed = -2 * AROUND; /* row that the columns are summed around */
+
+    found->count = 0;
+    for (int y = y0; y < y1; y++) {
+        if (!has_bright(r, y))
+            continue;
+        if (y - summed > AROUND) {
+            sum_columns(r, columns, row, y, true);
+        } else {
+            while (summed < y)
+                sum_columns(r, columns, row, ++summed, false);
+        }
+        summed = y;
+        luminance_row(r, row, y);
+        find_in_row(r, found, y, columns, row);
+    }
 }
 
 /* Whether a bright pixel of another depth is beside it: then this one is the edge of that,
@@ -160,33 +228,48 @@ static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight 
     return false;
 }
 
-void rf_mark_highlights(struct refocus_renderer *r)
+static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
 {
-    for (uint64_t i = 0; i < r->highlights; i++) {
-        struct rf_highlight *lamp = &r->highlight[i];
-        struct rf_bins *bins =
-            &r->bins[(size_t)(lamp->y / RF_TILE) * r->tiles_x + lamp->x / RF_TILE];
-        const int blur = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+    struct rf_bins *bins =
+        &r->bins[(size_t)(lamp->y / RF_TILE) * r->tiles_x + lamp->x / RF_TILE];
+    const int blur = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
 
-        lamp->is_edge = is_edge(r, lamp);
-        if (!lamp->is_edge && blur > bins->lamp)
-            bins->lamp = (int16_t)blur;
+    lamp->is_edge = is_edge(r, lamp);
+    if (!lamp->is_edge && blur > bins->lamp)
+        bins->lamp = (int16_t)blur;
+}
+
+bool rf_mark_highlights(struct refocus_renderer *r)
+{
+    bool any = false;
+
+    for (int part = 0; part < rf_lamp_parts(r->height); part++) {
+        const struct rf_highlights *found = &r->highlights[part];
+
+        for (uint32_t i = 0; i < found->count; i++)
+            mark(r, &found->lamp[i]);
+        any = any || found->count;
     }
+    return any;
+}
+
+static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share, int sign)
+{
+    const ptrdiff_t at = lamp->y * r->stride + lamp->x;
+    /* from half a pixel of blur on, all of it from one pixel and a half on */
+    const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
+
+    for (int c = 0; c < 3; c++)
+        r->front.light[c][at] =
+            (uint16_t)(r->front.light[c][at] +
+                       sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
 }
 
 void rf_add_highlights(struct refocus_renderer *r, float gain, int sign)
 {
     const int share = (int)((gain - 1) * (256 / GAIN) + 0.5f);
 
-    for (uint64_t i = 0; i < r->highlights; i++) {
-        const struct rf_highlight *lamp = &r->highlight[i];
-        const ptrdiff_t at = lamp->y * r->stride + lamp->x;
-        /* from half a pixel of blur on, all of it from one pixel and a half on */
-        const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
-
-        for (int c = 0; c < 3; c++)
-            r->front.light[c][at] =
-                (uint16_t)(r->front.light[c][at] +
-                           sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
-    }
+    for (int part = 0; part < rf_lamp_parts(r->height); part++)
+        for (uint32_t i = 0; i < r->highlights[part].count; i++)
+            add(r, &r->highlights[part].lamp[i], share, sign);
 }

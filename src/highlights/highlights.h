@@ -7,7 +7,8 @@
  *
  *     level      ramp of max(R, G, B) from 0.94 to 1
  *     isolation  ramp of luminance / mean luminance of the 25x25 pixels around, 3 to 6
- *     added      (gain - 1) * level * isolation * hue
+ *     steepness  ramp of clipped / half lit pixels in 7x7 around, 2 to 4
+ *     added      (gain - 1) * level * isolation * steepness * hue
  *
  * The hue is that of the lamp's rim: the pixels around that are brighter than their
  * surroundings but not clipped. What is added acts on pixels that are blurred; the sharp ones
@@ -16,28 +17,45 @@
 #ifndef RF_HIGHLIGHTS_H
 #define RF_HIGHLIGHTS_H
 
+#include <stdbool.h>
 #include <stdint.h>
+
+#include <refocus/image.h>
 
 struct refocus_renderer;
 
 struct rf_highlight {
-    int32_t x, y;
+    uint16_t x, y;
     uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095 */
     uint16_t is_edge;  /* for this lens: of something bright and sharper, left alone */
 };
 
-/* Most highlights of a picture; further ones, row by row, stay as they are. */
-static inline uint64_t rf_highlight_capacity(int width, int height)
+/* Highlights are looked for in parts of so many rows, each with room for one pixel in 32;
+ * further ones, row by row, stay as they are. */
+enum { RF_LAMP_ROWS = 64, RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS };
+
+struct rf_highlights {
+    struct rf_highlight *lamp;
+    uint32_t count, capacity;
+};
+
+static inline int rf_lamp_parts(int height)
 {
-    return (uint64_t)width * height / 64 + 64;
+    return (height + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS;
 }
 
-/* Find the highlights of the prepared photo, r->highlight[0 .. r->highlights - 1]. */
-void rf_find_highlights(struct refocus_renderer *r);
+static inline uint32_t rf_lamp_capacity(int width)
+{
+    return (uint32_t)width * RF_LAMP_ROWS / 32 + 8;
+}
+
+/* Find the highlights of a part of the prepared photo, into r->highlights[part]. `scratch` is
+ * rf_scratch() of the worker. */
+void rf_find_highlights(struct refocus_renderer *r, int part, uint16_t *scratch);
 
 /* For the lens setting of r->front.blur and r->bins: tell edges from lamps, and note in its
- * tile how far a lamp is blurred. */
-void rf_mark_highlights(struct refocus_renderer *r);
+ * tile how far a lamp is blurred. False: there are none. */
+bool rf_mark_highlights(struct refocus_renderer *r);
 
 /* Add (sign 1) or take away again (-1) what they lost; gain 1 to 4. */
 void rf_add_highlights(struct refocus_renderer *r, float gain, int sign);

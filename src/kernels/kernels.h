@@ -38,8 +38,19 @@ struct rf_sweep_job {
     const int32_t (*offset)[RF_RAY_CHUNK];   /* [slabs + 1], of elements */
     bool uniform; /* slabs == 1, and whatever is looked at is in it */
     bool bright;  /* highlights are in the light */
+
+    /* of sweep_weighted: each pixel's weight, 1 to RF_WEIGHT_MAX. That of the front is a plane
+     * with a stride and offsets of its own, that of `behind` lies as its light does. */
+    const uint16_t *weight, *behind_weight;
+    ptrdiff_t weight_stride;
+    const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
 };
 typedef void rf_sweep_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_sweep_job *job);
+
+/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. */
+enum { RF_WEIGHT_MAX = 32767 };
+typedef void rf_sweep_weighted_fn(uint64_t sum[4][RF_TILE * RF_TILE],
+                                  const struct rf_sweep_job *job);
 
 /* Focus and blur in fixed point. */
 struct rf_focus {
@@ -107,6 +118,20 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
 
     return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
 }
+
+/* weighted_means: Q14 means of n <= RF_TILE * RF_TILE sums below 2^51 of Q12 values times
+ * weights, and of their weights: 4 sum / weight half up, to 2^-35; exact where all values are
+ * the same. In double precision, whose four operations are the same everywhere. */
+typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uint64_t *weight,
+                                  int n);
+
+/* luminance: Rec. 709 in Q11, (218 R + 732 G + 74 B) / 2048 half up. */
+typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t *green,
+                             const uint16_t *blue, int n);
+
+/* brightest: the largest value of any channel of a row. */
+typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
+                                 const uint16_t *blue, int n);
 
 /* blend4: four rows by weights in Q16 that add up to 1, rounded half up. */
 typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
@@ -198,6 +223,7 @@ typedef void rf_series_row_fn(float *row, const struct rf_series_job *job, int n
 struct rf_kernels {
     rf_search_fn *search;
     rf_sweep_fn *sweep;
+    rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;
     rf_smooth3_fn *smooth3;
     rf_spread_row_fn *spread_row;
@@ -207,6 +233,9 @@ struct rf_kernels {
     rf_pull_fn *pull;
     rf_pull_blur_fn *pull_blur;
     rf_means_fn *means;
+    rf_weighted_means_fn *weighted_means;
+    rf_luminance_fn *luminance;
+    rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
     rf_steps4_fn *steps4;
     rf_cluster_fn *cluster;
@@ -219,10 +248,14 @@ struct rf_kernels {
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
+rf_sweep_weighted_fn rf_sweep_weighted_c;
 
 /* Each set overwrites what it does better. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
+rf_kernels_use_fn rf_sweep_weighted_use_neon, rf_sweep_weighted_use_sse41,
+    rf_sweep_weighted_use_avx2;
+rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_light_use_avx2;
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;

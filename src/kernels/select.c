@@ -42,8 +42,10 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     if (!has(*cpu))
         return false;
     kernels->sweep = rf_sweep_c;
+    kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
     rf_search_use_c(kernels);
+    rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
     rf_series_use_c(kernels);
 #if defined(RF_WITH_NEON)

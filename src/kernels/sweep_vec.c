@@ -140,6 +140,8 @@ static void RF_VEC(rf_sweep)(uint32_t sum[3][RF_TILE * RF_TILE],
 void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
 {
     kernels->sweep = RF_VEC(rf_sweep);
+    RF_VEC(rf_sweep_weighted_use)(kernels);
+    RF_VEC(rf_light_use)(kernels);
     RF_VEC(rf_rows_use)(kernels);
     RF_VEC(rf_search_use)(kernels);
 }

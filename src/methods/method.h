@@ -33,12 +33,13 @@ struct rf_frame {
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
     int prefilter_step;     /* the one that is being made */
     bool weighted;          /* eq. 5 weights differ from 1 */
+    bool bright;            /* light was given back to lamps: it exceeds RF_LIGHT_MAX */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
 
 /*
- * Sums over the rays of the pixels of a tile. Exact: Q12 light times Q16 weight (or 1)
- * times a ray weight, 65,025 rays at the most, stays below 2^12 2^16 2^8 2^16 = 2^52.
+ * Sums over the rays of the pixels of a tile. Exact: Q12 light, four times white at the most, times Q15 weight
+ * (or 1) times a ray weight, 65,025 rays at the most, stays below 2^14 2^15 2^8 2^16 = 2^53.
  */
 struct rf_sums {
     uint64_t light[3][RF_TILE * RF_TILE];

@@ -35,6 +35,10 @@ enum { RF_PREFILTER_STEPS = 3 };
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
                        uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty);
 
+/* Weights of eq. 5 of the pixels that rays meet, borders too: of smooth into r->weight, of the
+ * background over its blur. That of the middle of each tile goes to its bins before. */
+void rf_weigh_rows(struct refocus_renderer *r, int ty);
+
 /* Extend rows y0..y1-1 of a padded plane of 16-bit values beyond its sides, and the first
  * and the last row of the picture above and below it. */
 void rf_extend_rows(const struct refocus_renderer *r, void *plane, int y0, int y1);

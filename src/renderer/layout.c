@@ -112,6 +112,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     struct rf_level level[RF_LEVELS];
     const int levels = rf_pyramid(level, w, h);
     const int threads = rf_threads_for(params);
+    uint64_t before, after;
 
     r->pad = pad;
     r->pitch = rf_pitch_for(w, pad);
@@ -128,11 +129,22 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->front.blur = (int16_t *)seen;
     r->behind.blur = (int16_t *)behind;
     r->alpha = rf_arena_take(arena, (uint64_t)w * h, 1);
+    before = arena->used;
     for (int i = 0; i < levels; i++) {
         take_level(arena, &level[i], level[i].width, level[i].height);
         r->level[i] = level[i];
     }
-    r->highlight = rf_arena_take(arena, rf_highlight_capacity(w, h), sizeof *r->highlight);
+    after = arena->used;
+    arena->used = before; /* the pyramid is done with before there are weights */
+    r->weight_stride = r->pitch;
+    r->weight = rf_arena_take(arena, (uint64_t)r->pitch * rows, 2);
+    r->weight = r->weight ? r->weight + pad * (r->pitch + 1) : NULL;
+    arena->used = arena->used > after ? arena->used : after;
+    for (int i = 0; i < rf_lamp_parts(h); i++) {
+        r->highlights[i].lamp =
+            rf_arena_take(arena, rf_lamp_capacity(w), sizeof(struct rf_highlight));
+        r->highlights[i].capacity = rf_lamp_capacity(w);
+    }
     r->rim = rf_arena_take(arena, rf_rim_capacity(w, h), sizeof *r->rim);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);

@@ -139,6 +139,14 @@ static void mark_band(void *context, int band, int worker)
                             rf_band_end(f->r, band));
 }
 
+static void weigh_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_weigh_rows(f->r, band);
+}
+
 static int larger(int a, int b)
 {
     return a > b ? a : b;
@@ -183,19 +191,27 @@ static void set_weights(struct rf_frame *f)
     r->weight_blend = r->blend;
 }
 
+static void find_lamps(void *context, int part, int worker)
+{
+    const struct rf_frame *f = context;
+
+    rf_find_highlights(f->r, part, rf_scratch(f->r, worker));
+}
+
 static void prefilter_with_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     const float gain = f->params->highlight_gain;
 
-    if (gain > 1) {
-        if (!r->highlights_found)
-            rf_find_highlights(r);
-        rf_mark_highlights(r);
-        rf_add_highlights(r, gain, 1);
+    if (gain > 1 && !r->highlights_found) {
+        rf_pool_run(&r->pool, find_lamps, f, rf_lamp_parts(r->height));
+        r->highlights_found = !rf_cancelled(r);
     }
+    f->bright = gain > 1 && r->highlights_found && rf_mark_highlights(r);
+    if (f->bright)
+        rf_add_highlights(r, gain, 1);
     prefilter(f);
-    if (gain > 1)
+    if (f->bright)
         rf_add_highlights(r, gain, -1);
 }
 
@@ -242,6 +258,8 @@ static void run_passes(struct rf_frame *f)
         rf_pool_run(&r->pool, dilate_item, f, 2);
         rf_pool_run(&r->pool, mark_band, f, rf_bands(r));
         rf_background_fill(r);
+        if (f->weighted && method->layers)
+            rf_pool_run(&r->pool, weigh_band, f, rf_bands(r));
     }
     if (method->frame && f->params->max_blur_radius > 0) {
         if (!rf_cancelled(r))

@@ -51,6 +51,7 @@ struct rf_bins {
     uint64_t word[RF_BINS / 64];
     int16_t least, most; /* Q7.8 */
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
+    int16_t behind;      /* blur of the background in the middle, once there are weights */
 };
 
 struct refocus_renderer {
@@ -77,9 +78,8 @@ struct refocus_renderer {
     uint8_t *alpha;     /* unpadded, width a row */
     struct rf_layer front;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
-    struct rf_highlight *highlight; /* of the photo in this blend, once they are found */
-    uint64_t highlights;
-    bool highlights_found;
+    struct rf_highlights highlights[RF_LAMP_PARTS]; /* of the photo in this blend, once */
+    bool highlights_found;                          /* they are found */
     struct rf_rim *rim; /* of the photo */
     uint64_t rims;
 
@@ -87,6 +87,8 @@ struct refocus_renderer {
     struct rf_layer behind; /* the background layer */
     struct rf_level level[RF_LEVELS];
     int levels;
+    uint16_t *weight;        /* of smooth, eq. 5, once the background is filled: its memory */
+    ptrdiff_t weight_stride; /* is the pyramid's. Those of behind are where its blur was. */
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
     struct rf_taps *taps; /* of the depth upsampler: of columns, then of rows */
@@ -96,7 +98,7 @@ struct refocus_renderer {
     bool blurred;         /* front.blur is valid */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
-    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q16 */
+    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 

@@ -9,9 +9,17 @@
  *     vec_u16_add(a, b)       (uint16_t)(a + b)
  *     vec_u16_sub(a, b)       (uint16_t)(a - b)
  *     vec_u16_and(a, b)       a & b
+ *     vec_u16_or(a, b)        a | b
  *     vec_u16_without(a, b)   a & ~b
  *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
+ *
+ * A vec_u32 holds as many lanes of 32 bits, in an order of its own.
+ *
+ *     vec_u32_zero()          every lane = 0
+ *     vec_u32_add_products(sum, a, b, c, d)
+ *                             sum + a * b + c * d, factors below 2^15
+ *     vec_u32_add_to(to, v)   to[i] += v[i], 64-bit sums
  */
 #ifndef RF_VEC_H
 #define RF_VEC_H

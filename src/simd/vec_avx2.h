@@ -38,6 +38,11 @@ static inline vec_u16 vec_u16_and(vec_u16 a, vec_u16 b)
     return _mm256_and_si256(a, b);
 }
 
+static inline vec_u16 vec_u16_or(vec_u16 a, vec_u16 b)
+{
+    return _mm256_or_si256(a, b);
+}
+
 static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
 {
     return _mm256_andnot_si256(b, a);
@@ -57,6 +62,41 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
     _mm256_storeu_si256(high,
                         _mm256_add_epi32(_mm256_loadu_si256(high),
                                          _mm256_cvtepu16_epi32(_mm256_extracti128_si256(v, 1))));
+}
+
+/* Lanes 0-3 and 8-11, and 4-7 and 12-15: as unpacking leaves them. */
+typedef struct {
+    __m256i low, high;
+} vec_u32;
+
+static inline vec_u32 vec_u32_zero(void)
+{
+    return (vec_u32){_mm256_setzero_si256(), _mm256_setzero_si256()};
+}
+
+static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
+                                           vec_u16 d)
+{
+    sum.low = _mm256_add_epi32(sum.low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a, c),
+                                                          _mm256_unpacklo_epi16(b, d)));
+    sum.high = _mm256_add_epi32(sum.high, _mm256_madd_epi16(_mm256_unpackhi_epi16(a, c),
+                                                            _mm256_unpackhi_epi16(b, d)));
+    return sum;
+}
+
+static inline void vec_u64_add_four(uint64_t *to, __m128i v)
+{
+    __m256i *at = (__m256i *)to;
+
+    _mm256_storeu_si256(at, _mm256_add_epi64(_mm256_loadu_si256(at), _mm256_cvtepu32_epi64(v)));
+}
+
+static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
+{
+    vec_u64_add_four(to, _mm256_castsi256_si128(v.low));
+    vec_u64_add_four(to + 4, _mm256_castsi256_si128(v.high));
+    vec_u64_add_four(to + 8, _mm256_extracti128_si256(v.low, 1));
+    vec_u64_add_four(to + 12, _mm256_extracti128_si256(v.high, 1));
 }
 
 #endif

@@ -38,6 +38,11 @@ static inline vec_u16 vec_u16_and(vec_u16 a, vec_u16 b)
     return vandq_u16(a, b);
 }
 
+static inline vec_u16 vec_u16_or(vec_u16 a, vec_u16 b)
+{
+    return vorrq_u16(a, b);
+}
+
 static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
 {
     return vbicq_u16(a, b);
@@ -52,6 +57,37 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     vst1q_u32(sum, vaddw_u16(vld1q_u32(sum), vget_low_u16(v)));
     vst1q_u32(sum + 4, vaddw_u16(vld1q_u32(sum + 4), vget_high_u16(v)));
+}
+
+typedef struct {
+    uint32x4_t low, high;
+} vec_u32;
+
+static inline vec_u32 vec_u32_zero(void)
+{
+    return (vec_u32){vdupq_n_u32(0), vdupq_n_u32(0)};
+}
+
+static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
+                                           vec_u16 d)
+{
+    sum.low = vmlal_u16(sum.low, vget_low_u16(a), vget_low_u16(b));
+    sum.high = vmlal_u16(sum.high, vget_high_u16(a), vget_high_u16(b));
+    sum.low = vmlal_u16(sum.low, vget_low_u16(c), vget_low_u16(d));
+    sum.high = vmlal_u16(sum.high, vget_high_u16(c), vget_high_u16(d));
+    return sum;
+}
+
+static inline void vec_u64_add_four(uint64_t *to, uint32x4_t v)
+{
+    vst1q_u64(to, vaddw_u32(vld1q_u64(to), vget_low_u32(v)));
+    vst1q_u64(to + 2, vaddw_u32(vld1q_u64(to + 2), vget_high_u32(v)));
+}
+
+static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
+{
+    vec_u64_add_four(to, v.low);
+    vec_u64_add_four(to + 4, v.high);
 }
 
 #endif

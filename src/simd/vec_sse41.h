@@ -38,6 +38,11 @@ static inline vec_u16 vec_u16_and(vec_u16 a, vec_u16 b)
     return _mm_and_si128(a, b);
 }
 
+static inline vec_u16 vec_u16_or(vec_u16 a, vec_u16 b)
+{
+    return _mm_or_si128(a, b);
+}
+
 static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
 {
     return _mm_andnot_si128(b, a);
@@ -55,6 +60,40 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 
     _mm_storeu_si128(low, _mm_add_epi32(_mm_loadu_si128(low), _mm_unpacklo_epi16(v, zero)));
     _mm_storeu_si128(high, _mm_add_epi32(_mm_loadu_si128(high), _mm_unpackhi_epi16(v, zero)));
+}
+
+typedef struct {
+    __m128i low, high;
+} vec_u32;
+
+static inline vec_u32 vec_u32_zero(void)
+{
+    return (vec_u32){_mm_setzero_si128(), _mm_setzero_si128()};
+}
+
+static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
+                                           vec_u16 d)
+{
+    sum.low = _mm_add_epi32(
+        sum.low, _mm_madd_epi16(_mm_unpacklo_epi16(a, c), _mm_unpacklo_epi16(b, d)));
+    sum.high = _mm_add_epi32(
+        sum.high, _mm_madd_epi16(_mm_unpackhi_epi16(a, c), _mm_unpackhi_epi16(b, d)));
+    return sum;
+}
+
+static inline void vec_u64_add_four(uint64_t *to, __m128i v)
+{
+    const __m128i zero = _mm_setzero_si128();
+    __m128i *low = (__m128i *)to, *high = (__m128i *)(to + 2);
+
+    _mm_storeu_si128(low, _mm_add_epi64(_mm_loadu_si128(low), _mm_unpacklo_epi32(v, zero)));
+    _mm_storeu_si128(high, _mm_add_epi64(_mm_loadu_si128(high), _mm_unpackhi_epi32(v, zero)));
+}
+
+static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
+{
+    vec_u64_add_four(to, v.low);
+    vec_u64_add_four(to + 4, v.high);
 }
 
 #endif

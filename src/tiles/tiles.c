@@ -125,7 +125,7 @@ static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale,
 {
     const int most = (r->pad - 2 + RF_TILE - 1) / RF_TILE;
 
-    *reach = *window = (struct rf_bins){{0}, INT16_MAX, INT16_MIN, 0};
+    *reach = *window = (struct rf_bins){{0}, INT16_MAX, INT16_MIN, 0, 0};
     for (int j = -most; j <= most; j++) {
         if (ty + j < 0 || ty + j >= r->tiles_y)
             continue;

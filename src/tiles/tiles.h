@@ -31,6 +31,12 @@ struct rf_tile_plan {
 /* Bins of the tiles of row ty. */
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);
 
+/* The middle pixel of a tile, in padded planes. */
+static inline ptrdiff_t rf_tile_middle(const struct refocus_renderer *r, int tx, int ty)
+{
+    return (ty * RF_TILE + RF_TILE / 2) * r->stride + tx * RF_TILE + RF_TILE / 2;
+}
+
 /* One more blur in a tile. */
 void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
                 int16_t blur);

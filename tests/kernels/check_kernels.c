@@ -73,8 +73,8 @@ int main(int argc, char **argv)
             bench_sweep(&subject);
             bench_rows(&subject);
         } else if (!bench) {
-            failures += check_vec(cpu) + check_sweep(&subject) + check_search(&subject) +
-                        check_series(&subject) + check_rows(&subject);
+            failures += check_vec(cpu) + check_sweep(&subject) + check_light(&subject) +
+                        check_search(&subject) + check_series(&subject) + check_rows(&subject);
         }
     }
     return failures > 0;

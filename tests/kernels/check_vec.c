@@ -34,6 +34,11 @@ static uint16_t c_and(uint16_t a, uint16_t b)
     return a & b;
 }
 
+static uint16_t c_or(uint16_t a, uint16_t b)
+{
+    return a | b;
+}
+
 static uint16_t c_without(uint16_t a, uint16_t b)
 {
     return (uint16_t)(a & ~b);
@@ -64,6 +69,7 @@ static const struct {
     {"load, store", first, c_first},         {"add", vec_u16_add, c_add},
     {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
+    {"or", vec_u16_or, c_or},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)
@@ -143,15 +149,48 @@ static int check_add_to(void)
     return 0;
 }
 
+/* a b + c d, added up twice: lanes come out in their order. */
+static int check_products(void)
+{
+    uint32_t seed = 10;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t factor[4][MOST_LANES];
+        uint64_t sum[MOST_LANES] = {0};
+        vec_u32 v = vec_u32_zero();
+
+        for (int i = 0; i < 4; i++)
+            for (int lane = 0; lane < (int)VEC_U16; lane++)
+                factor[i][lane] = pick(round, lane, i % 2, &seed) & 0x7fff;
+        for (int twice = 0; twice < 2; twice++)
+            v = vec_u32_add_products(v, vec_u16_load(factor[0]), vec_u16_load(factor[1]),
+                                     vec_u16_load(factor[2 - 2 * twice]),
+                                     vec_u16_load(factor[1]));
+        sum[0] = UINT32_MAX;
+        vec_u32_add_to(sum, v);
+        for (int lane = 0; lane < (int)VEC_U16; lane++) {
+            const uint64_t should = (lane ? 0 : (uint64_t)UINT32_MAX) +
+                                    (uint32_t)((3u * factor[0][lane] + factor[2][lane]) *
+                                               (uint32_t)factor[1][lane]);
+
+            if (sum[lane] != should) {
+                printf("FAIL  vec_u32_add_products, %s\n", TEXT(RF_VEC_SET));
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
-    int failures = check_set() + check_add_to();
+    int failures = check_set() + check_add_to() + check_products();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
         printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 2, (int)VEC_U16);
+               count + 3, (int)VEC_U16);
     return failures;
 }

@@ -245,6 +245,23 @@ static void expect_means(void *const *row, int parameter, int n)
     }
 }
 
+static void run_luminance(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->luminance(row[0], row[1], row[2], row[3], n);
+}
+
+static void expect_luminance(void *const *row, int parameter, int n)
+{
+    const uint16_t *r = row[1], *g = row[2], *b = row[3];
+    uint16_t *out = row[0];
+
+    (void)parameter;
+    for (int x = 0; x < n; x++)
+        out[x] = (uint16_t)((218 * (int64_t)r[x] + 732 * (int64_t)g[x] + 74 * (int64_t)b[x]) /
+                                1024 + 1) / 2;
+}
+
 const struct row_kernel row_kernels[] = {
     {"signed_blur", 2, {{BLUR, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, 30000,
      run_signed_blur, expect_signed_blur},
@@ -269,5 +286,7 @@ const struct row_kernel row_kernels[] = {
     {"pull_blur", 2, {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}}, 0, 0,
      run_pull_blur, expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
+    {"luminance", 4, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}},
+     0, 0, run_luminance, expect_luminance},
 };
 const int row_kernel_count = sizeof row_kernels / sizeof row_kernels[0];

@@ -21,9 +21,11 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 # label, settings (see refocus-quality --help), what it is
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
-    ("sweep", "method=sweep", "the default: two layers, 64 rays"),
-    ("best", "method=sweep,rays=128,highlight=4",
-     "128 rays, light given back to clipped lamps"),
+    ("standard", "method=sweep,highlight=4",
+     "the default: two layers, 64 rays, light given back to clipped lamps"),
+    ("sweep", "method=sweep", "the same of what is in the photo"),
+    ("best", "method=sweep,rays=128,highlight=4,sigma=400",
+     "128 rays, light given back to clipped lamps, bright samples count more"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "the paper to the letter: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
@@ -43,14 +45,17 @@ RAYS = [
     ("sweep-full", "rays=full", "every ray"),
     ("sweep-32", "rays=32", "preview"),
     ("sweep-64", "rays=64", "standard"),
-    ("sweep-128", "rays=128", "best without highlights"),
+    ("sweep-128", "rays=128", "as many as best"),
     ("sweep-64-raw", "rays=64,prefilter=0", "64 rays without the pre-filter"),
 ]
 LIGHTS = [
     ("gain-1", "highlight=1", "as the photo has them"),
     ("gain-2", "highlight=2", "lamps up to twice as bright as white"),
     ("gain-3", "highlight=3", "three times"),
-    ("gain-4", "highlight=4", "four times"),
+    ("gain-4", "highlight=4", "four times: standard"),
+    ("gain-4-s400", "highlight=4,sigma=400", "four times, σ = 400"),
+    ("gain-4-128", "highlight=4,rays=128", "four times, 128 rays"),
+    ("gain-4-128-s400", "highlight=4,rays=128,sigma=400", "four times, 128 rays, σ = 400: best"),
 ]
 BLENDS = [
     ("linear", "blend=linear,sigma=off", "linear light, plain average"),
