@@ -86,7 +86,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     26 (W + 2P + 79) (H + 2P + 16) + 3 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
+ *     27 (W + 2P + 79) (H + 2P + 16) + 3 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
  *
  * with P = ceil(K) + 2 and T threads is never exceeded. On top of it comes the most that one
  * of params->methods needs:

@@ -161,6 +161,7 @@ static int render_all(struct engine *engine, struct comparison *c,
         if (status != EXIT_DONE)
             return status;
         c->item[c->count - 1].ms = engine->render_ms;
+        c->item[c->count - 1].cpu_ms = engine->cpu_ms;
         c->item[c->count - 1].memory = memory_of(engine, photo, params->method);
     }
     return EXIT_DONE;
@@ -178,6 +179,8 @@ static json_t *item_json(const struct compared *item)
 
     if (json && item->memory)
         json_object_set_new(json, "render_ms", report_spread_json(item->ms));
+    if (json && item->memory)
+        json_object_set_new(json, "cpu_ms", report_spread_json(item->cpu_ms));
     if (json && item->memory)
         json_object_set_new(json, "renderer_bytes", json_integer((json_int_t)item->memory));
     return json;
@@ -198,9 +201,10 @@ static int print_report(const struct settings *settings, const struct engine *en
         for (int i = 1; i < c->count; i++)
             json_array_append_new(rows, item_json(&c->item[i]));
         if (json && run) {
-            static const char *const of_one[] = {"method", "render_ms", "renderer_bytes"};
+            static const char *const of_one[] = {"method", "render_ms", "cpu_ms",
+                                                  "renderer_bytes"};
 
-            for (int i = 0; i < 3; i++)
+            for (int i = 0; i < 4; i++)
                 json_object_del(run, of_one[i]);
             json_object_update(json, run);
         }

@@ -14,7 +14,7 @@ struct compared {
     uint8_t *rgb; /* packed */
     bool scored;
     struct quality_scores scores;
-    struct spread ms;
+    struct spread ms, cpu_ms;
     uint64_t memory; /* of a renderer for this method alone */
 };
 

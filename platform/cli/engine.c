@@ -237,7 +237,7 @@ static int render_once(struct engine *engine, const struct refocus_image *out, d
 
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
 {
-    double *times = malloc((size_t)repeat * sizeof *times);
+    double *times = malloc(2 * (size_t)repeat * sizeof *times), *cpu_times = times + repeat;
     int status = REFOCUS_OK;
 
     if (!times)
@@ -246,13 +246,16 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
                                          ? engine->params.focus_disparity
                                          : (float)engine->field_disparity;
     for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
-        const double start = report_clock_ms();
+        const double start = report_clock_ms(), cpu_start = report_cpu_ms();
 
         status = render_once(engine, out, 0.3 + 0.6 * i / repeat, 0.6 / repeat);
+        cpu_times[i] = report_cpu_ms() - cpu_start;
         times[i] = report_clock_ms() - start;
     }
-    if (status == REFOCUS_OK)
+    if (status == REFOCUS_OK) {
         engine->render_ms = report_spread(times, repeat);
+        engine->cpu_ms = report_spread(cpu_times, repeat);
+    }
     free(times);
     if (status == REFOCUS_ERR_CANCELLED)
         return interrupted(engine);
@@ -277,7 +280,7 @@ json_t *engine_json(const struct engine *engine)
                                                      : json_integer(params->rays);
 
     return json_pack(
-        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:I, s:I}", "method",
+        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, s:I}", "method",
         refocus_method_name(params->method), "rays", rays, "blend",
         engine_blend_name(params->blend), "sigma",
         params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "highlights",
@@ -286,6 +289,7 @@ json_t *engine_json(const struct engine *engine)
         (double)params->focus_disparity, "threads", (int)engine->info.threads, "cpu",
         refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms, "prepare_ms",
         engine->prepare_ms, "render_ms", report_spread_json(engine->render_ms),
+        "cpu_ms", report_spread_json(engine->cpu_ms),
         "renderer_bytes", (json_int_t)engine->info.memory, "peak_rss_kib",
         (json_int_t)report_peak_rss_kib());
 }

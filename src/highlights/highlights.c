@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "renderer/renderer.h"
+#include "tiles/ranges.h"
+#include "tiles/tiles.h"
 
 enum {
     AROUND = 12,                      /* surroundings: 25 x 25 pixels */
@@ -13,6 +15,8 @@ enum {
     LEVEL = RF_LIGHT_MAX * 94 / 100,  /* where clipping begins to count */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3,                         /* full gain of 4 adds three times white */
+    WIDEST = 3,                       /* pixels that a lamp is widened by */
+    BLURRED = 512,                    /* Q7.8: what it may be widened over */
 };
 
 static int clamp(int v, int most)
@@ -228,6 +232,36 @@ static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight 
     return false;
 }
 
+
+/*
+ * Rays whose gaps are wider than a lamp would show it as a disc of dots. What is around it within
+ * half a gap, farther away and blurred itself, takes its blur: then the pre-filter spreads its
+ * light over that.
+ */
+static void widen(struct refocus_renderer *r, const struct rf_highlight *lamp,
+                  struct rf_bin_scale scale, double gap)
+{
+    const int16_t own = r->front.blur[lamp->y * r->stride + lamp->x];
+    const int half = (int)(gap * abs(own) / 512), reach = half < WIDEST ? half : WIDEST;
+
+    for (int y = lamp->y - reach; y <= lamp->y + reach; y++) {
+        for (int x = lamp->x - reach; x <= lamp->x + reach; x++) {
+            const int dx = x - lamp->x, dy = y - lamp->y;
+            int16_t *s;
+
+            if (x < 0 || y < 0 || x >= r->width || y >= r->height ||
+                dx * dx + dy * dy > reach * reach + 1)
+                continue;
+            s = r->front.blur + y * r->stride + x;
+            if (*s > own && abs(*s) > BLURRED) {
+                *s = own;
+                rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, own);
+                rf_add_to_cell(r, x, y, own);
+            }
+        }
+    }
+}
+
 static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
 {
     struct rf_bins *bins =
@@ -239,7 +273,7 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
         bins->lamp = (int16_t)blur;
 }
 
-bool rf_mark_highlights(struct refocus_renderer *r)
+bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap)
 {
     bool any = false;
 
@@ -248,6 +282,9 @@ bool rf_mark_highlights(struct refocus_renderer *r)
 
         for (uint32_t i = 0; i < found->count; i++)
             mark(r, &found->lamp[i]);
+        for (uint32_t i = 0; i < found->count; i++)
+            if (!found->lamp[i].is_edge)
+                widen(r, &found->lamp[i], scale, gap);
         any = any || found->count;
     }
     return any;

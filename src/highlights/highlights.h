@@ -23,6 +23,7 @@
 #include <refocus/image.h>
 
 struct refocus_renderer;
+struct rf_bin_scale;
 
 struct rf_highlight {
     uint16_t x, y;
@@ -53,9 +54,10 @@ static inline uint32_t rf_lamp_capacity(int width)
  * rf_scratch() of the worker. */
 void rf_find_highlights(struct refocus_renderer *r, int part, uint16_t *scratch);
 
-/* For the lens setting of r->front.blur and r->bins: tell edges from lamps, and note in its
- * tile how far a lamp is blurred. False: there are none. */
-bool rf_mark_highlights(struct refocus_renderer *r);
+/* For the lens setting of r->front.blur and r->bins: tell edges from lamps, note in its tile how
+ * far a lamp is blurred, and widen lamps that rays `gap` times their blur apart would miss.
+ * False: there are none. */
+bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
 
 /* Add (sign 1) or take away again (-1) what they lost; gain 1 to 4. */
 void rf_add_highlights(struct refocus_renderer *r, float gain, int sign);

@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 
+#include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
 enum {
@@ -133,5 +134,6 @@ void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
 
         r->kernels.signed_blur(s, &rim->disparity, focus, 1);
         rf_add_bin(r, scale, rim->x / RF_TILE, rim->y / RF_TILE, *s);
+        rf_add_to_cell(r, rim->x, rim->y, *s);
     }
 }

@@ -14,43 +14,104 @@
 #include "tiles/slab.h"
 
 /*
- * sweep: rays of one tile of RF_TILE x RF_TILE pixels.
- *
- *     for each ray n and pixel p of the tile:
- *         for k = 0 .. slabs - 1:
- *             q = p + offset[k][n]
- *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
- *                 sum += light[q]; next ray
- *         sum += behind[p + offset[slabs][n]], where no slab was hit
- *
- * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
- * tile's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
+ * Rays of a tile are a chunk at a time; what they look at is found out for strips of the tile,
+ * RF_STRIP rows each.
  */
-enum { RF_RAY_CHUNK = 64 };
+enum { RF_RAY_CHUNK = 64, RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
 
-struct rf_sweep_job {
-    const int16_t *blur;     /* light is in the three planes after it, pitch apart */
-    const uint16_t *behind;  /* the first of three planes */
-    ptrdiff_t stride, pitch; /* elements */
-    int rays;                                /* at most RF_RAY_CHUNK */
-    int slabs;
+/*
+ * ranges: the least and the greatest blur of cells of RF_CELL x RF_CELL pixels, and then of
+ * windows of RF_WINDOW_X x RF_WINDOW_Y cells to the right of and below a cell: whatever a
+ * strip that begins in that cell covers. A range is (least & 0xffff) | most << 16.
+ *
+ * cells: one row of n cells from the four rows at `blur`.
+ * windows: one row of windows from RF_WINDOW_Y rows of n cells, whose ends are repeated: the
+ * first begins `border` cells to the left, the last n - 1 + border to the right. The scratch is
+ * 2 (n + 2 border + RF_WINDOW_X - 1) long.
+ */
+enum { RF_CELL = 4, RF_WINDOW_X = RF_TILE / RF_CELL + 1, RF_WINDOW_Y = RF_STRIP / RF_CELL + 1 };
+typedef void rf_cells_fn(int16_t *least, int16_t *most, const int16_t *blur, ptrdiff_t stride,
+                         int n);
+typedef void rf_windows_fn(uint32_t *range, const int16_t *const least[RF_WINDOW_Y],
+                           const int16_t *const most[RF_WINDOW_Y], int16_t *scratch, int n,
+                           int border);
+
+/* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset
+ * x + y stride, and as one of cells: floor(x / RF_CELL) + floor(y / RF_CELL) cell_stride. */
+typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const int16_t *v,
+                       int blur, int32_t stride, int32_t cell_stride, int n);
+
+/*
+ * sort_rays: what the rays of a strip have to look at.
+ *
+ *     for each ray n:
+ *         for k = 0 .. slabs - 1, with the range at range[cell[k][n]]:
+ *             no blur in the range is in slab k: go on
+ *             all blurs are:                     take its light as the last, offset[k][n]; end
+ *             else:                              test slab k at offset[k][n]
+ *         the last is the background at offset[slabs][n]
+ *
+ * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
+ * otherwise in their order. Nothing is lost by this: tests that are left out could not hit, or
+ * would all hit.
+ */
+enum { RF_SORTED_TESTS = 8 };
+
+struct rf_sort_job {
+    const uint32_t *range; /* at the strip's first pixel */
+    const uint16_t *front, *behind; /* first of three planes of light, there */
+    const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
+    int rays, slabs;
     const struct rf_slab *slab;
-    const int32_t (*offset)[RF_RAY_CHUNK];   /* [slabs + 1], of elements */
-    bool uniform; /* slabs == 1, and whatever is looked at is in it */
-    bool bright;  /* highlights are in the light */
-
-    /* of sweep_weighted: each pixel's weight, 1 to RF_WEIGHT_MAX. That of the front is a plane
-     * with a stride and offsets of its own, that of `behind` lies as its light does. */
-    const uint16_t *weight, *behind_weight;
-    ptrdiff_t weight_stride;
+    const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
     const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
 };
-typedef void rf_sweep_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_sweep_job *job);
 
-/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. */
+struct rf_sorted_rays {
+    int rays;
+    uint8_t tests[RF_RAY_CHUNK];
+    uint8_t slab[RF_BINS][RF_RAY_CHUNK]; /* of test t, nearest first, */
+    int32_t offset[RF_BINS][RF_RAY_CHUNK]; /* at this offset */
+    const uint16_t *last[RF_RAY_CHUNK]; /* first of three planes, for the strip's first pixel */
+
+    /* Only with weights: as `offset` and `last`, of the weights. */
+    int32_t weight_offset[RF_BINS][RF_RAY_CHUNK];
+    const uint16_t *last_weight[RF_RAY_CHUNK];
+    bool last_behind[RF_RAY_CHUNK]; /* which plane last_weight is in */
+};
+typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort_job *job);
+
+/*
+ * sweep: rays of one strip.
+ *
+ *     for each ray n and pixel p of the strip:
+ *         for t = 0 .. tests[n] - 1:
+ *             q = p + offset[t][n], k = slab[t][n]
+ *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
+ *                 sum += light[q]; next ray
+ *         sum += last[n][p]
+ *
+ * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
+ * strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
+ */
+struct rf_sweep_job {
+    const int16_t *blur;     /* light is in the three planes after it, pitch apart */
+    ptrdiff_t stride, pitch; /* elements */
+    int slabs;
+    const struct rf_slab *slab;
+    const struct rf_sorted_rays *rays;
+    bool bright;  /* highlights are in the light */
+
+    /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
+    const uint16_t *weight;
+    ptrdiff_t weight_stride;
+};
+typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
+
+/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. Those
+ * of the front lie in a plane with a stride of its own, those of the background as its light. */
 enum { RF_WEIGHT_MAX = 32767 };
-typedef void rf_sweep_weighted_fn(uint64_t sum[4][RF_TILE * RF_TILE],
-                                  const struct rf_sweep_job *job);
+typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
 /* Focus and blur in fixed point. */
 struct rf_focus {
@@ -66,13 +127,12 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
                                struct rf_focus focus, int n);
 
 /*
- * smooth3: where |blur| > least, the mean of a pixel and those of its two neighbours whose
- * blur is within one pixel (256) of its own; the pixel itself elsewhere. Half up; light is at
- * most 4 * 4095 here and below.
+ * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its two
+ * neighbours, `apart` elements before and after, whose blur is within one pixel (256) of its
+ * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below.
  */
-typedef void rf_smooth3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
-                           const uint16_t *after, const int16_t *blur_before,
-                           const int16_t *blur, const int16_t *blur_after, int least, int n);
+typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
+                           const int16_t *blur, ptrdiff_t apart, int least, int n);
 
 /* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
 enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
@@ -222,6 +282,10 @@ typedef void rf_series_row_fn(float *row, const struct rf_series_job *job, int n
 
 struct rf_kernels {
     rf_search_fn *search;
+    rf_cells_fn *cells;
+    rf_windows_fn *windows;
+    rf_aim_fn *aim;
+    rf_sort_rays_fn *sort_rays;
     rf_sweep_fn *sweep;
     rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;
@@ -248,6 +312,7 @@ struct rf_kernels {
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
+rf_smooth3_fn rf_smooth3_c;
 rf_sweep_weighted_fn rf_sweep_weighted_c;
 
 /* Each set overwrites what it does better. */
@@ -261,6 +326,8 @@ rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
     rf_search_use_avx2;
+rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
+rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;
 rf_kernels_use_fn rf_series_use_c, rf_series_use_neon, rf_series_use_sse41,
     rf_series_use_avx2;
 

@@ -38,43 +38,6 @@ static inline uint16_t third_of(uint16_t s) /* s / 3, rounded down: 3 * 43691 = 
     return (uint16_t)((uint16_t)(((uint32_t)s * 43691) >> 16) >> 1);
 }
 
-/* Mean of three of which at least the middle counts, sums below 2^16: rounded half up. */
-static inline uint16_t mean3(uint16_t a, uint16_t b, uint16_t c, uint16_t use_a, uint16_t use_c)
-{
-    const uint16_t two = (uint16_t)(use_a ^ use_c), three = (uint16_t)(use_a & use_c);
-    const uint16_t sum = (uint16_t)(b + (a & use_a) + (c & use_c));
-    const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
-    const uint16_t third = third_of((uint16_t)(sum + 1));
-
-    return (uint16_t)((sum & ~(two | three)) | (half & two) | (third & three));
-}
-
-static inline uint16_t within_pixel(int16_t a, int16_t b)
-{
-    return (uint16_t)((uint16_t)(a - b + 256) <= 512 ? 0xffff : 0);
-}
-
-static inline uint16_t above(int16_t s, uint16_t least) /* |s| > least */
-{
-    return (uint16_t)((uint16_t)(s < 0 ? -s : s) > least ? 0xffff : 0);
-}
-
-static void RF_VEC(rf_smooth3)(uint16_t *restrict out, const uint16_t *restrict before,
-                        const uint16_t *restrict row, const uint16_t *restrict after,
-                        const int16_t *restrict blur_before, const int16_t *restrict blur,
-                        const int16_t *restrict blur_after, int least, int n)
-{
-    const uint16_t from = (uint16_t)least;
-
-    for (int x = 0; x < n; x++) {
-        const uint16_t wide = above(blur[x], from);
-        const uint16_t use_a = (uint16_t)(wide & within_pixel(blur_before[x], blur[x]));
-        const uint16_t use_c = (uint16_t)(wide & within_pixel(blur_after[x], blur[x]));
-
-        out[x] = mean3(before[x], row[x], after[x], use_a, use_c);
-    }
-}
-
 static void spread(uint16_t *restrict out, const uint16_t *restrict in, int step, uint16_t fall,
                    int n)
 {
@@ -181,17 +144,35 @@ static void RF_VEC(rf_pull_blur)(int16_t *restrict out, const int16_t *restrict 
 }
 
 /* (4 sum + N / 2) / N by a multiplication; see rf_mean_scale(). */
-static void RF_VEC(rf_means)(uint16_t *restrict mean, const uint32_t *restrict sum, uint32_t scale,
-                      int n)
+static void means_by_scale(uint16_t *restrict mean, const uint32_t *restrict sum,
+                           uint32_t scale, int n)
 {
     for (int i = 0; i < n; i++)
         mean[i] = (uint16_t)(((uint64_t)sum[i] * scale + (UINT64_C(1) << 29)) >> 30);
 }
 
+/* The same for scale = 2^(30 - shift), without 64-bit products. */
+static void means_by_shift(uint16_t *restrict mean, const uint32_t *restrict sum, int shift,
+                           int n)
+{
+    const uint32_t half = UINT32_C(1) << (shift - 1);
+
+    for (int i = 0; i < n; i++)
+        mean[i] = (uint16_t)((sum[i] + half) >> shift);
+}
+
+static void RF_VEC(rf_means)(uint16_t *restrict mean, const uint32_t *restrict sum,
+                             uint32_t scale, int n)
+{
+    if ((scale & (scale - 1)) == 0 && scale < 1u << 30)
+        means_by_shift(mean, sum, 30 - __builtin_ctz(scale), n);
+    else
+        means_by_scale(mean, sum, scale, n);
+}
+
 void RF_VEC(rf_rows_use)(struct rf_kernels *kernels)
 {
     kernels->signed_blur = RF_VEC(rf_signed_blur);
-    kernels->smooth3 = RF_VEC(rf_smooth3);
     kernels->spread_row = RF_VEC(rf_spread_row);
     kernels->dilate_from = RF_VEC(rf_dilate_from);
     kernels->mark = RF_VEC(rf_mark);

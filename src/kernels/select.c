@@ -42,6 +42,8 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     if (!has(*cpu))
         return false;
     kernels->sweep = rf_sweep_c;
+    kernels->smooth3 = rf_smooth3_c;
+    rf_aim_use_c(kernels);
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
     rf_search_use_c(kernels);

@@ -2,39 +2,39 @@
 
 #include <string.h>
 
-enum { LANES = RF_TILE * RF_TILE };
-
-static void add_slab(uint32_t sum[3][LANES], uint16_t *is_free,
-                     const struct rf_sweep_job *job, const struct rf_slab *slab,
-                     ptrdiff_t offset)
+static void add(uint32_t *const sum[3], const uint16_t *light, ptrdiff_t pitch, int i)
 {
-    for (int i = 0; i < LANES; i++) {
-        const ptrdiff_t q = i / RF_TILE * job->stride + i % RF_TILE + offset;
-        const uint16_t above = (uint16_t)(job->blur[q] - slab->low);
+    for (int c = 0; c < 3; c++)
+        sum[c][i] += light[c * pitch];
+}
+
+/* One test of a ray; pixels that hit are free no more. */
+static void add_slab(uint32_t *const sum[3], uint16_t *is_free, const struct rf_sweep_job *job,
+                     const struct rf_slab *slab, ptrdiff_t offset)
+{
+    for (int i = 0; i < RF_STRIP_LANES; i++) {
+        const int16_t *q = job->blur + i / RF_TILE * job->stride + i % RF_TILE + offset;
+        const uint16_t above = (uint16_t)(*q - slab->low);
 
         if (!is_free[i] || above > slab->width)
             continue;
         is_free[i] = 0;
-        for (int c = 0; c < 3; c++)
-            sum[c][i] += (uint16_t)job->blur[q + (1 + c) * job->pitch];
+        add(sum, (const uint16_t *)q + job->pitch, job->pitch, i);
     }
 }
 
-void rf_sweep_c(uint32_t sum[3][LANES], const struct rf_sweep_job *job)
+void rf_sweep_c(uint32_t *const sum[3], const struct rf_sweep_job *job)
 {
-    uint16_t is_free[LANES];
+    const struct rf_sorted_rays *rays = job->rays;
+    uint16_t is_free[RF_STRIP_LANES];
 
-    for (int n = 0; n < job->rays; n++) {
+    for (int n = 0; n < rays->rays; n++) {
         memset(is_free, 0xff, sizeof is_free);
-        for (int k = 0; k < job->slabs; k++)
-            add_slab(sum, is_free, job, &job->slab[k], job->offset[k][n]);
-        for (int i = 0; i < LANES; i++) {
-            const ptrdiff_t q =
-                i / RF_TILE * job->stride + i % RF_TILE + job->offset[job->slabs][n];
-
+        for (int t = 0; t < rays->tests[n]; t++)
+            add_slab(sum, is_free, job, &job->slab[rays->slab[t][n]], rays->offset[t][n]);
+        for (int i = 0; i < RF_STRIP_LANES; i++)
             if (is_free[i])
-                for (int c = 0; c < 3; c++)
-                    sum[c][i] += job->behind[q + c * job->pitch];
-        }
+                add(sum, rays->last[n] + i / RF_TILE * job->stride + i % RF_TILE, job->pitch,
+                    i);
     }
 }

@@ -1,145 +1,161 @@
-/* sweep_vec.c: the sweep, two vectors at a time, sums in registers over 16 rays. */
+/* sweep_vec.c: the sweep, a few vectors of pixels at a time, sums in registers over 16 rays. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-/* Two vectors are a row of a tile at 128 bits, two rows at 256. */
+#include <string.h>
+
 enum {
-    TWO_ROWS = (int)VEC_U16 == (int)RF_TILE,
-    MANY = RF_BINS, /* slabs at the most */
     STEPS = 16, /* rays that a 16-bit sum of Q12 light holds: 16 * 4095 < 65536 */
     BRIGHT_STEPS = 4,
+    MOST_VECS = 4,  /* together: */
+    ALONE_VECS = 4, /* of rays without tests, */
+    TEST_VECS = 2,  /* and with them */
+    EACH = (int)RF_TILE / (int)VEC_U16, /* vectors of a row */
 };
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
-struct pair {
-    vec_u16 a, b;
+/* A slab's limits in all lanes. */
+struct limits {
+    vec_u16 low, width;
 };
 
-/* Bytes from the first vector of a pair to the second: half a tile's row, or a row. */
-static ALWAYS_INLINE struct pair load(const char *at, ptrdiff_t second)
+struct state {
+    const struct rf_sweep_job *job;
+    uint16_t light[3][RF_STRIP_LANES]; /* sums of the last rays */
+    struct limits limits[RF_BINS];
+};
+
+/* Vector j from `first` on; bytes. */
+static ALWAYS_INLINE const char *vector_at(const char *first, ptrdiff_t stride, int j)
 {
-    return (struct pair){vec_u16_load(at), vec_u16_load(at + second)};
+    return first + j / EACH * stride + j % EACH * (2 * VEC_U16);
 }
 
-static ALWAYS_INLINE void add(struct pair *sum, struct pair v)
+/* Adds a ray's light where `mask` is set; NULL: everywhere. */
+static ALWAYS_INLINE void add_light(vec_u16 sum[3][MOST_VECS], const char *q, ptrdiff_t stride,
+                                    ptrdiff_t plane, const vec_u16 *mask, const int vecs)
 {
-    sum->a = vec_u16_add(sum->a, v.a);
-    sum->b = vec_u16_add(sum->b, v.b);
-}
+    for (int c = 0; c < 3; c++, q += plane) {
+        for (int j = 0; j < vecs; j++) {
+            vec_u16 light = vec_u16_load(vector_at(q, stride, j));
 
-static ALWAYS_INLINE struct pair both(struct pair v, struct pair mask)
-{
-    return (struct pair){vec_u16_and(v.a, mask.a), vec_u16_and(v.b, mask.b)};
-}
-
-static ALWAYS_INLINE struct pair in_slab(struct pair blur, vec_u16 low, vec_u16 width)
-{
-    return (struct pair){vec_u16_at_most(vec_u16_sub(blur.a, low), width),
-                         vec_u16_at_most(vec_u16_sub(blur.b, low), width)};
-}
-
-/* The rays of two vectors of pixels from `at` bytes on; `slabs` is a constant where it is
- * small. low and width hold each slab's in all lanes. */
-static ALWAYS_INLINE void sweep_pair(uint32_t *sum[3], const struct rf_sweep_job *job,
-                                     ptrdiff_t at, const vec_u16 *low, const vec_u16 *width,
-                                     const int slabs, const bool uniform)
-{
-    const vec_u16 zero = vec_u16_set(0), ones = vec_u16_set(0xffff);
-    const ptrdiff_t second = TWO_ROWS ? 2 * job->stride : 2 * VEC_U16;
-    const ptrdiff_t plane = 2 * job->pitch;
-    const char *const front = (const char *)job->blur + at;
-    const char *const behind = (const char *)job->behind + at;
-    const int rays = job->rays, steps = job->bright ? BRIGHT_STEPS : STEPS;
-
-    for (int n = 0; n < rays;) {
-        const int end = n + steps < rays ? n + steps : rays;
-        struct pair r = {zero, zero}, g = r, b = r;
-
-        for (; n < end; n++) {
-            struct pair is_free = {ones, ones};
-            const char *q;
-
-            if (uniform) {
-                q = front + 2 * (ptrdiff_t)job->offset[0][n];
-                add(&r, load(q + plane, second));
-                add(&g, load(q + 2 * plane, second));
-                add(&b, load(q + 3 * plane, second));
-                continue;
-            }
-            for (int k = 0; k < slabs; k++) {
-                struct pair hit;
-
-                q = front + 2 * (ptrdiff_t)job->offset[k][n];
-                hit = in_slab(load(q, second), low[k], width[k]);
-                if (k > 0)
-                    hit = both(hit, is_free);
-                is_free.a = vec_u16_without(is_free.a, hit.a);
-                is_free.b = vec_u16_without(is_free.b, hit.b);
-                add(&r, both(load(q + plane, second), hit));
-                add(&g, both(load(q + 2 * plane, second), hit));
-                add(&b, both(load(q + 3 * plane, second), hit));
-            }
-            q = behind + 2 * (ptrdiff_t)job->offset[slabs][n];
-            add(&r, both(load(q, second), is_free));
-            add(&g, both(load(q + plane, second), is_free));
-            add(&b, both(load(q + 2 * plane, second), is_free));
+            if (mask)
+                light = vec_u16_and(light, mask[j]);
+            sum[c][j] = vec_u16_add(sum[c][j], light);
         }
-        vec_u16_add_to(sum[0], r.a);
-        vec_u16_add_to(sum[0] + VEC_U16, r.b);
-        vec_u16_add_to(sum[1], g.a);
-        vec_u16_add_to(sum[1] + VEC_U16, g.b);
-        vec_u16_add_to(sum[2], b.a);
-        vec_u16_add_to(sum[2] + VEC_U16, b.b);
     }
 }
 
-static ALWAYS_INLINE void sweep_rows(uint32_t sum[3][RF_TILE * RF_TILE],
-                                     const struct rf_sweep_job *job, const int slabs,
-                                     const bool uniform)
+/* Ray n at the vectors that begin `at` bytes from the strip's first pixel. */
+static ALWAYS_INLINE void sweep_ray(vec_u16 sum[3][MOST_VECS], const struct state *s,
+                                    ptrdiff_t at, int n, const int vecs, const int tests)
 {
-    vec_u16 low[MANY], width[MANY];
+    const ptrdiff_t stride = 2 * s->job->stride, plane = 2 * s->job->pitch;
+    const struct rf_sorted_rays *rays = s->job->rays;
+    vec_u16 is_free[MOST_VECS];
 
-    for (int k = 0; k < slabs; k++) {
-        low[k] = vec_u16_set((uint16_t)job->slab[k].low);
-        width[k] = vec_u16_set(job->slab[k].width);
+    for (int t = 0; t < tests; t++) {
+        const char *q = (const char *)s->job->blur + at + 2 * (ptrdiff_t)rays->offset[t][n];
+        const struct limits *l = &s->limits[rays->slab[t][n]];
+        vec_u16 hit[MOST_VECS];
+
+        for (int j = 0; j < vecs; j++) {
+            const vec_u16 blur = vec_u16_load(vector_at(q, stride, j));
+
+            hit[j] = vec_u16_at_most(vec_u16_sub(blur, l->low), l->width);
+            if (t > 0) {
+                hit[j] = vec_u16_and(hit[j], is_free[j]);
+                is_free[j] = vec_u16_without(is_free[j], hit[j]);
+            } else {
+                is_free[j] = vec_u16_without(vec_u16_set(0xffff), hit[j]);
+            }
+        }
+        add_light(sum, q + plane, stride, plane, hit, vecs);
     }
-    for (int i = 0; i < RF_TILE * RF_TILE; i += 2 * VEC_U16) {
-        const ptrdiff_t at = 2 * (i / RF_TILE * job->stride + i % RF_TILE);
-        uint32_t *row[3] = {sum[0] + i, sum[1] + i, sum[2] + i};
+    add_light(sum, (const char *)rays->last[n] + at, stride, plane, tests > 0 ? is_free : NULL,
+              vecs);
+}
 
-        sweep_pair(row, job, at, low, width, slabs, uniform);
+/* Rays first .. end - 1, at most as many as 16-bit sums hold, all of `tests` tests. */
+static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int vecs,
+                                     const int tests)
+{
+    for (int i = 0; i < RF_STRIP_LANES; i += vecs * VEC_U16) {
+        const ptrdiff_t at = 2 * (i / RF_TILE * s->job->stride + i % RF_TILE);
+        vec_u16 sum[3][MOST_VECS];
+
+        for (int c = 0; c < 3; c++)
+            for (int j = 0; j < vecs; j++)
+                sum[c][j] = vec_u16_load(&s->light[c][i + j * VEC_U16]);
+        for (int n = first; n < end; n++)
+            sweep_ray(sum, s, at, n, vecs, tests);
+        for (int c = 0; c < 3; c++)
+            for (int j = 0; j < vecs; j++)
+                vec_u16_store(&s->light[c][i + j * VEC_U16], sum[c][j]);
     }
 }
 
-static void RF_VEC(rf_sweep)(uint32_t sum[3][RF_TILE * RF_TILE],
-                             const struct rf_sweep_job *job)
+static void sweep_some(struct state *s, int first, int end, int tests)
 {
-    if (job->uniform) {
-        sweep_rows(sum, job, 1, true);
-        return;
-    }
-    switch (job->slabs) {
+    switch (tests) {
+    case 0:
+        sweep_rays(s, first, end, ALONE_VECS, 0);
+        break;
     case 1:
-        sweep_rows(sum, job, 1, false);
+        sweep_rays(s, first, end, TEST_VECS, 1);
         break;
     case 2:
-        sweep_rows(sum, job, 2, false);
+        sweep_rays(s, first, end, TEST_VECS, 2);
         break;
     case 3:
-        sweep_rows(sum, job, 3, false);
-        break;
-    case 4:
-        sweep_rows(sum, job, 4, false);
+        sweep_rays(s, first, end, TEST_VECS, 3);
         break;
     default:
-        sweep_rows(sum, job, job->slabs, false);
+        sweep_rays(s, first, end, TEST_VECS, tests);
     }
+}
+
+static void flush(uint32_t *const sum[3], struct state *s)
+{
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < RF_STRIP_LANES; i += VEC_U16)
+            vec_u16_add_to(sum[c] + i, vec_u16_load(&s->light[c][i]));
+    memset(s->light, 0, sizeof s->light);
+}
+
+static void RF_VEC(rf_sweep)(uint32_t *const sum[3], const struct rf_sweep_job *job)
+{
+    const struct rf_sorted_rays *rays = job->rays;
+    const int steps = job->bright ? BRIGHT_STEPS : STEPS;
+    int left = steps;
+    struct state s;
+
+    s.job = job;
+    memset(s.light, 0, sizeof s.light);
+    for (int k = 0; k < job->slabs; k++)
+        s.limits[k] = (struct limits){vec_u16_set((uint16_t)job->slab[k].low),
+                                      vec_u16_set(job->slab[k].width)};
+    for (int n = 0, end; n < rays->rays; n = end) {
+        end = n + 1;
+        while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)
+            end++;
+        sweep_some(&s, n, end, rays->tests[n]);
+        left -= end - n;
+        if (left == 0) {
+            flush(sum, &s);
+            left = steps;
+        }
+    }
+    if (left < steps)
+        flush(sum, &s);
 }
 
 void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
 {
     kernels->sweep = RF_VEC(rf_sweep);
+    RF_VEC(rf_aim_use)(kernels);
+    RF_VEC(rf_smooth_use)(kernels);
     RF_VEC(rf_sweep_weighted_use)(kernels);
     RF_VEC(rf_light_use)(kernels);
     RF_VEC(rf_rows_use)(kernels);

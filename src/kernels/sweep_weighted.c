@@ -1,45 +1,44 @@
 #include "kernels/kernels.h"
 
-#include <string.h>
-
-enum { LANES = RF_TILE * RF_TILE };
-
-/* Whether ray n of pixel i, not yet at an end, meets slab k; then it is added. */
-static bool meets(uint64_t sum[4][LANES], const struct rf_sweep_job *job, int i, int k, int n)
+static void add(uint64_t *const sum[4], int i, const uint16_t *light, ptrdiff_t pitch,
+                uint64_t weight)
 {
-    const ptrdiff_t x = i % RF_TILE, y = i / RF_TILE;
-    const int16_t *const q = job->blur + y * job->stride + x + job->offset[k][n];
-    const uint64_t w = job->weight[y * job->weight_stride + x + job->weight_offset[k][n]];
-
-    if ((uint16_t)(*q - job->slab[k].low) > job->slab[k].width)
-        return false;
     for (int c = 0; c < 3; c++)
-        sum[c][i] += w * (uint16_t)q[(1 + c) * job->pitch];
-    sum[3][i] += w;
+        sum[c][i] += weight * light[c * pitch];
+    sum[3][i] += weight;
+}
+
+/* Whether test t of ray n hits for pixel i; then it is added. */
+static bool hits(uint64_t *const sum[4], const struct rf_sweep_job *job, int i, int t, int n)
+{
+    const struct rf_sorted_rays *rays = job->rays;
+    const struct rf_slab *slab = &job->slab[rays->slab[t][n]];
+    const ptrdiff_t x = i % RF_TILE, y = i / RF_TILE;
+    const int16_t *const q = job->blur + y * job->stride + x + rays->offset[t][n];
+
+    if ((uint16_t)(*q - slab->low) > slab->width)
+        return false;
+    add(sum, i, (const uint16_t *)q + job->pitch, job->pitch,
+        job->weight[y * job->weight_stride + x + rays->weight_offset[t][n]]);
     return true;
 }
 
-static void look_behind(uint64_t sum[4][LANES], const struct rf_sweep_job *job, int i, int n)
+void rf_sweep_weighted_c(uint64_t *const sum[4], const struct rf_sweep_job *job)
 {
-    const ptrdiff_t q =
-        i / RF_TILE * job->stride + i % RF_TILE + job->offset[job->slabs][n];
-    const uint64_t w = job->behind_weight[q];
+    const struct rf_sorted_rays *rays = job->rays;
 
-    for (int c = 0; c < 3; c++)
-        sum[c][i] += w * job->behind[q + c * job->pitch];
-    sum[3][i] += w;
-}
+    for (int n = 0; n < rays->rays; n++) {
+        const ptrdiff_t stride = rays->last_behind[n] ? job->stride : job->weight_stride;
 
-void rf_sweep_weighted_c(uint64_t sum[4][LANES], const struct rf_sweep_job *job)
-{
-    for (int i = 0; i < LANES; i++) {
-        for (int n = 0; n < job->rays; n++) {
-            int k = 0;
+        for (int i = 0; i < RF_STRIP_LANES; i++) {
+            const ptrdiff_t x = i % RF_TILE, y = i / RF_TILE;
+            int t = 0;
 
-            while (k < job->slabs && !meets(sum, job, i, k, n))
-                k++;
-            if (k == job->slabs)
-                look_behind(sum, job, i, n);
+            while (t < rays->tests[n] && !hits(sum, job, i, t, n))
+                t++;
+            if (t == rays->tests[n])
+                add(sum, i, rays->last[n] + y * job->stride + x, job->pitch,
+                    rays->last_weight[n][y * stride + x]);
         }
     }
 }

@@ -35,6 +35,15 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     }
 }
 
+/* Codes of n means into every `bytes`-th byte. Copies of what is used, as bytes written
+ * might be any of it. */
+static void encode_channel(uint8_t *restrict out, int bytes, const uint16_t *restrict mean,
+                           const uint8_t *restrict to_code, int n)
+{
+    for (int x = 0; x < n; x++)
+        out[x * bytes] = to_code[mean[x] < RF_MEAN_MAX ? mean[x] : RF_MEAN_MAX];
+}
+
 void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
 {
     const struct rf_order o = rf_order_of(f->out->format);
@@ -42,13 +51,11 @@ void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_
     const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + x0;
     uint8_t *out = pixel(f, o.bytes, x0, y);
 
-    for (int x = 0; x < n; x++, out += o.bytes) {
-        out[o.r] = code_of(to_code, mean[0][x]);
-        out[o.g] = code_of(to_code, mean[1][x]);
-        out[o.b] = code_of(to_code, mean[2][x]);
-        if (o.a >= 0)
-            out[o.a] = alpha[x];
-    }
+    encode_channel(out + o.r, o.bytes, mean[0], to_code, n);
+    encode_channel(out + o.g, o.bytes, mean[1], to_code, n);
+    encode_channel(out + o.b, o.bytes, mean[2], to_code, n);
+    for (int x = 0; o.a >= 0 && x < n; x++)
+        out[x * o.bytes + o.a] = alpha[x];
 }
 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,

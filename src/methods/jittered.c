@@ -57,7 +57,7 @@ static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell,
 }
 
 /* Follow the ray through mask pixel (mx, my) for the pixels that drew it. */
-static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_reach reach, int mx,
+static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_blur_range reach, int mx,
                    int my, const struct draws *draws, int member, struct rf_exact_sums *sums)
 {
     const double K = f->params->max_blur_radius;
@@ -75,7 +75,7 @@ static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_reac
 
 void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    const struct rf_reach reach = rf_reach_of(f->r, tx, ty);
+    const struct rf_blur_range reach = rf_blur_range_of(f->r, tx, ty);
     const int a = f->params->cell, side = (int)floor(f->params->max_blur_radius);
     const int cells = (2 * side + a) / a, first = -(cells * a / 2);
     struct rf_exact_sums sums;

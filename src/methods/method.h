@@ -28,6 +28,7 @@ struct rf_frame {
     const struct refocus_aperture *aperture;
     struct rf_focus focus;
     struct rf_bin_scale scale;
+    struct rf_reach reach;
     struct rf_rect region;  /* of the picture; out covers just this */
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */

@@ -12,7 +12,7 @@
 void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
-    const struct rf_reach reach = rf_reach_of(f->r, tx, ty);
+    const struct rf_blur_range reach = rf_blur_range_of(f->r, tx, ty);
     const double K = f->params->max_blur_radius;
     struct rf_exact_sums sums;
     struct rf_path path;

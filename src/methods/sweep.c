@@ -16,12 +16,33 @@
 
 enum { LANES = RF_TILE * RF_TILE };
 
-/* Offsets of some rays at the centre of a slab, in elements of the planes. */
-static void set_offsets(int32_t offset[RF_RAY_CHUNK], const struct refocus_ray *ray, int rays,
-                        int blur, ptrdiff_t stride)
+/* Where some rays see the slabs of a tile, and the background. */
+struct sight {
+    int rays;
+    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
+};
+
+static void set_sight(struct sight *sight, const struct rf_frame *f,
+                      const struct rf_tile_plan *plan, const struct refocus_ray *ray, int behind)
 {
-    for (int n = 0; n < rays; n++)
-        offset[n] = rf_offset(ray[n].v, blur) * (int32_t)stride + rf_offset(ray[n].u, blur);
+    const struct refocus_renderer *r = f->r;
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+
+    for (int n = 0; n < sight->rays; n++) {
+        u[n] = ray[n].u;
+        v[n] = ray[n].v;
+    }
+    for (int k = 0; k <= plan->slabs; k++)
+        r->kernels.aim(sight->offset[k], sight->cell[k], u, v,
+                       k < plan->slabs ? plan->slab[k].centre : behind, (int32_t)r->stride,
+                       (int32_t)r->range_stride, sight->rays);
+    for (int k = 0; f->weighted && k < plan->slabs; k++)
+        for (int n = 0; n < sight->rays; n++)
+            sight->weight_offset[k][n] =
+                rf_offset(v[n], plan->slab[k].centre) * (int32_t)r->weight_stride +
+                rf_offset(u[n], plan->slab[k].centre);
 }
 
 /* What is summed of a tile: plainly, or light times weight and weights. */
@@ -29,6 +50,51 @@ union tally {
     uint32_t plain[3][LANES];
     uint64_t weighted[4][LANES];
 };
+
+/* Strip i of the tile at (tx, ty). */
+static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        const struct sight *sight, int tx, int ty, int i, union tally *run)
+{
+    enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
+    const struct refocus_renderer *r = f->r;
+    const int first = i * RF_STRIP_LANES, y = ty * RF_TILE + i * RF_STRIP, x = tx * RF_TILE;
+    const ptrdiff_t at = y * r->stride + x, weight_at = y * r->weight_stride + x;
+    struct rf_sorted_rays sorted;
+    const struct rf_sort_job sort = {
+        .range = r->range + (ty * CELLS + i * STRIP_CELLS) * r->range_stride + tx * CELLS,
+        .front = r->smooth[0] + at,
+        .behind = r->behind.light[0] + at,
+        .weight = f->weighted ? r->weight + weight_at : NULL,
+        .behind_weight = (const uint16_t *)r->behind.blur + at,
+        .rays = sight->rays,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->weight_offset,
+    };
+    const struct rf_sweep_job job = {
+        .blur = r->front.blur + at,
+        .stride = r->stride,
+        .pitch = r->pitch,
+        .slabs = plan->slabs,
+        .slab = plan->slab,
+        .rays = &sorted,
+        .bright = f->bright,
+        .weight = r->weight + weight_at,
+        .weight_stride = r->weight_stride,
+    };
+
+    r->kernels.sort_rays(&sorted, &sort);
+    if (f->weighted)
+        r->kernels.sweep_weighted((uint64_t *const[4]){run->weighted[0] + first,
+                                                       run->weighted[1] + first,
+                                                       run->weighted[2] + first,
+                                                       run->weighted[3] + first}, &job);
+    else
+        r->kernels.sweep((uint32_t *const[3]){run->plain[0] + first, run->plain[1] + first,
+                                              run->plain[2] + first}, &job);
+}
 
 /* A run of rays of equal weight is at its end: it counts that often. */
 static void add_run(const struct rf_frame *f, const union tally *run, uint64_t ray_weight,
@@ -61,49 +127,24 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
                        struct rf_sums *sums)
 {
     const struct refocus_renderer *r = f->r;
-    const ptrdiff_t origin = ty * RF_TILE * r->stride + tx * RF_TILE;
     /* One blur of the background for the tile, that of its middle, keeps the offsets of a
      * ray constant; looking it up for each pixel measured no better. */
     const int behind = f->weighted ? r->bins[(size_t)ty * r->tiles_x + tx].behind
                                    : r->behind.blur[rf_tile_middle(r, tx, ty)];
-    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
-    int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
-    struct rf_sweep_job job = {
-        .blur = r->front.blur + origin,
-        .behind = r->behind.light[0] + origin,
-        .stride = r->stride,
-        .pitch = r->pitch,
-        .slabs = plan->slabs,
-        .slab = plan->slab,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])offset,
-        .uniform = plan->uniform,
-        .bright = f->bright,
-        .weight = r->weight + ty * RF_TILE * r->weight_stride + tx * RF_TILE,
-        .behind_weight = (const uint16_t *)r->behind.blur + origin,
-        .weight_stride = r->weight_stride,
-        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])weight_offset,
-    };
+    struct sight sight;
     int rays = 0; /* in this run */
 
     memset(run, 0, sizeof *run);
-    for (int n = 0; n < set->count; n += job.rays) {
+    for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        job.rays = chunk_of(set, n);
-        rays += job.rays;
-        for (int k = 0; k < plan->slabs; k++) {
-            set_offsets(offset[k], ray, job.rays, plan->slab[k].centre, r->stride);
-            if (f->weighted)
-                set_offsets(weight_offset[k], ray, job.rays, plan->slab[k].centre,
-                            r->weight_stride);
-        }
-        set_offsets(offset[plan->slabs], ray, job.rays, behind, r->stride);
-        if (f->weighted)
-            r->kernels.sweep_weighted(run->weighted, &job);
-        else
-            r->kernels.sweep(run->plain, &job);
+        sight.rays = chunk_of(set, n);
+        rays += sight.rays;
+        set_sight(&sight, f, plan, ray, behind);
+        for (int i = 0; i < RF_TILE / RF_STRIP; i++)
+            sweep_strip(f, plan, &sight, tx, ty, i, run);
         if (!set->equal &&
-            (n + job.rays == set->count || ray[job.rays].weight != ray->weight)) {
+            (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight)) {
             add_run(f, run, ray->weight, (uint64_t)rays, sums);
             memset(run, 0, sizeof *run);
             rays = 0;
@@ -120,7 +161,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     union tally run;
 
     (void)worker;
-    rf_plan_tile(r, f->scale, tx, ty, f->aperture->shape == RF_SHAPE_MASK, &plan);
+    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
     if (plan.sharp) {
         rf_copy_tile(f, rect);
         return;

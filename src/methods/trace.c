@@ -80,7 +80,7 @@ static bool hit_range(double along, double reach, double df, struct rf_step *ste
     return low <= high;
 }
 
-struct rf_reach rf_reach_of(const struct refocus_renderer *r, int tx, int ty)
+struct rf_blur_range rf_blur_range_of(const struct refocus_renderer *r, int tx, int ty)
 {
     const int tiles = (r->pad + RF_TILE - 1) / RF_TILE;
     int least = INT16_MAX, most = INT16_MIN;
@@ -96,10 +96,10 @@ struct rf_reach rf_reach_of(const struct refocus_renderer *r, int tx, int ty)
             most = bins->most > most ? bins->most : most;
         }
     }
-    return (struct rf_reach){least / 256.0, most / 256.0};
+    return (struct rf_blur_range){least / 256.0, most / 256.0};
 }
 
-void rf_path_of(const struct rf_frame *f, struct rf_reach reach, double u, double v,
+void rf_path_of(const struct rf_frame *f, struct rf_blur_range reach, double u, double v,
                 struct rf_path *path)
 {
     const double margin = 0.6; /* half a pixel, and blurs are known to 1.25 / 256 */

@@ -22,14 +22,14 @@ struct rf_path {
 };
 
 /* The least and the largest blur K (df - d), in pixels, that rays of a tile can meet. */
-struct rf_reach {
+struct rf_blur_range {
     double least, most;
 };
-struct rf_reach rf_reach_of(const struct refocus_renderer *r, int tx, int ty);
+struct rf_blur_range rf_blur_range_of(const struct refocus_renderer *r, int tx, int ty);
 
 /* The way of ray (u, v), the same for every pixel of a tile: the part of it where there can be
  * something. */
-void rf_path_of(const struct rf_frame *f, struct rf_reach reach, double u, double v,
+void rf_path_of(const struct rf_frame *f, struct rf_blur_range reach, double u, double v,
                 struct rf_path *path);
 
 /* Sums of eq. 5 over the exact curve of the blend, for the pixels of a tile. */

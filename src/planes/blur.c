@@ -27,22 +27,26 @@ static bool is_wide(const struct refocus_renderer *r, int tx, int ty, int least)
     return bins->most > least || -bins->least > least;
 }
 
-/* n columns of a row of one plane, from `at` on. */
-static void smooth_run(const struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                       ptrdiff_t at, int step, int least, uint16_t *scratch, int n)
-{
-    const ptrdiff_t down = step * r->stride;
-    const uint16_t *from = in + at - step;
-    const int16_t *s = r->front.blur + at;
-    uint16_t *const row = scratch + step;
+enum { RUN = 256, MARGIN = 1 << (RF_PREFILTER_STEPS - 1) }; /* columns at a time */
 
-    r->kernels.smooth3(row - step, from - down, from, from + down, s - step - down, s - step,
-                       s - step + down, least, n + 2 * step);
-    r->kernels.smooth3(out + at, row - step, row, row + step, s - step, s, s + step, least, n);
+/* n columns of a row, from `at` on, n at most RUN: three rows to one, then columns. */
+static void smooth_run(const struct refocus_renderer *r, uint16_t *const out[3],
+                       uint16_t *const in[3], ptrdiff_t at, int step, int least, int n)
+{
+    const ptrdiff_t from = at - step;
+    const int16_t *s = r->front.blur;
+    uint16_t row[3][RUN + 2 * MARGIN];
+
+    r->kernels.smooth3((uint16_t *const[3]){row[0], row[1], row[2]},
+                       (const uint16_t *const[3]){in[0] + from, in[1] + from, in[2] + from},
+                       s + from, step * r->stride, least, n + 2 * step);
+    r->kernels.smooth3((uint16_t *const[3]){out[0] + at, out[1] + at, out[2] + at},
+                       (const uint16_t *const[3]){row[0] + step, row[1] + step, row[2] + step},
+                       s + at, step, least, n);
 }
 
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty)
+                       uint16_t *const in[3], int step, int least, int ty)
 {
     const int y0 = ty * RF_TILE, y1 = y0 + RF_TILE < r->height ? y0 + RF_TILE : r->height;
 
@@ -57,12 +61,10 @@ void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
         for (int y = y0; y < y1; y++) {
             const ptrdiff_t at = y * r->stride + x0;
 
-            for (int c = 0; c < 3; c++) {
-                if (wide)
-                    smooth_run(r, out[c], in[c], at, step, least, scratch, n);
-                else
-                    memcpy(out[c] + at, in[c] + at, (size_t)n * 2);
-            }
+            for (int x = 0; wide && x < n; x += RUN)
+                smooth_run(r, out, in, at + x, step, least, n - x < RUN ? n - x : RUN);
+            for (int c = 0; !wide && c < 3; c++)
+                memcpy(out[c] + at, in[c] + at, (size_t)n * 2);
         }
     }
     for (int c = 0; c < 3; c++)

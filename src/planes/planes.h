@@ -33,7 +33,7 @@ void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int 
  */
 enum { RF_PREFILTER_STEPS = 3 };
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], int step, int least, uint16_t *scratch, int ty);
+                       uint16_t *const in[3], int step, int least, int ty);
 
 /* Weights of eq. 5 of the pixels that rays meet, borders too: of smooth into r->weight, of the
  * background over its blur. That of the middle of each tile goes to its bins before. */

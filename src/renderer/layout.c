@@ -8,6 +8,7 @@
 #include "depth/upsample.h"
 #include "methods/frame.h"
 #include "support/arena.h"
+#include "tiles/ranges.h"
 
 /* Pixels that may be read beyond the picture: the largest offset, one for the pre-filter,
  * one for rounding. */
@@ -146,6 +147,11 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         r->highlights[i].capacity = rf_lamp_capacity(w);
     }
     r->rim = rf_arena_take(arena, rf_rim_capacity(w, h), sizeof *r->rim);
+    r->range_stride = rf_range_width(w, pad);
+    r->range = rf_arena_take(arena, (uint64_t)r->range_stride * rf_range_width(h, pad),
+                             sizeof *r->range);
+    if (r->range)
+        r->range += rf_range_border(pad) * (r->range_stride + 1);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);

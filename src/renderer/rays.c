@@ -4,9 +4,9 @@
 #include "renderer/rays.h"
 
 /* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
- * that a highlight reaches, whose disc would show the single rays, at most four times that. */
+ * that a highlight reaches, whose disc would show the single rays, at most twice that. */
 static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
-enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 4 };
+enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
 
 static uint64_t total_weight(const struct rf_ray_set *set)
 {

@@ -1,5 +1,6 @@
 #include <refocus/render.h>
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,6 +11,7 @@
 #include "renderer/bands.h"
 #include "renderer/params.h"
 #include "renderer/rays.h"
+#include "tiles/ranges.h"
 
 struct method {
     const char *name, *summary;
@@ -95,8 +97,10 @@ static void blur_band(void *context, int band, int worker)
 
     (void)worker;
     rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
-    if (!methods[f->params->method].frame || f->params->max_blur_radius <= 0)
-        rf_bin_tiles(f->r, f->scale, band); /* tiles are what others plan by */
+    if (methods[f->params->method].frame && f->params->max_blur_radius > 0)
+        return; /* the rest is what tiles are planned by */
+    rf_cell_rows(f->r, band);
+    rf_bin_tiles(f->r, f->scale, band);
 }
 
 static void dilate_item(void *context, int upwards, int worker)
@@ -117,8 +121,9 @@ static void smooth_band(void *context, int band, int worker)
     uint16_t *const *in = i == 0 ? r->front.light : i == 1 ? r->smooth : r->behind.light;
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
-    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], rf_scratch(r, worker),
-                      band);
+    if (i == 0)
+        rf_range_rows(r, rf_scratch(r, worker), band);
+    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
@@ -202,12 +207,14 @@ static void prefilter_with_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     const float gain = f->params->highlight_gain;
+    const int rays = f->params->rays == REFOCUS_RAYS_FULL ? INT_MAX : f->params->rays;
 
     if (gain > 1 && !r->highlights_found) {
         rf_pool_run(&r->pool, find_lamps, f, rf_lamp_parts(r->height));
         r->highlights_found = !rf_cancelled(r);
     }
-    f->bright = gain > 1 && r->highlights_found && rf_mark_highlights(r);
+    f->bright = gain > 1 && r->highlights_found &&
+                rf_mark_highlights(r, f->scale, sqrt(3.14159265358979 / rays));
     if (f->bright)
         rf_add_highlights(r, gain, 1);
     prefilter(f);
@@ -284,6 +291,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
     f.scale = rf_bin_scale_of(params->max_blur_radius);
+    rf_reach_init(&f.reach, f.scale, r->pad, f.aperture->shape == RF_SHAPE_MASK);
     f.first_tx = f.region.x0 / RF_TILE;
     f.first_ty = f.region.y0 / RF_TILE;
     f.count_tx = (f.region.x1 - 1) / RF_TILE - f.first_tx + 1;

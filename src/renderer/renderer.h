@@ -77,6 +77,8 @@ struct refocus_renderer {
     uint16_t *disparity; /* padded, its border is not set */
     uint8_t *alpha;     /* unpadded, width a row */
     struct rf_layer front;
+    uint32_t *range;     /* blurs around the cell of pixel (0, 0); see tiles/ranges.h */
+    ptrdiff_t range_stride;
     uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
     struct rf_highlights highlights[RF_LAMP_PARTS]; /* of the photo in this blend, once */
     bool highlights_found;                          /* they are found */

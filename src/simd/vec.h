@@ -12,6 +12,9 @@
  *     vec_u16_or(a, b)        a | b
  *     vec_u16_without(a, b)   a & ~b
  *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
+ *     vec_u16_xor(a, b)       a ^ b
+ *     vec_u16_mul_high(a, b)  (a * b) >> 16
+ *     vec_u16_half(a)         a >> 1
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
  *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.

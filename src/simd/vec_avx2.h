@@ -53,6 +53,21 @@ static inline vec_u16 vec_u16_at_most(vec_u16 a, vec_u16 b)
     return _mm256_cmpeq_epi16(_mm256_min_epu16(a, b), a);
 }
 
+static inline vec_u16 vec_u16_xor(vec_u16 a, vec_u16 b)
+{
+    return _mm256_xor_si256(a, b);
+}
+
+static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
+{
+    return _mm256_mulhi_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_half(vec_u16 a)
+{
+    return _mm256_srli_epi16(a, 1);
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     __m256i *low = (__m256i *)sum, *high = (__m256i *)(sum + 8);

@@ -53,6 +53,22 @@ static inline vec_u16 vec_u16_at_most(vec_u16 a, vec_u16 b)
     return vcleq_u16(a, b);
 }
 
+static inline vec_u16 vec_u16_xor(vec_u16 a, vec_u16 b)
+{
+    return veorq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
+{
+    return vcombine_u16(vshrn_n_u32(vmull_u16(vget_low_u16(a), vget_low_u16(b)), 16),
+                        vshrn_n_u32(vmull_u16(vget_high_u16(a), vget_high_u16(b)), 16));
+}
+
+static inline vec_u16 vec_u16_half(vec_u16 a)
+{
+    return vshrq_n_u16(a, 1);
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     vst1q_u32(sum, vaddw_u16(vld1q_u32(sum), vget_low_u16(v)));

@@ -53,6 +53,21 @@ static inline vec_u16 vec_u16_at_most(vec_u16 a, vec_u16 b)
     return _mm_cmpeq_epi16(_mm_min_epu16(a, b), a);
 }
 
+static inline vec_u16 vec_u16_xor(vec_u16 a, vec_u16 b)
+{
+    return _mm_xor_si128(a, b);
+}
+
+static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
+{
+    return _mm_mulhi_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_half(vec_u16 a)
+{
+    return _mm_srli_epi16(a, 1);
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     const __m128i zero = _mm_setzero_si128();

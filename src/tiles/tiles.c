@@ -1,6 +1,8 @@
 #include "tiles/tiles.h"
 
-#include <string.h>
+#include <stdlib.h>
+
+#include "tiles/ranges.h"
 
 enum { HALF = 128, OVERLAP = 32 }; /* Q7.8 pixels */
 
@@ -24,59 +26,66 @@ static int edge_of(struct rf_bin_scale scale, int bin)
     return (bin - scale.focus) * (1 << scale.shift) - HALF;
 }
 
-/* Flags of bins, a byte each, to bits. */
-static struct rf_bins pack(const uint8_t flag[RF_BINS])
+static void add_bin(struct rf_bins *bins, int bin)
 {
-    struct rf_bins bins = {.word = {0}};
+    bins->word[bin / 64] |= UINT64_C(1) << bin % 64;
+}
 
-    for (int i = 0; i < RF_BINS; i++)
-        bins.word[i / 64] |= (uint64_t)flag[i] << (i % 64);
+/* The blurs of a cell whose extremes are not in one bin. */
+static void add_cell(struct rf_bins *bins, struct rf_bin_scale scale, const int16_t *s,
+                     ptrdiff_t stride, int first, int last)
+{
+    uint64_t found = 0; /* from `first` on */
+
+    for (int i = 0; i < RF_CELL * RF_CELL; i++) {
+        const int bin = bin_of(scale, s[i / RF_CELL * stride + i % RF_CELL]);
+
+        if (last - first < 64)
+            found |= UINT64_C(1) << (bin - first);
+        else
+            add_bin(bins, bin);
+    }
+    bins->word[first / 64] |= found << first % 64;
+    if (first % 64 && first / 64 + 1 < RF_BINS / 64)
+        bins->word[first / 64 + 1] |= found >> (64 - first % 64);
+}
+
+static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
+                                   int tx, int ty)
+{
+    enum { EACH = RF_TILE / RF_CELL };
+    struct rf_bins bins = {{0}, INT16_MAX, INT16_MIN, 0, 0};
+
+    for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
+        const int16_t *least = rf_cell_least(r, y), *most = rf_cell_most(r, y);
+
+        for (int x = tx * EACH; x < (tx + 1) * EACH; x++) {
+            const int first = bin_of(scale, least[x]), last = bin_of(scale, most[x]);
+
+            bins.least = least[x] < bins.least ? least[x] : bins.least;
+            bins.most = most[x] > bins.most ? most[x] : bins.most;
+            if (first == last)
+                add_bin(&bins, first);
+            else
+                add_cell(&bins, scale, r->front.blur + RF_CELL * (y * r->stride + x),
+                         r->stride, first, last);
+        }
+    }
     return bins;
 }
 
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
 {
-    const int y1 = (ty + 1) * RF_TILE < r->height ? (ty + 1) * RF_TILE : r->height;
-
-    for (int tx = 0; tx < r->tiles_x; tx++) {
-        struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
-        const ptrdiff_t x0 = (ptrdiff_t)tx * RF_TILE; /* the border repeats the last pixel */
-        int16_t least = INT16_MAX, most = INT16_MIN;
-        uint8_t flag[RF_BINS] = {0};
-
-        for (int y = ty * RF_TILE; y < y1; y++) {
-            const int16_t *s = r->front.blur + y * r->stride + x0;
-
-            for (int x = 0; x < RF_TILE; x++) {
-                least = s[x] < least ? s[x] : least;
-                most = s[x] > most ? s[x] : most;
-            }
-        }
-        if (bin_of(scale, least) == bin_of(scale, most)) {
-            memset(bins, 0, sizeof *bins);
-            bins->word[bin_of(scale, least) / 64] = UINT64_C(1) << bin_of(scale, least) % 64;
-        } else {
-            for (int y = ty * RF_TILE; y < y1; y++) {
-                const int16_t *s = r->front.blur + y * r->stride + x0;
-
-                for (int x = 0; x < RF_TILE; x++)
-                    flag[bin_of(scale, s[x])] = 1;
-            }
-            *bins = pack(flag);
-        }
-        bins->least = least;
-        bins->most = most;
-        bins->lamp = 0;
-    }
+    for (int tx = 0; tx < r->tiles_x; tx++)
+        r->bins[(size_t)ty * r->tiles_x + tx] = bins_of_tile(r, scale, tx, ty);
 }
 
 void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
                 int16_t blur)
 {
     struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
-    const int bin = bin_of(scale, blur);
 
-    bins->word[bin / 64] |= UINT64_C(1) << bin % 64;
+    add_bin(bins, bin_of(scale, blur));
     bins->least = blur < bins->least ? blur : bins->least;
     bins->most = blur > bins->most ? blur : bins->most;
 }
@@ -87,71 +96,84 @@ static bool has(const struct rf_bins *bins, int bin)
 }
 
 /* Clear bins [from, to). */
-static void clear(struct rf_bins *bins, int from, int to)
+static void clear(uint64_t word[RF_BINS / 64], int from, int to)
 {
     for (int i = 0; i < RF_BINS / 64; i++) {
         const int a = from - 64 * i < 0 ? 0 : from - 64 * i;
         const int b = to - 64 * i > 64 ? 64 : to - 64 * i;
 
         if (a < b)
-            bins->word[i] &= ~((b - a == 64 ? ~UINT64_C(0) : (UINT64_C(1) << (b - a)) - 1)
-                               << a);
+            word[i] &= ~((b - a == 64 ? ~UINT64_C(0) : (UINT64_C(1) << (b - a)) - 1) << a);
     }
 }
 
 /* Pixels between tiles that are n tiles apart: those side by side are one pixel apart. */
 static int gap_of(int n)
 {
-    n = n < 0 ? -n : n;
     return n ? (n - 1) * RF_TILE + 1 : 0;
 }
 
-/* Drop the bins of blurs below s: a pixel g away is met only if |s| >= g - 1. */
-static void drop_short(struct rf_bins *bins, struct rf_bin_scale scale, int s)
+/* A pixel g away is met only if |s| >= g - 1. */
+static struct rf_kept kept_at(struct rf_bin_scale scale, int gx, int gy, bool square)
 {
-    const int first = bin_of(scale, -s + (1 << scale.shift)), end = bin_of(scale, s);
-    const int low = edge_of(scale, first), high = edge_of(scale, end);
+    struct rf_kept kept = {.word = {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX}};
+    int gap = gx > gy ? gx : gy;
 
-    clear(bins, first, end);
-    if (bins->least >= low && bins->least < high)
-        bins->least = (int16_t)high;
-    if (bins->most >= low && bins->most < high)
-        bins->most = (int16_t)(low - 1);
+    if (!square)
+        while (gap * gap < gx * gx + gy * gy)
+            gap++;
+    kept.blur = (gap - 1) * 256;
+    if (gap > 1) {
+        const int first = bin_of(scale, -kept.blur + (1 << scale.shift));
+        const int end = bin_of(scale, kept.blur);
+
+        clear(kept.word, first, end);
+        kept.low = edge_of(scale, first);
+        kept.high = edge_of(scale, end);
+    }
+    return kept;
 }
 
-/* Bins that reach tile (tx, ty) and all bins that stand in the window around it. */
-static void collect(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx,
-                    int ty, bool square, struct rf_bins *reach, struct rf_bins *window)
+void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, int pad, bool square)
 {
-    const int most = (r->pad - 2 + RF_TILE - 1) / RF_TILE;
+    reach->tiles = (pad - 2 + RF_TILE - 1) / RF_TILE;
+    for (int j = 0; j <= reach->tiles; j++)
+        for (int i = 0; i <= reach->tiles; i++)
+            reach->kept[j][i] = kept_at(scale, gap_of(i), gap_of(j), square);
+}
 
-    *reach = *window = (struct rf_bins){{0}, INT16_MAX, INT16_MIN, 0, 0};
-    for (int j = -most; j <= most; j++) {
-        if (ty + j < 0 || ty + j >= r->tiles_y)
-            continue;
-        for (int i = -most; i <= most; i++) {
-            const int gx = gap_of(i), gy = gap_of(j);
-            struct rf_bins bins;
-            int least = gx > gy ? gx : gy;
+/* Add what reaches from a tile. */
+static void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
+                     const struct rf_kept *kept)
+{
+    const bool near_kept = bins->least < kept->low || bins->least >= kept->high;
+    const bool far_kept = bins->most < kept->low || bins->most >= kept->high;
+    const int least = near_kept ? bins->least : kept->high;
+    const int most = far_kept ? bins->most : kept->low - 1;
 
-            if (tx + i < 0 || tx + i >= r->tiles_x)
-                continue;
-            bins = r->bins[(size_t)(ty + j) * r->tiles_x + tx + i];
-            for (int k = 0; k < RF_BINS / 64; k++)
-                window->word[k] |= bins.word[k];
-            if (!square)
-                while (least * least < gx * gx + gy * gy)
-                    least++;
-            if (bins.lamp > reach->lamp && bins.lamp >= (least - 1) * 256)
-                reach->lamp = bins.lamp;
-            if (least > 1)
-                drop_short(&bins, scale, (least - 1) * 256);
-            for (int k = 0; k < RF_BINS / 64; k++)
-                reach->word[k] |= bins.word[k];
-            reach->least = bins.least < reach->least ? bins.least : reach->least;
-            reach->most = bins.most > reach->most ? bins.most : reach->most;
-        }
-    }
+    if (bins->lamp > sum->lamp && bins->lamp >= kept->blur)
+        sum->lamp = bins->lamp;
+    if (!near_kept && !far_kept)
+        return;
+    for (int k = 0; k < RF_BINS / 64; k++)
+        sum->word[k] |= bins->word[k] & kept->word[k];
+    sum->least = (int16_t)(least < sum->least ? least : sum->least);
+    sum->most = (int16_t)(most > sum->most ? most : sum->most);
+}
+
+/* Bins that reach tile (tx, ty). */
+static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_reach *reach,
+                              int tx, int ty)
+{
+    const int x0 = tx > reach->tiles ? tx - reach->tiles : 0;
+    const int y0 = ty > reach->tiles ? ty - reach->tiles : 0;
+    struct rf_bins sum = {{0}, INT16_MAX, INT16_MIN, 0, 0};
+
+    for (int y = y0; y <= ty + reach->tiles && y < r->tiles_y; y++)
+        for (int x = x0; x <= tx + reach->tiles && x < r->tiles_x; x++)
+            add_kept(&sum, &r->bins[(size_t)y * r->tiles_x + x],
+                     &reach->kept[abs(y - ty)][abs(x - tx)]);
+    return sum;
 }
 
 /* Cover the occupied bins from the near side. Slabs are a pixel wide, and half of that
@@ -207,13 +229,11 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
     }
 }
 
-void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
-                  bool square, struct rf_tile_plan *plan)
+void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
+                  const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan)
 {
-    struct rf_bins reach, window;
+    const struct rf_bins bins = collect(r, reach, tx, ty);
 
-    collect(r, scale, tx, ty, square, &reach, &window);
-    cover(&reach, scale, plan);
-    plan->lamp = reach.lamp > 0;
-    plan->uniform = plan->slabs == 1 && !memcmp(reach.word, window.word, sizeof reach.word);
+    cover(&bins, scale, plan);
+    plan->lamp = bins.lamp > 0;
 }

@@ -24,11 +24,25 @@ struct rf_tile_plan {
     int reach; /* largest |s| that reaches the tile, Q7.8 */
     bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
     bool lamp;    /* a highlight is in reach */
-    bool uniform; /* one slab holds all blurs in reach: every ray hits at once */
     struct rf_slab slab[RF_MAX_SLABS];
 };
 
-/* Bins of the tiles of row ty. */
+/* Which blurs reach from a tile to another that is some tiles away. */
+struct rf_kept {
+    uint64_t word[RF_BINS / 64]; /* these bins */
+    int low, high;               /* blurs from low to high - 1 do not; Q7.8 */
+    int blur;                    /* the least |s| that does */
+};
+enum { RF_REACH_TILES = (127 + RF_TILE - 1) / RF_TILE };
+struct rf_reach {
+    int tiles; /* how far tiles are met at all */
+    struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
+};
+/* `square`: the aperture reaches beyond the unit circle, so that distances count by the
+ * larger axis. */
+void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, int pad, bool square);
+
+/* Bins of the tiles of row ty, whose cells are known (tiles/ranges.h). */
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);
 
 /* The middle pixel of a tile, in padded planes. */
@@ -41,9 +55,8 @@ static inline ptrdiff_t rf_tile_middle(const struct refocus_renderer *r, int tx,
 void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
                 int16_t blur);
 
-/* Everything the rays of a tile need. `square`: the aperture reaches beyond the unit
- * circle, so that distances count by the larger axis. */
-void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
-                  bool square, struct rf_tile_plan *plan);
+/* Everything the rays of a tile need. */
+void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
+                  const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan);
 
 #endif

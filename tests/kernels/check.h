@@ -30,6 +30,7 @@ static inline int noise_between(uint32_t *seed, int least, int most)
 /* Each prints a line that begins with "ok" or "FAIL" for each kernel; the number of failures. */
 int check_rows(const struct subject *subject);
 int check_sweep(const struct subject *subject);
+int check_aim(const struct subject *subject);
 int check_search(const struct subject *subject);
 int check_series(const struct subject *subject);
 int check_light(const struct subject *subject);
@@ -37,6 +38,7 @@ int check_focus(void);
 
 /* Prints a line with the time of each kernel, in plain C and by the subject. */
 void bench_rows(const struct subject *subject);
+void bench_aim(const struct subject *subject);
 void bench_sweep(const struct subject *subject);
 
 /* Seconds that the fastest of several runs of call(context) takes. */

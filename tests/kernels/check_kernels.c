@@ -70,11 +70,13 @@ int main(int argc, char **argv)
             !rf_kernels_select(&subject.plain, &plain))
             continue;
         if (bench && cpu != REFOCUS_CPU_C) {
+            bench_aim(&subject);
             bench_sweep(&subject);
             bench_rows(&subject);
         } else if (!bench) {
-            failures += check_vec(cpu) + check_sweep(&subject) + check_light(&subject) +
-                        check_search(&subject) + check_series(&subject) + check_rows(&subject);
+            failures += check_vec(cpu) + check_aim(&subject) + check_sweep(&subject) +
+                        check_light(&subject) + check_search(&subject) +
+                        check_series(&subject) + check_rows(&subject);
         }
     }
     return failures > 0;

@@ -1,4 +1,4 @@
-/* The sweep over one tile, against a reference that follows one ray of one pixel at a time. */
+/* The sweep over one strip, against a reference that follows one ray of one pixel at a time. */
 #include "check.h"
 
 #include <stdio.h>
@@ -8,20 +8,19 @@
 
 enum {
     PAD = 9,
-    SIDE = RF_TILE + 2 * PAD,
+    SIDE = RF_TILE + 2 * PAD, /* strips are as wide as that and not as high */
     PITCH = SIDE + 5, /* between the rows of a group's planes */
     STRIDE = 4 * PITCH,
     WEIGHT_STRIDE = SIDE + 3,
     MOST_SLABS = 12,
-    LANES = RF_TILE * RF_TILE,
+    LANES = RF_STRIP_LANES,
 };
 
 struct stage {
     struct guarded front, behind; /* groups of planes: blur and light, light and weight */
     struct guarded weight;        /* of the front */
     struct rf_slab slab[MOST_SLABS];
-    int32_t offset[MOST_SLABS + 1][RF_RAY_CHUNK];
-    int32_t weight_offset[MOST_SLABS][RF_RAY_CHUNK];
+    struct rf_sorted_rays rays;
     struct rf_sweep_job job;
     uint32_t sum[3][LANES], expected[3][LANES];
     uint64_t weighted[4][LANES], expected_weighted[4][LANES];
@@ -41,43 +40,60 @@ static void follow(struct stage *s, int pixel, int ray)
     const struct rf_sweep_job *job = &s->job;
     const ptrdiff_t p = pixel / RF_TILE * STRIDE + pixel % RF_TILE;
     const ptrdiff_t w = pixel / RF_TILE * WEIGHT_STRIDE + pixel % RF_TILE;
-    ptrdiff_t q;
 
-    for (int k = 0; k < job->slabs; k++) {
-        int above;
+    for (int t = 0; t < s->rays.tests[ray]; t++) {
+        const struct rf_slab *slab = &s->slab[s->rays.slab[t][ray]];
+        const ptrdiff_t q = p + s->rays.offset[t][ray];
+        const int above = job->blur[q] - slab->low;
 
-        q = p + job->offset[k][ray];
-        above = job->blur[q] - job->slab[k].low;
-        if (above >= 0 && above <= job->slab[k].width) {
+        if (above >= 0 && above <= slab->width) {
             count(s, pixel, (const uint16_t *)job->blur + q + PITCH,
-                  job->weight[w + s->weight_offset[k][ray]]);
+                  job->weight[w + s->rays.weight_offset[t][ray]]);
             return;
         }
     }
-    q = p + job->offset[job->slabs][ray];
-    count(s, pixel, job->behind + q, job->behind_weight[q]);
+    count(s, pixel, s->rays.last[ray] + p,
+          s->rays.last_weight[ray][s->rays.last_behind[ray] ? p : w]);
 }
 
-/* Offsets as far as the planes reach, at first to their corners. */
-static void make_offsets(struct stage *s, uint32_t *seed)
+/* An offset as far as the planes reach, at first to their corners; *weight is that of weights. */
+static int32_t make_offset(int n, int32_t *weight, uint32_t *seed)
 {
-    for (int k = 0; k <= s->job.slabs; k++) {
-        for (int n = 0; n < RF_RAY_CHUNK; n++) {
-            int dx = noise_between(seed, -PAD, PAD), dy = noise_between(seed, -PAD, PAD);
+    int dx = noise_between(seed, -PAD, PAD), dy = noise_between(seed, -PAD, PAD);
 
-            if (n < 4) {
-                dx = n % 2 ? PAD : -PAD;
-                dy = n / 2 ? PAD : -PAD;
-            }
-            s->offset[k][n] = dy * STRIDE + dx;
-            if (k < s->job.slabs)
-                s->weight_offset[k][n] = dy * WEIGHT_STRIDE + dx;
+    if (n < 4) {
+        dx = n % 2 ? PAD : -PAD;
+        dy = n / 2 ? PAD : -PAD;
+    }
+    *weight = dy * WEIGHT_STRIDE + dx;
+    return dy * STRIDE + dx;
+}
+
+/* Rays of as many tests as there are slabs, or of fewer too; a last of either layer. */
+static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *behind, int tests,
+                      bool same, uint32_t *seed)
+{
+    static const int counts[] = {0, 1, 15, 16, 17, 24, 32, 63, RF_RAY_CHUNK};
+    struct rf_sorted_rays *rays = &s->rays;
+
+    rays->rays = counts[noise(seed) % 9];
+    for (int n = 0; n < rays->rays; n++) {
+        int32_t offset, weight_offset;
+
+        rays->tests[n] = (uint8_t)(same ? tests : noise_between(seed, 0, tests));
+        for (int t = 0; t < rays->tests[n]; t++) {
+            rays->slab[t][n] = (uint8_t)noise_between(seed, 0, MOST_SLABS - 1);
+            rays->offset[t][n] = make_offset(n, &rays->weight_offset[t][n], seed);
         }
+        offset = make_offset(n, &weight_offset, seed);
+        rays->last_behind[n] = noise(seed) % 2;
+        rays->last[n] = (rays->last_behind[n] ? behind : front + PITCH) + offset;
+        rays->last_weight[n] = rays->last_behind[n] ? behind + 3 * PITCH + offset
+                                                    : s->job.weight + weight_offset;
     }
 }
 
-/* Slabs anywhere, but for `one`: then all blurs are in the first. */
-static void make_slabs(struct stage *s, bool one, uint32_t *seed)
+static void make_slabs(struct stage *s, uint32_t *seed)
 {
     for (int k = 0; k < MOST_SLABS; k++) {
         s->slab[k].low = (int16_t)noise_between(seed, -127 * 256 - 32, 127 * 256 - 400);
@@ -86,8 +102,6 @@ static void make_slabs(struct stage *s, bool one, uint32_t *seed)
     }
     if (noise(seed) % 4 == 0)
         s->slab[0].low = -127 * 256 - 32;
-    if (one)
-        s->slab[0].width = 319;
 }
 
 /* Light of planes from `first` on of a group of `planes`; no light between their rows. Ends
@@ -108,6 +122,20 @@ static uint16_t *make_group(struct guarded *guarded, int planes, int first, int 
     return all + PAD * (STRIDE + 1);
 }
 
+/* Blurs: about as many inside slabs as outside, and the edges on both sides. */
+static void make_blurs(struct stage *s, int16_t *blur, uint32_t *seed)
+{
+    for (int y = -PAD; y < RF_TILE + PAD; y++) {
+        for (int x = -PAD; x < RF_TILE + PAD; x++) {
+            const struct rf_slab *slab = &s->slab[noise(seed) % MOST_SLABS];
+            const int outside = 1 + slab->width / 2;
+            const int v = slab->low + noise_between(seed, -outside, slab->width + outside);
+
+            blur[y * STRIDE + x] = (int16_t)(v < -32512 ? -32512 : v > 32512 ? 32512 : v);
+        }
+    }
+}
+
 static void make_weights(uint16_t *weight, ptrdiff_t stride, bool extreme, uint32_t *seed)
 {
     for (int y = -PAD; y < RF_TILE + PAD; y++)
@@ -116,26 +144,8 @@ static void make_weights(uint16_t *weight, ptrdiff_t stride, bool extreme, uint3
                 (uint16_t)(extreme ? RF_WEIGHT_MAX : noise_between(seed, 1, RF_WEIGHT_MAX));
 }
 
-/* Blurs: about as many inside slabs as outside, and the edges on both sides. */
-static void make_blurs(struct stage *s, int16_t *blur, bool one, uint32_t *seed)
+static void make_stage(struct stage *s, int tests, bool same, enum place place, uint32_t seed)
 {
-    const int slabs = one || s->job.slabs == 0 ? 1 : s->job.slabs;
-
-    for (int y = -PAD; y < RF_TILE + PAD; y++) {
-        for (int x = -PAD; x < RF_TILE + PAD; x++) {
-            const struct rf_slab *slab = &s->slab[noise(seed) % (uint32_t)slabs];
-            const int outside = one ? 0 : 1 + slab->width / 2;
-            const int v = slab->low + noise_between(seed, -outside, slab->width + outside);
-
-            blur[y * STRIDE + x] = (int16_t)(v < -32512 ? -32512 : v > 32512 ? 32512 : v);
-        }
-    }
-}
-
-static void make_stage(struct stage *s, int slabs, bool uniform, enum place place,
-                       uint32_t seed)
-{
-    static const int counts[] = {0, 1, 15, 16, 17, 24, 32, 63, RF_RAY_CHUNK};
     const size_t weights = (SIDE - 1) * WEIGHT_STRIDE + SIDE;
     uint16_t *front, *behind, *weight;
     bool extreme;
@@ -144,29 +154,24 @@ static void make_stage(struct stage *s, int slabs, bool uniform, enum place plac
     s->job = (struct rf_sweep_job){
         .stride = STRIDE,
         .pitch = PITCH,
-        .rays = counts[noise(&seed) % 9],
-        .slabs = slabs,
+        .slabs = MOST_SLABS,
         .slab = s->slab,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])s->offset,
-        .uniform = uniform,
+        .rays = &s->rays,
         .weight_stride = WEIGHT_STRIDE,
-        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])s->weight_offset,
     };
-    make_slabs(s, uniform, &seed);
-    make_offsets(s, &seed);
+    make_slabs(s, &seed);
     extreme = noise(&seed) % 4 == 0;
     s->job.bright = noise(&seed) % 4 == 0;
     most = s->job.bright ? 4 * 4095 : 4095;
     behind = make_group(&s->behind, 4, 0, most, extreme, place, &seed);
     make_weights(behind + 3 * PITCH, STRIDE, extreme, &seed);
-    s->job.behind = behind;
-    s->job.behind_weight = behind + 3 * PITCH;
     weight = guarded_place(&s->weight, weights * 2, 2, place, noise(&seed) % 17);
     weight += PAD * (WEIGHT_STRIDE + 1);
     make_weights(weight, WEIGHT_STRIDE, extreme, &seed);
     s->job.weight = weight;
     front = make_group(&s->front, 4, 1, most, extreme, place, &seed);
-    make_blurs(s, (int16_t *)front, uniform, &seed);
+    make_blurs(s, (int16_t *)front, &seed);
+    make_rays(s, front, behind, tests, same, &seed);
     s->job.blur = (const int16_t *)front;
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++)
@@ -177,35 +182,44 @@ static void make_stage(struct stage *s, int slabs, bool uniform, enum place plac
 }
 
 /* The first difference, said; `which` is the kernel. */
-static bool same(const struct subject *subject, const struct stage *s, const char *which,
-                 uint32_t seed, int c, int i, uint64_t is, uint64_t should)
+static bool is_same(const struct subject *subject, const struct stage *s, const char *which,
+                    uint32_t seed, int c, int i, uint64_t is, uint64_t should)
 {
     if (is == should)
         return true;
-    printf("FAIL  %-12s %-6s seed %u, %d slabs, %d rays%s: channel %d of (%d, %d) is "
-           "%llu, should be %llu\n", which, subject->cpu, (unsigned)seed, s->job.slabs,
-           s->job.rays, s->job.uniform ? ", uniform" : "", c, i % RF_TILE, i / RF_TILE,
-           (unsigned long long)is, (unsigned long long)should);
+    printf("FAIL  %-12s %-6s seed %u, %d rays: channel %d of (%d, %d) is "
+           "%llu, should be %llu\n", which, subject->cpu, (unsigned)seed, s->rays.rays, c,
+           i % RF_TILE, i / RF_TILE, (unsigned long long)is, (unsigned long long)should);
     return false;
 }
 
-static bool check_case(const struct subject *subject, struct stage *s, int slabs, bool uniform,
+static void run(const struct rf_kernels *kernels, struct stage *s, bool weighted)
+{
+    uint64_t *const sum[4] = {s->weighted[0], s->weighted[1], s->weighted[2], s->weighted[3]};
+
+    if (weighted)
+        kernels->sweep_weighted(sum, &s->job);
+    else
+        kernels->sweep((uint32_t *const[3]){s->sum[0], s->sum[1], s->sum[2]}, &s->job);
+}
+
+static bool check_case(const struct subject *subject, struct stage *s, int tests, bool same,
                        enum place place, uint32_t seed)
 {
-    make_stage(s, slabs, uniform, place, seed);
+    make_stage(s, tests, same, place, seed);
     for (int i = 0; i < LANES; i++)
-        for (int n = 0; n < s->job.rays; n++)
+        for (int n = 0; n < s->rays.rays; n++)
             follow(s, i, n);
-    subject->kernels.sweep(s->sum, &s->job);
-    subject->kernels.sweep_weighted(s->weighted, &s->job);
+    run(&subject->kernels, s, false);
+    run(&subject->kernels, s, true);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++)
-            if (!same(subject, s, "sweep", seed, c, i, s->sum[c][i], s->expected[c][i]))
+            if (!is_same(subject, s, "sweep", seed, c, i, s->sum[c][i], s->expected[c][i]))
                 return false;
     for (int c = 0; c < 4; c++)
         for (int i = 0; i < LANES; i++)
-            if (!same(subject, s, "sweep_weighted", seed, c, i, s->weighted[c][i],
-                      s->expected_weighted[c][i]))
+            if (!is_same(subject, s, "sweep_weighted", seed, c, i, s->weighted[c][i],
+                         s->expected_weighted[c][i]))
                 return false;
     return true;
 }
@@ -234,10 +248,9 @@ int check_sweep(const struct subject *subject)
         return 1;
     }
     for (; seed <= 400; seed++) {
-        const int slabs = (int)seed % 9 == 8 ? MOST_SLABS : (int)seed % 9;
-        const bool uniform = slabs == 1 && seed % 2;
+        const int tests = (int)seed % 9 == 8 ? MOST_SLABS : (int)seed % 9;
 
-        if (!check_case(subject, &s, slabs, uniform, (enum place)(seed % PLACES), seed)) {
+        if (!check_case(subject, &s, tests, seed % 2, (enum place)(seed % PLACES), seed)) {
             destroy(&s);
             return 1;
         }
@@ -258,27 +271,40 @@ static void call(void *context)
 {
     const struct bench *b = context;
 
-    for (int i = 0; i < 50; i++) {
-        if (b->weighted)
-            b->kernels->sweep_weighted(b->stage->weighted, &b->stage->job);
-        else
-            b->kernels->sweep(b->stage->sum, &b->stage->job);
-    }
+    for (int i = 0; i < 50; i++)
+        run(b->kernels, b->stage, b->weighted);
 }
 
-/* slabs 0: one that holds everything. */
-static void bench_case(const struct subject *subject, struct stage *s, int slabs, bool weighted)
+/* The seed's rays are repeated until a chunk is full. */
+static void fill_chunk(struct rf_sorted_rays *rays)
+{
+    for (int n = rays->rays; n < RF_RAY_CHUNK; n++) {
+        const int like = n % rays->rays;
+
+        rays->tests[n] = rays->tests[like];
+        rays->last[n] = rays->last[like];
+        rays->last_weight[n] = rays->last_weight[like];
+        rays->last_behind[n] = rays->last_behind[like];
+        for (int t = 0; t < rays->tests[n]; t++) {
+            rays->slab[t][n] = rays->slab[t][like];
+            rays->offset[t][n] = rays->offset[t][like];
+            rays->weight_offset[t][n] = rays->weight_offset[t][like];
+        }
+    }
+    rays->rays = RF_RAY_CHUNK;
+}
+
+static void bench_case(const struct subject *subject, struct stage *s, int tests, bool weighted)
 {
     const double samples = 50.0 * RF_RAY_CHUNK * LANES;
     struct bench b = {s, &subject->plain, weighted};
     double plain, own;
     char name[24];
 
-    make_stage(s, slabs ? slabs : 1, slabs == 0, INSIDE, 5);
-    s->job.rays = RF_RAY_CHUNK;
-    s->job.bright = false;
-    snprintf(name, sizeof name, slabs ? "%s, %d" : "%s, all", weighted ? "weighted" : "sweep",
-             slabs);
+    for (uint32_t seed = 5; seed == 5 || s->rays.rays < 15 || s->job.bright; seed++)
+        make_stage(s, tests, true, INSIDE, seed);
+    fill_chunk(&s->rays);
+    snprintf(name, sizeof name, "%s, %d", weighted ? "weighted" : "sweep", tests);
     plain = best_time(call, &b);
     b.kernels = &subject->kernels;
     own = best_time(call, &b);
@@ -292,8 +318,8 @@ void bench_sweep(const struct subject *subject)
 
     if (!create(&s))
         return;
-    for (int slabs = 0; slabs <= 4; slabs++)
+    for (int tests = 0; tests <= 5; tests++)
         for (int weighted = 0; weighted < 2; weighted++)
-            bench_case(subject, &s, slabs, weighted);
+            bench_case(subject, &s, tests, weighted);
     destroy(&s);
 }

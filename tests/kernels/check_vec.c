@@ -49,6 +49,28 @@ static uint16_t c_at_most(uint16_t a, uint16_t b)
     return a <= b ? 0xffff : 0;
 }
 
+static uint16_t c_xor(uint16_t a, uint16_t b)
+{
+    return a ^ b;
+}
+
+static uint16_t c_mul_high(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(((uint32_t)a * b) >> 16);
+}
+
+static vec_u16 half(vec_u16 a, vec_u16 b)
+{
+    (void)b;
+    return vec_u16_half(a);
+}
+
+static uint16_t c_half(uint16_t a, uint16_t b)
+{
+    (void)b;
+    return a >> 1;
+}
+
 static vec_u16 first(vec_u16 a, vec_u16 b)
 {
     (void)b;
@@ -69,7 +91,8 @@ static const struct {
     {"load, store", first, c_first},         {"add", vec_u16_add, c_add},
     {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
-    {"or", vec_u16_or, c_or},
+    {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
+    {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)

@@ -40,29 +40,37 @@ static void expect_signed_blur(void *const *row, int parameter, int n)
     }
 }
 
+/* The parameter holds where the neighbours are, too. */
+static int apart_of(int parameter)
+{
+    return 1 + parameter % 4;
+}
+
 static void run_smooth3(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    k->smooth3(row[0], row[1], row[2], row[3], row[4], row[5], row[6], parameter, n);
+    uint16_t *const out[3] = {row[0], row[1], row[2]};
+    const uint16_t *const light[3] = {row[3], row[4], row[5]};
+
+    k->smooth3(out, light, row[6], apart_of(parameter), parameter, n);
 }
 
 static void expect_smooth3(void *const *row, int parameter, int n)
 {
-    uint16_t *out = row[0];
+    const int16_t *blur = row[6];
 
-    for (int x = 0; x < n; x++) {
-        const int own = ((const int16_t *)row[5])[x];
+    for (int i = 0; i < 3 * n; i++) {
+        const int c = i / n, x = i % n;
+        const uint16_t *light = row[3 + c];
         int sum = 0, count = 0;
 
-        for (int i = 0; i < 3; i++) {
-            const int light = ((const uint16_t *)row[1 + i])[x];
-            const int blur = ((const int16_t *)row[4 + i])[x];
-
-            if (i == 1 || (abs(own) > parameter && abs(blur - own) <= 256)) {
-                sum += light;
+        for (int at = x - apart_of(parameter); at <= x + apart_of(parameter);
+             at += apart_of(parameter)) {
+            if (at == x || (abs(blur[x]) > parameter && abs(blur[at] - blur[x]) <= 256)) {
+                sum += light[at];
                 count++;
             }
         }
-        out[x] = (uint16_t)((2 * sum + count) / (2 * count));
+        ((uint16_t *)row[c])[x] = (uint16_t)((2 * sum + count) / (2 * count));
     }
 }
 
@@ -266,8 +274,8 @@ const struct row_kernel row_kernels[] = {
     {"signed_blur", 2, {{BLUR, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, 30000,
      run_signed_blur, expect_signed_blur},
     {"smooth3", 7,
-     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0},
-      {BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}}, 0, INT16_MAX,
+     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 4, 0},
+      {LIGHT, 1, 4, 0}, {LIGHT, 1, 4, 0}, {BLUR, 1, 4, 0}}, 0, INT16_MAX,
      run_smooth3, expect_smooth3},
     {"spread_row", 2,
      {{RAISED, 1, 0, RF_SPREAD_MARGIN}, {SCRATCH, 1, 0, RF_SPREAD_MARGIN}}, 1, 258,

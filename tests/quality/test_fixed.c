@@ -125,8 +125,10 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
                       const double light[256], uint8_t *out)
 {
     const struct rf_bin_scale scale = rf_bin_scale_of((float)s->K);
+    struct rf_reach reach;
     struct rf_tile_plan plan;
 
+    rf_reach_init(&reach, scale, r->pad, false);
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++, out += 3) {
             const int tx = x / RF_TILE, ty = y / RF_TILE;
@@ -135,7 +137,7 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
             double sum[3] = {0};
 
             if (x % RF_TILE == 0)
-                rf_plan_tile(r, scale, tx, ty, false, &plan);
+                rf_plan_tile(r, scale, &reach, tx, ty, &plan);
             if (plan.sharp) {
                 memcpy(out, s->photo + 3 * pixel_at(s, x, y), 3);
                 continue;

@@ -113,12 +113,12 @@ static void every_failure(void **state)
     }
 }
 
-/* render.h: 26 (W + 2P + 79)(H + 2P + 16) + 3 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20 */
+/* render.h: 27 (W + 2P + 79)(H + 2P + 16) + 3 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20 */
 static double stated(int width, int height, float blur, int threads)
 {
     const double p = 2 * (ceil((double)blur) + 2);
 
-    return 26 * (width + p + 79) * (height + p + 16) + 3.0 * (width + 16) * (height + 16) +
+    return 27 * (width + p + 79) * (height + p + 16) + 3.0 * (width + 16) * (height + 16) +
            4.0 * threads * (width + 512) + 24.0 * width + 12.0 * height + 1048576.0;
 }
 

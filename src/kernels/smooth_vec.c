@@ -1,0 +1,75 @@
+/* smooth_vec.c: the pre-filter, three planes at once. */
+#include "kernels/kernels.h"
+#include "simd/vec.h"
+
+enum { PIXEL = 256 };
+
+/* Which neighbours count, in all lanes, and what follows from it. */
+struct use {
+    vec_u16 before, after, neither;
+    vec_u16 bias;   /* rounding: 1, and 2 for a mean of two */
+    vec_u16 factor; /* see mean() */
+};
+
+static inline vec_u16 within_pixel(vec_u16 a, vec_u16 b)
+{
+    return vec_u16_at_most(vec_u16_add(vec_u16_sub(a, b), vec_u16_set(PIXEL)),
+                           vec_u16_set(2 * PIXEL));
+}
+
+static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, vec_u16 least)
+{
+    const vec_u16 s = vec_u16_load(blur);
+    /* |s| <= least; s + least stays below 2^16 + s, and |s| <= 32512 */
+    const vec_u16 narrow = vec_u16_at_most(vec_u16_add(s, least), vec_u16_add(least, least));
+    const vec_u16 before =
+        vec_u16_without(within_pixel(vec_u16_load(blur - apart), s), narrow);
+    const vec_u16 after =
+        vec_u16_without(within_pixel(vec_u16_load(blur + apart), s), narrow);
+    const vec_u16 three = vec_u16_and(before, after);
+
+    return (struct use){
+        .before = before,
+        .after = after,
+        .neither = vec_u16_without(vec_u16_set(0xffff), vec_u16_or(before, after)),
+        .bias = vec_u16_sub(vec_u16_set(1), vec_u16_xor(before, after)),
+        .factor = vec_u16_sub(vec_u16_set(65535), vec_u16_and(three, vec_u16_set(21844))),
+    };
+}
+
+/* A third of x is (x 43691) >> 17; (x 65535) >> 16 is x - 1, which halves the sum of two plus 2,
+ * or of a pixel and itself plus 1, to the mean half up. */
+static inline vec_u16 mean(const uint16_t *light, ptrdiff_t apart, const struct use *use)
+{
+    const vec_u16 own = vec_u16_load(light);
+    vec_u16 sum = vec_u16_add(own, vec_u16_and(own, use->neither));
+
+    sum = vec_u16_add(sum, vec_u16_and(vec_u16_load(light - apart), use->before));
+    sum = vec_u16_add(sum, vec_u16_and(vec_u16_load(light + apart), use->after));
+    return vec_u16_half(vec_u16_mul_high(vec_u16_add(sum, use->bias), use->factor));
+}
+
+static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const light[3],
+                               const int16_t *blur, ptrdiff_t apart, int least, int n)
+{
+    uint16_t *const red = out[0], *const green = out[1], *const blue = out[2];
+    const uint16_t *const r = light[0], *const g = light[1], *const b = light[2];
+    const vec_u16 from = vec_u16_set((uint16_t)least);
+    int x = 0;
+
+    for (; x + (int)VEC_U16 <= n; x += VEC_U16) {
+        const struct use use = use_of(blur + x, apart, from);
+
+        vec_u16_store(red + x, mean(r + x, apart, &use));
+        vec_u16_store(green + x, mean(g + x, apart, &use));
+        vec_u16_store(blue + x, mean(b + x, apart, &use));
+    }
+    rf_smooth3_c((uint16_t *const[3]){red + x, green + x, blue + x},
+                 (const uint16_t *const[3]){r + x, g + x, b + x}, blur + x, apart, least,
+                 n - x);
+}
+
+void RF_VEC(rf_smooth_use)(struct rf_kernels *kernels)
+{
+    kernels->smooth3 = RF_VEC(rf_smooth3);
+}

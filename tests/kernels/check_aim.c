@@ -1,0 +1,303 @@
+/* What rays look at: each kernel against its contract's words, one element at a time. */
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "guarded.h"
+
+enum {
+    MOST_BLUR = 127 * 256,
+    MOST_CELLS = 150,
+    MOST_BORDER = 33,
+    MOST_WINDOWS = MOST_CELLS + 2 * MOST_BORDER,
+    SIDE = 9, /* of the ranges that rays may see */
+    MOST_SLABS = 70,
+};
+
+/* A few of everything that is passed between guarded pages. */
+struct stage {
+    struct guarded blur, least[3], most[3], range, scratch;
+};
+
+static int blur_noise(uint32_t *seed, int kind)
+{
+    const int any = noise_between(seed, -MOST_BLUR, MOST_BLUR);
+
+    return kind == 0 ? any : kind == 1 ? (any < 0 ? -MOST_BLUR : MOST_BLUR) : any / 64;
+}
+
+static int16_t *make_row(struct guarded *guarded, int n, enum place place, uint32_t *seed)
+{
+    int16_t *row = guarded_place(guarded, (size_t)n * 2, 2, place, noise(seed) % 17);
+    const int kind = (int)(noise(seed) % 3);
+
+    for (int i = 0; i < n; i++)
+        row[i] = (int16_t)blur_noise(seed, kind);
+    return row;
+}
+
+static bool fail(const struct subject *subject, const char *what, uint32_t seed, int n, int at,
+                 long is, long should)
+{
+    printf("FAIL  %-12s %-6s seed %u, n = %d: element %d is %ld, should be %ld\n", what,
+           subject->cpu, (unsigned)seed, n, at, is, should);
+    return false;
+}
+
+static bool check_cells(const struct subject *subject, struct stage *s, int n,
+                        enum place place, uint32_t seed)
+{
+    const uint32_t first = seed;
+    const ptrdiff_t stride = RF_CELL * n + noise_between(&seed, 0, 5);
+    const int16_t *blur =
+        make_row(&s->blur, (int)(3 * stride) + RF_CELL * n, place, &seed);
+    int16_t *least = make_row(&s->least[0], n, place, &seed);
+    int16_t *most = make_row(&s->most[0], n, place, &seed);
+
+    subject->kernels.cells(least, most, blur, stride, n);
+    for (int x = 0; x < n; x++) {
+        int low = INT16_MAX, high = INT16_MIN;
+
+        for (int i = 0; i < RF_CELL * RF_CELL; i++) {
+            const int v = blur[i / RF_CELL * stride + x * RF_CELL + i % RF_CELL];
+
+            low = v < low ? v : low;
+            high = v > high ? v : high;
+        }
+        if (least[x] != low)
+            return fail(subject, "cells", first, n, x, least[x], low);
+        if (most[x] != high)
+            return fail(subject, "cells", first, n, x, most[x], high);
+    }
+    return guarded_intact(&s->least[0]) && guarded_intact(&s->most[0]);
+}
+
+static int inside(int x, int n)
+{
+    return x < 0 ? 0 : x >= n ? n - 1 : x;
+}
+
+static bool check_windows(const struct subject *subject, struct stage *s, int n,
+                          enum place place, uint32_t seed)
+{
+    const uint32_t first = seed;
+    const int border = noise_between(&seed, 0, MOST_BORDER), windows = n + 2 * border;
+    const int16_t *least[RF_WINDOW_Y], *most[RF_WINDOW_Y];
+    uint32_t *range = guarded_place(&s->range, (size_t)windows * 4, 4, place, 3);
+    int16_t *scratch = make_row(&s->scratch, 2 * (windows + RF_WINDOW_X - 1), place, &seed);
+
+    for (int j = 0; j < RF_WINDOW_Y; j++) {
+        least[j] = make_row(&s->least[j], n, place, &seed);
+        most[j] = make_row(&s->most[j], n, place, &seed);
+    }
+    subject->kernels.windows(range, least, most, scratch, n, border);
+    for (int x = 0; x < windows; x++) {
+        int low = INT16_MAX, high = INT16_MIN;
+
+        for (int i = 0; i < RF_WINDOW_X * RF_WINDOW_Y; i++) {
+            const int j = i / RF_WINDOW_X, at = inside(x - border + i % RF_WINDOW_X, n);
+
+            low = least[j][at] < low ? least[j][at] : low;
+            high = most[j][at] > high ? most[j][at] : high;
+        }
+        if (range[x] != ((uint32_t)(low & 0xffff) | (uint32_t)high << 16))
+            return fail(subject, "windows", first, n, x, (long)range[x], low);
+    }
+    return guarded_intact(&s->range) && guarded_intact(&s->scratch);
+}
+
+/* floor(a / b) for b > 0. */
+static int floor_of(int64_t a, int64_t b)
+{
+    return (int)(a >= 0 ? a / b : -((-a + b - 1) / b));
+}
+
+static bool check_aim_at(const struct subject *subject, int n, uint32_t seed)
+{
+    const uint32_t first = seed;
+    const int stride = noise_between(&seed, 100, 70000), cells = noise_between(&seed, 9, 9000);
+    const int blur = blur_noise(&seed, (int)(first % 3));
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    int32_t offset[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
+
+    for (int i = 0; i < n; i++) {
+        u[i] = (int16_t)(i < 4 ? (i % 2 ? 32767 : -32767) : noise_between(&seed, -32767, 32767));
+        v[i] = (int16_t)(i < 4 ? (i / 2 ? 32767 : -32767) : noise_between(&seed, -32767, 32767));
+    }
+    subject->kernels.aim(offset, cell, u, v, blur, stride, cells, n);
+    for (int i = 0; i < n; i++) {
+        const int x = floor_of((int64_t)u[i] * blur + (1 << 22), 1 << 23);
+        const int y = floor_of((int64_t)v[i] * blur + (1 << 22), 1 << 23);
+
+        if (offset[i] != x + y * stride)
+            return fail(subject, "aim", first, n, i, offset[i], x + y * stride);
+        if (cell[i] != floor_of(x, RF_CELL) + floor_of(y, RF_CELL) * cells)
+            return fail(subject, "aim", first, n, i, cell[i],
+                        floor_of(x, RF_CELL) + floor_of(y, RF_CELL) * cells);
+    }
+    return true;
+}
+
+struct sight {
+    uint32_t range[SIDE * SIDE];
+    uint16_t front[1000], behind[1000];
+    struct rf_slab slab[MOST_SLABS];
+    int32_t offset[MOST_SLABS + 1][RF_RAY_CHUNK], cell[MOST_SLABS][RF_RAY_CHUNK];
+    struct rf_sort_job job;
+    struct rf_sorted_rays sorted, expected;
+};
+
+static void make_sight(struct sight *s, int n, uint32_t seed)
+{
+    const int slabs = noise(&seed) % 8 ? noise_between(&seed, 0, 8) : MOST_SLABS;
+    const int spread = noise_between(&seed, 0, 900);
+
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const int low = noise_between(&seed, 0, slabs) * 256 - 3000;
+        const int high = low + noise_between(&seed, 0, spread);
+
+        s->range[i] = (uint32_t)(low & 0xffff) | (uint32_t)high << 16;
+    }
+    for (int k = 0; k <= slabs; k++) {
+        for (int i = 0; i < n; i++) {
+            s->offset[k][i] = noise_between(&seed, 0, 999);
+            if (k < slabs)
+                s->cell[k][i] = noise_between(&seed, 0, SIDE * SIDE - 1);
+        }
+        if (k < slabs)
+            s->slab[k] = (struct rf_slab){(int16_t)(k * 256 - 3000 - (int)(noise(&seed) % 3)),
+                                          (uint16_t)noise_between(&seed, 0, 479), 0};
+    }
+    s->job = (struct rf_sort_job){
+        .range = s->range,
+        .front = s->front,
+        .behind = s->behind,
+        .rays = n,
+        .slabs = slabs,
+        .slab = s->slab,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])s->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])s->cell,
+    };
+}
+
+/* Ray n of the job becomes the m-th if it has as many tests as `wanted`, or more where
+ * that is the last class. Returns whether. */
+static bool expect_ray(struct sight *s, int n, int m, int wanted)
+{
+    int tests = 0;
+
+    s->expected.last[m] = s->behind + s->offset[s->job.slabs][n];
+    for (int k = 0; k < s->job.slabs; k++) {
+        const uint32_t range = s->range[s->cell[k][n]];
+        const int low = (int16_t)(range & 0xffff), high = (int16_t)(range >> 16);
+        const int from = s->slab[k].low, to = from + s->slab[k].width;
+
+        if (high < from || low > to)
+            continue;
+        if (low >= from && high <= to) {
+            s->expected.last[m] = s->front + s->offset[k][n];
+            break;
+        }
+        s->expected.slab[tests][m] = (uint8_t)k;
+        s->expected.offset[tests][m] = s->offset[k][n];
+        tests++;
+    }
+    s->expected.tests[m] = (uint8_t)tests;
+    return tests == wanted || (wanted == RF_SORTED_TESTS - 1 && tests > wanted);
+}
+
+static bool check_sort(const struct subject *subject, struct sight *s, int n, uint32_t seed)
+{
+    int m = 0;
+
+    make_sight(s, n, seed);
+    for (int wanted = 0; wanted < RF_SORTED_TESTS; wanted++)
+        for (int i = 0; i < n; i++)
+            m += m < n && expect_ray(s, i, m, wanted);
+    subject->kernels.sort_rays(&s->sorted, &s->job);
+    if (s->sorted.rays != n)
+        return fail(subject, "sort_rays", seed, n, -1, s->sorted.rays, n);
+    for (int i = 0; i < n; i++) {
+        if (s->sorted.tests[i] != s->expected.tests[i])
+            return fail(subject, "sort_rays", seed, n, i, s->sorted.tests[i],
+                        s->expected.tests[i]);
+        if (s->sorted.last[i] != s->expected.last[i])
+            return fail(subject, "sort_rays", seed, n, i,
+                        (long)(s->sorted.last[i] - s->front),
+                        (long)(s->expected.last[i] - s->front));
+        for (int t = 0; t < s->sorted.tests[i]; t++)
+            if (s->sorted.slab[t][i] != s->expected.slab[t][i] ||
+                s->sorted.offset[t][i] != s->expected.offset[t][i])
+                return fail(subject, "sort_rays", seed, n, i, s->sorted.slab[t][i],
+                            s->expected.slab[t][i]);
+    }
+    return true;
+}
+
+int check_aim(const struct subject *subject)
+{
+    static struct sight sight;
+    struct stage s;
+    uint32_t seed = 1;
+    bool good = guarded_create(&s.blur, 4 * RF_CELL * (MOST_CELLS + 2) * 2) &&
+                guarded_create(&s.range, MOST_WINDOWS * 4) &&
+                guarded_create(&s.scratch, 2 * (MOST_WINDOWS + RF_WINDOW_X) * 2);
+
+    for (int j = 0; j < RF_WINDOW_Y; j++)
+        good = good && guarded_create(&s.least[j], MOST_CELLS * 2) &&
+               guarded_create(&s.most[j], MOST_CELLS * 2);
+    if (!good) {
+        printf("FAIL  no memory between pages\n");
+        return 1;
+    }
+    for (; good && seed <= 600; seed++) {
+        const enum place place = (enum place)(seed % PLACES);
+        const int n = 1 + (int)seed % MOST_CELLS;
+
+        good = check_cells(subject, &s, n, place, seed) &&
+               check_windows(subject, &s, n, place, seed) &&
+               check_aim_at(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
+               check_sort(subject, &sight, (int)seed % (RF_RAY_CHUNK + 1), seed);
+    }
+    guarded_destroy(&s.blur);
+    guarded_destroy(&s.range);
+    guarded_destroy(&s.scratch);
+    for (int j = 0; j < RF_WINDOW_Y; j++) {
+        guarded_destroy(&s.least[j]);
+        guarded_destroy(&s.most[j]);
+    }
+    if (good)
+        printf("ok    %-12s %-6s %d cases\n", "aim", subject->cpu, (int)seed - 1);
+    return !good;
+}
+
+struct bench {
+    struct sight *sight;
+    rf_sort_rays_fn *sort_rays;
+};
+
+static void call(void *context)
+{
+    const struct bench *b = context;
+
+    for (int i = 0; i < 100; i++)
+        b->sort_rays(&b->sight->sorted, &b->sight->job);
+}
+
+void bench_aim(const struct subject *subject)
+{
+    static struct sight sight;
+    struct bench b = {&sight, subject->plain.sort_rays};
+    double plain, own;
+
+    for (uint32_t seed = 1; sight.job.slabs != 4; seed++)
+        make_sight(&sight, RF_RAY_CHUNK, seed);
+    plain = best_time(call, &b);
+    b.sort_rays = subject->kernels.sort_rays;
+    own = best_time(call, &b);
+    printf("ok    %-12s %-6s c %.3f  %s %.3f ns/ray\n", "sort_rays, 4", subject->cpu,
+           plain * 1e9 / (100.0 * RF_RAY_CHUNK), subject->cpu,
+           own * 1e9 / (100.0 * RF_RAY_CHUNK));
+}
