@@ -6,6 +6,7 @@
 #include <refocus/depth.h>
 #include <refocus/image.h>
 #include <refocus/lens.h>
+#include <refocus/measure.h>
 #include <refocus/render.h>
 #include <refocus/status.h>
 #include <refocus/version.h>

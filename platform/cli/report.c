@@ -89,6 +89,13 @@ double report_cpu_ms(void)
     return read_clock_ms(CLOCK_PROCESS_CPUTIME_ID);
 }
 
+int report_processors(void)
+{
+    const long count = sysconf(_SC_NPROCESSORS_ONLN);
+
+    return count > 0 && count < 4096 ? (int)count : 1;
+}
+
 int64_t report_peak_rss_kib(void)
 {
     struct rusage usage;

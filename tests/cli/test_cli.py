@@ -119,7 +119,7 @@ class Usage(Case):
                        '--f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background '
                        '--threads --cpu --repeat --json -h --help',
-            'bench': self.PAPERS + '--size --depth --depth-unit --near --far --focus --focus-at '
+            'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far --focus --focus-at '
                      '--focus-distance --blur --method --rays --iterations --quality '
                      '--aperture --blend --sigma --highlights --mirror --background --threads --cpu '
                      '--repeat --json -h --help',
@@ -457,6 +457,35 @@ class Results(Case):
         pictures.pgm('low.pgm', W // 4, H // 4, lambda x, y: 20 * x)
         report = self.reports('render', 'photo.ppm', '--depth', 'low.pgm', '-o', 'out.ppm')
         self.assertEqual((report['width'], report['depth']['width']), (W, W // 4))
+
+    def test_bench_frames(self):
+        report = self.reports('bench', '--frames', '--size', '48x32', '--repeat', '2',
+                              '--threads', '2')
+        rows = report['frames']
+        self.assertEqual([(r['blur'], r['quality'], r['threads']) for r in rows],
+                         [(k, q, 2) for k in (10, 20, 40)
+                          for q in ('preview', 'standard', 'best')])
+        for row in rows:
+            self.assertEqual((row['width'], row['height']), (48, 32))
+            self.assertTrue(all(row[t] > 0 for t in
+                                ('memcpy_ms', 'box_ms', 'prepare_ms', 'render_ms')))
+        text = self.succeeds('bench', 'photo.ppm', '--depth', 'depth.pgm', '--frames',
+                             '--repeat', '1', '--threads', '1')
+        self.assertEqual(len(re.findall(r'(?m)^ *%dx%d ' % (W, H), text)), 9)
+        self.fails(2, '--frames: it does not go with --rays without a number; leave one of them '
+                   'out', 'bench', '--frames', '--rays', '--size', '9x9')
+
+    def test_bench_kernels(self):
+        report = self.reports('bench', '--kernels')
+        names = [k['kernel'] for k in report['kernels']]
+        self.assertIn('sweep', names)
+        self.assertEqual(len(set(names)), len(names))
+        for kernel in report['kernels']:
+            self.assertGreater(kernel['ns'], 0)
+            self.assertGreater(kernel['ns_c'], 0)
+        plain = self.reports('bench', '--kernels', '--cpu', 'c')
+        self.assertEqual(plain['cpu'], 'c')
+        self.assertRegex(self.succeeds('bench', '--kernels'), r'(?m)^sweep +\S+ +\S+ ns/ray sample')
 
     def test_bench(self):
         report = self.reports('bench', '--size', '64x40', '--repeat', '2', '--blur', '5')
