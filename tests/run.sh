@@ -5,7 +5,8 @@
 # 'N passed, N failed, N skipped', the sum over all builds; the exit status is 1 when
 # anything failed.
 #   --quick  one build with gcc and its tests
-#   --long   also lets each fuzz target search for a minute
+#   --long   also lets each fuzz target search for a minute, opens and closes a V4L2 camera
+#            10,000 times, and compiles against each release of libcamera
 # Builds are kept in $REFOCUS_BUILDS (build-tests in the source folder) and reused.
 set -u -o pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -16,7 +17,7 @@ case ${1-} in
     '') ;;
     --quick) mode=quick ;;
     --long) mode=long ;;
-    *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; [ "$1" = --help ]; exit $(($? * 2)) ;;
+    *) sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; [ "$1" = --help ]; exit $(($? * 2)) ;;
 esac
 . "$top/tests/packages.sh"
 passed=0 failed=0 skipped=0
@@ -149,21 +150,38 @@ cross_stage() {
 
 # Real drivers in a virtual machine: vivid and vimc.
 camera_stage() {
-    local log=$builds/camera-vm.log rc p f
+    local log=$builds/camera-vm.log long= rc p f
     say 'cameras: V4L2 and libcamera drivers in a virtual machine'
     need_packages qemu-system-x86 busybox-static xz-utils gcc-12 make v4l-utils libcamera-ipa ||
         { skip camera-vm 'its packages cannot be had, see above'; return; }
-    "$top/tests/camera-vm/test.sh" "$builds/gcc" >"$log" 2>&1
+    [ "$mode" != long ] || long=--long
+    "$top/tests/camera-vm/test.sh" "$builds/gcc" $long >"$log" 2>&1
     rc=$?
     if [ $rc = 77 ]; then
         skip camera-vm "$(grep SKIPPED "$log" | head -n 1), see $log"
         return
     fi
     p=$(grep -c '^ok ' "$log") f=$(grep -c '^FAILED ' "$log")
-    grep -E '^(ok|captured|recovered)' "$log" | sed 's/^/    /'
+    grep -E '^(ok|captured|recovered|cycles)' "$log" | sed 's/^/    /'
     passed=$((passed + p))
     [ "$rc" = 0 ] || fail 'cameras in the virtual machine' "$log"
     [ "$f" -le 1 ] || failed=$((failed + f - 1))
+}
+
+# The libcamera source against the headers of every release: --long alone, as it needs the network.
+libcamera_stage() {
+    local log=$builds/libcamera-releases.log
+    say 'libcamera: compiled against each of its releases'
+    need_packages git python3-jinja2 python3-ply python3-yaml ||
+        { skip libcamera-releases 'its packages cannot be had, see above'; return; }
+    CXX=g++ "$top/tests/libcamera/releases.sh" "$builds/libcamera" >"$log" 2>&1
+    case $? in
+        0) ;;
+        77) skip libcamera-releases "$(tail -n 1 "$log")"; return ;;
+        *) fail 'a release of libcamera' "$log" ;;
+    esac
+    grep '^ok' "$log" | sed 's/^/    /'
+    passed=$((passed + $(grep -c '^ok' "$log")))
 }
 
 fuzz_stage() {
@@ -196,6 +214,7 @@ need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev lib
     libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
+need_packages libsdl2-dev xvfb || skip 'the window' 'SDL2 or Xvfb is missing'
 
 gcc_stage
 if [ "$mode" != quick ]; then
@@ -208,4 +227,5 @@ if [ "$mode" != quick ]; then
     cross_stage armv7 armhf g++-arm-linux-gnueabihf
     fuzz_stage
 fi
+[ "$mode" != long ] || libcamera_stage
 finish

@@ -336,17 +336,23 @@ static int fill(struct replay *replay, int buffer, struct refocus_frame *frame,
     return REFOCUS_OK;
 }
 
+static bool is_over(const struct replay *replay, int64_t frame)
+{
+    return replay->script.frames > 0 && frame >= replay->script.frames;
+}
+
 static int64_t due_at(const struct replay *replay, int64_t frame)
 {
     return rf_pace_due(&replay->pace, frame - replay->first);
 }
 
-/* A camera fills the buffers that it has; what comes then is dropped. */
+/* A camera fills the buffers that it has; what comes then is dropped, but for the last frame. */
 static int pass_over(struct replay *replay, struct fate *fate, struct refocus_reason *reason)
 {
     int status = decide(replay, fate, reason);
 
     while (status == REFOCUS_OK && !replay->pace.fast && !replay->failed && !replay->gone &&
+           !is_over(replay, replay->next + 1) &&
            due_at(replay, replay->next + replay->ring.count) < rf_now_ns()) {
         replay->next++;
         status = decide(replay, fate, reason);
@@ -379,7 +385,7 @@ static int check_stream(const struct replay *replay, struct refocus_reason *reas
                                "the device is gone (by script); plug it in");
     if (replay->failed)
         return rf_capture_fail(reason, REFOCUS_ERR_IO, "the stream failed (by script)");
-    if (replay->script.frames > 0 && replay->next >= replay->script.frames)
+    if (is_over(replay, replay->next))
         return rf_capture_fail(reason, REFOCUS_ERR_END, "the script is at its end");
     return REFOCUS_OK;
 }
@@ -412,6 +418,8 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     } else if (status == REFOCUS_OK && fate.memory) {
         replay->next++;
         status = rf_capture_fail_memory(reason);
+    } else if (status == REFOCUS_OK) {
+        status = check_stream(replay, reason); /* the last ones may not come */
     }
     if (status == REFOCUS_OK && fate.late_ms > 0)
         status = rf_source_poll(source, -1, 0, rf_now_ns() + fate.late_ms * 1000000, NULL) ==

@@ -91,8 +91,9 @@ static bool parse_line(struct rf_script *script, const char *word[4])
 
     if (strcmp(key, "at") == 0)
         return parse_event(script, word);
-    if (strcmp(key, "from") == 0)
-        return set_text(&script->from, word[1]);
+    if (strcmp(key, "from") == 0) /* scripts within scripts might never end */
+        return word[1] && strncmp(word[1], "replay:", 7) != 0 &&
+               set_text(&script->from, word[1]);
     if (strcmp(key, "jpeg") == 0) {
         script->format = REFOCUS_FRAME_MJPEG;
         return set_text(&script->jpeg, word[1]);

@@ -1,6 +1,7 @@
 /* Sinks by name, and the one that drops everything. */
 #include <stdlib.h>
 #include <string.h>
+#include "modules.h"
 #include "pictures.h"
 #include "sink.h"
 
@@ -50,11 +51,23 @@ const struct rf_sink_ops rf_sink_null = {
     .scheme = "null", .open = open_null, .start = start_null, .write = write_null,
     .close = close_null};
 
+static const struct rf_sink_ops *find_window(struct refocus_reason *reason)
+{
+    const struct rf_sink_ops *window = rf_window();
+
+    if (!window)
+        rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                        "this build has no window (SDL2), or its module is gone");
+    return window;
+}
+
 static const struct rf_sink_ops *find(const char *name, const char **rest,
                                       struct refocus_reason *reason)
 {
     if (strcmp(name, "null") == 0)
         return &rf_sink_null;
+    if (strcmp(name, "window") == 0)
+        return find_window(reason);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const size_t length = strlen(kinds[i]->scheme);
 
@@ -72,8 +85,8 @@ static const struct rf_sink_ops *find(const char *name, const char **rest,
     if (rf_pattern_check(name) == 1)
         return &rf_sink_pictures;
     rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                    "no such kind of sink; give v4l2:DEVICE, y4m:FILE, raw:FILE, null or a "
-                    "pattern of pictures such as frames-%%04d.png");
+                    "no such kind of sink; give window, v4l2:DEVICE, y4m:FILE, raw:FILE, null or "
+                    "a pattern of pictures such as frames-%%04d.png");
     return NULL;
 }
 

@@ -5,7 +5,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 #include "backend.h"
-#include "libcamera.h"
+#include "modules.h"
 
 static const struct rf_source_ops *const backends[] = {
 #ifdef RF_HAVE_V4L2

@@ -8,6 +8,7 @@
 #include "interrupt.h"
 #include "made.h"
 #include "outputs.h"
+#include "painted.h"
 #include "report.h"
 
 enum view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };
@@ -15,7 +16,7 @@ enum view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };
 struct settings {
     struct depth_settings depth;
     double focus_at[2], blur;
-    const char *output, *model;
+    const char *output, *model, *strokes;
     int view, preset;
     bool side_by_side;
     bool json;
@@ -60,6 +61,12 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, preset),
      .choice = made_preset,
      .help = "which network it is: size and range of its input"},
+    {.kind = OPTION_TEXT,
+     .name = "--strokes",
+     .argument = "FILE.json",
+     .offset = offsetof(struct settings, strokes),
+     .help = "paint these strokes: over nothing, or over the depth of --depth, --estimate or a "
+             "stereo pair"},
     {.kind = OPTION_FLAG,
      .name = "--side-by-side",
      .offset = offsetof(struct settings, side_by_side),
@@ -244,11 +251,12 @@ static int check(const struct settings *settings, const char *const *files)
 {
     static const char *const endings[] = {".png", ".pgm", ".pfm", ".jpg", ".jpeg", NULL};
     static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
-    const char *const inputs[] = {files[0], settings->depth.file, files[1], settings->model};
+    const char *const inputs[] = {files[0], settings->depth.file, files[1], settings->model,
+                                  settings->strokes};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
-        status = output_check(settings->output, settings->view ? views : endings, inputs, 4);
+        status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
     if (status == EXIT_DONE &&
         (files[1] != NULL) + settings->side_by_side + (settings->model != NULL) +
                 (settings->depth.file != NULL) > 1)
@@ -259,9 +267,28 @@ static int check(const struct settings *settings, const char *const *files)
         settings->side_by_side && settings->view == VIEW_NONE)
         return report_failure(EXIT_WRONG, settings->output,
                               "depth of half a picture does not fit the file; give a .png");
+    if (status == EXIT_DONE && settings->strokes && settings->side_by_side)
+        return report_failure(EXIT_WRONG, "--strokes",
+                              "they are not painted over half a picture; give LEFT and RIGHT");
     if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
         return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
     return status;
+}
+
+static int read_input(const struct settings *settings, const char *const *files,
+                      struct input *input)
+{
+    if (settings->model)
+        return input_read_estimate(input, files[0], settings->model, settings->preset,
+                                   &settings->depth);
+    if (is_made(settings, files))
+        return input_read_stereo(input, files[0], files[1], &settings->depth);
+    if (settings->strokes && !settings->depth.file)
+        return painted_read(input, files[0], &settings->depth);
+    if (settings->depth.file || settings->depth.full ||
+        (is_jpeg(settings->output) && settings->view == VIEW_NONE))
+        return input_read(input, files[0], &settings->depth);
+    return input_read_depth(input, files[0], &settings->depth);
 }
 
 static int run(int argc, char **argv)
@@ -278,17 +305,13 @@ static int run(int argc, char **argv)
     status = check(&settings, files);
     if (status != EXIT_DONE)
         return status;
+    settings.depth.full |= settings.strokes != NULL;
     report_progress("reading", 0);
-    if (settings.model)
-        status = input_read_estimate(&input, files[0], settings.model, settings.preset,
-                                     &settings.depth);
-    else if (is_made(&settings, files))
-        status = input_read_stereo(&input, files[0], files[1], &settings.depth);
-    else if (settings.depth.file || settings.depth.full ||
-        (is_jpeg(settings.output) && settings.view == VIEW_NONE))
-        status = input_read(&input, files[0], &settings.depth);
-    else
-        status = input_read_depth(&input, files[0], &settings.depth);
+    status = read_input(&settings, files, &input);
+    if (status == EXIT_DONE && settings.strokes) {
+        report_progress("painting", 0.4);
+        status = painted_apply(&input, settings.strokes);
+    }
     if (status == EXIT_DONE) {
         report_progress("writing", 0.7);
         status = write_output(&settings, &input);
@@ -305,7 +328,7 @@ const struct command depth_command = {
     .usage = "FILE [RIGHT] -o OUT [options]",
     .summary = "make, read, repair or upsample the depth of a photo, and write it",
     .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, the left "
-             "picture of a stereo pair, or any photo with --estimate. Samples "
+             "picture of a stereo pair, or any photo with --estimate or --strokes. Samples "
              "without a value are filled from those around them, from the farther side where "
              "two surfaces meet, and counted.",
     .options = options,

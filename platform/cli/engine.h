@@ -107,12 +107,14 @@ const char *engine_blend_summary(uint32_t index);
              "default by --quality"}
 #define RUN_OPTIONS(type, member)                                                           \
     {.kind = OPTION_INTEGER,                                                                \
+     .elsewhere = true,                                                      \
      .name = "--threads",                                                                   \
      .argument = "N",                                                                       \
      .offset = offsetof(type, member.threads),                                              \
      .greatest = 64,                                                                        \
      .help = "0 = one for each processor, the default; never changes the result"},          \
     {.kind = OPTION_CHOICE,                                                                 \
+     .elsewhere = true,                                                      \
      .name = "--cpu",                                                                       \
      .argument = "NAME",                                                                    \
      .offset = offsetof(type, member.cpu),                                                  \
@@ -120,6 +122,7 @@ const char *engine_blend_summary(uint32_t index);
      .help = "instruction set, auto = the best that there is, the default; never "         \
              "changes the result"},                                                                     \
     {.kind = OPTION_INTEGER,                                                                \
+     .elsewhere = true,                                                      \
      .name = "--repeat",                                                                    \
      .argument = "N",                                                                       \
      .offset = offsetof(type, member.repeat),                                               \
@@ -127,6 +130,7 @@ const char *engine_blend_summary(uint32_t index);
      .greatest = 10000,                                                                     \
      .help = "render N times and report the times"},                                        \
     {.kind = OPTION_FLAG,                                                                   \
+     .elsewhere = true,                                                      \
      .name = "--json",                                                                      \
      .offset = offsetof(type, member.json),                                                 \
      .help = "print a report as one JSON object; times in milliseconds, without reading "   \

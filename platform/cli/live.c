@@ -40,8 +40,9 @@ static const struct option options[] = {
      .name = "--depth",
      .argument = "SOURCE",
      .offset = offsetof(struct live_settings, depth.file),
-     .help = "depth beside it: such a source of Y16, Z16 or GREY, or the file of one fixed "
-             "depth map"},
+     .help = "depth beside it: such a source of Y16, Z16 or GREY, the file of one fixed depth "
+             "map, or estimate:MODEL.onnx[,every=N][,preset=NAME], a network that sees every "
+             "N-th picture"},
     DEPTH_UNIT_OPTIONS(struct live_settings, depth),
     {.kind = OPTION_TEXT,
      .name = "--calibration",
@@ -53,8 +54,8 @@ static const struct option options[] = {
      .name = "--out",
      .argument = "SINK",
      .offset = offsetof(struct live_settings, out),
-     .help = "v4l2:/dev/video9, y4m:FILE, raw:FILE, frames-%04d.png or null (default); "
-             "FILE may be - for standard output"},
+     .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE, frames-%04d.png or null "
+             "(default); FILE may be - for standard output"},
     {.kind = OPTION_FLAG,
      .name = "--list",
      .offset = offsetof(struct live_settings, list),
@@ -173,6 +174,12 @@ static const struct option options[] = {
      .name = "--no-commands",
      .offset = offsetof(struct live_settings, no_commands),
      .help = "leave standard input alone"},
+    {.kind = OPTION_TEXT,
+     .name = "--socket",
+     .argument = "FILE",
+     .offset = offsetof(struct live_settings, socket),
+     .help = "make a Unix socket there that takes commands, too, and answers each with ok or "
+             "refused and why"},
     {.kind = OPTION_FLAG,
      .name = "--json",
      .offset = offsetof(struct live_settings, engine.json),
@@ -272,6 +279,11 @@ static int check(struct live_settings *settings)
     if (!settings->depth.file)
         return report_failure(EXIT_WRONG, "--depth",
                               "no depth is given; give a source or a depth map");
+    if (live_estimate_is_meant(settings->depth.file)) {
+        status = live_estimate_parse(&settings->estimate, settings->depth.file);
+        if (status != EXIT_DONE)
+            return status;
+    }
     if (!isnan(settings->lens.focus) && !isnan(settings->lens.focus_at[0]))
         return report_failure(EXIT_WRONG, "--focus-at",
                               "the focus is given twice; give --focus or --focus-at");
@@ -322,15 +334,17 @@ static int open_all(struct live *live)
 {
     const struct live_settings *settings = live->settings;
     struct refocus_reason reason = {""};
-    int status = EXIT_DONE;
+    int status = live_commands_open(live);
 
-    if (settings->calibration)
+    if (status == EXIT_DONE && settings->calibration)
         status = live_read_calibration(&live->calibration, settings->calibration);
     if (status == EXIT_DONE)
         status = open_camera(live, settings->camera, false, &live->camera, &live->mode);
     if (status == EXIT_DONE && is_source(settings->depth.file))
         status = open_camera(live, settings->depth.file, true, &live->depth_camera,
                              &live->depth_mode);
+    else if (status == EXIT_DONE && settings->estimate.model[0])
+        status = live_estimate_open(live);
     else if (status == EXIT_DONE)
         status = live_read_fixed_depth(live);
     if (status != EXIT_DONE)
@@ -341,93 +355,22 @@ static int open_all(struct live *live)
     return EXIT_DONE;
 }
 
-static json_t *stage_json(const struct live_stage *stage)
-{
-    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:f}", "frames",
-                     (json_int_t)stage->frames, "corrupt", (json_int_t)stage->corrupt,
-                     "damaged", (json_int_t)stage->damaged, "reordered",
-                     (json_int_t)stage->reordered, "timeouts", (json_int_t)stage->timeouts,
-                     "recoveries", (json_int_t)stage->recoveries, "worst_recovery_ms",
-                     stage->worst_recovery_ms);
-}
-
-static double mean(const struct live_stage *stage)
-{
-    return stage->times.count ? stage->times.sum_ms / (double)stage->times.count : 0;
-}
-
-/* Of the time that a frame is worked on: that which is not preparing and rendering it. */
-static double outside_rendering(const struct live *live)
-{
-    const double inside = mean(&live->prepare) + mean(&live->render);
-    const double outside = mean(&live->capture) + mean(&live->output);
-
-    return inside + outside > 0 ? outside / (inside + outside) : 0;
-}
-
-static int print_report(struct live *live)
-{
-    const struct live_settings *settings = live->settings;
-    const uint64_t out = atomic_load(&live->frames_out);
-    const double seconds = (double)(live->last_out_ns - live->first_out_ns) / 1e9;
-    const double fps = seconds > 0 ? (double)(out - 1) / seconds : 0;
-    const uint64_t dropped =
-        live->capture.skipped + live_queue_dropped(&live->captured) + live_queue_dropped(&live->rendered);
-    struct refocus_source_counters counters;
-    json_t *json;
-
-    refocus_source_get_counters(live->camera, &counters);
-    if (!settings->engine.json) {
-        fprintf(stderr, "%llu frames in, %llu out, %llu dropped; %.1f a second, %.1f ms from "
-                        "camera to sink\n",
-                (unsigned long long)live->capture.frames, (unsigned long long)out,
-                (unsigned long long)(dropped + counters.dropped), fps,
-                live_times_quantile(&live->latency, 0.5));
-        return EXIT_DONE;
-    }
-    json = json_pack(
-        "{s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, s:f, s:f}",
-        "camera", report_text_json(settings->camera), "format",
-        refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width, "height",
-        (int)live->mode.height, "frames_in", (json_int_t)live->capture.frames, "frames_out",
-        (json_int_t)out, "dropped", (json_int_t)dropped, "camera_dropped",
-        (json_int_t)counters.dropped, "sink_dropped", (json_int_t)live->sink_dropped, "paired",
-        (json_int_t)live->paired, "unpaired", (json_int_t)live->unpaired, "without_depth",
-        (json_int_t)live->without_depth, "commands", (json_int_t)live->commands, "fps", fps,
-        "latency_ms", live_times_json(&live->latency), "outside_rendering",
-        outside_rendering(live), "create_ms", live->create_ms);
-    if (json) {
-        json_object_set_new(json, "colour", stage_json(&live->capture));
-        if (live->depth_camera)
-            json_object_set_new(json, "depth", stage_json(&live->depth));
-        json_object_set_new(json, "buffers_lost", json_integer((json_int_t)counters.lost));
-        json_object_set_new(json, "sink_recoveries",
-                            json_integer((json_int_t)live->output.recoveries));
-        json_object_set_new(json, "lens_dioptres", report_number_json(live->lens_dioptres));
-        json_object_set_new(
-            json, "stages_ms",
-            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
-                      live_times_json(&live->capture.times), "depth",
-                      live_times_json(&live->depth.times), "pair",
-                      live_times_json(&live->pair.times), "prepare",
-                      live_times_json(&live->prepare.times), "render",
-                      live_times_json(&live->render.times), "output",
-                      live_times_json(&live->output.times)));
-        json_object_set_new(json, "peak_rss_kib", json_integer(report_peak_rss_kib()));
-    }
-    return report_print_json(json);
-}
-
 /* The threads, and this one renders; then all is over. */
 static void run_threads(struct live *live)
 {
-    static void *(*const main_of[])(void *) = {live_capture_thread, live_depth_thread,
-                                               live_output_thread, live_command_thread};
-    pthread_t thread[4];
-    bool running[4] = {false};
+    enum { CAPTURE, DEPTH, ESTIMATE, OUTPUT, COMMANDS, THREADS };
+    static void *(*const main_of[])(void *) = {
+        [CAPTURE] = live_capture_thread, [DEPTH] = live_depth_thread,
+        [ESTIMATE] = live_estimate_thread, [OUTPUT] = live_output_thread,
+        [COMMANDS] = live_command_thread};
+    const bool wanted[THREADS] = {
+        [CAPTURE] = true, [DEPTH] = live->depth_camera, [ESTIMATE] = live->estimator,
+        [OUTPUT] = true, [COMMANDS] = !live->settings->no_commands || live->command_fd >= 0};
+    pthread_t thread[THREADS];
+    bool running[THREADS] = {false};
 
-    for (int i = 0; i < 4; i++) {
-        if ((i == 1 && !live->depth_camera) || (i == 3 && live->settings->no_commands))
+    for (int i = 0; i < THREADS; i++) {
+        if (!wanted[i])
             continue;
         if (pthread_create(&thread[i], NULL, main_of[i], live) != 0) {
             live_fail(live, EXIT_FAILED, "live", "a thread could not be started");
@@ -437,14 +380,15 @@ static void run_threads(struct live *live)
     }
     live_render(live);
     /* What is rendered already is still written, unless something failed. */
-    if (running[2])
-        pthread_join(thread[2], NULL);
+    if (running[OUTPUT])
+        pthread_join(thread[OUTPUT], NULL);
     live_end(live);
     live_depths_end(&live->depths);
     live_queue_close(&live->captured);
     live_queue_close(&live->rendered);
-    for (int i = 0; i < 4; i++)
-        if (running[i] && i != 2)
+    live_queue_close(&live->to_estimate);
+    for (int i = 0; i < THREADS; i++)
+        if (running[i] && i != OUTPUT)
             pthread_join(thread[i], NULL);
 }
 
@@ -461,9 +405,11 @@ static int run_live(struct live *live)
     if (refocus_sink_close(&live->sink, &reason) != REFOCUS_OK && status == EXIT_DONE)
         status = report_failure(EXIT_FAILED, live->settings->out, "%s", reason.text);
     if (status == EXIT_DONE)
-        status = print_report(live);
+        status = live_report(live);
     refocus_source_close(&live->camera);
     refocus_source_close(&live->depth_camera);
+    live_commands_close(live);
+    live_estimate_close(live);
     free(live->calibration);
     return status;
 }
@@ -497,10 +443,12 @@ static int run(int argc, char **argv)
     live->settings = &settings;
     live->engine = &engine;
     live->lens_dioptres = NAN;
+    live->command_fd = -1;
     live->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     pthread_mutex_init(&live->lock, NULL);
     live_queue_init(&live->captured, settings.policy);
     live_queue_init(&live->rendered, settings.policy);
+    live_queue_init(&live->to_estimate, settings.policy);
     live_depths_init(&live->depths, settings.policy == POLICY_EVERY);
     live_focus_init(&live->focus, &settings);
     live->focus.blur = settings.lens.blur;
@@ -511,6 +459,7 @@ static int run(int argc, char **argv)
     engine_end(&engine);
     live_queue_free(&live->captured);
     live_queue_free(&live->rendered);
+    live_queue_free(&live->to_estimate);
     live_depths_free(&live->depths);
     pthread_mutex_destroy(&live->focus.lock);
     pthread_mutex_destroy(&live->lock);
@@ -524,7 +473,7 @@ const struct command live_command = {
     .name = "live",
     .usage = "--camera SOURCE --depth SOURCE [--out SINK] [options]",
     .summary = "camera in, refocused frames out",
-    .notes = "While it runs, standard input takes a command a line: focus D, focus-at X,Y, "
+    .notes = "While it runs, standard input (and --socket) takes a command a line: focus D, focus-at X,Y, "
              "pull D SECONDS, pull-at X,Y SECONDS (smooth), blur K, quit. Depth is paired with "
              "colour by time within half a frame; without a pair the newest depth serves. "
              "After a fault the camera is opened again; platform/README.md lists faults and "

@@ -13,9 +13,17 @@
 #include "engine.h"
 #include "inputs.h"
 
+/* live_estimate.c: "--depth estimate:MODEL,every=N,preset=NAME" */
+struct live_estimate_settings {
+    char model[4096]; /* empty: not wanted */
+    long every;
+    int preset;
+};
+
 struct live_settings {
-    const char *camera, *out, *calibration;
+    const char *camera, *out, *calibration, *socket;
     struct depth_settings depth;
+    struct live_estimate_settings estimate;
     struct lens_settings lens;
     struct engine_settings engine;
     double size[2], fps, frames, duration, patience, blur_most;
@@ -34,6 +42,7 @@ struct live_picture {
     int64_t taken_ns;     /* CLOCK_MONOTONIC: when it was taken, as far as is known */
     float lens_dioptres;
     bool still;
+    int64_t key; /* which of the pictures that a network sees holds for its depth; from 1 on */
 };
 
 enum { LIVE_SLOTS = 4 };
@@ -150,6 +159,9 @@ struct live {
     struct refocus_sink *sink;
     struct refocus_calibration *calibration;
     struct live_queue captured, rendered;
+    struct live_queue to_estimate; /* copies of every n-th picture */
+    struct live_estimator *estimator; /* or NULL */
+    int64_t offered, key; /* of the thread that captures */
     struct live_depths depths;
     struct live_focus focus;
     struct refocus_depth_report range; /* under depths.lock */
@@ -157,6 +169,8 @@ struct live {
 
     atomic_bool quit;
     int wake_fd; /* eventfd: readable when it is over; for the thread of the commands */
+    int command_fd; /* listens on the socket of the commands, or -1 */
+    bool socket_is_ours;
     pthread_mutex_t lock;
     int exit_code; /* under the lock, with what and why of the first failure */
     char what[256], why[512];
@@ -178,6 +192,20 @@ void live_fail(struct live *live, int exit_code, const char *what, const char *w
 void live_end(struct live *live);
 bool live_is_over(struct live *live);
 
+/* live_estimate.c. An exit code, and prints why. */
+bool live_estimate_is_meant(const char *depth);
+int live_estimate_parse(struct live_estimate_settings *settings, const char *depth);
+int live_estimate_open(struct live *live);
+void live_estimate_close(struct live *live);
+/* Number the picture, and copy it for the network when its turn is. */
+void live_estimate_offer(struct live *live, struct live_picture *picture);
+void *live_estimate_thread(void *live);
+
+/* live_commands.c: make the socket of the settings, where there is one; an exit code, and
+ * prints why. Close and remove it. */
+int live_commands_open(struct live *live);
+void live_commands_close(struct live *live);
+
 /* live_capture.c, live_output.c, live_commands.c: main functions of threads. */
 void *live_capture_thread(void *live);
 void *live_depth_thread(void *live);
@@ -188,7 +216,12 @@ int live_read_fixed_depth(struct live *live);
 /* live_render.c: takes pictures until it is over. */
 void live_render(struct live *live);
 
-/* live_calibration.c: exit code, and prints why. */
+/* live_report.c: print it, when all threads have ended; an exit code. */
+int live_report(struct live *live);
+
+/* live_calibration.c: what is wrong with it, or NULL. */
+const char *live_parse_calibration(const json_t *root, struct refocus_calibration *calibration);
+/* An exit code, and prints why. */
 int live_read_calibration(struct refocus_calibration **calibration, const char *file);
 
 #endif

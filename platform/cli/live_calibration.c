@@ -1,20 +1,20 @@
 /* Where two cameras are, from JSON:
  *
- *     {"depth":  {"width": 640, "height": 480, "fx": 570, "fy": 570, "cx": 320, "cy": 240},
- *      "colour": {"width": 1280, ...},
- *      "rotation": [1, 0, 0,  0, 1, 0,  0, 0, 1],
+ *     {"depth":  {"width": 640, "height": 480, "fx": 570, "fy": 570, "cx": 320, "cy":
+ * 240}, "colour": {"width": 1280, ...}, "rotation": [1, 0, 0,  0, 1, 0,  0, 0, 1],
  *      "translation_m": [0.025, 0, 0]}
  */
 #include <stdlib.h>
 #include "live.h"
 
-static bool read_camera(json_t *root, const char *name, struct refocus_pinhole *camera)
+static bool read_camera(const json_t *root, const char *name,
+                        struct refocus_pinhole *camera)
 {
     int width, height;
 
-    if (json_unpack(json_object_get(root, name), "{s:i, s:i, s:F, s:F, s:F, s:F}", "width",
-                    &width, "height", &height, "fx", &camera->fx, "fy", &camera->fy, "cx",
-                    &camera->cx, "cy", &camera->cy) != 0)
+    if (json_unpack(json_object_get(root, name), "{s:i, s:i, s:F, s:F, s:F, s:F}",
+                    "width", &width, "height", &height, "fx", &camera->fx, "fy",
+                    &camera->fy, "cx", &camera->cx, "cy", &camera->cy) != 0)
         return false;
     camera->width = width;
     camera->height = height;
@@ -22,7 +22,8 @@ static bool read_camera(json_t *root, const char *name, struct refocus_pinhole *
            height <= REFOCUS_MAX_SIDE && camera->fx > 0 && camera->fy > 0;
 }
 
-static bool read_numbers(json_t *root, const char *name, int count, double *values)
+static bool read_numbers(const json_t *root, const char *name, int count,
+                         double *values)
 {
     const json_t *array = json_object_get(root, name);
 
@@ -53,27 +54,33 @@ static bool is_rotation(const double r[9])
     return true;
 }
 
+const char *live_parse_calibration(const json_t *root, struct refocus_calibration *c)
+{
+    if (!read_camera(root, "depth", &c->depth))
+        return "\"depth\" with width, height, fx, fy, cx and cy";
+    if (!read_camera(root, "colour", &c->colour))
+        return "\"colour\" with width, height, fx, fy, cx and cy";
+    if (!read_numbers(root, "rotation", 9, c->rotation) || !is_rotation(c->rotation))
+        return "\"rotation\", the nine numbers of a rotation row by row";
+    if (!read_numbers(root, "translation_m", 3, c->translation_m))
+        return "\"translation_m\", three numbers in metres";
+    return NULL;
+}
+
 int live_read_calibration(struct refocus_calibration **result, const char *file)
 {
     struct refocus_calibration *c = calloc(1, sizeof *c);
     json_error_t error;
     json_t *root = json_load_file(file, 0, &error);
-    const char *wrong = NULL;
+    const char *wrong = c && root ? live_parse_calibration(root, c) : NULL;
     int status = EXIT_DONE;
 
     if (!c)
         status = report_failure(EXIT_FAILED, file, "not enough memory");
     else if (!root)
-        status = report_failure(EXIT_FAILED, file, "%s (line %d)", error.text, error.line);
-    else if (!read_camera(root, "depth", &c->depth))
-        wrong = "\"depth\" with width, height, fx, fy, cx and cy";
-    else if (!read_camera(root, "colour", &c->colour))
-        wrong = "\"colour\" with width, height, fx, fy, cx and cy";
-    else if (!read_numbers(root, "rotation", 9, c->rotation) || !is_rotation(c->rotation))
-        wrong = "\"rotation\", the nine numbers of a rotation row by row";
-    else if (!read_numbers(root, "translation_m", 3, c->translation_m))
-        wrong = "\"translation_m\", three numbers in metres";
-    if (wrong)
+        status =
+            report_failure(EXIT_FAILED, file, "%s (line %d)", error.text, error.line);
+    else if (wrong)
         status = report_failure(EXIT_FAILED, file, "it lacks a sound %s", wrong);
     json_decref(root);
     if (status != EXIT_DONE)

@@ -190,6 +190,8 @@ static int deliver_colour(struct lane *lane, const struct refocus_frame *frame, 
     picture->taken_ns = taken_at(frame, now_ns);
     picture->lens_dioptres = frame->lens_dioptres;
     picture->still = frame->flags & REFOCUS_FRAME_STILL;
+    if (live->estimator)
+        live_estimate_offer(live, picture);
     live_times_add(&lane->stage->times, (double)(live_now_ns() - begin) / 1e6);
     live_queue_put(&live->captured, picture);
     return REFOCUS_OK;
@@ -212,6 +214,7 @@ void *live_capture_thread(void *argument)
         live_fail(live, EXIT_FAILED, lane.name, "not enough memory");
     refocus_converter_destroy(&lane.converter);
     live_queue_close(&live->captured);
+    live_queue_close(&live->to_estimate);
     return NULL;
 }
 

@@ -32,7 +32,7 @@ static void pull(struct live_focus *focus, double disparity, double seconds)
     const int64_t now = live_now_ns();
 
     focus->from = focus_at_time(focus, now);
-    focus->to = disparity < 0 ? 0 : disparity > 1 ? 1 : disparity;
+    focus->to = disparity > 0 ? fmin(disparity, 1) : 0;
     focus->begin_ns = now;
     focus->duration_ns = (int64_t)(seconds * 1e9);
 }

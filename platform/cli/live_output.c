@@ -50,6 +50,8 @@ static bool write_picture(struct live *live, const struct live_picture *picture,
         live->sink_dropped++;
         return true;
     }
+    if (status == REFOCUS_ERR_END)
+        return false; /* the window was closed by its user */
     if ((status == REFOCUS_ERR_GONE || status == REFOCUS_ERR_IO) && is_device(live)) {
         live->sink_dropped++;
         if (reopen(live, image, &reason))

@@ -106,8 +106,11 @@ static const struct live_depth_map *pair(struct live *live, const struct live_pi
     const struct live_depth_map *map;
     bool paired;
 
-    map = live_depths_pair(&live->depths, picture->timestamp_ns, (int64_t)(0.5e9 / fps) + 1,
-                           &paired);
+    if (live->estimator) /* by number, and the newest that there is serves at once */
+        map = live_depths_pair(&live->depths, picture->key, 0, &paired);
+    else
+        map = live_depths_pair(&live->depths, picture->timestamp_ns,
+                               (int64_t)(0.5e9 / fps) + 1, &paired);
     live_times_add(&live->pair.times, (double)(live_now_ns() - begin) / 1e6);
     if (!map)
         live->without_depth++;

@@ -4,6 +4,7 @@
 #include <string.h>
 #include "options.h"
 #include "report.h"
+#include "settings.h"
 
 enum { HELP_COLUMN = 26, HELP_WIDTH = 80, LONGEST_WORD = 63, RANGE_LENGTH = 120 };
 
@@ -175,8 +176,8 @@ static int parse_choice(const struct option *option, const char *name, const cha
                           words);
 }
 
-static int parse_value(const struct option *option, const char *name, const char *text,
-                       void *settings)
+int options_set(const struct option *option, const char *name, const char *text,
+                void *settings)
 {
     void *value = (char *)settings + option->offset;
 
@@ -222,13 +223,49 @@ static const struct option *find_option(const struct command *command, const cha
     return NULL;
 }
 
+const struct option *options_find(const struct command *command, const char *name)
+{
+    for (const struct option *option = command->options; option->help; option++)
+        if (option->kind != OPTION_HEADING && strcmp(option->name, name) == 0)
+            return option;
+    return NULL;
+}
+
+const char *options_nearest_name(const struct command *command, const char *name)
+{
+    return options_nearest(name, option_name, command->options);
+}
+
+/* Files of settings come before all else on the command line, which overrules them. */
+static int load_settings(const struct command *command, int argc, char **argv, void *settings)
+{
+    const struct option *row = options_find(command, SETTINGS_NAME);
+    const size_t length = strlen(SETTINGS_NAME);
+
+    for (int i = 1; row && i < argc && strcmp(argv[i], "--") != 0; i++) {
+        const char *file = NULL;
+        int status;
+
+        if (strcmp(argv[i], SETTINGS_NAME) == 0 && i + 1 < argc)
+            file = argv[i + 1];
+        else if (strncmp(argv[i], SETTINGS_NAME "=", length + 1) == 0)
+            file = argv[i] + length + 1;
+        if (!file)
+            continue;
+        status = settings_load(command, file, settings);
+        if (status != OPTIONS_PARSED)
+            return status;
+    }
+    return OPTIONS_PARSED;
+}
+
 static int unknown_option(const struct command *command, const char *argument)
 {
     char name[LONGEST_WORD + 1];
     const char *nearest;
 
     snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
-    nearest = options_nearest(name, option_name, command->options);
+    nearest = options_nearest_name(command, name);
     if (nearest)
         return report_failure(EXIT_WRONG, name, "unknown option; did you mean %s?", nearest);
     return report_failure(EXIT_WRONG, name, "unknown option; 'refocus %s --help' lists them",
@@ -248,21 +285,24 @@ static int parse_option(const struct command *command, int argc, char **argv, in
         if (value)
             return report_failure(EXIT_WRONG, option->name, "takes no value; leave '=%s' out",
                                   value);
-        return parse_value(option, option->name, "", settings);
+        return options_set(option, option->name, "", settings);
     }
     if (!value && *i + 1 < argc && strncmp(argv[*i + 1], "--", 2) != 0)
         value = argv[++*i];
     if (!value)
         return report_failure(EXIT_WRONG, option->name, "has no value; give %s",
                               option->argument);
-    return parse_value(option, option->name, value, settings);
+    return options_set(option, option->name, value, settings);
 }
 
 int options_parse(const struct command *command, int argc, char **argv, void *settings,
                   const char **files)
 {
-    int count = 0;
+    int count = 0, loaded = load_settings(command, argc, argv, settings);
     bool names_only = false;
+
+    if (loaded != OPTIONS_PARSED)
+        return loaded;
 
     for (int i = 1; i < argc; i++) {
         if (!names_only && argv[i][0] == '-' && argv[i][1] != '\0') {

@@ -32,6 +32,7 @@ struct option {
     const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE; NULL ends them */
     const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
     const char *help;
+    bool elsewhere; /* of this run, not of the picture: not in files of settings */
 };
 
 struct command {
@@ -53,6 +54,17 @@ enum { OPTIONS_PARSED = -1 };
  */
 int options_parse(const struct command *command, int argc, char **argv, void *settings,
                   const char **files);
+
+/* Give an option its value as the command line does; `name` is what errors call it. For flags
+ * `text` is not used. Returns OPTIONS_PARSED or EXIT_WRONG. */
+int options_set(const struct option *option, const char *name, const char *text,
+                void *settings);
+
+/* The row of a name with its dashes, or NULL. */
+const struct option *options_find(const struct command *command, const char *name);
+
+/* The name of a row that is most like `name`, or NULL. */
+const char *options_nearest_name(const struct command *command, const char *name);
 
 void options_print_help(const struct command *command);
 

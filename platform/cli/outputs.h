@@ -10,6 +10,7 @@
 #define OUTPUT_OPTION(type, member, text)                                                   \
     {.kind = OPTION_TEXT,                                                                   \
      .letter = 'o',                                                                         \
+     .elsewhere = true,                                                      \
      .name = "--output",                                                                    \
      .argument = "OUT",                                                                     \
      .offset = offsetof(type, member),                                                      \

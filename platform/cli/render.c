@@ -7,6 +7,7 @@
 #include "falsecolour.h"
 #include "inputs.h"
 #include "outputs.h"
+#include "settings.h"
 
 enum view { VIEW_NONE, VIEW_DEPTH, VIEW_BLUR };
 
@@ -14,7 +15,7 @@ struct settings {
     struct depth_settings depth;
     struct lens_settings lens;
     struct engine_settings engine;
-    const char *output;
+    const char *output, *load, *save;
     double region[4];
     int view;
 };
@@ -62,6 +63,7 @@ static const struct option options[] = {
      .summary = view_summary,
      .help = "write a picture in false colours with a legend instead"},
     {.kind = OPTION_HEADING, .help = "Running"},
+    SETTINGS_OPTIONS(struct settings, load, save),
     RUN_OPTIONS(struct settings, engine),
     PAPER_OPTIONS(struct settings, engine.papers),
     {.help = NULL},
@@ -70,7 +72,9 @@ static const struct option options[] = {
 static int check(const struct settings *settings, const char *photo)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
-    const char *const inputs[] = {photo, settings->depth.file, settings->engine.aperture};
+    const char *const inputs[] = {photo, settings->depth.file, settings->engine.aperture,
+                                  settings->load};
+    static const char *const json[] = {".json", NULL};
     int status;
 
     status = input_check_depth(&settings->depth);
@@ -80,7 +84,9 @@ static int check(const struct settings *settings, const char *photo)
         status = report_failure(EXIT_WRONG, "--region",
                                 "a view is always of the whole; leave --region or --view out");
     if (status == EXIT_DONE)
-        status = output_check(settings->output, endings, inputs, 3);
+        status = output_check(settings->output, endings, inputs, 4);
+    if (status == EXIT_DONE && settings->save)
+        status = output_check(settings->save, json, inputs, 3);
     return status;
 }
 
@@ -254,6 +260,8 @@ static int run(int argc, char **argv)
                                     settings.view == VIEW_NONE ? input.photo : NULL);
     }
     report_progress_end();
+    if (status == EXIT_DONE && settings.save)
+        status = settings_save(&render_command, settings.save, &settings);
     if (status == EXIT_DONE)
         status = print_report(&settings, &engine, &input, &out);
     free(out.plane[0]);

@@ -73,3 +73,16 @@ int rf_load(const char *path, uint64_t max_bytes, struct refocus_reason *reason,
     }
     return status;
 }
+
+int refocus_file_read(const char *path, uint64_t max_bytes, struct refocus_blob *blob,
+                      struct refocus_reason *reason)
+{
+    struct refocus_reason unused;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!path || !blob) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or no place for it");
+    }
+    return rf_load(path, max_bytes, reason, blob);
+}

@@ -96,3 +96,23 @@ int rf_store_close(struct rf_store *store, int status, struct refocus_reason *re
     free(store->path);
     return status;
 }
+
+int refocus_file_write(const char *path, const void *bytes, size_t size,
+                       struct refocus_reason *reason)
+{
+    struct refocus_reason unused;
+    struct rf_store store;
+    int status;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!path || !bytes) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or nothing to write");
+    }
+    status = rf_store_open(&store, path, reason);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    rf_store_write(&store, bytes, size);
+    return rf_store_close(&store, REFOCUS_OK, reason);
+}

@@ -3,9 +3,15 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <unistd.h>
 
 #include <opencv2/dnn.hpp>
+
+struct refocus_estimator {
+    cv::dnn::Net net;
+    refocus_network network;
+};
 
 namespace {
 
@@ -43,19 +49,6 @@ int take(const cv::Mat &output, bool inverse, refocus_estimate *estimate,
     return REFOCUS_OK;
 }
 
-int run(const refocus_image *photo, const char *model, const refocus_network *network,
-        refocus_estimate *estimate, refocus_cv_reason *reason)
-{
-    cv::dnn::Net net = cv::dnn::readNetFromONNX(model);
-    const cv::Scalar mean(network->mean[0], network->mean[1], network->mean[2]);
-
-    if (net.empty())
-        return refocus_cv::fail(reason, REFOCUS_ERR_FORMAT, "it holds no network");
-    net.setInput(cv::dnn::blobFromImage(refocus_cv::view(photo), network->scale,
-                                        cv::Size(network->width, network->height), mean, false));
-    return take(net.forward(), network->inverse != 0, estimate, reason);
-}
-
 } // namespace
 
 const char *refocus_cv_network_name(uint32_t index)
@@ -71,25 +64,84 @@ int refocus_cv_network(uint32_t index, struct refocus_network *network)
     return REFOCUS_OK;
 }
 
-int refocus_cv_estimate(const struct refocus_image *photo, const char *model,
-                        const struct refocus_network *network, struct refocus_estimate *estimate,
-                        struct refocus_cv_reason *reason)
+/* OpenCV's own words for a file that it cannot use name its source lines. */
+static int fail_format(int status, refocus_cv_reason *reason)
+{
+    return status != REFOCUS_ERR_FORMAT
+               ? status
+               : refocus_cv::fail(reason, status,
+                                  "OpenCV finds no depth network with this input in it; give an "
+                                  "ONNX file and its --preset");
+}
+
+int refocus_cv_estimator_create(struct refocus_estimator **result, const char *model,
+                                const struct refocus_network *network,
+                                struct refocus_cv_reason *reason)
+{
+    if (!result)
+        return REFOCUS_ERR_ARGUMENT;
+    *result = nullptr;
+    if (!model || !network || network->width < 32 || network->width > 2048 ||
+        network->height < 32 || network->height > 2048 || !std::isfinite(network->scale))
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no file, or no such input");
+    if (access(model, R_OK) != 0)
+        return refocus_cv::fail(reason, REFOCUS_ERR_IO, "it cannot be read; give an ONNX file");
+    return fail_format(refocus_cv::guarded(reason, REFOCUS_ERR_FORMAT, [&] {
+        auto estimator = std::make_unique<refocus_estimator>();
+
+        estimator->network = *network;
+        estimator->net = cv::dnn::readNetFromONNX(model);
+        if (estimator->net.empty())
+            return (int)REFOCUS_ERR_FORMAT;
+        *result = estimator.release();
+        return (int)REFOCUS_OK;
+    }), reason);
+}
+
+int refocus_cv_estimator_run(struct refocus_estimator *estimator,
+                             const struct refocus_image *photo,
+                             struct refocus_estimate *estimate, struct refocus_cv_reason *reason)
 {
     if (!estimate)
         return REFOCUS_ERR_ARGUMENT;
     *estimate = {nullptr, 0, 0};
-    if (!refocus_cv::good_photo(photo) || !model || !network || network->width < 32 ||
-        network->width > 2048 || network->height < 32 || network->height > 2048 ||
-        !std::isfinite(network->scale))
-        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no picture, or no such input");
-    if (access(model, R_OK) != 0)
-        return refocus_cv::fail(reason, REFOCUS_ERR_IO, "it cannot be read; give an ONNX file");
-    const int status = refocus_cv::guarded(
-        reason, REFOCUS_ERR_FORMAT, [&] { return run(photo, model, network, estimate, reason); });
-    if (status == REFOCUS_ERR_FORMAT)
-        return refocus_cv::fail(reason, status,
-                                "OpenCV finds no depth network with this input in it; give an "
-                                "ONNX file and its --preset");
+    if (!estimator || !refocus_cv::good_photo(photo))
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no picture, or no network");
+    return fail_format(refocus_cv::guarded(reason, REFOCUS_ERR_FORMAT, [&] {
+        const refocus_network &network = estimator->network;
+        const cv::Scalar mean(network.mean[0], network.mean[1], network.mean[2]);
+
+        estimator->net.setInput(
+            cv::dnn::blobFromImage(refocus_cv::view(photo), network.scale,
+                                   cv::Size(network.width, network.height), mean, false));
+        return take(estimator->net.forward(), network.inverse != 0, estimate, reason);
+    }), reason);
+}
+
+void refocus_cv_estimator_destroy(struct refocus_estimator **estimator)
+{
+    if (!estimator)
+        return;
+    delete *estimator;
+    *estimator = nullptr;
+}
+
+int refocus_cv_estimate(const struct refocus_image *photo, const char *model,
+                        const struct refocus_network *network, struct refocus_estimate *estimate,
+                        struct refocus_cv_reason *reason)
+{
+    struct refocus_estimator *estimator;
+    int status;
+
+    if (!estimate)
+        return REFOCUS_ERR_ARGUMENT;
+    *estimate = {nullptr, 0, 0};
+    if (!refocus_cv::good_photo(photo))
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no picture");
+    status = refocus_cv_estimator_create(&estimator, model, network, reason);
+    if (status == REFOCUS_OK)
+        status = refocus_cv_estimator_run(estimator, photo, estimate, reason);
+    refocus_cv_estimator_destroy(&estimator);
     return status;
 }
 

@@ -313,6 +313,9 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
 rf_smooth3_fn rf_smooth3_c;
+rf_push_fn rf_push_c;
+rf_pull_fn rf_pull_c;
+rf_pull_blur_fn rf_pull_blur_c;
 rf_sweep_weighted_fn rf_sweep_weighted_c;
 
 /* Each set overwrites what it does better. */
@@ -326,6 +329,7 @@ rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
     rf_search_use_avx2;
+rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;
 rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
 rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;
 rf_kernels_use_fn rf_series_use_c, rf_series_use_neon, rf_series_use_sse41,

@@ -21,21 +21,18 @@ static inline uint16_t less(uint16_t a, uint16_t b) /* a - b, not below 0 */
 static void RF_VEC(rf_signed_blur)(int16_t *restrict blur, const uint16_t *restrict disparity,
                             struct rf_focus focus, int n)
 {
-    const uint16_t df = focus.disparity;
-    const uint32_t radius = focus.radius;
+    const uint16_t df = focus.disparity, radius = focus.radius;
 
     for (int x = 0; x < n; x++) {
         const uint16_t d = disparity[x];
-        const uint16_t distance = (uint16_t)(d > df ? d - df : df - d);
-        const uint16_t r = (uint16_t)((distance * radius + (1 << 15)) >> 16);
+        const uint16_t near = (uint16_t)(d > df ? 0xffff : 0);
+        const uint16_t distance = (uint16_t)((uint16_t)((uint16_t)(df - d) ^ near) - near);
+        const uint16_t high = (uint16_t)(((uint32_t)distance * radius) >> 16);
+        const uint16_t low = (uint16_t)(distance * (uint32_t)radius);
+        const uint16_t r = (uint16_t)(high + (low >> 15)); /* half up, in 16-bit lanes */
 
-        blur[x] = (int16_t)(d > df ? -r : r);
+        blur[x] = (int16_t)((uint16_t)(r ^ near) - near);
     }
-}
-
-static inline uint16_t third_of(uint16_t s) /* s / 3, rounded down: 3 * 43691 = 2^17 + 1 */
-{
-    return (uint16_t)((uint16_t)(((uint32_t)s * 43691) >> 16) >> 1);
 }
 
 static void spread(uint16_t *restrict out, const uint16_t *restrict in, int step, uint16_t fall,
@@ -80,69 +77,6 @@ static void RF_VEC(rf_mark)(int16_t *restrict behind, const int16_t *restrict bl
     }
 }
 
-static inline uint16_t known(int16_t blur)
-{
-    return (uint16_t)(blur != RF_NO_BLUR ? 0xffff : 0);
-}
-
-static inline int16_t farther(int16_t a, int16_t b)
-{
-    return a > b ? a : b;
-}
-
-static void RF_VEC(rf_push)(uint16_t *const out[3], int16_t *restrict out_blur,
-                     const uint16_t *const upper[3], const uint16_t *const lower[3],
-                     const int16_t *restrict blur0, const int16_t *restrict blur1, int n)
-{
-    for (int c = 0; c < 3; c++) {
-        uint16_t *restrict to = out[c];
-        const uint16_t *restrict a = upper[c], *restrict b = lower[c];
-
-        for (int x = 0; x < n; x++) {
-            const uint16_t k0 = known(blur0[2 * x]), k1 = known(blur0[2 * x + 1]);
-            const uint16_t k2 = known(blur1[2 * x]), k3 = known(blur1[2 * x + 1]);
-            const uint16_t count = (uint16_t)-(uint16_t)(k0 + k1 + k2 + k3);
-            const uint16_t sum = (uint16_t)((a[2 * x] & k0) + (a[2 * x + 1] & k1) +
-                                            (b[2 * x] & k2) + (b[2 * x + 1] & k3));
-            const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
-            const uint16_t third = third_of((uint16_t)(sum + 1));
-            const uint16_t quarter = (uint16_t)((uint16_t)(sum + 2) >> 2);
-
-            to[x] = count == 4 ? quarter : count == 3 ? third : count == 2 ? half : sum;
-        }
-    }
-    for (int x = 0; x < n; x++)
-        out_blur[x] = farther(farther(blur0[2 * x], blur0[2 * x + 1]),
-                              farther(blur1[2 * x], blur1[2 * x + 1]));
-}
-
-static void RF_VEC(rf_pull)(uint16_t *restrict out, const int16_t *restrict out_blur,
-                     const uint16_t *restrict near_row, const uint16_t *restrict far_row,
-                     uint16_t *restrict mixed, int pairs)
-{
-    mixed++; /* mixed[-1] and mixed[pairs] repeat the ends */
-    for (int x = 0; x < pairs; x++)
-        mixed[x] = (uint16_t)((uint16_t)(3 * near_row[x] + far_row[x] + 2) >> 2);
-    mixed[-1] = mixed[0];
-    mixed[pairs] = mixed[pairs - 1];
-    for (int x = 0; x < pairs; x++) {
-        const uint16_t even = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x - 1] + 2) >> 2);
-        const uint16_t odd = (uint16_t)((uint16_t)(3 * mixed[x] + mixed[x + 1] + 2) >> 2);
-        const uint16_t keep0 = known(out_blur[2 * x]), keep1 = known(out_blur[2 * x + 1]);
-
-        out[2 * x] = (uint16_t)((out[2 * x] & keep0) | (even & ~keep0));
-        out[2 * x + 1] = (uint16_t)((out[2 * x + 1] & keep1) | (odd & ~keep1));
-    }
-}
-
-static void RF_VEC(rf_pull_blur)(int16_t *restrict out, const int16_t *restrict near_row, int pairs)
-{
-    for (int x = 0; x < pairs; x++) {
-        out[2 * x] = out[2 * x] == RF_NO_BLUR ? near_row[x] : out[2 * x];
-        out[2 * x + 1] = out[2 * x + 1] == RF_NO_BLUR ? near_row[x] : out[2 * x + 1];
-    }
-}
-
 /* (4 sum + N / 2) / N by a multiplication; see rf_mean_scale(). */
 static void means_by_scale(uint16_t *restrict mean, const uint32_t *restrict sum,
                            uint32_t scale, int n)
@@ -176,8 +110,5 @@ void RF_VEC(rf_rows_use)(struct rf_kernels *kernels)
     kernels->spread_row = RF_VEC(rf_spread_row);
     kernels->dilate_from = RF_VEC(rf_dilate_from);
     kernels->mark = RF_VEC(rf_mark);
-    kernels->push = RF_VEC(rf_push);
-    kernels->pull = RF_VEC(rf_pull);
-    kernels->pull_blur = RF_VEC(rf_pull_blur);
     kernels->means = RF_VEC(rf_means);
 }

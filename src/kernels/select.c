@@ -43,6 +43,9 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         return false;
     kernels->sweep = rf_sweep_c;
     kernels->smooth3 = rf_smooth3_c;
+    kernels->push = rf_push_c;
+    kernels->pull = rf_pull_c;
+    kernels->pull_blur = rf_pull_blur_c;
     rf_aim_use_c(kernels);
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);

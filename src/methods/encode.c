@@ -35,13 +35,24 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     }
 }
 
-/* Codes of n means into every `bytes`-th byte. Copies of what is used, as bytes written
- * might be any of it. */
-static void encode_channel(uint8_t *restrict out, int bytes, const uint16_t *restrict mean,
-                           const uint8_t *restrict to_code, int n)
+/* Means above white come from highlights. */
+static void clip(uint16_t *restrict mean, int n)
 {
-    for (int x = 0; x < n; x++)
-        out[x * bytes] = to_code[mean[x] < RF_MEAN_MAX ? mean[x] : RF_MEAN_MAX];
+    for (int i = 0; i < n; i++)
+        mean[i] = mean[i] < RF_MEAN_MAX ? mean[i] : RF_MEAN_MAX;
+}
+
+/* A row of n pixels, `bytes` is a constant. */
+static inline void encode_row(uint8_t *restrict out, struct rf_order o, const int bytes,
+                              const uint16_t *restrict red, const uint16_t *restrict green,
+                              const uint16_t *restrict blue, const uint8_t *restrict to_code,
+                              int n)
+{
+    for (int x = 0; x < n; x++) {
+        out[x * bytes + o.r] = to_code[red[x]];
+        out[x * bytes + o.g] = to_code[green[x]];
+        out[x * bytes + o.b] = to_code[blue[x]];
+    }
 }
 
 void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
@@ -51,9 +62,10 @@ void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_
     const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + x0;
     uint8_t *out = pixel(f, o.bytes, x0, y);
 
-    encode_channel(out + o.r, o.bytes, mean[0], to_code, n);
-    encode_channel(out + o.g, o.bytes, mean[1], to_code, n);
-    encode_channel(out + o.b, o.bytes, mean[2], to_code, n);
+    if (o.bytes == 3)
+        encode_row(out, o, 3, mean[0], mean[1], mean[2], to_code, n);
+    else
+        encode_row(out, o, 4, mean[0], mean[1], mean[2], to_code, n);
     for (int x = 0; o.a >= 0 && x < n; x++)
         out[x * o.bytes + o.a] = alpha[x];
 }
@@ -61,6 +73,8 @@ void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
                      uint16_t mean[3][RF_TILE * RF_TILE])
 {
+    for (int c = 0; f->bright && c < 3; c++)
+        clip(mean[c], RF_TILE * RF_TILE);
     for (int y = rect.y0; y < rect.y1; y++) {
         const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 

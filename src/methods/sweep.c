@@ -132,9 +132,10 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     const int behind = f->weighted ? r->bins[(size_t)ty * r->tiles_x + tx].behind
                                    : r->behind.blur[rf_tile_middle(r, tx, ty)];
     struct sight sight;
+    const size_t used = f->weighted ? sizeof run->weighted : sizeof run->plain;
     int rays = 0; /* in this run */
 
-    memset(run, 0, sizeof *run);
+    memset(run, 0, used);
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
@@ -146,7 +147,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
         if (!set->equal &&
             (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight)) {
             add_run(f, run, ray->weight, (uint64_t)rays, sums);
-            memset(run, 0, sizeof *run);
+            memset(run, 0, used);
             rays = 0;
         }
     }

@@ -24,16 +24,18 @@ struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1);
 
 /*
- * One step of the pre-filter for a row of tiles, whose bins are known: where |s| is above `least` (Q7.8), the mean of three rows, then
- * of three columns, `step` pixels apart, of those pixels that are within one pixel of blur of
- * the middle one; the light as it is elsewhere. Borders are extended.
+ * Step 0, 1 or 2 of the pre-filter for a row of tiles, whose bins are known: where |s| is above
+ * above[step] (Q7.8), the mean of three rows, then of three columns, 2^step pixels apart, of those
+ * pixels that are within one pixel of blur of the middle one; the light as it is elsewhere.
+ * Borders are extended. Step 2 writes what step 1 read, and leaves out what did not change.
  *
- * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 1 closes gaps from
- * 1.5 pixels on; steps of 2 and 4 after it close those twice and four times as wide.
+ * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from
+ * 1.5 pixels on; the next close those twice and four times as wide.
  */
 enum { RF_PREFILTER_STEPS = 3 };
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], int step, int least, int ty);
+                       uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], int step,
+                       int ty);
 
 /* Weights of eq. 5 of the pixels that rays meet, borders too: of smooth into r->weight, of the
  * background over its blur. That of the middle of each tile goes to its bins before. */

@@ -123,7 +123,7 @@ static void smooth_band(void *context, int band, int worker)
 
     if (i == 0)
         rf_range_rows(r, rf_scratch(r, worker), band);
-    rf_prefilter_rows(r, out, in, 1 << i, f->prefilter_above[i], band);
+    rf_prefilter_rows(r, out, in, f->prefilter_above, i, band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */

@@ -15,6 +15,12 @@
  *     vec_u16_xor(a, b)       a ^ b
  *     vec_u16_mul_high(a, b)  (a * b) >> 16
  *     vec_u16_half(a)         a >> 1
+ *     vec_u16_max(a, b)       a > b ? a : b
+ *     vec_u16_any(a)          whether any lane is not 0
+ *     vec_u16_even(a, b)      lanes 0, 2, 4 ... of a and then of b
+ *     vec_u16_odd(a, b)       lanes 1, 3, 5 ...
+ *     vec_u16_zip_low(a, b)   a[0], b[0], a[1], b[1] ... of the lower halves
+ *     vec_u16_zip_high(a, b)  and of the upper ones
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
  *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.

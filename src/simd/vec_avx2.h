@@ -68,6 +68,43 @@ static inline vec_u16 vec_u16_half(vec_u16 a)
     return _mm256_srli_epi16(a, 1);
 }
 
+static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
+{
+    return _mm256_max_epu16(a, b);
+}
+
+static inline int vec_u16_any(vec_u16 a)
+{
+    return !_mm256_testz_si256(a, a);
+}
+
+/* packus and unpack work on 128-bit halves. */
+static inline vec_u16 vec_u16_even(vec_u16 a, vec_u16 b)
+{
+    const __m256i low = _mm256_set1_epi32(0xffff);
+
+    return _mm256_permute4x64_epi64(
+        _mm256_packus_epi32(_mm256_and_si256(a, low), _mm256_and_si256(b, low)), 0xd8);
+}
+
+static inline vec_u16 vec_u16_odd(vec_u16 a, vec_u16 b)
+{
+    return _mm256_permute4x64_epi64(
+        _mm256_packus_epi32(_mm256_srli_epi32(a, 16), _mm256_srli_epi32(b, 16)), 0xd8);
+}
+
+static inline vec_u16 vec_u16_zip_low(vec_u16 a, vec_u16 b)
+{
+    return _mm256_permute2x128_si256(_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b),
+                                     0x20);
+}
+
+static inline vec_u16 vec_u16_zip_high(vec_u16 a, vec_u16 b)
+{
+    return _mm256_permute2x128_si256(_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b),
+                                     0x31);
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     __m256i *low = (__m256i *)sum, *high = (__m256i *)(sum + 8);

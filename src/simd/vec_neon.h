@@ -69,6 +69,38 @@ static inline vec_u16 vec_u16_half(vec_u16 a)
     return vshrq_n_u16(a, 1);
 }
 
+static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
+{
+    return vmaxq_u16(a, b);
+}
+
+static inline int vec_u16_any(vec_u16 a)
+{
+    const uint64x2_t words = vreinterpretq_u64_u16(a);
+
+    return (vgetq_lane_u64(words, 0) | vgetq_lane_u64(words, 1)) != 0;
+}
+
+static inline vec_u16 vec_u16_even(vec_u16 a, vec_u16 b)
+{
+    return vuzpq_u16(a, b).val[0];
+}
+
+static inline vec_u16 vec_u16_odd(vec_u16 a, vec_u16 b)
+{
+    return vuzpq_u16(a, b).val[1];
+}
+
+static inline vec_u16 vec_u16_zip_low(vec_u16 a, vec_u16 b)
+{
+    return vzipq_u16(a, b).val[0];
+}
+
+static inline vec_u16 vec_u16_zip_high(vec_u16 a, vec_u16 b)
+{
+    return vzipq_u16(a, b).val[1];
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     vst1q_u32(sum, vaddw_u16(vld1q_u32(sum), vget_low_u16(v)));

@@ -68,6 +68,38 @@ static inline vec_u16 vec_u16_half(vec_u16 a)
     return _mm_srli_epi16(a, 1);
 }
 
+static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
+{
+    return _mm_max_epu16(a, b);
+}
+
+static inline int vec_u16_any(vec_u16 a)
+{
+    return !_mm_testz_si128(a, a);
+}
+
+static inline vec_u16 vec_u16_even(vec_u16 a, vec_u16 b)
+{
+    const __m128i low = _mm_set1_epi32(0xffff);
+
+    return _mm_packus_epi32(_mm_and_si128(a, low), _mm_and_si128(b, low));
+}
+
+static inline vec_u16 vec_u16_odd(vec_u16 a, vec_u16 b)
+{
+    return _mm_packus_epi32(_mm_srli_epi32(a, 16), _mm_srli_epi32(b, 16));
+}
+
+static inline vec_u16 vec_u16_zip_low(vec_u16 a, vec_u16 b)
+{
+    return _mm_unpacklo_epi16(a, b);
+}
+
+static inline vec_u16 vec_u16_zip_high(vec_u16 a, vec_u16 b)
+{
+    return _mm_unpackhi_epi16(a, b);
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     const __m128i zero = _mm_setzero_si128();

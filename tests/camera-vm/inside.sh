@@ -1,6 +1,7 @@
 #!/bin/bash
 # usage: inside.sh BUILD PART    (in the virtual machine)
-# Prints 'ok NAME' or 'FAILED NAME' a test. PART: single, multi, libcamera.
+# Prints 'ok NAME' or 'FAILED NAME' a test. PART: single, multi, loopback, cycles,
+# libcamera.
 build=$1 part=$2
 refocus=$build/platform/cli/refocus
 export LIBCAMERA_LOG_LEVELS='*:ERROR'
@@ -119,6 +120,21 @@ multiplanar() {
     done
 }
 
+# A JPEG camera and a depth camera side by side: MJPEG and Z16 find each other by their times.
+loopback_pair() {
+    local feed=$build/tests/camera-vm/vm-loopback paired
+    live --camera 'replay::format RGB24;size 320x240;frames 1' --fast --focus 0.3 \
+        --depth 'replay::format Z16;size 160x120;frames 1' --frames-policy every \
+        --out feed-%d.jpg >/dev/null && head -c 38400 /dev/zero | tr '\0' '\11' >feed.z16 || return
+    "$feed" feed 10 0 MJPEG 320x240 feed-0.jpg 1 Z16 160x120 feed.z16 &
+    sleep 1
+    live --camera v4l2:0 --depth v4l2:1 --frames 10 >loopback.json
+    paired=$(field paired <loopback.json)
+    kill %1
+    grep -q '"format": "MJPEG"' loopback.json && echo "$paired frames of 10 are paired" &&
+        [ "$paired" -ge 8 ]
+}
+
 libcamera_formats() {
     local format
     live --list || return
@@ -156,6 +172,16 @@ case $part in
         check vivid-sink-replugged sink_replugged
         check vivid-no-permission no_permission
         check vivid-pulled-out rebind
+        ;;
+    loopback)
+        live --camera 'replay::format RGB24;size 320x240;frames 1' --fast --frames-policy every \
+            --depth 'replay::format Z16;size 160x120;frames 1' --out in-%d.jpg >/dev/null
+        check loopback-mjpeg-and-z16 "$build/tests/camera-vm/vm-loopback" test 0 in-0.jpg
+        grep '^captured' loopback-mjpeg-and-z16.log
+        check loopback-colour-and-depth loopback_pair
+        ;;
+    cycles) check vivid-cycles "$build/tests/camera-vm/vm-v4l2" 0 "${REFOCUS_CYCLES:-10000}"
+        grep '^cycles' vivid-cycles.log
         ;;
     multi) check vivid-multiplanar multiplanar ;;
     libcamera)

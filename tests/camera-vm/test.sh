@@ -1,7 +1,8 @@
 #!/bin/bash
-# usage: test.sh BUILD
+# usage: test.sh BUILD [--long]
 # Boots the virtual machine with cameras and runs what is in inside.sh there. Prints a line a
-# test; exit status 0, 1 when one failed, 77 when there can be no virtual machine.
+# test; exit status 0, 1 when one failed, 77 when there can be no virtual machine. --long opens and
+# closes a camera $REFOCUS_CYCLES times, default 10000.
 set -u -o pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$(cd "$1" && pwd)
@@ -28,6 +29,11 @@ part() {
 }
 part single 7
 CAMERA_VM_VIVID="n_devs=1 multiplanar=2 node_types=0x1" CAMERA_VM_VIMC=none part multi 1
+CAMERA_VM_LOOPBACK="devices=2 video_nr=0,1 max_buffers=4" CAMERA_VM_VIVID=none CAMERA_VM_VIMC=none \
+    part loopback 2
+if [ "${2-}" = --long ]; then
+    CAMERA_VM_VIMC=none CAMERA_VM_TIMEOUT=3000 part cycles 1
+fi
 if "$build/platform/cli/refocus" --version | grep -q libcamera; then
     CAMERA_VM_VIVID=none part libcamera 3
 fi

@@ -1,6 +1,7 @@
-/* usage: vm-v4l2 NODE
+/* usage: vm-v4l2 NODE [CYCLES]
  * A vivid camera at /dev/videoNODE: every format, and every fault that the driver can be told
- * to have. Runs where the driver is, in the virtual machine. */
+ * to have; or only so many times open, start, stop and close. Runs where the driver is, in the
+ * virtual machine. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -474,9 +475,10 @@ static void another_thread_stops_it(void **state)
     finish(source, 0);
 }
 
-static int descriptors(void)
+/* Entries of a folder. */
+static int count(const char *folder)
 {
-    DIR *dir = opendir("/proc/self/fd");
+    DIR *dir = opendir(folder);
     int n = 0;
 
     assert_non_null(dir);
@@ -486,20 +488,44 @@ static int descriptors(void)
     return n;
 }
 
+static int mappings(void)
+{
+    FILE *file = fopen("/proc/self/maps", "r");
+    int n = 0, c;
+
+    assert_non_null(file);
+    while ((c = getc(file)) != EOF)
+        n += c == '\n';
+    fclose(file);
+    return n;
+}
+
+static int cycles = 60;
+
+/* Every second one by DMA-BUF, every tenth with a frame that is out. */
 static void cycles_leak_nothing(void **state)
 {
-    const int before = descriptors();
+    const int64_t begin = now_ms();
+    int fds = 0, threads = 0, maps = 0;
 
     (void)state;
-    for (int i = 0; i < 60; i++) {
+    for (int i = 0; i < cycles; i++) {
         struct refocus_source *source =
             started(REFOCUS_FRAME_NV12, i & 1 ? REFOCUS_SOURCE_DMABUF : 0);
 
         if (i % 10 == 0)
             next(source);
         refocus_source_close(&source);
+        if (i == 20) {
+            fds = count("/proc/self/fd");
+            threads = count("/proc/self/task");
+            maps = mappings();
+        }
     }
-    assert_int_equal(descriptors(), before);
+    assert_int_equal(count("/proc/self/fd"), fds);
+    assert_int_equal(count("/proc/self/task"), threads);
+    assert_true(mappings() <= maps + 2);
+    printf("cycles: %d in %d s, nothing left open\n", cycles, (int)((now_ms() - begin) / 1000));
 }
 
 int main(int argc, char **argv)
@@ -521,8 +547,14 @@ int main(int argc, char **argv)
         cmocka_unit_test(cycles_leak_nothing),
     };
 
-    if (argc != 2)
+    const struct CMUnitTest many[] = {cmocka_unit_test(cycles_leak_nothing)};
+
+    if (argc != 2 && argc != 3)
         return 2;
     snprintf(node, sizeof node, "v4l2:%.40s", argv[1]);
+    if (argc == 3) {
+        cycles = atoi(argv[2]);
+        return cmocka_run_group_tests(many, NULL, NULL);
+    }
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,74 +15,10 @@ import time
 import unittest
 
 import pictures
-
-REFOCUS = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else 'refocus'
-ROOT = os.environ.get('REFOCUS_SOURCE_ROOT', os.path.join(os.path.dirname(__file__), '../..'))
-PHOTOS = os.environ.get('REFOCUS_PHOTOS', os.path.join(ROOT, '../shared/photos'))
-W, H = 48, 32
-
+from case import Case, H, PHOTOS, REFOCUS, ROOT, W
 
 METHODS = ('sweep', 'search', 'raytrace', 'jittered', 'lightfield', 'blur', 'scatter', 'foveated',
            'interpolated', 'diffusion')
-
-
-class Case(unittest.TestCase):
-    """Runs in a folder of its own with photo.ppm, depth.pgm and friends."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(prefix='refocus-cli-')
-        os.chdir(cls.folder)
-        pictures.ppm('photo.ppm', W, H,
-                     lambda x, y: ((x * 5) & 255, (y * 8) & 255, ((x ^ y) & 7) * 32))
-        pictures.pgm('depth.pgm', W, H, lambda x, y: 255 if x >= W // 2 else 51)
-        pictures.pgm('mm.pgm', W, H,
-                     lambda x, y: 0 if (x, y) == (3, 3) else 500 if x < 24 else 2000, 65535)
-        pictures.pfm('metres.pfm', W, H, lambda x, y: 0.5 if x < 24 else 2.0)
-        pictures.ppm('plain.ppm', W, H, lambda x, y: (90, 160, 30))
-
-    @classmethod
-    def tearDownClass(cls):
-        os.chdir('/')
-        shutil.rmtree(cls.folder)
-
-    def run_it(self, *arguments, **more):
-        return subprocess.run([REFOCUS, *arguments], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, timeout=300,
-                              stdin=subprocess.DEVNULL, **more)
-
-    def succeeds(self, *arguments):
-        result = self.run_it(*arguments)
-        self.assertEqual((result.returncode, result.stderr), (0, ''), arguments)
-        return result.stdout
-
-    def reports(self, *arguments):
-        """The object that --json prints, alone on standard output."""
-        return json.loads(self.succeeds(*arguments, '--json'))
-
-    def fails(self, status, line, *arguments):
-        """Exactly this line, this status, nothing printed, no file made or changed."""
-        before = {name: os.stat(name).st_mtime_ns for name in os.listdir('.')}
-        result = self.run_it(*arguments)
-        after = {name: os.stat(name).st_mtime_ns for name in os.listdir('.')}
-        self.assertEqual(result.stdout, '', arguments)
-        if isinstance(line, str):
-            self.assertEqual(result.stderr, 'refocus: ' + line + '\n', arguments)
-        else:
-            self.assertRegex(result.stderr, line, arguments)
-        self.assertEqual(result.stderr.count('\n'), 1, arguments)
-        self.assertTrue(result.stderr.startswith('refocus: '), arguments)
-        self.assertEqual(result.returncode, status, arguments)
-        self.assertEqual(before, after, arguments)
-
-    def differs(self, a, b, what=None):
-        self.assertFalse(a == b, what)  # without pages of samples
-
-    def same(self, a, b, what=None):
-        self.assertTrue(a == b, what)
-
-    def render(self, *arguments):
-        return ('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm') + arguments
 
 
 class Usage(Case):
@@ -110,9 +46,9 @@ class Usage(Case):
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
                       '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
-                      '-h --help',
+                      '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--estimate --preset --side-by-side --view --focus-at --blur --json -h --help',
+                     '--estimate --preset --strokes --side-by-side --view --focus-at --blur --json -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-distance --blur '
@@ -653,6 +589,57 @@ class DepthAndInfo(Case):
                                  r'build has no OpenCV)'),
                    'depth', 'photo.ppm', '-o', 'd.png', '--estimate', 'no.onnx')
 
+    def strokes(self, name, *strokes, width=W, height=H):
+        with open(name, 'w') as file:
+            json.dump({'refocus-strokes': 1, 'width': width, 'height': height,
+                       'strokes': strokes}, file)
+
+    def test_depth_of_strokes(self):
+        ground = {'kind': 'all', 'gradient': [[0, 0, 0], [0, H - 1, 1]]}
+        brush = {'kind': 'brush', 'radius': 3, 'points': [[5, 5]], 'disparity': 1}
+        self.strokes('s.json', ground, brush)
+        report = self.reports('depth', 'photo.ppm', '--strokes', 's.json', '-o', 'a.png')
+        self.assertEqual((report['width'], report['height']), (W, H))
+        width, height, bits, channels, rows = pictures.read_png('a.png')
+        self.assertEqual((width, height, bits, channels), (W, H, 16, 1))
+        for y, row in enumerate(rows):
+            self.assertLessEqual(abs(int.from_bytes(row[-2:], 'big') - 65535 * y / (H - 1)), 1)
+        self.assertEqual(rows[5][10:12], b'\xff\xff')
+        # over a depth map: the last strokes alone change it
+        self.strokes('s.json', brush)
+        self.succeeds('depth', 'photo.ppm', '--depth', 'depth.pgm', '--strokes', 's.json', '-o',
+                      'b.png')
+        self.succeeds('depth', 'depth.pgm', '-o', 'c.png')
+        over, under = pictures.read_png('b.png')[4], pictures.read_png('c.png')[4]
+        self.assertEqual(sum(over[y][2 * x:2 * x + 2] != under[y][2 * x:2 * x + 2]
+                             for y in range(H) for x in range(W)), 29)
+        self.succeeds('depth', 'photo.ppm', '--strokes', 's.json', '-o', 'v.png', '--view',
+                      'confidence')
+        self.strokes('s.json', {'kind': 'object', 'radius': 3, 'points': [[12, 12]],
+                                'disparity': 0.5})
+        self.succeeds('depth', 'plain.ppm', '--strokes', 's.json', '-o', 'd.pfm')
+
+    def test_depth_of_bad_strokes(self):
+        command = ('depth', 'photo.ppm', '-o', 'new.png', '--strokes')
+        self.strokes('s.json', width=640)
+        self.fails(1, 's.json: its strokes are of a picture of 640x32, the photo has 48x32',
+                   *command, 's.json')
+        self.strokes('s.json', {'kind': 'all', 'disparity': 2})
+        self.fails(1, 's.json: strokes[0].disparity must be a number from 0 to 1', *command,
+                   's.json')
+        self.fails(1, 'no.json: No such file or directory', *command, 'no.json')
+        self.fails(1, '.: Is a directory', *command, '.')
+        self.fails(1, re.compile(r'^refocus: photo.ppm: line 1 is no JSON: '), *command,
+                   'photo.ppm')
+        for content, why in ((b'', 'it is empty'), (b' ' * (64 << 20) + b' ',
+                                                    'it has more than 67108864 bytes')):
+            with open('s.json', 'wb') as file:
+                file.write(content)
+            self.fails(1, 's.json: ' + why, *command, 's.json')
+        self.fails(2, '--strokes: they are not painted over half a picture; give LEFT and RIGHT',
+                   *command, 's.json', '--side-by-side')
+        os.remove('s.json')
+
     def test_depth_into_jpeg(self):
         self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'p.jpg', '--blur', '0')
         self.succeeds('depth', 'p.jpg', '--depth', 'depth.pgm', '-o', 'd0.jpg', '--focus-at',
@@ -937,6 +924,25 @@ class Photos(Case):
         report = self.reports('render', photo, '-o', 'out.jpg', '--rays', '8', '--region',
                               '400,1000,64,64', '--f-number', '0.5')
         self.assertGreater(report['blur'], 1)
+
+    def test_eight_strokes(self):
+        """examples/strokes/street.json: what lies under the strokes, and far from them."""
+        strokes = os.path.join(ROOT, 'examples/strokes/street.json')
+        with open(strokes) as file:
+            self.assertEqual(len(json.load(file)['strokes']), 8)
+        photo = self.path('mono/street_8_all-in-focus.jpg')
+        self.succeeds('depth', photo, '--strokes', strokes, '-o', 'street.pgm')
+        width, height, samples = pictures.read_pnm('street.pgm')
+        self.assertEqual((width, height), (2000, 1333))
+        for x, y, d in ((1500, 1100, 0.85), (1520, 600, 0.85), (1250, 600, 0.36),
+                        (1250, 780, 0.36), (1900, 950, 0.5), (100, 700, 0.79),
+                        (330, 1200, 0.77), (1000, 100, 0.15), (1100, 1250, 0.9 - 82 * 0.75 / 642),
+                        (800, 500, 0.15)):
+            self.assertAlmostEqual(samples[y * width + x] / 65535, d, 2, (x, y))
+        report = self.reports('render', photo, '--depth', 'street.pgm', '--focus-at',
+                              '1500,1100', '--blur', '36', '-o', 'out.jpg', '--region',
+                              '1400,500,200,200')
+        self.assertAlmostEqual(report['focus'], 0.85, 3)
 
     def test_kinect(self):
         report = self.reports('depth', self.path('rgbd/tum-office-depth.png'), '-o', 'out.png',

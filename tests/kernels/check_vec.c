@@ -59,6 +59,11 @@ static uint16_t c_mul_high(uint16_t a, uint16_t b)
     return (uint16_t)(((uint32_t)a * b) >> 16);
 }
 
+static uint16_t c_max(uint16_t a, uint16_t b)
+{
+    return a > b ? a : b;
+}
+
 static vec_u16 half(vec_u16 a, vec_u16 b)
 {
     (void)b;
@@ -92,6 +97,7 @@ static const struct {
     {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
     {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
+    {"max", vec_u16_max, c_max},
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
 };
 
@@ -143,6 +149,39 @@ static int check_set(void)
                 printf("FAIL  vec_u16_set, %s: of %d is %d\n", TEXT(RF_VEC_SET), x, out[lane]);
                 return 1;
             }
+    }
+    return 0;
+}
+
+/* Operations that move lanes, and any(). */
+static int check_order(void)
+{
+    enum { N = (int)VEC_U16 };
+    uint16_t in[2 * MOST_LANES], out[4][MOST_LANES];
+    vec_u16 a, b;
+
+    for (int i = 0; i < 2 * N; i++)
+        in[i] = (uint16_t)(0x8000 + 257 * i);
+    a = vec_u16_load(in);
+    b = vec_u16_load(in + N);
+    vec_u16_store(out[0], vec_u16_even(a, b));
+    vec_u16_store(out[1], vec_u16_odd(a, b));
+    vec_u16_store(out[2], vec_u16_zip_low(a, b));
+    vec_u16_store(out[3], vec_u16_zip_high(a, b));
+    for (int i = 0; i < N; i++) {
+        if (out[0][i] != in[2 * i] || out[1][i] != in[2 * i + 1] ||
+            out[2][i] != in[i / 2 + i % 2 * N] || out[3][i] != in[N / 2 + i / 2 + i % 2 * N]) {
+            printf("FAIL  vec_u16_even, odd or zip, %s: lane %d\n", TEXT(RF_VEC_SET), i);
+            return 1;
+        }
+    }
+    for (int i = 0; i <= N; i++) { /* one lane alone, then none */
+        memset(in, 0, sizeof in);
+        in[i] = i % 2 ? 1 : 0x8000;
+        if (!vec_u16_any(vec_u16_load(in)) != (i == N)) {
+            printf("FAIL  vec_u16_any, %s: lane %d\n", TEXT(RF_VEC_SET), i);
+            return 1;
+        }
     }
     return 0;
 }
@@ -208,7 +247,7 @@ static int check_products(void)
 int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
-    int failures = check_set() + check_add_to() + check_products();
+    int failures = check_set() + check_order() + check_add_to() + check_products();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);

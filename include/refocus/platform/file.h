@@ -212,6 +212,26 @@ REFOCUS_API int refocus_photo_write_depth(const char *path, const char *original
                                           const struct refocus_depth_write *depth,
                                           struct refocus_reason *reason);
 
+/**
+ * Read any file whole.
+ *
+ * @param max_bytes  larger files are refused
+ * @param blob       takes the bytes, which free() frees; empty after an error
+ * @param reason     why it failed; may be NULL
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_SIZE,
+ *         REFOCUS_ERR_MEMORY. Thread-safe.
+ */
+REFOCUS_API int refocus_file_read(const char *path, uint64_t max_bytes,
+                                  struct refocus_blob *blob, struct refocus_reason *reason);
+
+/**
+ * Write any file, whole or not at all: beside its place, then renamed.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Thread-safe.
+ */
+REFOCUS_API int refocus_file_write(const char *path, const void *bytes, size_t size,
+                                   struct refocus_reason *reason);
+
 /** Formats of this build, e.g. "JPEG PNG HEIC PPM PGM PFM". Thread-safe. */
 REFOCUS_API const char *refocus_file_formats(void);
 

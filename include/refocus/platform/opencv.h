@@ -95,6 +95,30 @@ REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo, const cha
                                     struct refocus_cv_reason *reason);
 REFOCUS_API void refocus_cv_estimate_free(struct refocus_estimate *estimate);
 
+/** A network that is read once and run as often as wanted, as for a camera. Opaque; reentrant. */
+struct refocus_estimator;
+
+/**
+ * Read a network.
+ *
+ * @param estimator  receives the network, or NULL on an error; ended by
+ *                   refocus_cv_estimator_destroy()
+ * @return as refocus_cv_estimate(), but that the network's input and output are not yet tried
+ */
+REFOCUS_API int refocus_cv_estimator_create(struct refocus_estimator **estimator,
+                                            const char *model,
+                                            const struct refocus_network *network,
+                                            struct refocus_cv_reason *reason);
+
+/** Depth of one picture, larger = nearer. @return as refocus_cv_estimate() */
+REFOCUS_API int refocus_cv_estimator_run(struct refocus_estimator *estimator,
+                                         const struct refocus_image *photo,
+                                         struct refocus_estimate *estimate,
+                                         struct refocus_cv_reason *reason);
+
+/** Free a network and set the handle to NULL. A NULL handle is fine. */
+REFOCUS_API void refocus_cv_estimator_destroy(struct refocus_estimator **estimator);
+
 /**
  * Joint bilateral upsampling (Kopf et al. 2007) of a map of disparities to the photo's size, of
  * OpenCV's parts: the mean of the samples around, weighted by nearness and likeness. The core's

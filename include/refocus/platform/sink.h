@@ -3,12 +3,14 @@
  * Part of librefocus-capture. A sink is opened by name:
  *
  *     null                   nowhere, for timing
+ *     window                 a window by SDL2, or the whole screen of a console (KMS)
  *     v4l2:/dev/video9       a V4L2 output node (virtual camera)
  *     y4m:FILE               a YUV4MPEG2 stream, 4:2:0, BT.601 limited range
  *     raw:FILE               RGB8 frames without a header
  *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0
  *
- * FILE may be "-" for standard output, or a pipe. A sink is reentrant.
+ * FILE may be "-" for standard output, or a pipe. A sink is reentrant. The window has a thread of
+ * its own, which must be the only one of the process that uses SDL's video.
  */
 #ifndef REFOCUS_PLATFORM_SINK_H
 #define REFOCUS_PLATFORM_SINK_H
@@ -52,7 +54,8 @@ REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int hei
  * @param image  RGB8; not kept
  * @return REFOCUS_OK, REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader closed the pipe, the
  *         device is unplugged), REFOCUS_ERR_TIMEOUT (the device took none for a second: the
- *         frame is dropped), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never raises SIGPIPE.
+ *         frame is dropped), REFOCUS_ERR_END (the user closed the window, or pressed Escape or
+ *         q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never raises SIGPIPE.
  */
 REFOCUS_API int refocus_sink_write(struct refocus_sink *sink,
                                    const struct refocus_image *image,

@@ -142,6 +142,7 @@ static void wrong_names_are_refused(void **state)
         {"replay::at 3 explode", REFOCUS_ERR_FORMAT},
         {"replay::size 64x48;stride 3", REFOCUS_ERR_SIZE},
         {"replay::from y4m:not-there.y4m", REFOCUS_ERR_GONE},
+        {"replay::from replay:itself", REFOCUS_ERR_FORMAT},
     };
 
     (void)state;

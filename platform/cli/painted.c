@@ -1,0 +1,115 @@
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <refocus/platform/strokes.h>
+#include "painted.h"
+#include "report.h"
+
+/* What refocus_strokes_load() takes at the most, and a byte more that shows a longer file. */
+enum { MAX_BYTES = (64 << 20) + 1 };
+
+static int read_file(const char *name, char **bytes, size_t *size)
+{
+    FILE *const file = fopen(name, "rb");
+    size_t room = 1 << 16;
+    char *more;
+
+    *size = 0;
+    *bytes = file ? malloc(room) : NULL;
+    if (!file)
+        return report_failure(EXIT_FAILED, name, "%s", strerror(errno));
+    while (*bytes) {
+        *size += fread(*bytes + *size, 1, room - *size, file);
+        if (*size < room || *size >= MAX_BYTES)
+            break;
+        room *= 2;
+        more = realloc(*bytes, room);
+        if (!more)
+            free(*bytes);
+        *bytes = more;
+    }
+    if (!*bytes || ferror(file)) {
+        const char *const why = *bytes ? strerror(errno) : "not enough memory";
+
+        fclose(file);
+        return report_failure(EXIT_FAILED, name, "%s", why);
+    }
+    fclose(file);
+    return EXIT_DONE;
+}
+
+int painted_read(struct input *input, const char *photo, const struct depth_settings *settings)
+{
+    struct refocus_depth_map *const map = &input->made.depth;
+    struct refocus_reason reason = {""};
+    int status;
+
+    memset(input, 0, sizeof *input);
+    input->photo_name = input->depth_name = photo;
+    status = refocus_photo_read(&input->photo, photo, NULL, &reason);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, photo, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    if (!input->photo->image.plane[0])
+        return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; give a photo");
+    map->width = input->width = input->photo->image.width;
+    map->height = input->height = input->photo->image.height;
+    map->meaning = REFOCUS_DEPTH_DISPARITY;
+    input->report.value_near = map->value_near = 1;
+    input->report.near_m = isnan(settings->near_m) ? 0 : settings->near_m;
+    input->report.far_m = isnan(settings->far_m) ? 0 : settings->far_m;
+    input->depth_from = &input->made;
+    return EXIT_DONE;
+}
+
+/* The painting's disparities become the input's; all of them are known. */
+static int take(struct input *input, const struct refocus_strokes *strokes)
+{
+    const size_t pixels = (size_t)input->width * (size_t)input->height;
+
+    if (!input->disparity)
+        input->disparity = malloc(pixels * sizeof *input->disparity);
+    if (!input->confidence) {
+        input->confidence = malloc(pixels);
+        if (input->confidence)
+            memset(input->confidence, 255, pixels);
+    }
+    if (!input->disparity || !input->confidence)
+        return REFOCUS_ERR_MEMORY;
+    memcpy(input->disparity, refocus_strokes_disparity(strokes),
+           pixels * sizeof *input->disparity);
+    return REFOCUS_OK;
+}
+
+int painted_apply(struct input *input, const char *file)
+{
+    struct refocus_disparity base = refocus_disparity16(input->disparity, input->width,
+                                                        input->height,
+                                                        2 * (ptrdiff_t)input->width);
+    struct refocus_strokes_reason reason = {""};
+    struct refocus_strokes *strokes = NULL;
+    struct refocus_photo_info *const info = &input->made.info;
+    char *bytes;
+    size_t size;
+    int code, status;
+
+    code = read_file(file, &bytes, &size);
+    if (code != EXIT_DONE)
+        return code;
+    status = refocus_strokes_create(&strokes, &input->photo->image,
+                                    input->disparity ? &base : NULL);
+    if (status == REFOCUS_OK)
+        status = refocus_strokes_load(strokes, bytes, size, &reason);
+    if (status == REFOCUS_OK)
+        status = take(input, strokes);
+    if (status != REFOCUS_OK)
+        code = report_failure(EXIT_FAILED, file, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    else if (info->evidence_count < REFOCUS_INFO_LINES)
+        snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
+                 "painted: %d strokes", refocus_strokes_count(strokes));
+    refocus_strokes_destroy(&strokes);
+    free(bytes);
+    return code;
+}

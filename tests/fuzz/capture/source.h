@@ -1,0 +1,11 @@
+/* What the targets that read a source share. */
+#ifndef RF_FUZZ_SOURCE_H
+#define RF_FUZZ_SOURCE_H
+
+#include "backend.h"
+#include "failing.h"
+
+/* Open, start, take some frames and read every byte of them, restart, close. */
+void fuzz_source(const char *name);
+
+#endif

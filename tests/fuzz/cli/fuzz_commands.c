@@ -1,0 +1,60 @@
+/* Bytes as a client of `refocus live` sends them, in pieces. */
+#include <stdlib.h>
+#include <string.h>
+#include "failing.h"
+#include "live.h"
+#include "live_lines.h"
+
+int64_t live_now_ns(void)
+{
+    static int64_t now;
+
+    return now += 100000000; /* ten looks a second: pulls are seen under way */
+}
+
+static void check(struct live_focus *focus)
+{
+    double disparity, blur, point[2], seconds;
+
+    live_focus_get(focus, live_now_ns(), &disparity, &blur);
+    if (!(disparity >= 0 && disparity <= 1 && blur >= 0 && blur <= focus->blur_most))
+        abort();
+    if (live_focus_point(focus, point, &seconds)) {
+        if (!(seconds >= 0 && seconds <= 3600))
+            abort();
+        live_focus_pull(focus, point[0] / 100, seconds); /* any number, and none */
+    }
+}
+
+static void obey(void *user, char *line)
+{
+    struct live_focus *focus = user;
+    char why[200] = "";
+    bool quit = false;
+
+    if (strlen(line) >= sizeof((struct live_lines *)0)->text)
+        abort();
+    if (!live_focus_command(focus, line, &quit, why, sizeof why) && !why[0])
+        abort();
+    check(focus);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const struct live_settings settings = {.lens = LENS_SETTINGS_NONE};
+    struct live_lines lines = {.length = 0};
+    struct live_focus focus;
+
+    live_focus_init(&focus, &settings);
+    focus.blur = 5;
+    focus.blur_most = 10;
+    for (size_t at = 0, piece = 1; at < size; at += piece, piece = piece % 61 + 7) {
+        const size_t left = size - at;
+
+        live_lines_take(&lines, (const char *)data + at, left < piece ? left : piece,
+                        obey, &focus);
+    }
+    check(&focus);
+    pthread_mutex_destroy(&focus.lock);
+    return 0;
+}
