@@ -239,7 +239,8 @@ def main():
         programs = {arch: build(folder, arch) for arch in ARCHES}
         counts, needs, goes = report(counter, programs, mca, [32] if args.quick else [32, 64])
     text = ["## ARM: instructions counted, cycles estimated\n",
-            f"examples/data/portrait brought to each size, K = {BLUR}, `sweep`, focus 0.689, NEON, "
+            f"examples/data/portrait brought to each size by repeating pixels, K = {BLUR}, `sweep`, "
+            "focus 0.689, NEON, "
             "one thread, RGB in and out. Instructions are counted exactly, under emulation. Cycles "
             "are an ESTIMATE that no ARM machine has confirmed: LLVM's models of the cores (the "
             "A57's schedule stands for the A72, the Neoverse N1's for the A76), each block as if "

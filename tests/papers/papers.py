@@ -224,6 +224,16 @@ def fields(refocus, scene, out):
     return "\n".join(lines) + "\n"
 
 
+def figure_8(refocus, scene, out):
+    """Labelled crops along depth edges, as in the paper's Fig. 8."""
+    view = next(v for v in scene_views(scene, (20,)))
+    run(refocus, "compare", scene / "allfocus.png", "--depth", scene / "disparity.png",
+        "--reference", scene / view["file"], "--focus", view["df"], "--blur", 20, "--methods",
+        "sweep,search:rays=64:iterations=1,raytrace:rays=64,jittered:cell=4,"
+        "lightfield:rays=256,blur:rays=64", "-o", out / "fig8.jpg")
+    return "![crops along depth edges by each method](papers/fig8.jpg)\n"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", type=Path)
@@ -309,6 +319,8 @@ def main():
     at20 = {n: sum(rmse[n][20]) / len(rmse[n][20]) for n in shown}
     relative = first["blur"]["cpu_ms"]["min"] / first["lightfield"]["cpu_ms"]["min"]
     jitter = first["blur"]["cpu_ms"]["min"] / first["jittered a=4"]["cpu_ms"]["min"]
+    text += ["## Yang et al. 2016, Fig. 8\n", "portrait, K = 20:\n",
+             figure_8(refocus, folder / "portrait", pictures)]
     text += ["## Mulder & van Liere 2000\n",
              "One thread, focus 0.5:\n", mulder(refocus, folder),
              "## NVIDIA 2004\n",
