@@ -89,6 +89,31 @@ def frames(refocus, repeat):
                         "prepare ms", "render ms", "frames a second", "to the box blur"], rows)])
 
 
+def interactive(build):
+    """Rows on how soon a renderer answers, on a drawn picture of 12 megapixels."""
+    lines = ["## Interactive use\n",
+             "`render-interactive`: 4000x3000, 64 rays, 2 threads; the best of five, milliseconds. "
+             "Previews are the photo at 1/2, 1/4 and 1/8 of its size.\n"]
+    results = []
+    for blur in (20, 100):
+        done = subprocess.run([build / "tests" / "render" / "render-interactive", "--blur",
+                               str(blur), "--threads", "2"], stdout=subprocess.PIPE, text=True,
+                              check=True)
+        text = done.stdout
+        results.append(json.loads(text[text.index("{\n"):text.index("\n}\n") + 2]))
+    lines += ["| what | K = 20 | K = 100 |", "| --- | --- | --- |"]
+    for one, other in zip(results[0]["times"], results[1]["times"]):
+        if one:
+            lines.append(f"| {one['what']} | {one['ms']:.1f} | {other['ms']:.1f} |")
+    lines += ["\nCancelled at moments spread over the first two seconds, K = 100: the longest time "
+              "that a call went on, by the clock, and what all threads computed in it.\n",
+              "| call | times | worst ms | mean ms | worst processor ms |",
+              "| --- | --- | --- | --- | --- |"]
+    lines += [f"| {c['of']} | {c['cancelled']} | {c['worst_ms']:.1f} | {c['mean_ms']:.1f} "
+              f"| {c['worst_cpu_ms']:.1f} |" for c in results[1]["cancel"]]
+    return "\n".join(lines)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", type=Path)
@@ -99,6 +124,7 @@ def main():
 
     sections.put(args.out, "methods", "tests/performance.py", methods(refocus, args.repeat))
     sections.put(args.out, "frames", "tests/performance.py", frames(refocus, args.repeat))
+    sections.put(args.out, "interactive", "tests/performance.py", interactive(args.build))
     print(f"wrote {args.out}", file=sys.stderr)
 
 

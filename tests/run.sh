@@ -5,7 +5,8 @@
 # 'N passed, N failed, N skipped', the sum over all builds; the exit status is 1 when
 # anything failed.
 #   --quick  one build with gcc and its tests
-#   --long   also lets each fuzz target search for a minute, opens and closes a V4L2 camera
+#   --long   also runs all tests under the thread sanitizer, lets each fuzz target search for
+#            a minute, opens and closes a V4L2 camera
 #            10,000 times, and compiles against each release of libcamera
 # Builds are kept in $REFOCUS_BUILDS (build-tests in the source folder) and reused.
 set -u -o pipefail
@@ -114,6 +115,13 @@ minimal_stage() {
     same_bytes minimal
 }
 
+bare_stage() {
+    say 'the command without cameras, windows and OpenCV: it works with what is left'
+    CC=gcc CXX=g++ build bare --buildtype=release -Dv4l2=disabled -Dlibcamera=disabled \
+        -Dsdl2=disabled -Dopencv=disabled -Dheic=disabled -Dtools=enabled || return
+    run bare --suite cli --suite capture
+}
+
 # A finding must end the program, and the reports name lines.
 memory_stage() {
     say 'address and undefined behaviour sanitizers: all tests'
@@ -123,15 +131,19 @@ memory_stage() {
         run asan --timeout-multiplier 5
 }
 
+# The whole suite, most of which has one thread, takes a quarter of an hour of processor time.
 thread_stage() {
-    say 'thread sanitizer: the tests with threads'
+    local which=(--suite threads --timeout-multiplier 5)
+
+    [ "$mode" != long ] || which=(--timeout-multiplier 20)
+    say "thread sanitizer: $([ "$mode" = long ] && echo all tests || echo the tests with threads)"
     CC=gcc CXX=g++ build tsan --buildtype=debugoptimized -Db_sanitize=thread -Db_lundef=false \
         || return
     # gcc 12's run time does not know kernels that place memory more randomly.
     if setarch -R true 2>/dev/null; then
         wrap=(setarch -R)
     fi
-    TSAN_OPTIONS=halt_on_error=1 run tsan --suite threads --timeout-multiplier 5
+    TSAN_OPTIONS=halt_on_error=1 run tsan "${which[@]}"
     wrap=()
 }
 
@@ -214,13 +226,14 @@ need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev lib
     libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
-need_packages libsdl2-dev xvfb || skip 'the window' 'SDL2 or Xvfb is missing'
+need_packages libsdl2-dev xvfb xdotool || skip 'the window' 'SDL2, Xvfb or xdotool is missing'
 
 gcc_stage
 if [ "$mode" != quick ]; then
     clang_stage
     camera_stage
     minimal_stage
+    bare_stage
     memory_stage
     thread_stage
     cross_stage aarch64 arm64 g++-aarch64-linux-gnu

@@ -152,9 +152,10 @@ static inline struct refocus_upsample_params refocus_upsample_params_default(voi
  * Bring a map of disparities to the size of the photo that it belongs to, with its edges
  * on the photo's: refocus_prepare() does the same with maps of another size.
  *
- * A joint bilateral filter (Kopf et al. 2007) whose pixels take the mean of the surface that
- * carries the most weight instead of the mean of all, so that no disparity between two
- * surfaces is made up. The result does not depend on threads or processor. A map of the
+ * Joint bilateral upsampling (Kopf et al. 2007) averages the samples around a pixel by nearness
+ * and likeness, and so makes up disparities between surfaces. Here the samples are parted into
+ * surfaces first; the pixel goes to the one with the most of nearness times mean likeness, and
+ * takes the plane through its samples. The result does not depend on threads or processor. A map of the
  * photo's size is copied, one with more columns or rows is sampled.
  *
  * @param photo   any packed format
@@ -163,7 +164,7 @@ static inline struct refocus_upsample_params refocus_upsample_params_default(voi
  * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may not
  *                overlap the map
  * @param stride  bytes from a row of @p out to the next; even; may be negative
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 6 bytes a pixel are
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 7 bytes a pixel are
  *         needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD. On an
  *         error @p out is untouched.
  *

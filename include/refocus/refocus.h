@@ -9,6 +9,7 @@
 #include <refocus/measure.h>
 #include <refocus/render.h>
 #include <refocus/status.h>
+#include <refocus/temporal.h>
 #include <refocus/version.h>
 
 #endif

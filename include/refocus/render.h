@@ -42,6 +42,23 @@ struct refocus_log {
     void *user;
 };
 
+/**
+ * The caller's threads in place of the renderer's own, for programs that have a pool.
+ *
+ * parallel_for(user, work, context, count) calls work(context, i) once for each i = 0 ..
+ * count - 1 and returns when all calls have returned. In any order, on any threads, one after
+ * the other or all at once. An item is a worker, not a piece of the picture: it takes
+ * pieces for as long as there are any, so the first few items may do all the work, and the
+ * last ones nothing. count is at most params.threads. It is called from the thread that called
+ * refocus_prepare() or refocus_render(), some dozens of times a picture, and never from
+ * within itself. An item that is called twice or not at all makes the result undefined.
+ */
+struct refocus_parallel {
+    void (*parallel_for)(void *user, void (*work)(void *context, int32_t item), void *context,
+                         int32_t count);
+    void *user;
+};
+
 /** Instruction sets. AUTO is the best that the processor has. */
 enum refocus_cpu {
     REFOCUS_CPU_AUTO = 0,
@@ -57,7 +74,8 @@ struct refocus_renderer_params {
     int32_t max_width;       /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
     int32_t max_height;      /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
     float max_blur_radius;   /**< largest K, 0 to REFOCUS_MAX_BLUR_RADIUS */
-    int32_t threads;         /**< 1 to 64; 0 = one for each processor */
+    int32_t threads;         /**< 1 to 64; 0 = one for each processor. With `parallel`: the most
+                                  that work at once */
     uint32_t cpu;            /**< enum refocus_cpu */
     uint64_t max_memory;     /**< bytes; creation fails above; 0 = no limit */
     struct refocus_allocator allocator; /**< all NULL: malloc and free */
@@ -66,6 +84,15 @@ struct refocus_renderer_params {
                                   of their own (sweep, search, raytrace, jittered, blur):
                                   REFOCUS_METHOD_BIT() of each, or-ed */
     uint32_t reserved;       /**< 0 */
+    struct refocus_parallel parallel;   /**< parallel_for NULL: threads of its own */
+    uint32_t previews;       /**< 1: refocus_prepare() also makes the photo at 1/2, 1/4 and 1/8 of
+                                  its size, for `reduce` of struct refocus_render_params */
+    uint32_t in_place;       /**< 1: strip mode, for little memory. The photo and its disparities,
+                                  which are of its size, are not copied: they stay as they are and
+                                  where they are until the next refocus_prepare() or the
+                                  renderer's end. Rendering goes through them twice, block by
+                                  block, and takes longer; the bytes are the same. For sweep,
+                                  search, raytrace, jittered and blur; not with `previews` */
 };
 
 static inline struct refocus_renderer_params
@@ -97,6 +124,15 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  *     interpolated  32 (W + 16) (H + 16) + 24 (W + 64) T + 2^16
  *     diffusion     96 (W + 16) (H + 16) + 2^18
  *
+ * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.
+ *
+ * Strip mode, params->in_place, takes no more than
+ *
+ *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + 512) + 24 P^2 + 2^17
+ *
+ * with S = 144 + 2N - M + max(M, 2P), M = P + 28 and N = max(M, 2P + 9), M and N rounded up to
+ * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes.
+ *
  * @return 0 if a parameter is out of its range. Thread-safe.
  */
 REFOCUS_API uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params);
@@ -117,13 +153,15 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
 
 /**
  * Take a photo and its disparities in. Both are copied in the form the renderer needs; the
- * caller's memory is not used after the return.
+ * caller's memory is not used after the return. In strip mode (params.in_place) they are not
+ * copied, and stay with the renderer until the next refocus_prepare() or its end.
  *
  * @param photo      all in focus; at most max_width x max_height
  * @param disparity  of any size; covers the same view as the photo. Another size than
  *                   the photo's is brought to it by following the photo's edges.
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED.
- *         After an error nothing is prepared.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED, in strip
+ *         mode REFOCUS_ERR_UNSUPPORTED for disparities of another size. After an error nothing
+ *         is prepared.
  */
 REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
                                 const struct refocus_image *photo,
@@ -250,6 +288,13 @@ struct refocus_render_params {
     uint32_t solver;        /**< diffusion: enum refocus_solver */
     float conductivity;     /**< diffusion: weight W where blur is strongest, 0.01 to 1 */
     const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size */
+
+    int32_t reduce;         /**< 1, or with a renderer for previews 2, 4 or 8: the picture at that
+                                 part of its size, rounded up. The photo is reduced by halves, in
+                                 linear light, pixels of other surfaces left out. The region, if
+                                 any, and `out` are in reduced pixels, all other lengths in
+                                 those of the photo: the result is that of the reduced photo
+                                 with K / reduce */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole
@@ -284,6 +329,7 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
     params.field_falloff = (float)0.3;
     params.layers = 4;
     params.conductivity = (float)0.125;
+    params.reduce = 1;
     return params;
 }
 
@@ -294,6 +340,11 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  * (Yang et al. 2016, eq. 4). Pixels of less than half a pixel of blur, with nothing
  * blurred reaching over them, come out as they went in; alpha always does (255 where
  * the photo has none).
+ *
+ * What the last call made is kept as long as it holds: another aperture shape, sigma or region
+ * costs only the rays; other rays or highlights, what depends on them; another focus or K, all
+ * but the light of the photo. A region costs what lies in it and around it. None of this changes
+ * a byte.
  *
  * @param params  see struct refocus_render_params
  * @param out     of the size of the region, any format and stride; may not overlap
@@ -308,7 +359,8 @@ REFOCUS_API int refocus_render(struct refocus_renderer *renderer,
 
 /**
  * End the refocus_prepare() or refocus_render() that is running, if any, early: it
- * returns REFOCUS_ERR_CANCELLED soon. Has no effect on later calls. Thread-safe.
+ * returns REFOCUS_ERR_CANCELLED as soon as each thread has done the few pixels that it is at, a few
+ * milliseconds at most whatever the picture. Has no effect on later calls. Thread-safe.
  */
 REFOCUS_API void refocus_cancel(struct refocus_renderer *renderer);
 

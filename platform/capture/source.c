@@ -53,8 +53,8 @@ static int unknown(const char *name, struct refocus_reason *reason)
     for (int i = 0; i < 2; i++)
         if (strncmp(name, known[i], strlen(known[i])) == 0 && name[strlen(known[i])] == ':')
             return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                                   "%s is not in this build or its module is gone; there are %s", known[i],
-                                   refocus_source_backends());
+                                   "this build has no %s, or its module is gone; there are %s",
+                                   known[i], refocus_source_backends());
     return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                            "no such kind of source; give KIND:NAME with one of %s",
                            refocus_source_backends());

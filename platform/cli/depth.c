@@ -17,8 +17,9 @@ struct settings {
     struct depth_settings depth;
     double focus_at[2], blur;
     const char *output, *model, *strokes;
-    int view, preset;
-    bool side_by_side;
+    struct network_settings network;
+    int view;
+    bool side_by_side, stereo_file;
     bool json;
 };
 
@@ -50,6 +51,13 @@ static const struct option options[] = {
      .name = "--full",
      .offset = offsetof(struct settings, depth.full),
      .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_CHOICE,
+     .name = "--upsample",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, depth.upsample),
+     .choice = made_upsampler,
+     .help = "how --full does it: the library's own way, or one of OpenCV's filters to compare "
+             "with; the last three need the module refocus-ximgproc"},
     {.kind = OPTION_TEXT,
      .name = "--estimate",
      .argument = "MODEL.onnx",
@@ -58,15 +66,48 @@ static const struct option options[] = {
     {.kind = OPTION_CHOICE,
      .name = "--preset",
      .argument = "NAME",
-     .offset = offsetof(struct settings, preset),
+     .offset = offsetof(struct settings, network.preset),
      .choice = made_preset,
-     .help = "which network it is: size and range of its input"},
+     .help = "which network it is: range of its input, and its size where the file leaves "
+             "it open"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--input-size",
+     .argument = "W,H",
+     .offset = offsetof(struct settings, network.size),
+     .least = 32,
+     .greatest = 2048,
+     .count = 2,
+     .help = "of the picture that the network takes; default: what the file says, else the "
+             "preset"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--input-mean",
+     .argument = "R,G,B",
+     .offset = offsetof(struct settings, network.mean),
+     .least = -1000,
+     .greatest = 1000,
+     .count = 3,
+     .help = "codes that the network takes as 0; default: the preset's"},
+    {.kind = OPTION_NUMBER,
+     .name = "--input-scale",
+     .argument = "S",
+     .offset = offsetof(struct settings, network.scale),
+     .least = -1000,
+     .greatest = 1000,
+     .help = "and what a code is worth: value = (code - mean) S; default: the preset's"},
+    {.kind = OPTION_FLAG,
+     .name = "--far-is-large",
+     .offset = offsetof(struct settings, network.inverse),
+     .help = "the network gives distances: larger = farther"},
     {.kind = OPTION_TEXT,
      .name = "--strokes",
      .argument = "FILE.json",
      .offset = offsetof(struct settings, strokes),
      .help = "paint these strokes: over nothing, or over the depth of --depth, --estimate or a "
              "stereo pair"},
+    {.kind = OPTION_FLAG,
+     .name = "--stereo-file",
+     .offset = offsetof(struct settings, stereo_file),
+     .help = "FILE holds both pictures of a stereo pair: an MPO or a stereo HEIC"},
     {.kind = OPTION_FLAG,
      .name = "--side-by-side",
      .offset = offsetof(struct settings, side_by_side),
@@ -244,7 +285,7 @@ static int write_output(const struct settings *settings, const struct input *inp
 
 static bool is_made(const struct settings *settings, const char *const *files)
 {
-    return files[1] || settings->side_by_side || settings->model;
+    return files[1] || settings->side_by_side || settings->stereo_file || settings->model;
 }
 
 static int check(const struct settings *settings, const char *const *files)
@@ -258,10 +299,12 @@ static int check(const struct settings *settings, const char *const *files)
     if (status == EXIT_DONE)
         status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
     if (status == EXIT_DONE &&
-        (files[1] != NULL) + settings->side_by_side + (settings->model != NULL) +
+        (files[1] != NULL) + settings->side_by_side + settings->stereo_file +
+                (settings->model != NULL) +
                 (settings->depth.file != NULL) > 1)
         return report_failure(EXIT_WRONG, files[0],
                               "its depth is given twice; give one of RIGHT, --side-by-side, "
+                              "--stereo-file, "
                               "--estimate and --depth");
     if (status == EXIT_DONE && is_made(settings, files) && is_jpeg(settings->output) &&
         settings->side_by_side && settings->view == VIEW_NONE)
@@ -279,10 +322,11 @@ static int read_input(const struct settings *settings, const char *const *files,
                       struct input *input)
 {
     if (settings->model)
-        return input_read_estimate(input, files[0], settings->model, settings->preset,
+        return input_read_estimate(input, files[0], settings->model, &settings->network,
                                    &settings->depth);
     if (is_made(settings, files))
-        return input_read_stereo(input, files[0], files[1], &settings->depth);
+        return input_read_stereo(input, files[0], files[1], settings->stereo_file,
+                                 &settings->depth);
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);
     if (settings->depth.file || settings->depth.full ||
@@ -294,7 +338,8 @@ static int read_input(const struct settings *settings, const char *const *files,
 static int run(int argc, char **argv)
 {
     struct settings settings = {
-        .depth = DEPTH_SETTINGS_NONE, .focus_at = {NAN, NAN}, .blur = NAN};
+        .network = NETWORK_SETTINGS_NONE, .depth = DEPTH_SETTINGS_NONE,
+        .focus_at = {NAN, NAN}, .blur = NAN};
     struct input input = {0};
     const char *files[3] = {NULL};
     int status;

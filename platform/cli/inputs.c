@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "inputs.h"
+#include "made.h"
 #include "report.h"
 
 static bool given(double value)
@@ -111,7 +112,7 @@ static int settle_embedded(struct input *input, const struct depth_settings *set
 }
 
 /* Follow the photo's edges to its size, with filled samples counting least. */
-static int enlarge(struct input *input)
+static int enlarge(struct input *input, const struct depth_settings *settings)
 {
     const struct refocus_image *photo = &input->photo->image;
     const struct refocus_disparity map =
@@ -124,7 +125,14 @@ static int enlarge(struct input *input)
 
     params.confidence = input->confidence;
     params.confidence_stride = input->width;
-    if (full)
+    if (full && settings->upsample > 0) {
+        status = made_upsample((uint32_t)settings->upsample - 1, photo, &map, full,
+                               input->depth_name);
+        if (status != EXIT_DONE) {
+            free(full);
+            return status;
+        }
+    } else if (full)
         status = refocus_upsample(photo, &map, &params, full, (ptrdiff_t)photo->width * 2);
     if (status != REFOCUS_OK) {
         free(full);
@@ -180,7 +188,7 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
                               refocus_strerror(status));
-    return worth_enlarging(input, settings) ? enlarge(input) : EXIT_DONE;
+    return worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
 }
 
 static int read_side(struct input *input, const char *file,
@@ -218,6 +226,8 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
     if (settings->file) {
         status = read_side(input, settings->file, settings);
     } else {
+        if (!input->photo->depth.samples && settings->optional)
+            return EXIT_DONE;
         if (!input->photo->depth.samples)
             return report_failure(EXIT_FAILED, photo,
                                   "it carries no depth; give a depth map to --depth");

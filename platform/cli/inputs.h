@@ -8,12 +8,16 @@
 #include <refocus/platform/file.h>
 #include "options.h"
 
+struct network_settings;
+
 struct depth_settings {
     const char *file, *unit;
     double near_m, far_m; /* NAN: not given */
     double speckle;       /* patches of fewer samples are removed; 0: none */
     const char *invalid;  /* names of codes for "no value", or NULL */
     bool full;            /* bring the depth to the photo's size */
+    bool optional;        /* a photo without any will do: its disparities are NULL then */
+    int upsample;         /* how; 0: as the core does, else 1 + enum refocus_cv_filter */
 };
 
 struct lens_settings {
@@ -21,7 +25,7 @@ struct lens_settings {
     double blur, f_number, focal_length, sensor_width;
 };
 
-#define DEPTH_SETTINGS_NONE {NULL, NULL, NAN, NAN, 0, NULL, false}
+#define DEPTH_SETTINGS_NONE {.near_m = NAN, .far_m = NAN}
 #define LENS_SETTINGS_NONE {NAN, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN}
 
 /* Rows of tables of options, for settings with a member of the types above. */
@@ -156,10 +160,11 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
 int input_read_depth(struct input *input, const char *file,
                      const struct depth_settings *settings);
 /* Read a photo, and make depth: of it and the right one of a stereo pair, NULL when they lie
- * side by side in one; or by a network. */
+ * side by side in one, or within the file as two pictures; or by a network. */
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct depth_settings *settings);
-int input_read_estimate(struct input *input, const char *photo, const char *model, int preset,
+                      bool within, const struct depth_settings *settings);
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *network,
                         const struct depth_settings *settings);
 /* The last steps of both: input->made is of the photo. */
 int input_convert(struct input *input, const struct depth_settings *settings);

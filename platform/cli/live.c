@@ -44,6 +44,14 @@ static const struct option options[] = {
              "map, or estimate:MODEL.onnx[,every=N][,preset=NAME], a network that sees every "
              "N-th picture"},
     DEPTH_UNIT_OPTIONS(struct live_settings, depth),
+    {.kind = OPTION_NUMBER,
+     .name = "--steady",
+     .argument = "S",
+     .offset = offsetof(struct live_settings, steady),
+     .least = 0,
+     .greatest = 0.95,
+     .help = "calm the flicker of depth: share of the past where nothing moves, 0 (default) "
+             "to 0.95"},
     {.kind = OPTION_TEXT,
      .name = "--calibration",
      .argument = "FILE",

@@ -26,7 +26,7 @@ struct live_settings {
     struct live_estimate_settings estimate;
     struct lens_settings lens;
     struct engine_settings engine;
-    double size[2], fps, frames, duration, patience, blur_most;
+    double size[2], fps, frames, duration, patience, blur_most, steady;
     int format, policy;
     bool fast, loop, no_commands, list, dmabuf;
 };
@@ -143,6 +143,20 @@ void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity,
 bool live_focus_point(struct live_focus *focus, double point[2], double *seconds);
 void live_focus_pull(struct live_focus *focus, double disparity, double seconds);
 
+/* live_steady.c: depth that does not flicker ---------------------------------------------- */
+
+struct live_steady {
+    struct refocus_temporal *filter; /* NULL: off, or no map has come */
+    struct live_depth_map map;       /* the filtered one, and the number of what it was made of */
+    struct live_times times;
+};
+
+/* The map, filtered when it has not been yet; NULL when there is no memory. */
+const struct live_depth_map *live_steady_run(struct live_steady *steady, double strength,
+                                             const struct live_depth_map *map,
+                                             const struct refocus_image *photo);
+void live_steady_end(struct live_steady *steady);
+
 /* The whole ------------------------------------------------------------------------------- */
 
 /* Counts and times of one thread each; read when all have ended. */
@@ -181,6 +195,7 @@ struct live {
     uint64_t paired, unpaired, without_depth;
     uint64_t sink_dropped, commands, commands_refused;
     double create_ms;
+    struct live_steady steady; /* to the thread that renders */
     struct engine *engine;
     int64_t first_out_ns, last_out_ns;
     double lens_dioptres;

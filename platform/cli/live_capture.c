@@ -21,6 +21,7 @@ struct lane {
     size_t capacity;
     int64_t last_ns;
     bool newest_wins;
+    int64_t late_ns; /* only over frames that are older than this */
     bool done; /* nothing else will come */
 };
 
@@ -92,13 +93,19 @@ static int handle(struct lane *lane, const struct refocus_frame *frame)
     return EXIT_FAILED;
 }
 
+static bool is_late(const struct lane *lane, const struct refocus_frame *frame)
+{
+    return lane->late_ns == 0 || (frame->flags & REFOCUS_FRAME_MONOTONIC &&
+                                  live_now_ns() - frame->timestamp_ns > lane->late_ns);
+}
+
 /* When the newest frame wins: leave out those that a newer one waits behind already. */
 static const struct refocus_frame *skip_to_newest(struct lane *lane,
                                                   const struct refocus_frame *frame)
 {
     const struct refocus_frame *newer;
 
-    for (int i = 0; i < LIVE_SLOTS && lane->newest_wins; i++) {
+    for (int i = 0; i < LIVE_SLOTS && lane->newest_wins && is_late(lane, frame); i++) {
         if (refocus_source_wait(lane->source, 0, &newer, NULL) != REFOCUS_OK)
             break; /* a fault will be there at the next wait, too */
         refocus_source_release(lane->source, frame);
@@ -334,7 +341,13 @@ void *live_depth_thread(void *argument)
                         .source = live->depth_camera,
                         .name = live->settings->depth.file,
                         .stage = &live->depth,
+                        .newest_wins = live->settings->policy == POLICY_NEWEST &&
+                                       !live->settings->fast,
                         .deliver = deliver_depth};
+    const double fps = live->mode.fps > 0 ? live->mode.fps : 30;
+
+    /* As long as a picture waits for its depth: else a slow machine would be behind for ever. */
+    lane.late_ns = (int64_t)(1.5e9 / fps);
 
     if (refocus_converter_create(&lane.converter) == REFOCUS_OK)
         run_lane(&lane);

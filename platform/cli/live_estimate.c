@@ -86,6 +86,8 @@ int live_estimate_open(struct live *live)
     if (estimator)
         status = refocus_cv_network((uint32_t)settings->preset, &network);
     if (status == REFOCUS_OK)
+        status = refocus_cv_network_fit(&network, settings->model, &reason);
+    if (status == REFOCUS_OK)
         status = refocus_cv_estimator_create(&estimator->network, settings->model,
                                              &network, &reason);
     if (status != REFOCUS_OK)

@@ -132,6 +132,13 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
 
     if (!map)
         return true;
+    if (live->settings->steady > 0) {
+        map = live_steady_run(&live->steady, live->settings->steady, map, &picture->image);
+        if (!map) {
+            live_fail(live, EXIT_FAILED, "--steady", "not enough memory");
+            return false;
+        }
+    }
     if (!live->engine->renderer || width > size[0] || height > size[1]) {
         if (!fit_renderer(live, width, height))
             return false;
@@ -175,5 +182,6 @@ void live_render(struct live *live)
             break;
     }
     interrupt_watch(NULL);
+    live_steady_end(&live->steady);
     live_queue_close(&live->rendered);
 }

@@ -75,10 +75,11 @@ int live_report(struct live *live)
         json_object_set_new(json, "lens_dioptres",
                             report_number_json(live->lens_dioptres));
         json_object_set_new(json, "stages_ms",
-                            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
+                            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
                                       live_times_json(&live->capture.times), "depth",
                                       live_times_json(&live->depth.times), "pair",
-                                      live_times_json(&live->pair.times), "prepare",
+                                      live_times_json(&live->pair.times), "steady",
+                                      live_times_json(&live->steady.times), "prepare",
                                       live_times_json(&live->prepare.times), "render",
                                       live_times_json(&live->render.times), "output",
                                       live_times_json(&live->output.times)));

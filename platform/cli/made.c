@@ -8,10 +8,11 @@
 #ifdef RF_HAVE_OPENCV
 #include <refocus/platform/opencv.h>
 
-static int read_photo(struct refocus_photo **photo, const char *name)
+static int read_photo(struct refocus_photo **photo, const char *name, bool second)
 {
     struct refocus_reason reason = {""};
-    const int status = refocus_photo_read(photo, name, NULL, &reason);
+    const int status = second ? refocus_photo_read_second(photo, name, NULL, &reason)
+                              : refocus_photo_read(photo, name, NULL, &reason);
 
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, name, "%s",
@@ -51,7 +52,7 @@ static void halve(struct refocus_image *left, struct refocus_image *right)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct depth_settings *settings)
+                      bool within, const struct depth_settings *settings)
 {
     const struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_stereo_report report;
@@ -62,12 +63,12 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
 
     memset(input, 0, sizeof *input);
     input->photo_name = input->depth_name = left;
-    status = read_photo(&input->photo, left);
-    if (status == EXIT_DONE && right)
-        status = read_photo(&input->side, right);
+    status = read_photo(&input->photo, left, false);
+    if (status == EXIT_DONE && (right || within))
+        status = read_photo(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
         return status;
-    if (right)
+    if (input->side)
         other = input->side->image;
     else
         halve(&input->photo->image, &other);
@@ -91,7 +92,23 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
     return take(input, samples, input->photo->image.width, input->photo->image.height, settings);
 }
 
-int input_read_estimate(struct input *input, const char *photo, const char *model, int preset,
+static void adjust(struct refocus_network *network, const struct network_settings *how)
+{
+    if (!isnan(how->size[0])) {
+        network->width = (int32_t)how->size[0];
+        network->height = (int32_t)how->size[1];
+    }
+    if (!isnan(how->mean[0]))
+        for (int i = 0; i < 3; i++)
+            network->mean[i] = (float)how->mean[i];
+    if (!isnan(how->scale))
+        network->scale = (float)how->scale;
+    if (how->inverse)
+        network->inverse = !network->inverse;
+}
+
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *how,
                         const struct depth_settings *settings)
 {
     struct refocus_estimate estimate;
@@ -101,12 +118,16 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 
     memset(input, 0, sizeof *input);
     input->photo_name = input->depth_name = photo;
-    status = read_photo(&input->photo, photo);
+    status = read_photo(&input->photo, photo, false);
     if (status != EXIT_DONE)
         return status;
-    refocus_cv_network((uint32_t)preset, &network);
+    refocus_cv_network((uint32_t)how->preset, &network);
+    status = refocus_cv_network_fit(&network, model, &reason);
+    adjust(&network, how);
     report_progress("estimating", 0.2);
-    status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate, &reason);
+    if (status == REFOCUS_OK)
+        status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate,
+                                     &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -117,6 +138,23 @@ const char *made_preset(uint32_t index)
 {
     return refocus_cv_network_name(index);
 }
+const char *made_upsampler(uint32_t index)
+{
+    return index ? refocus_cv_filter_name(index - 1) : "core";
+}
+
+int made_upsample(uint32_t filter, const struct refocus_image *photo,
+                  const struct refocus_disparity *map, uint16_t *out, const char *name)
+{
+    struct refocus_cv_reason reason = {""};
+    const int status = refocus_cv_upsample_by(filter, photo, map, out, &reason);
+
+    if (status == REFOCUS_OK)
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, name, "--upsample %s: %s",
+                          refocus_cv_filter_name(filter),
+                          reason.text[0] ? reason.text : refocus_strerror(status));
+}
 #else
 static int absent(const char *what)
 {
@@ -124,18 +162,20 @@ static int absent(const char *what)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct depth_settings *settings)
+                      bool within, const struct depth_settings *settings)
 {
     (void)settings;
+    (void)within;
     memset(input, 0, sizeof *input);
     return absent(right ? right : left);
 }
 
-int input_read_estimate(struct input *input, const char *photo, const char *model, int preset,
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *how,
                         const struct depth_settings *settings)
 {
     (void)photo;
-    (void)preset;
+    (void)how;
     (void)settings;
     memset(input, 0, sizeof *input);
     return absent(model);
@@ -144,5 +184,20 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 const char *made_preset(uint32_t index)
 {
     return index == 0 ? "none" : NULL;
+}
+
+const char *made_upsampler(uint32_t index)
+{
+    return index ? NULL : "core";
+}
+
+int made_upsample(uint32_t filter, const struct refocus_image *photo,
+                  const struct refocus_disparity *map, uint16_t *out, const char *name)
+{
+    (void)filter;
+    (void)photo;
+    (void)map;
+    (void)out;
+    return absent(name);
 }
 #endif

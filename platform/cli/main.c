@@ -9,8 +9,10 @@
 #include "report.h"
 
 static const struct command *const commands[] = {&render_command, &depth_command,
+                                                 &pull_command,
                                                  &info_command, &compare_command,
-                                                 &bench_command, &live_command};
+                                                 &bench_command, &live_command,
+                                                 &view_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_usage(FILE *out)

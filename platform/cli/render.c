@@ -8,6 +8,7 @@
 #include "inputs.h"
 #include "outputs.h"
 #include "settings.h"
+#include "shot.h"
 
 enum view { VIEW_NONE, VIEW_DEPTH, VIEW_BLUR };
 
@@ -74,7 +75,6 @@ static int check(const struct settings *settings, const char *photo)
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
     const char *const inputs[] = {photo, settings->depth.file, settings->engine.aperture,
                                   settings->load};
-    static const char *const json[] = {".json", NULL};
     int status;
 
     status = input_check_depth(&settings->depth);
@@ -86,32 +86,7 @@ static int check(const struct settings *settings, const char *photo)
     if (status == EXIT_DONE)
         status = output_check(settings->output, endings, inputs, 4);
     if (status == EXIT_DONE && settings->save)
-        status = output_check(settings->save, json, inputs, 3);
-    return status;
-}
-
-/* Focus needs the prepared disparities only where it is given by a pixel. */
-static int choose_focus(struct engine *engine, const struct input *input,
-                        const struct settings *settings)
-{
-    const struct refocus_image *photo = &input->photo->image;
-    const size_t pixels = (size_t)photo->width * (size_t)photo->height;
-    uint16_t *prepared = NULL;
-    double focus = 0;
-    int status;
-
-    if (isnan(settings->lens.focus) && isnan(settings->lens.focus_distance)) {
-        prepared = malloc(pixels * sizeof *prepared);
-        if (!prepared || refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared,
-                                          (ptrdiff_t)photo->width * 2) != REFOCUS_OK) {
-            free(prepared);
-            return report_failure(EXIT_FAILED, input->photo_name,
-                                  "not enough memory to find the focus; give --focus");
-        }
-    }
-    status = input_focus(input, &settings->lens, prepared, &focus);
-    engine->params.focus_disparity = (float)focus;
-    free(prepared);
+        status = settings_check(settings->save, inputs, 3);
     return status;
 }
 
@@ -199,32 +174,19 @@ static int print_report(const struct settings *settings, const struct engine *en
     return EXIT_DONE;
 }
 
-static int render(struct engine *engine, struct input *input, struct refocus_image *out,
-                  const struct settings *settings)
+static int render(struct shot *shot, struct refocus_image *out,
+                  const struct settings *settings, const char *photo)
 {
-    double blur = 0;
-    int status;
+    const struct shot_settings wanted = {.depth = &settings->depth, .lens = &settings->lens,
+                                         .engine = &settings->engine};
+    int status = shot_open(shot, photo, &wanted);
 
-    status = input_blur(input, &settings->lens, &blur);
-    if (status != EXIT_DONE)
-        return status;
-
-    const struct refocus_image *photo = &input->photo->image;
-    const struct refocus_disparity disparity = refocus_disparity16(
-        input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
-
-    report_progress("preparing", 0.15);
-    status = engine_create(engine, &settings->engine, photo->width, photo->height, blur);
     if (status == EXIT_DONE)
-        status = engine_prepare(engine, photo, &disparity);
+        status = make_output(out, &shot->engine, &shot->input, settings);
     if (status == EXIT_DONE)
-        status = choose_focus(engine, input, settings);
-    if (status == EXIT_DONE)
-        status = make_output(out, engine, input, settings);
-    if (status == EXIT_DONE)
-        status = engine_render(engine, out, (int)settings->engine.repeat);
+        status = engine_render(&shot->engine, out, (int)settings->engine.repeat);
     if (status == EXIT_DONE && settings->view != VIEW_NONE)
-        status = make_view(out, engine, input, settings->view);
+        status = make_view(out, &shot->engine, &shot->input, settings->view);
     return status;
 }
 
@@ -234,8 +196,7 @@ static int run(int argc, char **argv)
                                 .lens = LENS_SETTINGS_NONE,
                                 .engine = ENGINE_SETTINGS_NONE(1),
                                 .region = {NAN}};
-    struct engine engine;
-    struct input input = {0};
+    struct shot shot;
     struct refocus_image out = {0};
     const char *files[2];
     int status;
@@ -246,27 +207,19 @@ static int run(int argc, char **argv)
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;
-    status = engine_begin(&engine, &settings.engine);
-    engine.name = files[0];
-    if (status == EXIT_DONE) {
-        report_progress("reading", 0);
-        status = input_read(&input, files[0], &settings.depth);
-    }
-    if (status == EXIT_DONE)
-        status = render(&engine, &input, &out, &settings);
+    status = render(&shot, &out, &settings, files[0]);
     if (status == EXIT_DONE) {
         report_progress("writing", 0.9);
         status = output_write_image(settings.output, &out,
-                                    settings.view == VIEW_NONE ? input.photo : NULL);
+                                    settings.view == VIEW_NONE ? shot.input.photo : NULL);
     }
     report_progress_end();
     if (status == EXIT_DONE && settings.save)
         status = settings_save(&render_command, settings.save, &settings);
     if (status == EXIT_DONE)
-        status = print_report(&settings, &engine, &input, &out);
+        status = print_report(&settings, &shot.engine, &shot.input, &out);
     free(out.plane[0]);
-    engine_end(&engine);
-    input_free(&input);
+    shot_close(&shot);
     return status;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <jansson.h>
 #include <refocus/platform/file.h>
+#include "outputs.h"
 #include "report.h"
 
 enum { LONGEST_NAME = 64, LONGEST_VALUE = 256 };
@@ -153,6 +154,13 @@ int settings_load(const struct command *command, const char *file, void *setting
     status = settings_read(command, file, (const char *)blob.data, blob.size, settings);
     free(blob.data);
     return status;
+}
+
+int settings_check(const char *file, const char *const *inputs, int input_count)
+{
+    static const char *const endings[] = {".json", NULL};
+
+    return output_check(file, endings, inputs, input_count);
 }
 
 /* Digits that a number needs to be read back as it is. */

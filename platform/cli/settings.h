@@ -48,6 +48,9 @@ int settings_load(const struct command *command, const char *file, void *setting
 int settings_read(const struct command *command, const char *file, const char *bytes,
                   size_t size, void *settings);
 
+/* Before the work: can a file of settings be written there, and is it none of the inputs? */
+int settings_check(const char *file, const char *const *inputs, int input_count);
+
 /* Write what `settings` says, whole or not at all; an exit code. */
 int settings_save(const struct command *command, const char *file, const void *settings);
 

@@ -204,7 +204,7 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
         return rf_fail_memory(reason);
     }
     status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false,
-                           &made->shown.info, reason);
+                           false, &made->shown.info, reason);
     if (status == REFOCUS_OK) {
         status = picture_as_samples(&read, &max_value);
     }

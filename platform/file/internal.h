@@ -48,6 +48,7 @@ struct rf_read {
     struct rf_raster samples;       /* depth, as stored */
     struct refocus_depth_map depth; /* meaning, values and range of the samples */
     int orientation;                /* 1 to 8, to be applied to image and samples */
+    bool second;                    /* the second picture of a stereo file is meant */
 };
 
 /* context.c: words, limits, memory ------------------------------------ */

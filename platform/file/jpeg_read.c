@@ -203,6 +203,31 @@ static int read_depth(struct rf_read *read, struct rf_bytes file,
 }
 #endif
 
+/* The picture of an MPO that follows the first and is a whole JPEG. */
+static int read_second(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
+{
+    struct rf_mpf mpf;
+
+    if (parts->mpf.data && rf_mpf_parse(parts->mpf, &mpf)) {
+        const size_t base = (size_t)(parts->mpf.data - file.data);
+
+        for (int i = 1; i < mpf.count; i++) {
+            const uint64_t begin = base + mpf.image[i].offset;
+            const uint64_t size = mpf.image[i].size;
+
+            if (begin < parts->end || begin > file.size || size > file.size - begin ||
+                size < 4 || rf_sniff((struct rf_bytes){file.data + begin, (size_t)size}) !=
+                                RF_CONTAINER_JPEG) {
+                continue;
+            }
+            read->second = false;
+            return rf_read_jpeg(read, (struct rf_bytes){file.data + begin, (size_t)size});
+        }
+    }
+    return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                   "it holds one picture only; give an MPO, a stereo HEIC, or two pictures");
+}
+
 int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
 {
     struct parts parts;
@@ -213,6 +238,9 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
         return rf_fail(
             read->reason, REFOCUS_ERR_FORMAT,
             "damaged JPEG: it ends in the middle of the picture; copy it again");
+    }
+    if (read->second) {
+        return read_second(read, file, &parts);
     }
     status = rf_exif_take(read, parts.exif, true);
     if (status == REFOCUS_OK) {

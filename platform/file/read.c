@@ -86,6 +86,11 @@ int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char 
 
 static int read_container(struct rf_read *read, struct rf_bytes file)
 {
+    if (read->second && rf_sniff(file) != RF_CONTAINER_JPEG &&
+        rf_sniff(file) != RF_CONTAINER_HEIC) {
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "it is no stereo file; give an MPO, a stereo HEIC, or two pictures");
+    }
     switch (rf_sniff(file)) {
     case RF_CONTAINER_JPEG:
         return rf_read_jpeg(read, file);
@@ -118,7 +123,7 @@ static void set_limits(struct rf_read *read, const struct refocus_read_limits *l
 }
 
 int rf_read_begin(struct rf_read *read, struct rf_bytes file,
-                  const struct refocus_read_limits *limits, bool picture_always,
+                  const struct refocus_read_limits *limits, bool picture_always, bool second,
                   struct refocus_photo_info *info, struct refocus_reason *reason)
 {
     int status;
@@ -127,6 +132,7 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
     set_limits(read, limits);
     read->reason = reason;
     read->picture_always = picture_always;
+    read->second = second;
     read->info = info;
     read->orientation = 1;
     info->orientation = 1;
@@ -208,9 +214,9 @@ int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
     return status;
 }
 
-int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
-                              size_t size, const struct refocus_read_limits *limits,
-                              struct refocus_reason *reason)
+static int read_memory(struct refocus_photo **photo, const void *bytes, size_t size,
+                       const struct refocus_read_limits *limits, bool second,
+                       struct refocus_reason *reason)
 {
     struct refocus_reason unused;
     struct rf_photo *made;
@@ -231,15 +237,15 @@ int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
         return rf_fail_memory(reason);
     }
     status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true,
-                           &made->shown.info, reason);
+                           second, &made->shown.info, reason);
     status = rf_read_finish(&read, status, &made);
     *photo = made ? &made->shown : NULL;
     return status;
 }
 
-int refocus_photo_read(struct refocus_photo **photo, const char *path,
-                       const struct refocus_read_limits *limits,
-                       struct refocus_reason *reason)
+static int read_path(struct refocus_photo **photo, const char *path,
+                     const struct refocus_read_limits *limits, bool second,
+                     struct refocus_reason *reason)
 {
     struct refocus_reason unused;
     struct refocus_blob file;
@@ -255,10 +261,31 @@ int refocus_photo_read(struct refocus_photo **photo, const char *path,
     set_limits(&read, limits);
     status = rf_load(path, read.limits.max_bytes, reason, &file);
     if (status == REFOCUS_OK) {
-        status = refocus_photo_read_memory(photo, file.data, file.size, limits, reason);
+        status = read_memory(photo, file.data, file.size, limits, second, reason);
         free(file.data);
     }
     return status;
+}
+
+int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
+                              size_t size, const struct refocus_read_limits *limits,
+                              struct refocus_reason *reason)
+{
+    return read_memory(photo, bytes, size, limits, false, reason);
+}
+
+int refocus_photo_read(struct refocus_photo **photo, const char *path,
+                       const struct refocus_read_limits *limits,
+                       struct refocus_reason *reason)
+{
+    return read_path(photo, path, limits, false, reason);
+}
+
+int refocus_photo_read_second(struct refocus_photo **photo, const char *path,
+                              const struct refocus_read_limits *limits,
+                              struct refocus_reason *reason)
+{
+    return read_path(photo, path, limits, true, reason);
 }
 
 void refocus_photo_free(struct refocus_photo **photo)

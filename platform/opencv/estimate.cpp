@@ -1,5 +1,6 @@
 /* Depth from one picture: a network that OpenCV runs. */
 #include "guard.hpp"
+#include "onnx.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -61,6 +62,29 @@ int refocus_cv_network(uint32_t index, struct refocus_network *network)
     if (index >= sizeof presets / sizeof *presets || !network)
         return REFOCUS_ERR_ARGUMENT;
     *network = presets[index].network;
+    return REFOCUS_OK;
+}
+
+int refocus_cv_network_fit(struct refocus_network *network, const char *model,
+                           struct refocus_cv_reason *reason)
+{
+    int width = 0, height = 0;
+    FILE *file;
+
+    if (!network || !model)
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no network, or no file");
+    file = std::fopen(model, "rb");
+    if (!file)
+        return refocus_cv::fail(reason, REFOCUS_ERR_IO, "it cannot be read; give an ONNX file");
+    if (rf_onnx_input_size(file, &width, &height))
+        width = height = 0;
+    std::fclose(file);
+    if ((width && (width < 32 || width > 2048)) || (height && (height < 32 || height > 2048)))
+        return refocus_cv::fail(reason, REFOCUS_ERR_FORMAT,
+                                "its input is not of 32 to 2048 pixels a side; give a depth "
+                                "network");
+    network->width = width ? width : network->width;
+    network->height = height ? height : network->height;
     return REFOCUS_OK;
 }
 

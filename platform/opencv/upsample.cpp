@@ -1,6 +1,8 @@
 /* Joint bilateral upsampling of OpenCV's parts: one shifted map and guide a tap. */
 #include "guard.hpp"
+#include "module.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
@@ -19,7 +21,11 @@ int upsample(const refocus_image *photo, const refocus_disparity *map, float sig
 
     refocus_cv::view(photo).convertTo(guide, CV_32F);
     samples.convertTo(depth, CV_32F, map->bits == 16 ? 1 : 257);
-    cv::resize(guide, coarse, samples.size(), 0, 0, cv::INTER_NEAREST);
+    coarse.create(samples.size(), CV_32FC3);
+    for (int y = 0; y < coarse.rows; y++) /* at the middle of each sample: resize() takes a corner */
+        for (int x = 0; x < coarse.cols; x++)
+            coarse.at<cv::Vec3f>(y, x) = guide.at<cv::Vec3f>((int)((y + 0.5) / sy),
+                                                             (int)((x + 0.5) / sx));
     for (int j = -REACH; j <= REACH; j++) {
         for (int i = -REACH; i <= REACH; i++) {
             cv::Mat near_by(size, CV_32F), colour, d, squares, likeness;
@@ -51,16 +57,74 @@ int upsample(const refocus_image *photo, const refocus_disparity *map, float sig
     return REFOCUS_OK;
 }
 
+int bilinear(const refocus_image *photo, const refocus_disparity *map, cv::Mat &depth)
+{
+    const cv::Mat samples(map->height, map->width, map->bits == 16 ? CV_16U : CV_8U,
+                          const_cast<void *>(map->samples), (size_t)map->stride);
+    cv::Mat coarse;
+
+    samples.convertTo(coarse, CV_32F, map->bits == 16 ? 1 / 65535.0 : 1 / 255.0);
+    cv::resize(coarse, depth, cv::Size(photo->width, photo->height), 0, 0, cv::INTER_LINEAR);
+    return REFOCUS_OK;
+}
+
+int upsample_by(uint32_t filter, const refocus_image *photo, const refocus_disparity *map,
+                uint16_t *out, refocus_cv_reason *reason)
+{
+    const rf_ximgproc *const contrib =
+        filter >= REFOCUS_CV_GUIDED ? rf_opencv_ximgproc() : nullptr;
+    const int reach = std::max(1, cvRound(photo->width / (double)map->width));
+    cv::Mat depth, packed = refocus_cv::view(photo);
+
+    if (filter >= REFOCUS_CV_GUIDED && !contrib)
+        return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                                "the module refocus-ximgproc.so is not there; build it with "
+                                "-Dximgproc=enabled, or use another filter");
+    bilinear(photo, map, depth);
+    if (!packed.isContinuous())
+        packed = packed.clone();
+    if (contrib && contrib->smooth(filter, packed.data, depth.ptr<float>(), depth.cols, depth.rows,
+                                   2 * reach))
+        return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED, "OpenCV gave up");
+    depth.convertTo(cv::Mat(depth.size(), CV_16U, out), CV_16U, 65535);
+    return REFOCUS_OK;
+}
+
+bool good(const refocus_image *photo, const refocus_disparity *map, const uint16_t *out)
+{
+    return refocus_cv::good_photo(photo) && map && map->samples && map->width >= 1 &&
+           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE && map->height <= REFOCUS_MAX_SIDE &&
+           (map->bits == 8 || map->bits == 16) &&
+           map->stride >= (ptrdiff_t)map->width * (ptrdiff_t)(map->bits / 8) && out;
+}
+
+const char *const names[] = {"bilinear", "joint-bilateral", "guided", "fast-global",
+                             "joint-bilateral-full"};
+enum { FILTERS = sizeof names / sizeof *names };
+
 } // namespace
+
+const char *refocus_cv_filter_name(uint32_t filter)
+{
+    return filter < FILTERS ? names[filter] : nullptr;
+}
+
+int refocus_cv_upsample_by(uint32_t filter, const struct refocus_image *photo,
+                           const struct refocus_disparity *map, uint16_t *out,
+                           struct refocus_cv_reason *reason)
+{
+    if (filter >= FILTERS || !good(photo, map, out))
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no photo, no map, or no filter");
+    if (filter == REFOCUS_CV_JOINT_BILATERAL)
+        return refocus_cv_upsample(photo, map, 25.5f, out, reason);
+    return refocus_cv::guarded(reason, REFOCUS_ERR_UNSUPPORTED,
+                               [&] { return upsample_by(filter, photo, map, out, reason); });
+}
 
 int refocus_cv_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
                         float sigma_range, uint16_t *out, struct refocus_cv_reason *reason)
 {
-    if (!refocus_cv::good_photo(photo) || !map || !map->samples || map->width < 1 ||
-        map->height < 1 || map->width > REFOCUS_MAX_SIDE || map->height > REFOCUS_MAX_SIDE ||
-        (map->bits != 8 && map->bits != 16) ||
-        map->stride < (ptrdiff_t)map->width * (ptrdiff_t)(map->bits / 8) || !(sigma_range > 0) ||
-        !out)
+    if (!good(photo, map, out) || !(sigma_range > 0))
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no photo, or no map");
     return refocus_cv::guarded(reason, REFOCUS_ERR_UNSUPPORTED,
                                [&] { return upsample(photo, map, sigma_range, out); });

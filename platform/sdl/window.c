@@ -138,13 +138,24 @@ static void serve(struct window *window)
         SDL_DestroyWindow(screen.window);
 }
 
+/* SDL's own search ends with a screen that nobody sees, and asking for Wayland where there is
+ * none prints a line. SDL_VIDEODRIVER of the environment has the first word. */
+static bool init_video(void)
+{
+    if (SDL_GetHint("SDL_VIDEODRIVER"))
+        return SDL_VideoInit(NULL) == 0;
+    return SDL_VideoInit("x11") == 0 ||
+           (SDL_getenv("WAYLAND_DISPLAY") && SDL_VideoInit("wayland") == 0) ||
+           SDL_VideoInit("KMSDRM") == 0;
+}
+
 static void *run(void *argument)
 {
     struct window *window = argument;
     bool works;
 
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); /* Ctrl-C is the program's */
-    works = SDL_InitSubSystem(SDL_INIT_VIDEO) == 0;
+    works = init_video();
     pthread_mutex_lock(&window->lock);
     if (works)
         window->state = OPEN;
@@ -154,8 +165,9 @@ static void *run(void *argument)
     pthread_mutex_unlock(&window->lock);
     if (works) {
         serve(window);
-        SDL_QuitSubSystem(SDL_INIT_VIDEO);
+        SDL_VideoQuit();
     }
+    SDL_TLSCleanup(); /* what SDL keeps for a thread that it did not start */
     pthread_mutex_lock(&window->lock);
     if (window->state == OPEN)
         window->state = CLOSED;

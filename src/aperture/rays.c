@@ -94,12 +94,12 @@ struct place {
     int32_t x, y;
 };
 
-static void relax(const uint8_t *cell, int count, struct place *place)
+static void relax(const uint8_t *cell, int count, struct place *place, struct rf_run *run)
 {
     int64_t sum_x[REFOCUS_MAX_RAYS] = {0}, sum_y[REFOCUS_MAX_RAYS] = {0};
     int64_t sum[REFOCUS_MAX_RAYS] = {0};
 
-    for (int y = 0; y < RF_CURVE_SIDE; y++) {
+    for (int y = 0; y < RF_CURVE_SIDE && !rf_run_cancelled(run); y++) {
         for (int x = 0; x < RF_CURVE_SIDE; x++) {
             const int weight = cell[y * RF_CURVE_SIDE + x];
             const int32_t cx = 256 * x + 128, cy = 256 * y + 128;
@@ -130,7 +130,7 @@ static void relax(const uint8_t *cell, int count, struct place *place)
 }
 
 static void mask_rays(const struct refocus_aperture *a, int count,
-                      struct refocus_ray *rays)
+                      struct refocus_ray *rays, struct rf_run *run)
 {
     struct place place[REFOCUS_MAX_RAYS];
     int64_t total = 0, before = 0;
@@ -147,14 +147,14 @@ static void mask_rays(const struct refocus_aperture *a, int count,
             place[n++] = (struct place){256 * x + 128, 256 * y + 128};
     }
     for (int pass = 0; pass < 4; pass++)
-        relax(a->reduced, count, place);
+        relax(a->reduced, count, place, run);
     for (n = 0; n < count; n++)
         rays[n] = make_ray(place[n].x / (128.0 * RF_CURVE_SIDE) - 1,
                            place[n].y / (128.0 * RF_CURVE_SIDE) - 1, 255);
 }
 
-int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
-                          struct refocus_ray *rays)
+int rf_aperture_rays(const struct refocus_aperture *aperture, int count,
+                     struct refocus_ray *rays, struct rf_run *run)
 {
     if (!aperture)
         aperture = &rf_disc;
@@ -165,8 +165,14 @@ int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
     else if (aperture->shape == RF_SHAPE_POLYGON)
         polygon_rays(aperture, count, rays);
     else
-        mask_rays(aperture, count, rays);
+        mask_rays(aperture, count, rays, run);
     return REFOCUS_OK;
+}
+
+int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
+                          struct refocus_ray *rays)
+{
+    return rf_aperture_rays(aperture, count, rays, NULL);
 }
 
 /* Open share of mask pixel (x, y) at radius K, 0 to 255: 8 x 8 points. */
@@ -181,9 +187,8 @@ static int coverage(const struct refocus_aperture *a, double radius, int x, int 
     return (sum + 32) / 64;
 }
 
-int refocus_aperture_full_rays(const struct refocus_aperture *aperture,
-                               double max_blur_radius, int capacity,
-                               struct refocus_ray *rays)
+int rf_aperture_full_rays(const struct refocus_aperture *aperture, double max_blur_radius,
+                          int capacity, struct refocus_ray *rays, struct rf_run *run)
 {
     int count = 0, most = 0;
 
@@ -194,7 +199,7 @@ int refocus_aperture_full_rays(const struct refocus_aperture *aperture,
         return REFOCUS_ERR_ARGUMENT;
     most = (int)ceil(max_blur_radius);
     for (int open = 1; open >= 0; open--) { /* the open pixels, then those half open */
-        for (int y = -most; y <= most; y++) {
+        for (int y = -most; y <= most && !rf_run_cancelled(run); y++) {
             for (int x = -most; x <= most; x++) {
                 const int weight = coverage(aperture, max_blur_radius, x, y);
 
@@ -213,4 +218,11 @@ int refocus_aperture_full_rays(const struct refocus_aperture *aperture,
         count = 1;
     }
     return count;
+}
+
+int refocus_aperture_full_rays(const struct refocus_aperture *aperture,
+                               double max_blur_radius, int capacity,
+                               struct refocus_ray *rays)
+{
+    return rf_aperture_full_rays(aperture, max_blur_radius, capacity, rays, NULL);
 }

@@ -22,6 +22,8 @@ void rf_background_dilate(struct refocus_renderer *r, bool upwards)
     uint16_t *row = r->behind.light[upwards] + first * r->stride;
 
     for (int i = 0; i < r->height; i++, row += step * r->stride) {
+        if (i % 16 == 0 && rf_cancelled(r))
+            return;
         bias_row(r, row, first + i * step);
         if (i > 0)
             r->kernels.dilate_from(row, row - step * r->stride, r->width);
@@ -163,13 +165,19 @@ static void run(struct fill *fill, rf_work_fn *work, int height)
             work(fill, band, 0);
 }
 
-void rf_background_fill(struct refocus_renderer *r)
+void rf_background_push(struct refocus_renderer *r, int from, int to)
 {
-    struct fill fill = {r, 0};
+    struct fill fill = {r, from};
 
-    for (fill.level = 0; fill.level < r->levels; fill.level++)
+    for (; fill.level < to; fill.level++)
         run(&fill, push_item, level_of(r, fill.level + 1).height);
-    for (fill.level = r->levels - 1; fill.level >= 0; fill.level--)
+}
+
+void rf_background_pull(struct refocus_renderer *r, int from, int to)
+{
+    struct fill fill = {r, to - 1};
+
+    for (; fill.level >= from; fill.level--)
         run(&fill, pull_item, level_of(r, fill.level).height);
     if (r->levels == 0) /* a picture of one pixel: nothing is unknown */
         for (int c = 0; c < 4; c++)

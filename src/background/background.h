@@ -27,7 +27,17 @@ void rf_background_dilate(struct refocus_renderer *r, bool upwards);
 /* The steps along rows, and the mark; copies r->smooth. */
 void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1);
 
-/* Push-pull, and the border. */
-void rf_background_fill(struct refocus_renderer *r);
+/* Fill: up the pyramid from a level to another, and down again; level 0 with its border. All of
+ * it is 0 to r->levels. */
+void rf_background_push(struct refocus_renderer *r, int from, int to);
+void rf_background_pull(struct refocus_renderer *r, int from, int to);
+
+/*
+ * Whether the fill of the pixels in `need` is that of the whole photo, though only a window is
+ * there: between push and pull. The mark and the light of the window are those of the whole
+ * photo in `exact`. Unknown pixels ask for their parents, and so on, until all are known.
+ */
+bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect need,
+                            struct rf_rect exact);
 
 #endif

@@ -38,13 +38,23 @@ static void lay_out(struct rf_upsampler *up, struct scratch *scratch, int thread
     up->down = rf_arena_take(arena, height, sizeof *up->down);
     for (int i = 0; i < RF_TAPS; i++)
         up->near_by[i] = rf_arena_take(arena, width + RF_BATCH_SPARE, 2);
-    up->column = rf_arena_take(arena, columns + 4, sizeof *up->column);
+    up->middle = rf_arena_take(arena, width + RF_BATCH_SPARE, sizeof *up->middle);
+    up->colour_stride = up->trust_stride = up->coarse_stride;
+    for (int c = 0; c < 3; c++)
+        up->colour[c] = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
+    if (up->confidence)
+        up->trust = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
+    up->sure_stride = up->photo->width;
+    up->sure = rf_arena_take(arena, width * height, 1);
     scratch->size = 2 * (size_t)(columns + 8);
     scratch->rows = rf_arena_take(arena, (uint64_t)threads * scratch->size, 2);
     if (arena->base) {
         up->coarse += 2 * up->coarse_stride + 2;
         up->raw += 1;
-        up->column += 2;
+        for (int c = 0; c < 3; c++)
+            up->colour[c] += 2 * up->colour_stride + 2;
+        if (up->confidence)
+            up->trust += 2 * up->trust_stride + 2;
     }
 }
 
@@ -77,7 +87,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     struct rf_kernels kernels;
     struct scratch scratch;
     struct rf_pool pool;
-    atomic_int run;
+    struct rf_run run = {.looked_at = NULL};
     void *block;
     int status;
 
@@ -115,8 +125,8 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
     arena.used = 0;
     lay_out(&up, &scratch, rf_threads_for(&threads), &arena);
-    atomic_init(&run, RF_RUN_RUNNING);
-    status = rf_pool_start(&pool, rf_threads_for(&threads), &run);
+    atomic_init(&run.state, RF_RUN_RUNNING);
+    status = rf_pool_start(&pool, rf_threads_for(&threads), NULL, &run);
     if (status == REFOCUS_OK) {
         rf_upsample(&up, &pool);
         rf_pool_end(&pool);

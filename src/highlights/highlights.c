@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/bands.h"
 #include "renderer/renderer.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
@@ -118,8 +119,8 @@ static bool is_lamp(const struct refocus_renderer *r, int x, int y, int own, int
         return false;
     surroundings(r, x, y, around);
     rim_hue(r, x, y, around, hue);
-    lamp->x = (uint16_t)x;
-    lamp->y = (uint16_t)y;
+    lamp->x = (uint16_t)(x + r->origin_x);
+    lamp->y = (uint16_t)(y + r->origin_y);
     for (int c = 0; c < 3; c++)
         lamp->added[c] = (uint16_t)(GAIN * hue[c] * strength / 256);
     return true;
@@ -170,12 +171,14 @@ static int sum_around(const struct refocus_renderer *r, const uint16_t *columns,
 }
 
 /* The lamps of a row whose columns are summed; the luminance of its pixels is in `row`. */
-static void find_in_row(struct refocus_renderer *r, struct rf_highlights *found, int y,
+static void find_in_row(struct refocus_renderer *r, struct rf_rect rect, int y,
                         const uint16_t *columns, const uint16_t *row)
 {
+    struct rf_highlights *found =
+        &r->photo[r->used].highlights[(y + r->origin_y) / RF_LAMP_ROWS];
     int sum = 0, last = -2; /* pixel that the sum is of */
 
-    for (int x = 0; x < r->width; x++) {
+    for (int x = rect.x0; x < rect.x1; x++) {
         if (brightest(r, y * r->stride + x) <= LEVEL)
             continue;
         if (x == last + 1)
@@ -190,16 +193,20 @@ static void find_in_row(struct refocus_renderer *r, struct rf_highlights *found,
     }
 }
 
-void rf_find_highlights(struct refocus_renderer *r, int part, uint16_t *scratch)
+void rf_forget_highlights(struct refocus_renderer *r)
 {
-    const int y0 = part * RF_LAMP_ROWS;
-    const int y1 = y0 + RF_LAMP_ROWS < r->height ? y0 + RF_LAMP_ROWS : r->height;
-    struct rf_highlights *found = &r->highlights[part];
+    for (int part = 0; part < RF_LAMP_PARTS; part++)
+        r->photo[r->used].highlights[part].count = 0;
+}
+
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect, uint16_t *scratch)
+{
     uint16_t *columns = scratch, *row = scratch + r->width;
     int summed = -2 * AROUND; /* row that the columns are summed around */
 
-    found->count = 0;
-    for (int y = y0; y < y1; y++) {
+    for (int y = rect.y0; y < rect.y1; y++) {
+        if (rf_cancelled(r))
+            return;
         if (!has_bright(r, y))
             continue;
         if (y - summed > AROUND) {
@@ -210,20 +217,58 @@ void rf_find_highlights(struct refocus_renderer *r, int part, uint16_t *scratch)
         }
         summed = y;
         luminance_row(r, row, y);
-        find_in_row(r, found, y, columns, row);
+        find_in_row(r, rect, y, columns, row);
     }
 }
 
-/* Whether a bright pixel of another depth is beside it: then this one is the edge of that,
- * and only its depth says otherwise. */
-static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight *lamp)
+/* Whether a comes after b, row by row. */
+static bool is_after(const struct rf_highlight *a, const struct rf_highlight *b)
 {
-    const int own = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+    return a->y > b->y || (a->y == b->y && a->x > b->x);
+}
+
+/* What is at i of a heap of n sinks to where it belongs. */
+static void sink(struct rf_highlight *lamp, uint32_t i, uint32_t n)
+{
+    const struct rf_highlight own = lamp[i];
+
+    for (uint32_t child; (child = 2 * i + 1) < n; i = child) {
+        child += child + 1 < n && is_after(&lamp[child + 1], &lamp[child]);
+        if (!is_after(&lamp[child], &own))
+            break;
+        lamp[i] = lamp[child];
+    }
+    lamp[i] = own;
+}
+
+void rf_sort_highlights(struct refocus_renderer *r)
+{
+    for (int part = 0; part < RF_LAMP_PARTS && !rf_cancelled(r); part++) {
+        struct rf_highlight *lamp = r->photo[r->used].highlights[part].lamp;
+        const uint32_t n = r->photo[r->used].highlights[part].count;
+
+        for (uint32_t i = n / 2; i-- > 0;)
+            sink(lamp, i, n);
+        for (uint32_t left = n; left > 1;) {
+            const struct rf_highlight last = lamp[0];
+
+            lamp[0] = lamp[--left];
+            lamp[left] = last;
+            sink(lamp, 0, left);
+        }
+    }
+}
+
+/* Whether a bright pixel of another depth is beside (x, y): then this one is the edge of that,
+ * and only its depth says otherwise. */
+static bool is_edge(const struct refocus_renderer *r, int x, int y)
+{
+    const int own = abs(r->front.blur[y * r->stride + x]);
 
     for (int j = -2; j <= 2; j++) {
         for (int i = -2; i <= 2; i++) {
-            const ptrdiff_t at = clamp(lamp->y + j, r->height - 1) * r->stride +
-                                 clamp(lamp->x + i, r->width - 1);
+            const ptrdiff_t at =
+                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
 
             if (abs(r->front.blur[at]) < own - 256 && brightest(r, at) >= LEVEL)
                 return true;
@@ -232,21 +277,40 @@ static bool is_edge(const struct refocus_renderer *r, const struct rf_highlight 
     return false;
 }
 
+/* Where in the window a highlight is; false: not in it. */
+static bool place_of(const struct refocus_renderer *r, const struct rf_highlight *lamp, int *x,
+                     int *y)
+{
+    *x = lamp->x - r->origin_x;
+    *y = lamp->y - r->origin_y;
+    return *x >= 0 && *y >= 0 && *x < r->width && *y < r->height;
+}
+
+/* The parts that the window has rows of: first to last. */
+static int first_part(const struct refocus_renderer *r)
+{
+    return r->origin_y / RF_LAMP_ROWS;
+}
+
+static int last_part(const struct refocus_renderer *r)
+{
+    return (r->origin_y + r->height - 1) / RF_LAMP_ROWS;
+}
 
 /*
  * Rays whose gaps are wider than a lamp would show it as a disc of dots. What is around it within
  * half a gap, farther away and blurred itself, takes its blur: then the pre-filter spreads its
  * light over that.
  */
-static void widen(struct refocus_renderer *r, const struct rf_highlight *lamp,
-                  struct rf_bin_scale scale, double gap)
+static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_bin_scale scale,
+                  double gap)
 {
-    const int16_t own = r->front.blur[lamp->y * r->stride + lamp->x];
+    const int16_t own = r->front.blur[lamp_y * r->stride + lamp_x];
     const int half = (int)(gap * abs(own) / 512), reach = half < WIDEST ? half : WIDEST;
 
-    for (int y = lamp->y - reach; y <= lamp->y + reach; y++) {
-        for (int x = lamp->x - reach; x <= lamp->x + reach; x++) {
-            const int dx = x - lamp->x, dy = y - lamp->y;
+    for (int y = lamp_y - reach; y <= lamp_y + reach; y++) {
+        for (int x = lamp_x - reach; x <= lamp_x + reach; x++) {
+            const int dx = x - lamp_x, dy = y - lamp_y;
             int16_t *s;
 
             if (x < 0 || y < 0 || x >= r->width || y >= r->height ||
@@ -264,11 +328,14 @@ static void widen(struct refocus_renderer *r, const struct rf_highlight *lamp,
 
 static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
 {
-    struct rf_bins *bins =
-        &r->bins[(size_t)(lamp->y / RF_TILE) * r->tiles_x + lamp->x / RF_TILE];
-    const int blur = abs(r->front.blur[lamp->y * r->stride + lamp->x]);
+    struct rf_bins *bins;
+    int x, y, blur;
 
-    lamp->is_edge = is_edge(r, lamp);
+    if (!place_of(r, lamp, &x, &y))
+        return;
+    bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
+    blur = abs(r->front.blur[y * r->stride + x]);
+    lamp->is_edge = is_edge(r, x, y);
     if (!lamp->is_edge && blur > bins->lamp)
         bins->lamp = (int16_t)blur;
 }
@@ -277,14 +344,15 @@ bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, d
 {
     bool any = false;
 
-    for (int part = 0; part < rf_lamp_parts(r->height); part++) {
-        const struct rf_highlights *found = &r->highlights[part];
+    for (int part = first_part(r); part <= last_part(r) && !rf_cancelled(r); part++) {
+        const struct rf_highlights *found = &r->photo[r->used].highlights[part];
+        int x, y;
 
         for (uint32_t i = 0; i < found->count; i++)
             mark(r, &found->lamp[i]);
         for (uint32_t i = 0; i < found->count; i++)
-            if (!found->lamp[i].is_edge)
-                widen(r, &found->lamp[i], scale, gap);
+            if (place_of(r, &found->lamp[i], &x, &y) && !found->lamp[i].is_edge)
+                widen(r, x, y, scale, gap);
         any = any || found->count;
     }
     return any;
@@ -292,21 +360,40 @@ bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, d
 
 static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share, int sign)
 {
-    const ptrdiff_t at = lamp->y * r->stride + lamp->x;
-    /* from half a pixel of blur on, all of it from one pixel and a half on */
-    const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
+    ptrdiff_t at;
+    int x, y, blurred;
 
+    if (!place_of(r, lamp, &x, &y))
+        return;
+    at = y * r->stride + x;
+    /* from half a pixel of blur on, all of it from one pixel and a half on */
+    blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
     for (int c = 0; c < 3; c++)
         r->front.light[c][at] =
             (uint16_t)(r->front.light[c][at] +
                        sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
 }
 
-void rf_add_highlights(struct refocus_renderer *r, float gain, int sign)
+static void add_part(struct refocus_renderer *r, float gain, int sign, int part)
 {
+    const struct rf_highlights *found = &r->photo[r->used].highlights[part];
     const int share = (int)((gain - 1) * (256 / GAIN) + 0.5f);
 
-    for (int part = 0; part < rf_lamp_parts(r->height); part++)
-        for (uint32_t i = 0; i < r->highlights[part].count; i++)
-            add(r, &r->highlights[part].lamp[i], share, sign);
+    for (uint32_t i = 0; i < found->count; i++)
+        add(r, &found->lamp[i], share, sign);
+}
+
+int rf_add_highlights(struct refocus_renderer *r, float gain)
+{
+    int part = first_part(r);
+
+    for (; part <= last_part(r) && !rf_cancelled(r); part++)
+        add_part(r, gain, 1, part);
+    return part - first_part(r);
+}
+
+void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts)
+{
+    for (int part = first_part(r); parts > 0; part++, parts--)
+        add_part(r, gain, -1, part);
 }

@@ -23,6 +23,7 @@
 #include <refocus/image.h>
 
 struct refocus_renderer;
+struct rf_rect;
 struct rf_bin_scale;
 
 struct rf_highlight {
@@ -50,16 +51,25 @@ static inline uint32_t rf_lamp_capacity(int width)
     return (uint32_t)width * RF_LAMP_ROWS / 32 + 8;
 }
 
-/* Find the highlights of a part of the prepared photo, into r->highlights[part]. `scratch` is
- * rf_scratch() of the worker. */
-void rf_find_highlights(struct refocus_renderer *r, int part, uint16_t *scratch);
+/* Forget the highlights of the photo in use. */
+void rf_forget_highlights(struct refocus_renderer *r);
 
-/* For the lens setting of r->front.blur and r->bins: tell edges from lamps, note in its tile how
+/* Add those of a rectangle of the window, in r->blend, to the lists of the parts of the photo in
+ * use. Pixels 12 away from it are looked at. Rectangles of different parts may run at once.
+ * `scratch` is rf_scratch() of the worker. */
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect, uint16_t *scratch);
+
+/* Put lists that were found in several rectangles in the order of the rows. */
+void rf_sort_highlights(struct refocus_renderer *r);
+
+/* In the window, for the lens setting of r->front.blur and r->bins: tell edges from lamps, note in its tile how
  * far a lamp is blurred, and widen lamps that rays `gap` times their blur apart would miss.
  * False: there are none. */
 bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
 
-/* Add (sign 1) or take away again (-1) what they lost; gain 1 to 4. */
-void rf_add_highlights(struct refocus_renderer *r, float gain, int sign);
+/* Add what those in the window lost, gain 1 to 4, to the light. Returns the number of parts that
+ * were done before the run was cancelled, all if it was not: to take it away again from. */
+int rf_add_highlights(struct refocus_renderer *r, float gain);
+void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 
+#include "renderer/bands.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
@@ -71,7 +72,8 @@ static bool beside_jump(const struct refocus_renderer *r, int x, int y)
 }
 
 /* The rims around a bright pixel. */
-static void find_around(struct refocus_renderer *r, int x, int y, uint64_t capacity)
+static void find_around(const struct refocus_renderer *r, int x, int y,
+                        struct rf_photo *photo)
 {
     const ptrdiff_t n = y * r->stride + x;
 
@@ -82,8 +84,9 @@ static void find_around(struct refocus_renderer *r, int x, int y, uint64_t capac
             const int px = clamp(x + i, r->width - 1), py = clamp(y + j, r->height - 1);
 
             if (r->disparity[py * r->stride + px] + JUMP < r->disparity[n] &&
-                r->rims < capacity && is_rim(r, px, py, n))
-                r->rim[r->rims++] = (struct rf_rim){px, py, r->disparity[n]};
+                photo->rims < photo->capacity && is_rim(r, px, py, n))
+                photo->rim[photo->rims++] = (struct rf_rim){
+                    (uint16_t)(px + r->origin_x), (uint16_t)(py + r->origin_y), r->disparity[n]};
         }
     }
 }
@@ -104,23 +107,26 @@ static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
     return most;
 }
 
-void rf_find_rims(struct refocus_renderer *r)
+void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
 {
     enum { RUN = 64 }; /* most runs of pixels hold nothing bright */
-    const uint64_t capacity = rf_rim_capacity(r->max_width, r->max_height);
+    struct rf_photo *photo = &r->photo[r->used];
 
-    r->rims = 0;
-    for (int y = 0; y < r->height; y++) {
+    for (int y = part.y0; y < part.y1; y++) {
         const ptrdiff_t at = y * r->stride;
 
-        for (int x0 = 0; x0 < r->width; x0 += RUN) {
-            const int x1 = x0 + RUN < r->width ? x0 + RUN : r->width;
+        if (rf_cancelled(r))
+            return;
+        for (int x0 = part.x0; x0 < part.x1; x0 += RUN) {
+            const int x1 = x0 + RUN < part.x1 ? x0 + RUN : part.x1;
 
             if (brightest(r, at + x0, x1 - x0) < LEVEL)
                 continue;
+            if (rf_cancelled(r))
+                return;
             for (int x = x0; x < x1; x++)
                 if (is_bright(r, at + x))
-                    find_around(r, x, y, capacity);
+                    find_around(r, x, y, photo);
         }
     }
 }
@@ -128,12 +134,20 @@ void rf_find_rims(struct refocus_renderer *r)
 void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
                    struct rf_bin_scale scale)
 {
-    for (uint64_t i = 0; i < r->rims; i++) {
-        const struct rf_rim *rim = &r->rim[i];
-        int16_t *s = r->front.blur + rim->y * r->stride + rim->x;
+    const struct rf_photo *photo = &r->photo[r->used];
 
-        r->kernels.signed_blur(s, &rim->disparity, focus, 1);
-        rf_add_bin(r, scale, rim->x / RF_TILE, rim->y / RF_TILE, *s);
-        rf_add_to_cell(r, rim->x, rim->y, *s);
+    for (uint64_t i = 0; i < photo->rims; i++) {
+        const struct rf_rim *rim = &photo->rim[i];
+        const int x = rim->x - r->origin_x, y = rim->y - r->origin_y;
+        int16_t *s = r->front.blur + y * r->stride + x, blur;
+
+        if (i % 1024 == 0 && rf_cancelled(r))
+            return;
+        if (x < 0 || y < 0 || x >= r->width || y >= r->height)
+            continue;
+        r->kernels.signed_blur(&blur, &rim->disparity, focus, 1);
+        *s = blur < *s ? blur : *s;
+        rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, blur);
+        rf_add_to_cell(r, x, y, blur);
     }
 }

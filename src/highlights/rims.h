@@ -8,7 +8,7 @@
  *
  *     alpha = (p - F) . (N - F) / |N - F|^2
  *
- * tells how much of N it holds. Above 0.6, p is rendered at the depth of N.
+ * tells how much of N it holds. Above 0.6, p is rendered at the depth of N, of several the nearest.
  */
 #ifndef RF_RIMS_H
 #define RF_RIMS_H
@@ -16,11 +16,12 @@
 #include <stdint.h>
 
 struct refocus_renderer;
+struct rf_rect;
 struct rf_focus;
 struct rf_bin_scale;
 
 struct rf_rim {
-    int32_t x, y;
+    uint16_t x, y;
     uint16_t disparity; /* of the bright pixel beside it */
 };
 
@@ -30,10 +31,11 @@ static inline uint64_t rf_rim_capacity(int width, int height)
     return (uint64_t)width * height / 64 + 64;
 }
 
-/* Find the rims of the prepared photo, r->rim[0 .. r->rims - 1]. */
-void rf_find_rims(struct refocus_renderer *r);
+/* Add to the rims of the photo in use those of the bright pixels in a part of the window, in linear
+ * light. Pixels three away from the part are looked at. */
+void rf_find_rims(struct refocus_renderer *r, struct rf_rect part);
 
-/* Put them into r->front.blur and r->bins. */
+/* Put those in the window into r->front.blur and r->bins. */
 void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
                    struct rf_bin_scale scale);
 

@@ -2,6 +2,7 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
+#include <math.h>
 #include <string.h>
 
 static inline int16_t lesser(int16_t a, int16_t b)
@@ -137,8 +138,9 @@ static bool meet_slab(struct state *restrict s, uint32_t *restrict need,
 }
 
 /* Ray n becomes the m-th. */
-static inline void place(struct rf_sorted_rays *restrict sorted, const struct rf_sort_job *job,
-                         const struct state *restrict s, int n, int m)
+static inline void place(struct rf_sorted_rays *restrict sorted,
+                         const struct rf_sort_job *restrict job,
+                         const struct state *restrict s, int n, int m, const bool weighted)
 {
     const int tests = (int)s->tests[n], last = (int)s->last[n];
     uint32_t need = s->need[0][n];
@@ -152,10 +154,10 @@ static inline void place(struct rf_sorted_rays *restrict sorted, const struct rf
         need &= need - 1;
         sorted->slab[t][m] = (uint8_t)k;
         sorted->offset[t][m] = job->offset[k][n];
-        if (job->weight)
+        if (weighted)
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
     }
-    if (job->weight) {
+    if (weighted) {
         sorted->last_behind[m] = last == job->slabs;
         sorted->last_weight[m] = last == job->slabs
                                      ? job->behind_weight + job->offset[last][n]
@@ -172,8 +174,9 @@ static inline int class_of(uint32_t tests)
     return 8 * (int)(tests < RF_SORTED_TESTS ? tests : RF_SORTED_TESTS - 1);
 }
 
-static void place_all(struct rf_sorted_rays *restrict sorted, const struct rf_sort_job *job,
-                      const struct state *restrict s)
+static inline void place_all(struct rf_sorted_rays *restrict sorted,
+                             const struct rf_sort_job *restrict job,
+                             const struct state *restrict s, const bool weighted)
 {
     uint64_t count = 0, at;
 
@@ -183,7 +186,7 @@ static void place_all(struct rf_sorted_rays *restrict sorted, const struct rf_so
     for (int n = 0; n < job->rays; n++) {
         const int class = class_of(s->tests[n]);
 
-        place(sorted, job, s, n, (int)(at >> class & 255));
+        place(sorted, job, s, n, (int)(at >> class & 255), weighted);
         at += UINT64_C(1) << class;
     }
 }
@@ -210,7 +213,55 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
             break;
     }
     sorted->rays = rays;
-    place_all(sorted, job, &s);
+    if (job->weight)
+        place_all(sorted, job, &s, true);
+    else
+        place_all(sorted, job, &s, false);
+}
+
+/* Square root and division are exact to the last bit everywhere. */
+static void RF_VEC(rf_tolerances)(int32_t *restrict within, const int16_t *restrict u,
+                                  const int16_t *restrict v, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const int32_t square = u[i] * u[i] + v[i] * v[i];
+        const double most = 4194304.0 / sqrt(square); /* 2^22 = half in Q23 */
+
+        within[i] = (int32_t)(most < 65535 ? most : 65535);
+    }
+}
+
+static void RF_VEC(rf_settle)(uint8_t *settled, int32_t *offset, const uint32_t *range,
+                              const int32_t *start, const struct rf_search_ray *ray,
+                              int32_t stride, int32_t cell_stride, int n)
+{
+    int32_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK], within[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
+    uint32_t guess[RF_RAY_CHUNK], seen[RF_RAY_CHUNK], same[RF_RAY_CHUNK];
+
+    for (int i = 0; i < n; i++) {
+        u[i] = ray[i].u;
+        v[i] = ray[i].v;
+        within[i] = ray[i].within;
+        guess[i] = range[start[i]];
+    }
+    for (int i = 0; i < n; i++) {
+        const int32_t least = (int16_t)guess[i], most = (int32_t)guess[i] >> 16;
+        const int32_t x = (u[i] * least + (1 << 22)) >> 23, x1 = (u[i] * most + (1 << 22)) >> 23;
+        const int32_t y = (v[i] * least + (1 << 22)) >> 23, y1 = (v[i] * most + (1 << 22)) >> 23;
+
+        same[i] = (uint32_t)((x == x1) & (y == y1));
+        offset[i] = x + y * stride;
+        cell[i] = (x >> 2) + (y >> 2) * cell_stride;
+    }
+    for (int i = 0; i < n; i++)
+        seen[i] = range[cell[i]];
+    for (int i = 0; i < n; i++) {
+        const int32_t least = (int16_t)guess[i], most = (int32_t)guess[i] >> 16;
+        const int32_t low = (int16_t)seen[i], high = (int32_t)seen[i] >> 16;
+
+        settled[i] = (uint8_t)(same[i] & (high - least <= within[i]) &
+                               (most - low <= within[i]));
+    }
 }
 
 void RF_VEC(rf_aim_use)(struct rf_kernels *kernels)
@@ -219,4 +270,6 @@ void RF_VEC(rf_aim_use)(struct rf_kernels *kernels)
     kernels->windows = RF_VEC(rf_windows);
     kernels->aim = RF_VEC(rf_aim);
     kernels->sort_rays = RF_VEC(rf_sort_rays);
+    kernels->settle = RF_VEC(rf_settle);
+    kernels->tolerances = RF_VEC(rf_tolerances);
 }

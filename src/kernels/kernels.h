@@ -129,7 +129,8 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
 /*
  * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its two
  * neighbours, `apart` elements before and after, whose blur is within one pixel (256) of its
- * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below.
+ * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows
+ * written are not among those read.
  */
 typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
                            const int16_t *blur, ptrdiff_t apart, int least, int n);
@@ -203,43 +204,72 @@ typedef void rf_steps4_fn(uint16_t *across, uint16_t *down, const uint16_t *cons
                           int n);
 
 /*
- * cluster: disparities of n pixels that lie between the same 4 x 4 samples. A pixel weighs
- * sample i by nearness, trust and likeness,
+ * surface: disparities of n pixels that lie between the same samples, of which surfaces were
+ * made. A pixel weighs surface k by how near its 4 x 4 samples are and by how much the photo
+ * here looks like the photo at all its samples,
  *
- *     w = across[i % 4] down[i / 4] trust[i] (1 - min(80, |colour - colour[i]|) / 80)^2
+ *     prior = sum over its taps t of across[t % 4] down[t / 4] trust[t]
+ *     alike = sum over its samples i of rf_likeness[max(0, 31 - |colour - colour[i]|) / 2]
+ *     score = prior (4 (alike grow scale) + RF_UNLIKE)
  *
- * with 1-norms of the colours, and takes the mean over that window, of those the cell lists,
- * whose sum of w is the greatest, the first of equal ones. All are Q16 and products are
- * rounded down; those of across and down add up to less than 1.
+ * with 1-norms of colours in steps of two codes, and takes the plane of the one that scores
+ * most, the first of equal ones, between its low and high. All are Q16, products are rounded
+ * down. sure = 255 where it scores more than four times the second, else 0.
  *
- * n is at most RF_BATCH and is rounded up to whole vectors: some of `out` after it is
- * overwritten.
+ * n is at most RF_BATCH and is rounded up to 32: out and sure are written so far.
  */
-enum { RF_TAPS = 4, RF_SAMPLES = RF_TAPS * RF_TAPS, RF_UNLIKE = 80, RF_BATCH = 64,
-       RF_BATCH_SPARE = 16 };
+enum { RF_TAPS = 4, RF_SAMPLES = 64, RF_SURFACES = RF_TAPS * RF_TAPS, RF_UNLIKE = 64,
+       RF_BATCH = 64, RF_BATCH_SPARE = 16 };
+static const uint8_t rf_likeness[16] = {0,  0,  0,  0,  1,  3,  6,   12, /* (2 i + 1)^4 / 2^12 */
+                                        20, 31, 47, 68, 95, 129, 172, 225};
+
+struct rf_surface {
+    int samples;                  /* that are listed, 0 to RF_SAMPLES */
+    uint8_t sample[RF_SAMPLES];
+    int taps;                     /* 1 to 16 */
+    uint8_t tap[RF_SURFACES];
+    uint16_t trust[RF_SURFACES];
+    uint16_t grow, scale;         /* samples grow <= 127; grow whole, scale Q16 */
+    int32_t mean;                 /* at the middle of the cell */
+    int16_t right, below;         /* a sample on from there; |.| < 2^14 */
+    uint16_t low, high;
+};
 
 struct rf_cell {
-    uint16_t disparity[RF_SAMPLES];
-    uint16_t colour[3][RF_SAMPLES];
-    uint16_t trust[RF_SAMPLES];
-    int windows;                  /* ranges of disparity, 1 to RF_SAMPLES of them */
-    uint16_t low[RF_SAMPLES], high[RF_SAMPLES]; /* their least and greatest samples */
+    uint8_t colour[3][RF_SAMPLES]; /* halved */
+    int surfaces;                  /* at least 1 */
+    struct rf_surface surface[RF_SURFACES];
 };
-
-struct rf_batch {
-    uint16_t colour[3][RF_BATCH + RF_BATCH_SPARE];
-    uint16_t across[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
-    uint16_t down[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
-};
-typedef void rf_cluster_fn(uint16_t out[RF_BATCH + RF_BATCH_SPARE],
-                           const struct rf_cell *cell, const struct rf_batch *batch, int n);
-
-/* median3: medians of 3 x 3; elements -1 and n are read. */
-typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
-                           const uint16_t *after, int n);
 
 /*
- * search: rays of one tile by the randomized intersection search, plain sums.
+ * find_surfaces: fill cell->surface with the surfaces of the samples around a cell, 8 x 8, of
+ * which the middle 4 x 4 are its taps. The taps' disparities are sorted and parted where one is
+ * more than 1/44 of the range above the last, or more than 1/8 above the first of its surface;
+ * the samples around belong to what they continue, at most 1/88 beyond it. Those that are
+ * trusted less than half (255 = sure) say nothing about colour; a cell that has only such taps
+ * is taken as sure. `trust` is of the samples; NULL = all sure.
+ */
+enum { RF_AROUND = 8 };
+typedef void rf_find_surfaces_fn(struct rf_cell *cell, const uint16_t disparity[RF_SAMPLES],
+                                 const uint8_t *trust);
+
+struct rf_batch {
+    uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE]; /* halved */
+    uint16_t across[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
+    uint16_t down[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
+    int16_t x[RF_BATCH + RF_BATCH_SPARE]; /* from the middle of the cell, samples in Q15 */
+    int16_t y[RF_BATCH + RF_BATCH_SPARE];
+};
+typedef void rf_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
+                           const struct rf_cell *cell, const struct rf_batch *batch, int n);
+
+/* median3: medians of 3 x 3 where `sure` is 0, the row itself elsewhere; elements -1 and n are
+ * read of the rows. */
+typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
+                           const uint16_t *after, const uint8_t *sure, int n);
+
+/*
+ * search: rays of one strip by the randomized intersection search, plain sums.
  *
  *     for each ray and pixel p of the tile:
  *         guess = blur[p + start]
@@ -247,22 +277,35 @@ typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t
  *                 `tests` are made; guess = seen before each further one
  *         sum += light[q], or light[p] if the last test failed and seen > blur[p]
  *
- * round() is half up, of Q15 times Q7.8. Pointers are to the tile's first pixel.
+ * round() is half up, of Q15 times Q7.8. Pointers are to the strip's first pixel.
  */
 struct rf_search_ray {
     int32_t start; /* elements */
     int16_t u, v;  /* Q15 */
-    int32_t within; /* Q7.8 */
+    int32_t within; /* Q7.8, 0 to 65535 */
 };
 struct rf_search_job {
     const int16_t *blur;
     const uint16_t *light[3];
     ptrdiff_t stride;
     int tests, rays;
-    int lanes; /* RF_TILE */
     const struct rf_search_ray *ray;
 };
-typedef void rf_search_fn(uint32_t sum[3][RF_TILE * RF_TILE], const struct rf_search_job *job);
+typedef void rf_search_fn(uint32_t *const sum[3], const struct rf_search_job *job);
+
+/* tolerances: the largest |s - s'| that half a pixel allows a ray: 1/2 / |u|, in Q7.8, rounded down;
+ * at most 65535. */
+typedef void rf_tolerances_fn(int32_t *within, const int16_t *u, const int16_t *v, int n);
+
+/*
+ * settle: which of n rays the first test of a search settles for a whole strip: those whose first
+ * guesses all lead the same way, to blurs that confirm them all, by the ranges there
+ * (windows, above). settled[i] tells, 1 or 0, and then offset[i] is where the light is.
+ * `range` is at the strip's first pixel, start[i] an offset of cells; a stride is at most 2^20.
+ */
+typedef void rf_settle_fn(uint8_t *settled, int32_t *offset, const uint32_t *range,
+                          const int32_t *start, const struct rf_search_ray *ray,
+                          int32_t stride, int32_t cell_stride, int n);
 
 /*
  * series_row: a row of a step of Clenshaw's recursion, on a field V of which a pixel passes
@@ -286,6 +329,8 @@ struct rf_kernels {
     rf_windows_fn *windows;
     rf_aim_fn *aim;
     rf_sort_rays_fn *sort_rays;
+    rf_settle_fn *settle;
+    rf_tolerances_fn *tolerances;
     rf_sweep_fn *sweep;
     rf_sweep_weighted_fn *sweep_weighted;
     rf_signed_blur_fn *signed_blur;
@@ -302,7 +347,8 @@ struct rf_kernels {
     rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
     rf_steps4_fn *steps4;
-    rf_cluster_fn *cluster;
+    rf_find_surfaces_fn *find_surfaces;
+    rf_surface_fn *surface;
     rf_median3_fn *median3;
     rf_series_row_fn *series_row;
 };
@@ -313,6 +359,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
 rf_smooth3_fn rf_smooth3_c;
+rf_search_fn rf_search_c;
 rf_push_fn rf_push_c;
 rf_pull_fn rf_pull_c;
 rf_pull_blur_fn rf_pull_blur_c;
@@ -321,14 +368,15 @@ rf_sweep_weighted_fn rf_sweep_weighted_c;
 /* Each set overwrites what it does better. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
+rf_kernels_use_fn rf_surfaces_use_c, rf_surfaces_use_neon, rf_surfaces_use_sse41,
+    rf_surfaces_use_avx2;
 rf_kernels_use_fn rf_sweep_weighted_use_neon, rf_sweep_weighted_use_sse41,
     rf_sweep_weighted_use_avx2;
 rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_light_use_avx2;
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
-rf_kernels_use_fn rf_search_use_c, rf_search_use_neon, rf_search_use_sse41,
-    rf_search_use_avx2;
+rf_kernels_use_fn rf_search_use_neon, rf_search_use_sse41, rf_search_use_avx2;
 rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;
 rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
 rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;

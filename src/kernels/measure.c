@@ -17,6 +17,7 @@ struct rows {
     uint64_t wide[2][RF_TILE * RF_TILE];
     float floats[FLOATS][ROW];
     uint16_t plane[4 * RF_TILE][4 * ROW]; /* blur and light of a strip, one after the other */
+    uint8_t unsure[ROW]; /* all 0 */
     uint32_t strip_sum[3][RF_STRIP_LANES];
     struct rf_sorted_rays rays;
 };
@@ -93,7 +94,7 @@ static void blend4(const struct rf_kernels *k, struct rows *r)
 static void median3(const struct rf_kernels *k, struct rows *r)
 {
     k->median3(r->shorts[6] + MARGIN, r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
-               r->shorts[2] + MARGIN, N);
+               r->shorts[2] + MARGIN, r->unsure, N);
 }
 
 static void series_row(const struct rf_kernels *k, struct rows *r)

@@ -41,6 +41,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
             *cpu = best_first[i];
     if (!has(*cpu))
         return false;
+    kernels->search = rf_search_c;
     kernels->sweep = rf_sweep_c;
     kernels->smooth3 = rf_smooth3_c;
     kernels->push = rf_push_c;
@@ -49,15 +50,16 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_aim_use_c(kernels);
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
-    rf_search_use_c(kernels);
     rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
     rf_series_use_c(kernels);
+    rf_surfaces_use_c(kernels);
 #if defined(RF_WITH_NEON)
     if (*cpu == REFOCUS_CPU_NEON) {
         rf_kernels_use_neon(kernels);
         rf_upsample_use_neon(kernels);
         rf_series_use_neon(kernels);
+        rf_surfaces_use_neon(kernels);
     }
 #endif
 #if defined(RF_WITH_SSE41)
@@ -65,6 +67,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         rf_kernels_use_sse41(kernels);
         rf_upsample_use_sse41(kernels);
         rf_series_use_sse41(kernels);
+        rf_surfaces_use_sse41(kernels);
     }
 #endif
 #if defined(RF_WITH_AVX2)
@@ -72,6 +75,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         rf_kernels_use_avx2(kernels);
         rf_upsample_use_avx2(kernels);
         rf_series_use_avx2(kernels);
+        rf_surfaces_use_avx2(kernels);
     }
 #endif
     return true;

@@ -55,18 +55,19 @@ static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const lig
     uint16_t *const red = out[0], *const green = out[1], *const blue = out[2];
     const uint16_t *const r = light[0], *const g = light[1], *const b = light[2];
     const vec_u16 from = vec_u16_set((uint16_t)least);
-    int x = 0;
 
-    for (; x + (int)VEC_U16 <= n; x += VEC_U16) {
-        const struct use use = use_of(blur + x, apart, from);
-
-        vec_u16_store(red + x, mean(r + x, apart, &use));
-        vec_u16_store(green + x, mean(g + x, apart, &use));
-        vec_u16_store(blue + x, mean(b + x, apart, &use));
+    if (n < (int)VEC_U16) {
+        rf_smooth3_c(out, light, blur, apart, least, n);
+        return;
     }
-    rf_smooth3_c((uint16_t *const[3]){red + x, green + x, blue + x},
-                 (const uint16_t *const[3]){r + x, g + x, b + x}, blur + x, apart, least,
-                 n - x);
+    for (int x = 0; x < n; x += VEC_U16) {
+        const int at = x + (int)VEC_U16 <= n ? x : n - (int)VEC_U16; /* some twice */
+        const struct use use = use_of(blur + at, apart, from);
+
+        vec_u16_store(red + at, mean(r + at, apart, &use));
+        vec_u16_store(green + at, mean(g + at, apart, &use));
+        vec_u16_store(blue + at, mean(b + at, apart, &use));
+    }
 }
 
 void RF_VEC(rf_smooth_use)(struct rf_kernels *kernels)

@@ -137,7 +137,7 @@ static void split_layers(struct work *work)
     bool cut[257] = {false}; /* cut[i]: a layer begins at bin i */
     uint8_t number[256];
 
-    for (int y = 0; y < r->height; y++)
+    for (int y = 0; y < r->height && !rf_cancelled(r); y++)
         for (int x = 0; x < r->width; x++)
             count[r->disparity[y * r->stride + x] >> 8]++;
     for (int n = 1; n < layers; n++) {
@@ -164,7 +164,7 @@ static void split_layers(struct work *work)
         n += cut[i];
         number[i] = (uint8_t)n;
     }
-    for (int y = 0; y < r->height; y++)
+    for (int y = 0; y < r->height && !rf_cancelled(r); y++)
         for (int x = 0; x < r->width; x++)
             work->member[(size_t)y * (size_t)r->width + (size_t)x] =
                 number[r->disparity[y * r->stride + x] >> 8];
@@ -266,13 +266,11 @@ static void composite_row(void *context, int item, int worker)
     }
 }
 
-/* Rows of a plane that the layer's flow reads. */
-static void clear(const struct work *work, float *plane)
+/* Rows y0 - 1 to y1 of a plane to 0, sides and all. */
+static void clear(const struct work *work, float *plane, int y0, int y1)
 {
-    const struct rf_box *box = &work->layer.box;
-
-    memset(plane + (box->y0 - 1) * work->stride - 1, 0,
-           sizeof(float) * (size_t)((box->y1 - box->y0 + 2) * work->stride));
+    for (int y = y0 - 1; y <= y1 && !rf_cancelled(work->f->r); y++)
+        memset(plane + y * work->stride - 1, 0, sizeof(float) * (size_t)work->stride);
 }
 
 static void do_layer(struct work *work, int number)
@@ -282,21 +280,23 @@ static void do_layer(struct work *work, int number)
     int rows;
 
     layer->number = number;
-    if (!rf_layer_grow(layer))
+    if (!rf_layer_grow(layer) || rf_cancelled(work->f->r))
         return;
     rows = layer->box.y1 - layer->box.y0;
-    clear(work, work->weight);
+    clear(work, work->weight, layer->box.y0, layer->box.y1);
     if (layer->reach > 0) {
         layer->edge_x = work->scratch[0][0];
         layer->edge_y = work->scratch[0][1];
         layer->edge_radius = work->scratch[0][2];
         rf_layer_list_edge(layer);
+        if (rf_cancelled(work->f->r)) /* the list may have no end */
+            return;
         rf_pool_run(pool, extrapolate_tile, work, layer->tiles_x * layer->tiles_y);
     }
     for (int c = 0; c < CHANNELS; c++) {
-        clear(work, work->plane[c]);
-        clear(work, work->scratch[0][c]);
-        clear(work, work->scratch[1][c]);
+        clear(work, work->plane[c], layer->box.y0, layer->box.y1);
+        for (int i = 0; i < 2; i++)
+            clear(work, work->scratch[i][c], layer->box.y0, layer->box.y1);
     }
     rf_pool_run(pool, cut_out_row, work, rows);
     if (layer->reach > 0) {
@@ -340,7 +340,7 @@ static void measure(struct work *work)
     double steps;
 
     work->most_radius = 0;
-    for (int y = 0; y < r->height; y++)
+    for (int y = 0; y < r->height && !rf_cancelled(r); y++)
         for (int x = 0; x < r->width; x++)
             work->most_radius = fmaxf(work->most_radius, work->radius[y * work->stride + x]);
     steps = (double)work->most_radius * work->most_radius / (2 * work->f->params->conductivity);
@@ -364,12 +364,14 @@ void rf_diffusion_frame(struct rf_frame *f)
     work->layer.tiles_y = (f->r->height + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
     rf_sincos_turns(f->params->field_angle / 360.0, &work->normal_d, &work->normal_x);
     for (int c = 0; c < CHANNELS; c++)
-        memset(work->below[c] - work->stride - 1, 0, sizeof(float) * (size_t)work->planes_size);
+        clear(work, work->below[c], 0, f->r->height);
     rf_pool_run(&f->r->pool, radius_row, work, f->r->height);
     if (rf_cancelled(f->r))
         return;
     measure(work);
     split_layers(work);
+    if (rf_cancelled(f->r))
+        return;
     if (work->most_radius < 0.5f)
         work->most_radius = 1; /* nothing conducts */
     work->weight_per_square = f->params->conductivity / (work->most_radius * work->most_radius);

@@ -1,6 +1,7 @@
 /* diffusion_layer.c: the region that a layer blurs over, and how much it is blurred there.
  * Kosloff & Barsky 2007, sections 7.1 and 7.2. */
 #include "methods/diffusion.h"
+#include "renderer/bands.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,6 +43,8 @@ static void number_rings(struct rf_diffusion_layer *layer)
         const uint16_t *before = up ? row + w : row - w;
         int ring = UINT16_MAX - 1;
 
+        if (rf_cancelled(layer->r))
+            return;
         for (int x = 0; x < w && !up; x++)
             row[x] = layer->member[(size_t)y * (size_t)w + (size_t)x] == layer->number
                          ? 0 : UINT16_MAX - 1;
@@ -63,7 +66,7 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
     struct rf_box box = {w, h, 0, 0, layer->stride};
     float most = -1;
 
-    for (int y = 0; y < h; y++)
+    for (int y = 0; y < h && !rf_cancelled(layer->r); y++)
         for (int x = 0; x < w; x++)
             if (layer->member[(size_t)y * (size_t)w + (size_t)x] == layer->number &&
                 layer->radius[y * layer->stride + x] > most)
@@ -74,7 +77,7 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
     layer->most = most;
     layer->reach = most < 0.5f ? 0 : (int)ceilf(1.5f * most) + 2;
     number_rings(layer);
-    for (int y = 0; y < h; y++) {
+    for (int y = 0; y < h && !rf_cancelled(layer->r); y++) {
         struct rf_span *span = &layer->span[y];
 
         *span = (struct rf_span){w, 0};
@@ -106,6 +109,8 @@ void rf_layer_list_edge(struct rf_diffusion_layer *layer)
         struct rf_edge_tile *tile = &layer->tile[t];
         const int x0 = t % layer->tiles_x * RF_EDGE_TILE, y0 = t / layer->tiles_x * RF_EDGE_TILE;
 
+        if (t % 64 == 0 && rf_cancelled(layer->r))
+            return;
         *tile = (struct rf_edge_tile){.first = count};
         for (int y = y0; y < lesser(y0 + RF_EDGE_TILE, h); y++) {
             for (int x = x0; x < lesser(x0 + RF_EDGE_TILE, w); x++) {

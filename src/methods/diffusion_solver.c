@@ -36,6 +36,8 @@ void rf_diffuse_steps(const struct refocus_renderer *r, const struct rf_box *box
             const float *c = from + y * box->stride, *w = weight + y * box->stride;
             float *restrict out = to + y * box->stride;
 
+            if (rf_cancelled(r))
+                return;
             if (i == steps) { /* an odd number: one more to copy back */
                 for (int x = box->x0; x < box->x1; x++)
                     out[x] = c[x];
@@ -140,6 +142,8 @@ void rf_diffuse_series(const struct rf_heat *heat, const struct rf_series *serie
      * row y of B_(k+2), which B_(k+1) needs for its rows up to y + 1. */
     for (int last = series->terms - 1; last >= 0 && !rf_cancelled(heat->r); last -= AT_ONCE) {
         for (int front = box->y0; front < box->y1 + 2 * (AT_ONCE - 1); front++) {
+            if (rf_cancelled(heat->r))
+                return;
             for (int i = 0; i < AT_ONCE && last - i >= 0; i++) {
                 const int y = front - 2 * i;
 

@@ -19,7 +19,7 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width;
+        const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
@@ -59,7 +59,7 @@ void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_
 {
     const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
-    const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width + x0;
+    const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride + x0;
     uint8_t *out = pixel(f, o.bytes, x0, y);
 
     if (o.bytes == 3)
@@ -89,7 +89,7 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const uint8_t *alpha = f->r->alpha + (size_t)y * f->r->width;
+        const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
@@ -113,5 +113,5 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
     out[o.g] = rgb[1];
     out[o.b] = rgb[2];
     if (o.a >= 0)
-        out[o.a] = f->r->alpha[(size_t)y * f->r->width + x];
+        out[o.a] = f->r->alpha[y * f->r->alpha_stride + x];
 }

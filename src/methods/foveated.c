@@ -116,7 +116,7 @@ static void list_borders(struct work *work, int most)
 {
     int n = 0;
 
-    for (int b = 0; b <= most; b++) {
+    for (int b = 0; b <= most && !rf_cancelled(work->f->r); b++) {
         work->border[b] = n;
         for (int y = -b; y <= b; y++) {
             for (int x = -b; x <= b; x++) {
@@ -341,6 +341,8 @@ static void write_rows(void *context, int item, int worker)
             const double share = attention(work, x, y);
             double a[3] = {0, 0, 0}, b[3] = {0, 0, 0};
 
+            if (rf_cancelled(f->r))
+                return;
             if (share > 0)
                 exact(work, x, y, a);
             if (share < 1)

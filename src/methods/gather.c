@@ -6,6 +6,7 @@
  * its depth does.
  */
 #include "methods/method.h"
+#include "renderer/bands.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +40,12 @@ void rf_gather_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
     (void)tx;
     (void)ty;
     (void)worker;
-    for (int y = rect.y0; y < rect.y1; y++)
-        for (int x = rect.x0; x < rect.x1; x++)
+    for (int y = rect.y0; y < rect.y1; y++) {
+        for (int x = rect.x0; x < rect.x1; x++) {
+            if (rf_cancelled(f->r))
+                return;
             gather(f, x, y, &sums);
+        }
+    }
     rf_encode_tile(f, rect, &sums);
 }

@@ -7,6 +7,7 @@
  * and cell, so that a picture can be made again.
  */
 #include "methods/trace.h"
+#include "renderer/bands.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,6 +20,12 @@ static uint32_t draw(uint32_t seed, uint32_t place, uint32_t cell)
     h = (h ^ h >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
     h = (h ^ h >> 27) * UINT64_C(0x94d049bb133111eb);
     return (uint32_t)(h >> 32 ^ h);
+}
+
+/* A number for each pixel of the photo. */
+static uint32_t place_of(const struct refocus_renderer *r, int x, int y)
+{
+    return (uint32_t)(y + r->origin_y) << 16 | (uint32_t)(x + r->origin_x);
 }
 
 /* What the pixels of a tile drew of a cell: by member of the cell, the pixels that drew it. */
@@ -37,7 +44,7 @@ static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell,
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
             const uint32_t member =
-                draw(f->params->seed, (uint32_t)(y << 16 | x), (uint32_t)cell) % members;
+                draw(f->params->seed, place_of(f->r, x, y), (uint32_t)cell) % members;
 
             drawn[y % RF_TILE * RF_TILE + x % RF_TILE] = (uint8_t)member;
             count[member]++;
@@ -87,6 +94,8 @@ void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
     for (int cell = 0; cell < cells * cells; cell++) {
         const int mx = first + cell % cells * a, my = first + cell / cells * a;
 
+        if (rf_cancelled(f->r))
+            return;
         draw_all(f, rect, cell, &draws);
         for (int member = 0; member < a * a; member++)
             follow(f, rect, reach, mx + member % a, my + member / a, &draws, member, &sums);

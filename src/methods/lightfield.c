@@ -69,6 +69,8 @@ static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0
     for (int y = y0 + lesser(ya, yb); y < y1 + greater(ya, yb); y++) {
         const int16_t *s = r->front.blur + y * r->stride;
 
+        if (rf_cancelled(r))
+            return;
         for (int x = lesser(xa, xb); x < r->width + greater(xa, xb); x++) {
             const int px = x - rf_offset(ray->u, s[x]), py = y - rf_offset(ray->v, s[x]);
             int16_t *seen;
@@ -138,7 +140,7 @@ static void do_band(void *context, int item, int worker)
     memset(band.weight, 0, sizeof(uint64_t) * BAND * (size_t)r->width);
     for (int n = 0; n < set->count && !rf_cancelled(r); n++) {
         warp(f, &set->ray[n], y0, y1, &band);
-        for (int y = y0; y < y1; y++)
+        for (int y = y0; y < y1 && !rf_cancelled(r); y++)
             add_row(f, &set->ray[n], y, y - y0, &band);
     }
     if (rf_cancelled(r))

@@ -7,11 +7,6 @@
 #include "renderer/renderer.h"
 #include "tiles/tiles.h"
 
-/* A rectangle of the picture, at most RF_TILE x RF_TILE, inside one tile. */
-struct rf_rect {
-    int x0, y0, x1, y1;
-};
-
 /* Curve and weights of eq. 5 in double precision, of 8-bit codes. */
 struct rf_exact {
     double light[256];
@@ -28,8 +23,8 @@ struct rf_frame {
     const struct refocus_aperture *aperture;
     struct rf_focus focus;
     struct rf_bin_scale scale;
+    struct rf_rect region;  /* of the window (renderer.h); out covers just this */
     struct rf_reach reach;
-    struct rf_rect region;  /* of the picture; out covers just this */
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
     int prefilter_step;     /* the one that is being made */
@@ -86,6 +81,7 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 /* One pixel given as codes; alpha is the photo's. */
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
 
+/* rect: at most RF_TILE x RF_TILE, inside one tile. */
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);
 rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;

@@ -5,6 +5,7 @@
  * averaged by eq. 5 over the exact curve of the blend.
  */
 #include "methods/trace.h"
+#include "renderer/bands.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,6 +23,8 @@ void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
     for (int n = 0; n < set->count; n++) {
         double u = set->ray[n].u / 32768.0, v = set->ray[n].v / 32768.0;
 
+        if (rf_cancelled(f->r))
+            return;
         if (f->params->rays == REFOCUS_RAYS_FULL && K > 0) { /* Q15 back to mask pixels */
             u = fmax(-1, fmin(1, floor(u * K + 0.5) / K));
             v = fmax(-1, fmin(1, floor(v * K + 0.5) / K));

@@ -17,7 +17,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { BAND = 16, MOST_TABLES = 4 * REFOCUS_MAX_BLUR_RADIUS + 1, MOST_SPIKES = 16 };
+enum {
+    BAND = 16,
+    AT_ONCE = 32, /* pixels between two looks at whether to go on */
+    MOST_TABLES = 4 * REFOCUS_MAX_BLUR_RADIUS + 1,
+    MOST_SPIKES = 16,
+};
 
 struct work {
     /* What the tables were made for. */
@@ -74,7 +79,8 @@ static void fill_table(void *context, int item, int worker)
 
     (void)worker;
     /* the largest first: they take longest */
-    rf_spread_fill(&work->table[work->tables - 1 - item], work->spread, work->airy_radius);
+    rf_spread_fill(&work->table[work->tables - 1 - item], work->spread, work->airy_radius,
+                   &work->f->r->run);
 }
 
 /* Tables for this K, unless they are there already. */
@@ -189,8 +195,11 @@ static void spread_band(void *context, int item, int worker)
         memset(work->sum[i] + (size_t)y0 * (size_t)r->width, 0,
                sizeof(uint64_t) * (size_t)(y1 - y0) * (size_t)r->width);
     for (int y = y0 - reach < 0 ? 0 : y0 - reach; y < y1 + reach && y < r->height; y++)
-        for (int x = 0; x < r->width; x++)
+        for (int x = 0; x < r->width; x++) {
+            if (x % AT_ONCE == 0 && rf_cancelled(r))
+                return;
             spread_sample(work, x, y, y0, y1);
+        }
 }
 
 /* Spikes with a strength that falls linearly to their end. */
@@ -251,6 +260,8 @@ static void write_row(void *context, int item, int worker)
         const size_t at = (size_t)y * (size_t)f->r->width + (size_t)x;
         const uint64_t light[3] = {work->sum[0][at], work->sum[1][at], work->sum[2][at]};
 
+        if (x % AT_ONCE == 0 && rf_cancelled(f->r))
+            return;
         if (work->spike_count)
             write_star(work, x, y);
         else

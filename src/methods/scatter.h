@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "support/pool.h"
+
 enum { RF_SPREAD_LEAST_TABLES = 73, RF_SPREAD_ONE = 1 << 24 };
 
 /* Shares of the light that the pixels around a sample get, Q24, for one blur radius. Row dy
@@ -22,6 +24,7 @@ int rf_spread_tables(double max_radius);
 int rf_spread_reach(double max_radius, int i);
 
 /* Fill a table whose radius, reach and share are set. */
-void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_radius);
+void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_radius,
+                    struct rf_run *run);
 
 #endif

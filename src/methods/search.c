@@ -9,18 +9,9 @@
  * p: then p itself is (or, by option, the mirrored pixel, or the background layer).
  */
 #include "methods/method.h"
+#include "renderer/bands.h"
 
-#include <math.h>
 #include <string.h>
-
-/* Largest |s - s'| that half a pixel allows a ray: 1/2 / |u|, in Q7.8. */
-static int tolerance(const struct refocus_ray *ray)
-{
-    const double length = sqrt((double)ray->u * ray->u + (double)ray->v * ray->v);
-    const double most = length > 0 ? 4194304.0 / length : 65535; /* 2^22 = half in Q23 */
-
-    return most > 65535 ? 65535 : (int)most;
-}
 
 struct hit {
     ptrdiff_t at;
@@ -75,53 +66,98 @@ static int nearest_blur(const struct rf_frame *f)
                   16);
 }
 
-/* The paper's own rule, by the kernel: some rays of equal weight into `run`. */
-static void search_run(const struct rf_frame *f, ptrdiff_t origin,
-                       const struct refocus_ray *ray, int rays,
-                       uint32_t run[3][RF_TILE * RF_TILE])
+/* Some rays of equal weight, and where their first guesses lie, in pixels and in cells. */
+struct chunk {
+    int rays;
+    struct rf_search_ray ray[RF_RAY_CHUNK];
+    int32_t cell[RF_RAY_CHUNK];
+};
+
+static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struct refocus_ray *ray)
 {
     const struct refocus_renderer *r = f->r;
     const int nearest = nearest_blur(f);
-    struct rf_search_ray own[RF_RAY_CHUNK];
-    struct rf_search_job job = {
-        .blur = r->front.blur + origin,
-        .light = {r->front.light[0] + origin, r->front.light[1] + origin,
-                  r->front.light[2] + origin},
-        .stride = r->stride,
-        .tests = f->params->iterations,
-        .rays = rays,
-        .lanes = RF_TILE,
-        .ray = own,
-    };
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    int32_t start[RF_RAY_CHUNK], within[RF_RAY_CHUNK];
 
-    for (int n = 0; n < rays; n++)
-        own[n] = (struct rf_search_ray){
-            .start = rf_offset(ray[n].v, nearest) * (int32_t)r->stride +
-                     rf_offset(ray[n].u, nearest),
-            .u = ray[n].u,
-            .v = ray[n].v,
-            .within = tolerance(&ray[n]),
-        };
-    r->kernels.search(run, &job);
+    for (int n = 0; n < chunk->rays; n++) {
+        u[n] = ray[n].u;
+        v[n] = ray[n].v;
+    }
+    r->kernels.aim(start, chunk->cell, u, v, nearest, (int32_t)r->stride,
+                   (int32_t)r->range_stride, chunk->rays);
+    r->kernels.tolerances(within, u, v, chunk->rays);
+    for (int n = 0; n < chunk->rays; n++)
+        chunk->ray[n] = (struct rf_search_ray){start[n], u[n], v[n], within[n]};
 }
 
-static void search_runs(const struct rf_frame *f, ptrdiff_t origin,
-                        const struct rf_ray_set *set, struct rf_sums *sums)
+/* The paper's own rule, by kernels: rays that are settled for the strip as a whole are added as
+ * those of the sweep that need no test, the others are searched. */
+static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx, int y,
+                         uint32_t *const sum[3])
+{
+    const struct refocus_renderer *r = f->r;
+    const ptrdiff_t at = y * r->stride + tx * RF_TILE;
+    uint8_t settled[RF_RAY_CHUNK];
+    int32_t offset[RF_RAY_CHUNK];
+    struct rf_search_ray left[RF_RAY_CHUNK];
+    struct rf_sorted_rays sorted;
+    const struct rf_sweep_job sweep = {
+        .blur = r->front.blur + at,
+        .stride = r->stride,
+        .pitch = r->pitch,
+        .rays = &sorted,
+    };
+    struct rf_search_job search = {
+        .blur = r->front.blur + at,
+        .light = {r->front.light[0] + at, r->front.light[1] + at, r->front.light[2] + at},
+        .stride = r->stride,
+        .tests = f->params->iterations,
+        .ray = left,
+    };
+
+    sorted.rays = 0;
+    r->kernels.settle(settled, offset,
+                      r->range + y / RF_CELL * r->range_stride + tx * (RF_TILE / RF_CELL),
+                      chunk->cell, chunk->ray, (int32_t)r->stride, (int32_t)r->range_stride,
+                      chunk->rays);
+    for (int n = 0; n < chunk->rays; n++) {
+        left[search.rays] = chunk->ray[n];
+        sorted.tests[sorted.rays] = 0;
+        sorted.last[sorted.rays] = r->front.light[0] + at + offset[n];
+        search.rays += !settled[n];
+        sorted.rays += settled[n];
+    }
+    r->kernels.sweep(sum, &sweep);
+    r->kernels.search(sum, &search);
+}
+
+static void search_runs(const struct rf_frame *f, int tx, int ty, const struct rf_ray_set *set,
+                        struct rf_sums *sums)
 {
     uint32_t run[3][RF_TILE * RF_TILE];
+    struct chunk chunk;
 
-    for (int n = 0, rays; n < set->count; n += rays) {
+    memset(run, 0, sizeof run);
+    for (int n = 0; n < set->count; n += chunk.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        rays = 1;
-        while (rays < RF_RAY_CHUNK && n + rays < set->count &&
-               ray[rays].weight == ray->weight)
-            rays++;
-        memset(run, 0, sizeof run);
-        search_run(f, origin, ray, rays, run);
+        if (rf_cancelled(f->r))
+            return;
+        chunk.rays = 1;
+        while (chunk.rays < RF_RAY_CHUNK && n + chunk.rays < set->count &&
+               ray[chunk.rays].weight == ray->weight)
+            chunk.rays++;
+        set_chunk(&chunk, f, ray);
+        for (int i = 0; i < RF_TILE * RF_TILE; i += RF_STRIP_LANES)
+            search_strip(f, &chunk, tx, ty * RF_TILE + i / RF_TILE,
+                         (uint32_t *const[3]){run[0] + i, run[1] + i, run[2] + i});
+        if (n + chunk.rays < set->count && ray[chunk.rays].weight == ray->weight)
+            continue;
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < RF_TILE * RF_TILE; i++)
                 sums->light[c][i] += (uint64_t)ray->weight * run[c][i];
+        memset(run, 0, sizeof run);
     }
     for (int i = 0; i < RF_TILE * RF_TILE; i++)
         sums->weight[i] = set->total_weight;
@@ -138,8 +174,11 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
         const struct refocus_ray *ray = &set->ray[n];
         const ptrdiff_t start = rf_offset(ray->v, nearest) * r->stride +
                                 rf_offset(ray->u, nearest);
-        const int within = tolerance(ray);
+        int32_t within;
 
+        if (rf_cancelled(f->r))
+            return;
+        r->kernels.tolerances(&within, &ray->u, &ray->v, 1);
         for (int y = rect.y0; y < rect.y1; y++) {
             for (int x = rect.x0; x < rect.x1; x++) {
                 const ptrdiff_t p = y * r->stride + x;
@@ -168,6 +207,7 @@ void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
     if (f->weighted || f->params->mirror || f->params->background)
         search_pixels(f, rect, set, &sums);
     else
-        search_runs(f, ty * RF_TILE * f->r->stride + tx * RF_TILE, set, &sums);
-    rf_encode_tile(f, rect, &sums);
+        search_runs(f, tx, ty, set, &sums);
+    if (!rf_cancelled(f->r)) /* else no weights */
+        rf_encode_tile(f, rect, &sums);
 }

@@ -27,14 +27,14 @@ int rf_spread_reach(double max_radius, int i)
 
 /* Intensity from the middle, [0], to the rim, [count]. */
 static int make_profile(double radius, uint32_t spread, double airy_radius,
-                        double profile[PROFILE + 1])
+                        double profile[PROFILE + 1], struct rf_run *run)
 {
     const int count = spread == REFOCUS_SPREAD_UNIFORM ? 1
                       : radius * 16 < PROFILE          ? (int)ceil(radius * 16)
                                                        : PROFILE;
     const double scale = 3.8317059702075125 / airy_radius; /* first zero of J1 */
 
-    for (int i = 0; i <= count; i++)
+    for (int i = 0; i <= count && !rf_run_cancelled(run); i++)
         profile[i] = spread == REFOCUS_SPREAD_UNIFORM
                          ? 1
                          : rf_lommel(scale * radius, scale * radius * i / count);
@@ -60,7 +60,8 @@ static double over_pixel(double radius, const double *profile, int count, int x,
     return sum;
 }
 
-void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_radius)
+void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_radius,
+                    struct rf_run *run)
 {
     const int reach = table->reach, width = 2 * reach + 1;
     const int most = (int)ceil(table->radius - 0.5) < reach ? (int)ceil(table->radius - 0.5)
@@ -74,9 +75,11 @@ void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_
         table->share[reach] = RF_SPREAD_ONE;
         return;
     }
-    count = make_profile(table->radius, spread, airy_radius, profile);
+    count = make_profile(table->radius, spread, airy_radius, profile, run);
     for (int pass = 0; pass < 2; pass++) { /* first the sum, then the shares of it */
         for (int y = 0; y <= most; y++) {
+            if (rf_run_cancelled(run))
+                return;
             for (int x = 0; x <= most; x++) {
                 const double value = over_pixel(table->radius, profile, count, x, y);
                 const int copies = (x ? 2 : 1) * (y ? 2 : 1);

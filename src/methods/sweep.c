@@ -11,6 +11,7 @@
  * not matter.
  */
 #include "methods/method.h"
+#include "renderer/bands.h"
 
 #include <string.h>
 
@@ -129,8 +130,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     const struct refocus_renderer *r = f->r;
     /* One blur of the background for the tile, that of its middle, keeps the offsets of a
      * ray constant; looking it up for each pixel measured no better. */
-    const int behind = f->weighted ? r->bins[(size_t)ty * r->tiles_x + tx].behind
-                                   : r->behind.blur[rf_tile_middle(r, tx, ty)];
+    const int behind = r->bins[(size_t)ty * r->tiles_x + tx].behind;
     struct sight sight;
     const size_t used = f->weighted ? sizeof run->weighted : sizeof run->plain;
     int rays = 0; /* in this run */
@@ -139,6 +139,8 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
+        if (rf_cancelled(r))
+            return;
         sight.rays = chunk_of(set, n);
         rays += sight.rays;
         set_sight(&sight, f, plan, ray, behind);
@@ -173,10 +175,13 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
 
         memset(&sums, 0, sizeof sums);
         sweep_rays(f, &plan, set, tx, ty, &run, &sums);
-        rf_encode_tile(f, rect, &sums);
+        if (!rf_cancelled(r)) /* else no weights */
+            rf_encode_tile(f, rect, &sums);
         return;
     }
     sweep_rays(f, &plan, set, tx, ty, &run, NULL);
+    if (rf_cancelled(r))
+        return;
     for (int c = 0; c < 3; c++) {
         if (f->weighted)
             r->kernels.weighted_means(mean[c], run.weighted[c], run.weighted[3], LANES);

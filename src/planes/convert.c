@@ -14,7 +14,7 @@ void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *pho
         uint16_t *red = r->front.light[0] + y * r->stride;
         uint16_t *green = r->front.light[1] + y * r->stride;
         uint16_t *blue = r->front.light[2] + y * r->stride;
-        uint8_t *alpha = r->alpha + (size_t)y * r->width;
+        uint8_t *alpha = r->alpha + y * r->alpha_stride;
 
         for (int x = 0; x < r->width; x++, in += o.bytes) {
             red[x] = to_light[in[o.r]];
@@ -27,10 +27,10 @@ void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *pho
         rf_extend_rows(r, r->front.light[c], y0, y1);
 }
 
-void rf_reblend_rows(struct refocus_renderer *r, uint32_t blend, int y0, int y1)
+void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int y0, int y1)
 {
-    const uint8_t *to_code = r->transfer[r->blend].to_code;
-    const uint16_t *to_light = r->transfer[blend].to_light;
+    const uint8_t *to_code = r->transfer[from].to_code;
+    const uint16_t *to_light = r->transfer[to].to_light;
 
     for (int c = 0; c < 3; c++) {
         for (int y = y0; y < y1; y++) {

@@ -11,8 +11,8 @@
 void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0,
                      int y1);
 
-/* Change light planes from the blend they are in to another. */
-void rf_reblend_rows(struct refocus_renderer *r, uint32_t blend, int y0, int y1);
+/* Change light planes from one blend to another. */
+void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int y0, int y1);
 
 /* Disparities of the photo's size, copied. */
 void rf_disparity_rows(struct refocus_renderer *r, const struct refocus_disparity *map,
@@ -32,13 +32,15 @@ void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int 
  * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from
  * 1.5 pixels on; the next close those twice and four times as wide.
  */
-enum { RF_PREFILTER_STEPS = 3 };
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
                        uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], int step,
                        int ty);
 
+/* The background's blur in the middle of each tile of a row goes to its bins. */
+void rf_note_behind(struct refocus_renderer *r, int ty);
+
 /* Weights of eq. 5 of the pixels that rays meet, borders too: of smooth into r->weight, of the
- * background over its blur. That of the middle of each tile goes to its bins before. */
+ * background over its blur. */
 void rf_weigh_rows(struct refocus_renderer *r, int ty);
 
 /* Extend rows y0..y1-1 of a padded plane of 16-bit values beyond its sides, and the first

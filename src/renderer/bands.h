@@ -23,19 +23,18 @@ static inline int rf_band_end(const struct refocus_renderer *r, int band)
 
 static inline void rf_run_begin(struct refocus_renderer *r)
 {
-    atomic_store(&r->run, RF_RUN_RUNNING);
+    atomic_store(&r->run.state, RF_RUN_RUNNING);
 }
 
 static inline bool rf_cancelled(const struct refocus_renderer *r)
 {
-    return atomic_load_explicit(&((struct refocus_renderer *)r)->run,
-                                memory_order_relaxed) == RF_RUN_CANCELLED;
+    return rf_run_cancelled(&((struct refocus_renderer *)r)->run);
 }
 
 /* Whether the run that ends here was cancelled. */
 static inline bool rf_run_end(struct refocus_renderer *r)
 {
-    return atomic_exchange(&r->run, RF_RUN_IDLE) == RF_RUN_CANCELLED;
+    return atomic_exchange(&r->run.state, RF_RUN_IDLE) == RF_RUN_CANCELLED;
 }
 
 #endif

@@ -5,6 +5,14 @@
 
 #include "renderer/layout.h"
 
+/* Methods that need the whole photo. */
+#define FRAME_METHODS                                                                  \
+    (REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) |                                   \
+     REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |                                      \
+     REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |                                     \
+     REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |                                 \
+     REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION))
+
 static void *default_allocate(void *user, size_t size)
 {
     (void)user;
@@ -26,10 +34,12 @@ static bool read_params(struct refocus_renderer_params *own,
     *own = *params;
     return own->max_width >= 1 && own->max_width <= REFOCUS_MAX_SIDE &&
            own->max_height >= 1 && own->max_height <= REFOCUS_MAX_SIDE &&
-           own->max_blur_radius >= 0 && own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS &&
-           own->threads >= 0 && own->threads <= RF_MAX_THREADS &&
-           own->cpu <= REFOCUS_CPU_AVX2 && (own->methods & ~REFOCUS_METHODS_ALL) == 0 &&
-           own->reserved == 0 &&
+           own->max_blur_radius >= 0 &&
+           own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
+           own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX2 &&
+           (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 &&
+           own->previews <= 1 && own->in_place <= 1 &&
+           !(own->in_place && (own->previews || (own->methods & FRAME_METHODS))) &&
            !own->allocator.allocate == !own->allocator.release;
 }
 
@@ -61,7 +71,8 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     if (size > PTRDIFF_MAX || (own.max_memory && size > own.max_memory))
         return REFOCUS_ERR_SIZE;
     if (!own.allocator.allocate)
-        own.allocator = (struct refocus_allocator){default_allocate, default_release, NULL};
+        own.allocator =
+            (struct refocus_allocator){default_allocate, default_release, NULL};
     block = own.allocator.allocate(own.allocator.user, (size_t)size);
     if (!block)
         return REFOCUS_ERR_MEMORY;
@@ -81,10 +92,12 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
     r->work_owner = RF_NO_METHOD;
+    r->previews = own.previews;
+    r->in_place.on = own.in_place;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
-    atomic_init(&r->run, RF_RUN_IDLE);
-    status = rf_pool_start(&r->pool, rf_threads_for(&own), &r->run);
+    atomic_init(&r->run.state, RF_RUN_IDLE);
+    status = rf_pool_start(&r->pool, rf_threads_for(&own), &own.parallel, &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);
         return status;
@@ -110,7 +123,8 @@ void refocus_cancel(struct refocus_renderer *renderer)
     int running = RF_RUN_RUNNING;
 
     if (renderer)
-        atomic_compare_exchange_strong(&renderer->run, &running, RF_RUN_CANCELLED);
+        atomic_compare_exchange_strong(&renderer->run.state, &running,
+                                       RF_RUN_CANCELLED);
 }
 
 void refocus_renderer_get_info(const struct refocus_renderer *renderer,

@@ -10,8 +10,8 @@
 #include "support/arena.h"
 #include "tiles/ranges.h"
 
-/* Pixels that may be read beyond the picture: the largest offset, one for the pre-filter,
- * one for rounding. */
+/* Pixels that may be read beyond the picture: the largest offset, one for the
+ * pre-filter, one for rounding. */
 int rf_padding_for(float max_blur_radius)
 {
     return (int)ceilf(max_blur_radius) + 2;
@@ -20,9 +20,11 @@ int rf_padding_for(float max_blur_radius)
 ptrdiff_t rf_pitch_for(int width, int pad)
 {
     const int tiles = (width + RF_TILE - 1) / RF_TILE;
-    const ptrdiff_t pitch = ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
+    const ptrdiff_t pitch =
+        ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
 
-    return pitch % 512 ? pitch : pitch + 32; /* rows a page apart would share cache sets */
+    return pitch % 512 ? pitch
+                       : pitch + 32; /* rows a page apart would share cache sets */
 }
 
 int rf_threads_for(const struct refocus_renderer_params *params)
@@ -34,7 +36,8 @@ int rf_threads_for(const struct refocus_renderer_params *params)
     return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
 }
 
-static void take_level(struct rf_arena *arena, struct rf_level *level, int width, int height)
+static void take_level(struct rf_arena *arena, struct rf_level *level, int width,
+                       int height)
 {
     const uint64_t pixels = (uint64_t)(width + 1) * height;
 
@@ -43,19 +46,92 @@ static void take_level(struct rf_arena *arena, struct rf_level *level, int width
     level->blur = rf_arena_take(arena, pixels, 2);
 }
 
-/* A group of padded planes: row y of plane i is at group + y * stride + i * pitch, so that
- * what is read together lies together. Returns pixel (0, 0) of plane 0. */
-static uint16_t *take_group(struct rf_arena *arena, const struct refocus_renderer *r,
-                            uint64_t rows)
+/* Elements of a group of padded planes: row y of plane i is at group + y * stride + i *
+ * pitch, so that what is read together lies together. */
+static uint64_t group_size(const struct rf_photo *photo, int height)
 {
-    uint16_t *group = rf_arena_take(arena, (uint64_t)r->stride * rows, 2);
-
-    return group ? group + r->pad * (r->stride + 1) : NULL;
+    return (uint64_t)photo->stride *
+           ((uint64_t)height + 2 * (uint64_t)photo->pad + RF_TILE);
 }
 
-static uint16_t *plane_of(uint16_t *group, const struct refocus_renderer *r, int i)
+/* What a photo of at most this size has beside its planes. */
+static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width,
+                       int height)
 {
-    return group ? group + i * r->pitch : NULL;
+    photo->capacity = rf_rim_capacity(width, height);
+    photo->rim = rf_arena_take(arena, photo->capacity, sizeof *photo->rim);
+    for (int i = 0; i < rf_lamp_parts(height); i++) {
+        photo->highlights[i].capacity = rf_lamp_capacity(width);
+        photo->highlights[i].lamp = rf_arena_take(arena, photo->highlights[i].capacity,
+                                                  sizeof(struct rf_highlight));
+    }
+    photo->band_blend =
+        rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
+}
+
+/* Planes of a photo in a group; NULL: only counting. */
+static void place_photo(struct rf_photo *photo, uint16_t *group, uint8_t *alpha)
+{
+    photo->alpha = alpha;
+    photo->group = group;
+    if (!group)
+        return;
+    group += photo->pad * (photo->stride + 1);
+    for (int c = 0; c < 3; c++)
+        photo->light[c] = group + c * photo->pitch;
+    photo->disparity = group + 3 * photo->pitch;
+}
+
+/* A photo of at most this size with memory of its own. */
+static void take_photo(struct rf_arena *arena, struct rf_photo *photo, int width,
+                       int height)
+{
+    uint16_t *group = rf_arena_take(arena, group_size(photo, height), 2);
+
+    place_photo(photo, group,
+                rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 1));
+    take_lists(arena, photo, width, height);
+}
+
+static void shape_photo(struct rf_photo *photo, int width, float max_blur_radius)
+{
+    photo->pad = rf_padding_for(max_blur_radius);
+    photo->pitch = rf_pitch_for(width, photo->pad);
+    photo->stride = RF_GROUP * photo->pitch;
+}
+
+/*
+ * The photo, and what a lens setting makes of it. The photo reduced to a half lies in
+ * what a half of the size leaves free of the memory of the background layer, so the
+ * whole photo's background layer overwrites it; those reduced further have memory of
+ * their own.
+ */
+static void take_whole(struct refocus_renderer *r,
+                       const struct refocus_renderer_params *params,
+                       struct rf_arena *arena)
+{
+    const int w = params->max_width, h = params->max_height;
+    uint64_t behind, half, used;
+
+    for (int i = 0; i < RF_PHOTOS; i++)
+        shape_photo(&r->photo[i], rf_reduced(w, i),
+                    params->max_blur_radius / (float)(1 << i));
+    take_photo(arena, &r->photo[0], w, h);
+    behind = group_size(&r->photo[0], h);
+    r->seen_group = rf_arena_take(arena, behind, 2);
+    half = group_size(&r->photo[1], rf_reduced(h, 1));
+    used = 2 * half + (uint64_t)rf_reduced(w, 1) * (uint64_t)rf_reduced(h, 1) / 2 + 1;
+    if (params->previews && used > behind)
+        behind = used;
+    r->behind_group = rf_arena_take(arena, behind, 2);
+    if (!params->previews)
+        return;
+    if (r->behind_group)
+        place_photo(&r->photo[1], r->behind_group + half,
+                    (uint8_t *)(r->behind_group + 2 * half));
+    take_lists(arena, &r->photo[1], rf_reduced(w, 1), rf_reduced(h, 1));
+    for (int i = 2; i < RF_PHOTOS; i++)
+        take_photo(arena, &r->photo[i], rf_reduced(w, i), rf_reduced(h, i));
 }
 
 /* The pyramid of a picture of this size, for sizes alone or with memory. */
@@ -74,6 +150,60 @@ int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height)
     return levels;
 }
 
+static int up_to_tiles(int v)
+{
+    return (v + RF_TILE - 1) / RF_TILE * RF_TILE;
+}
+
+/*
+ * The mark of a pixel depends on pixels 2 K + 1 away; the fill of one, by way of levels
+ * below RF_KEPT, on known ones 12 away, whose light depends on 7 more; blur, where
+ * there are lamps, on 5 more. Margins also have room for the border of a window at the
+ * photo's side.
+ */
+static void shape_blocks(struct rf_in_place *in_place, int pad)
+{
+    enum { MARK_BLOCK = 128 };
+
+    in_place->mark_block = MARK_BLOCK;
+    in_place->mark_margin = up_to_tiles(2 * pad + 9);
+    in_place->margin = up_to_tiles(pad + 28);
+    if (in_place->mark_margin < in_place->margin)
+        in_place->mark_margin = in_place->margin;
+    in_place->block = MARK_BLOCK + 2 * (in_place->mark_margin - in_place->margin);
+}
+
+/* Planes for the window of a block, and what is kept of the whole photo. */
+static void take_blocks(struct refocus_renderer *r,
+                        const struct refocus_renderer_params *params,
+                        struct rf_arena *arena)
+{
+    const int w = params->max_width, h = params->max_height;
+    struct rf_in_place *in_place = &r->in_place;
+    struct rf_photo *photo = &r->photo[0];
+    uint64_t size;
+    int side;
+
+    shape_blocks(in_place, rf_padding_for(params->max_blur_radius));
+    photo->pad = rf_padding_for(params->max_blur_radius);
+    side = rf_block_side(in_place, photo->pad);
+    photo->pitch = rf_pitch_for(side + RF_TILE, 0);
+    photo->stride = RF_GROUP * photo->pitch;
+    size = (uint64_t)photo->stride * (uint64_t)(side + RF_TILE + 2 * RF_SPARE_ROWS);
+    photo->group = rf_arena_take(arena, size, 2);
+    r->seen_group = rf_arena_take(arena, size, 2);
+    r->behind_group = rf_arena_take(arena, size, 2);
+    photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
+    take_lists(arena, photo, w, h);
+    in_place->known_stride = (w + 7) / 8;
+    in_place->known =
+        rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
+    in_place->levels = rf_pyramid(in_place->kept, w, h);
+    for (int i = RF_KEPT - 1; i < in_place->levels; i++)
+        take_level(arena, &in_place->kept[i], in_place->kept[i].width,
+                   in_place->kept[i].height);
+}
+
 /* Bytes for the greediest of the methods that work on whole frames. */
 static uint64_t work_bytes(const struct refocus_renderer_params *params)
 {
@@ -85,9 +215,9 @@ static uint64_t work_bytes(const struct refocus_renderer_params *params)
                  {REFOCUS_METHOD_FOVEATED, rf_foveated_work},
                  {REFOCUS_METHOD_INTERPOLATED, rf_interpolated_work},
                  {REFOCUS_METHOD_DIFFUSION, rf_diffusion_work}};
-    const struct rf_limits limits = {
-        params->max_width, params->max_height, rf_padding_for(params->max_blur_radius),
-        rf_threads_for(params), params->max_blur_radius};
+    const struct rf_limits limits = {params->max_width, params->max_height,
+                                     rf_padding_for(params->max_blur_radius),
+                                     rf_threads_for(params), params->max_blur_radius};
     uint64_t most = 0;
 
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++) {
@@ -100,36 +230,44 @@ static uint64_t work_bytes(const struct refocus_renderer_params *params)
     return most;
 }
 
+static int block_side(const struct refocus_renderer_params *params)
+{
+    struct rf_in_place in_place;
+
+    shape_blocks(&in_place, rf_padding_for(params->max_blur_radius));
+    return rf_block_side(&in_place, rf_padding_for(params->max_blur_radius));
+}
+
+/* As many as the largest full mask, or all sets of N, have. */
+static uint64_t few_rays(const struct refocus_renderer_params *params)
+{
+    const uint64_t side = 2 * (uint64_t)ceilf(params->max_blur_radius) + 1;
+    const uint64_t sets = 4096;
+
+    return side * side > sets ? side * side : sets;
+}
+
 /* Sets the pointers of r, or with arena->base == NULL only counts. */
-static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+static void lay_out(struct refocus_renderer *r,
+                    const struct refocus_renderer_params *params,
                     struct rf_arena *arena)
 {
+    const int side = params->in_place ? block_side(params) : INT32_MAX;
     const int w = params->max_width, h = params->max_height;
-    const int pad = rf_padding_for(params->max_blur_radius);
-    const uint64_t rows = (uint64_t)h + 2 * pad + RF_TILE;
-    uint16_t *photo, *seen, *behind;
-    const uint64_t tiles = (uint64_t)((w + RF_TILE - 1) / RF_TILE) *
-                           (uint64_t)((h + RF_TILE - 1) / RF_TILE);
+    /* of the largest window */
+    const int across = w < side ? w : side, down = h < side ? h : side;
+    const uint64_t tiles = (uint64_t)((across + RF_TILE - 1) / RF_TILE) *
+                           (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
-    const int levels = rf_pyramid(level, w, h);
-    const int threads = rf_threads_for(params);
+    const int levels = rf_pyramid(level, across, down);
+    const int threads = rf_threads_for(params),
+              pad = rf_padding_for(params->max_blur_radius);
     uint64_t before, after;
 
-    r->pad = pad;
-    r->pitch = rf_pitch_for(w, pad);
-    r->stride = RF_GROUP * r->pitch;
-    photo = take_group(arena, r, rows);
-    seen = take_group(arena, r, rows);
-    behind = take_group(arena, r, rows);
-    for (int c = 0; c < 3; c++) {
-        r->front.light[c] = plane_of(photo, r, c);
-        r->smooth[c] = plane_of(seen, r, 1 + c);
-        r->behind.light[c] = plane_of(behind, r, 1 + c);
-    }
-    r->disparity = plane_of(photo, r, 3);
-    r->front.blur = (int16_t *)seen;
-    r->behind.blur = (int16_t *)behind;
-    r->alpha = rf_arena_take(arena, (uint64_t)w * h, 1);
+    if (params->in_place)
+        take_blocks(r, params, arena);
+    else
+        take_whole(r, params, arena);
     before = arena->used;
     for (int i = 0; i < levels; i++) {
         take_level(arena, &level[i], level[i].width, level[i].height);
@@ -137,28 +275,26 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     }
     after = arena->used;
     arena->used = before; /* the pyramid is done with before there are weights */
-    r->weight_stride = r->pitch;
-    r->weight = rf_arena_take(arena, (uint64_t)r->pitch * rows, 2);
-    r->weight = r->weight ? r->weight + pad * (r->pitch + 1) : NULL;
+    r->weight_stride = rf_pitch_for(across, pad);
+    r->weight = rf_arena_take(
+        arena, (uint64_t)r->weight_stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
+    r->weight = r->weight ? r->weight + pad * (r->weight_stride + 1) : NULL;
     arena->used = arena->used > after ? arena->used : after;
-    for (int i = 0; i < rf_lamp_parts(h); i++) {
-        r->highlights[i].lamp =
-            rf_arena_take(arena, rf_lamp_capacity(w), sizeof(struct rf_highlight));
-        r->highlights[i].capacity = rf_lamp_capacity(w);
-    }
-    r->rim = rf_arena_take(arena, rf_rim_capacity(w, h), sizeof *r->rim);
-    r->range_stride = rf_range_width(w, pad);
-    r->range = rf_arena_take(arena, (uint64_t)r->range_stride * rf_range_width(h, pad),
-                             sizeof *r->range);
+    r->range_stride = rf_range_width(across, pad);
+    r->range = rf_arena_take(
+        arena, (uint64_t)r->range_stride * (uint64_t)rf_range_width(down, pad),
+        sizeof *r->range);
     if (r->range)
         r->range += rf_range_border(pad) * (r->range_stride + 1);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
-    r->rays = rf_arena_take(arena, RF_FULL_RAYS, sizeof *r->rays);
+    r->rays = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
+                            sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
-    r->taps = rf_arena_take(arena, (uint64_t)w + h, sizeof *r->taps);
-    r->near_by = rf_arena_take(arena, RF_TAPS * ((uint64_t)w + RF_BATCH_SPARE), 2);
-    r->column = rf_arena_take(arena, (uint64_t)w + 4, sizeof *r->column);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
+    if (params->in_place)
+        return;
+    r->taps = rf_arena_take(arena, (uint64_t)w + h, sizeof *r->taps);
+    r->near_by = rf_arena_take(arena, (RF_TAPS + 1) * ((uint64_t)w + RF_BATCH_SPARE), 2);
     r->work = rf_arena_take(arena, work_bytes(params), 1);
 }
 

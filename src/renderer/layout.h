@@ -8,8 +8,14 @@ int rf_padding_for(float max_blur_radius);
 ptrdiff_t rf_pitch_for(int width, int pad);
 int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height);
 
-/* Threads that a renderer with these parameters has. */
-int rf_threads_for(const struct refocus_renderer_params *params);
+/* Strip mode: rows above and below a window that may be read, though nothing is in
+ * them; and the most pixels on a side of a window and its border. */
+enum { RF_SPARE_ROWS = 8 };
+static inline int rf_block_side(const struct rf_in_place *in_place, int pad)
+{
+    return in_place->block + in_place->margin +
+           (in_place->margin > 2 * pad ? in_place->margin : 2 * pad);
+}
 
 /* Bytes of a renderer; UINT64_MAX: too many to address. */
 uint64_t rf_layout_size(const struct refocus_renderer_params *params);

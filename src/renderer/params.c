@@ -78,6 +78,8 @@ bool rf_good_params(const struct refocus_renderer *r, const struct refocus_rende
 
     return p && p->struct_size == sizeof *p && p->method < REFOCUS_METHOD_COUNT &&
            (r->methods & REFOCUS_METHOD_BIT(p->method)) && good_rays(r, p) &&
+           (p->reduce == 1 ||
+            (r->previews && (p->reduce == 2 || p->reduce == 4 || p->reduce == 8))) &&
            good_scatter(p) && good_ratios(p) && good_attention(p) && good_field(p) &&
            (!(round_only & REFOCUS_METHOD_BIT(p->method)) || has_round_aperture(p));
 }

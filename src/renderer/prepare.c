@@ -1,49 +1,33 @@
 #include <refocus/render.h>
 
+#include <string.h>
+
 #include "depth/upsample.h"
 #include "planes/format.h"
 #include "planes/planes.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
+#include "renderer/load.h"
 #include "renderer/params.h"
-
-struct job {
-    struct refocus_renderer *r;
-    const struct refocus_image *photo;
-    const struct refocus_disparity *map;
-};
-
-static void convert_band(void *context, int band, int worker)
-{
-    const struct job *job = context;
-
-    (void)worker;
-    rf_convert_rows(job->r, job->photo, rf_band_start(band), rf_band_end(job->r, band));
-}
-
-static void disparity_band(void *context, int band, int worker)
-{
-    const struct job *job = context;
-
-    (void)worker;
-    rf_disparity_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
-}
+#include "renderer/reduce.h"
 
 static uint16_t *scratch_of(void *context, int worker)
 {
     return rf_scratch(context, worker);
 }
 
-/* The planes of the background layer are free until something is rendered. */
-static void upsample(struct refocus_renderer *r, const struct job *job)
+/* The planes of blurs, of pre-filtered light and of the background layer are free until
+ * something is rendered. */
+static void upsample(struct refocus_renderer *r, const struct refocus_image *photo,
+                     const struct refocus_disparity *map)
 {
     const ptrdiff_t row = r->width + RF_BATCH_SPARE;
     struct rf_upsampler up = {
         .kernels = &r->kernels,
-        .photo = job->photo,
-        .map = job->map,
-        .columns = rf_upsample_samples(job->map->width, r->width),
-        .rows = rf_upsample_samples(job->map->height, r->height),
+        .photo = photo,
+        .map = map,
+        .columns = rf_upsample_samples(map->width, r->width),
+        .rows = rf_upsample_samples(map->height, r->height),
         .coarse = r->behind.light[0],
         .coarse_stride = r->stride,
         .wide = r->behind.light[1],
@@ -52,8 +36,14 @@ static void upsample(struct refocus_renderer *r, const struct job *job)
         .raw_stride = r->stride,
         .across = r->taps,
         .down = r->taps + r->width,
-        .column = r->column + 2,
-        .near_by = {r->near_by, r->near_by + row, r->near_by + 2 * row, r->near_by + 3 * row},
+        .colour = {(uint8_t *)r->smooth[0], (uint8_t *)r->smooth[1],
+                   (uint8_t *)r->smooth[2]},
+        .colour_stride = r->stride * (ptrdiff_t)sizeof *r->smooth[0],
+        .sure = (uint8_t *)r->front.blur,
+        .sure_stride = r->stride * (ptrdiff_t)sizeof *r->front.blur,
+        .near_by = {r->near_by, r->near_by + row, r->near_by + 2 * row,
+                    r->near_by + 3 * row},
+        .middle = (int16_t *)r->near_by + 4 * row,
         .scratch = scratch_of,
         .context = r,
         .out = r->disparity,
@@ -63,31 +53,52 @@ static void upsample(struct refocus_renderer *r, const struct job *job)
     rf_upsample(&up, &r->pool);
 }
 
+static void take_in(struct refocus_renderer *r, const struct refocus_image *photo,
+                    const struct refocus_disparity *disparity)
+{
+    rf_load_light(r, photo);
+    if (disparity->width == r->width && disparity->height == r->height)
+        rf_load_disparity(r, disparity);
+    else
+        upsample(r, photo, disparity);
+    if (!rf_cancelled(r))
+        rf_find_rims(r, rf_whole(r, 0));
+    if (r->previews && !rf_cancelled(r))
+        rf_reduce_all(r);
+}
+
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
                     const struct refocus_disparity *disparity)
 {
-    struct job job = {r, photo, disparity};
+    struct rf_photo *own;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
-    r->prepared = r->blurred = r->highlights_found = false;
+    r->prepared = r->blurred = false;
+    memset(&r->made, 0, sizeof r->made);
     if (!rf_good_image(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
-    r->width = photo->width;
-    r->height = photo->height;
-    r->tiles_x = (r->width + RF_TILE - 1) / RF_TILE;
-    r->tiles_y = (r->height + RF_TILE - 1) / RF_TILE;
-    r->levels = rf_pyramid(r->level, r->width, r->height);
+    if (r->in_place.on &&
+        (disparity->width != photo->width || disparity->height != photo->height))
+        return REFOCUS_ERR_UNSUPPORTED;
+    own = &r->photo[0];
+    own->width = photo->width;
+    own->height = photo->height;
+    own->highlights_blend = RF_NO_BLEND;
+    own->rims = 0;
+    r->blend = REFOCUS_BLEND_LINEAR; /* that rims are found in, whatever came before */
     rf_run_begin(r);
-    rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
-    if (disparity->width == r->width && disparity->height == r->height)
-        rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
-    else
-        upsample(r, &job);
-    if (!rf_cancelled(r))
-        rf_find_rims(r);
+    if (r->in_place.on) {
+        r->in_place.photo = *photo;
+        r->in_place.map = *disparity;
+        rf_find_rims_in_blocks(r);
+    } else {
+        rf_use(r, 0, rf_whole(r, 0));
+        memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(r));
+        take_in(r, photo, disparity);
+    }
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->prepared = true;

@@ -1,6 +1,7 @@
 /* rays.c: the ray sets of the current aperture, kept until it changes. */
 #include "aperture/aperture.h"
 #include "methods/method.h"
+#include "renderer/bands.h"
 #include "renderer/rays.h"
 
 /* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
@@ -28,10 +29,11 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
     if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays && r->set_denser == denser &&
         r->set_blur == max_blur_radius)
         return;
+    r->sets = 0;
     if (rays == REFOCUS_RAYS_FULL) {
         r->set[0].ray = next;
         r->set[0].count =
-            refocus_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, next);
+            rf_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, next, &r->run);
         r->set[0].total_weight = total_weight(&r->set[0]);
         r->set[0].equal = next[0].weight == next[r->set[0].count - 1].weight;
         sets = 1;
@@ -53,13 +55,15 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
             }
             set->ray = next;
             set->count = count;
-            refocus_aperture_rays(aperture, count, next);
+            rf_aperture_rays(aperture, count, next, &r->run);
             set->total_weight = total_weight(set);
             set->equal = true;
             next += count;
             sets++;
         }
     }
+    if (rf_cancelled(r)) /* what was made may be half made */
+        return;
     r->sets = sets;
     r->set_aperture = aperture->id;
     r->set_rays = rays;

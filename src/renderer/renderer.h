@@ -12,6 +12,7 @@
 #include "highlights/highlights.h"
 #include "highlights/rims.h"
 #include "kernels/kernels.h"
+#include "planes/prefilter.h"
 #include "support/pool.h"
 
 enum {
@@ -31,11 +32,52 @@ struct rf_ray_set {
     bool equal; /* all rays weigh the same */
 };
 
-/* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
- * negative by as much as the padding. */
-struct rf_layer {
-    uint16_t *light[3]; /* Q12; R, G, B */
-    int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
+/* Pixels x0 <= x < x1, y0 <= y < y1. */
+struct rf_rect {
+    int x0, y0, x1, y1;
+};
+
+/* A photo as it was prepared: the caller's, [0], or that reduced to 1/2, 1/4 and 1/8. */
+enum { RF_PHOTOS = 4 };
+#define RF_NO_BLEND UINT32_MAX
+
+struct rf_photo {
+    int width, height; /* pixels; 0: none prepared */
+    int pad;           /* pixels beyond each side that may be read */
+    ptrdiff_t stride;  /* elements from row to row, of all padded planes */
+    ptrdiff_t pitch;   /* elements between the planes of a group; see layout.c */
+    uint16_t *group;     /* of four planes: R, G, B, disparity */
+    uint16_t *light[3], *disparity; /* pixel (0, 0); not in strip mode */
+    uint8_t *alpha;      /* unpadded, width a row */
+    uint8_t *band_blend; /* enum refocus_blend that the light of a band of rows is in */
+    uint64_t capacity;   /* of rims */
+    struct rf_rim *rim;
+    uint64_t rims;
+    struct rf_highlights highlights[RF_LAMP_PARTS];
+    uint32_t highlights_blend; /* that they were found in, or RF_NO_BLEND */
+};
+
+/* What the planes of the last lens setting hold, so that it need not be made again. */
+struct rf_made {
+    bool blur;   /* front.blur and bins, */
+    bool rims;   /* with the rims in them, */
+    bool lamps;  /* and highlights marked and widened in them */
+    bool ranges; /* its ranges; before, its cells are where the background's blur will be */
+    bool smooth; /* the pre-filtered light */
+    bool bright; /* with light given back to lamps */
+    bool behind; /* the background layer, */
+    bool weighed; /* but with weights of `sigma` in place of its blur */
+    float sigma;
+    int rays;    /* that lamps were widened for */
+    bool half;   /* photo[1], which lies in memory of the background layer of photo[0] */
+    int photo;
+    struct rf_rect window; /* of that photo, to which all of it is limited */
+    struct rf_rect exact;  /* where it is as if made for the whole photo */
+    struct rf_focus focus;
+    int shift; /* of the bins */
+    uint32_t blend;
+    float gain;
+    int prefilter_above[RF_PREFILTER_STEPS];
 };
 
 /* A level of the background pyramid, without padding but with an even stride. */
@@ -46,12 +88,38 @@ struct rf_level {
     int16_t *blur; /* RF_NO_BLUR: nothing known here */
 };
 
+/*
+ * Strip mode: the photo stays with the caller, and planes hold a window of it at a time, that
+ * of a block with a margin. What is known of the background is marked for the whole photo, a
+ * bit a pixel, and the background's pyramid is kept from level RF_KEPT on.
+ */
+enum { RF_KEPT = 3 };
+
+struct rf_in_place {
+    bool on;
+    struct refocus_image photo; /* the caller's */
+    struct refocus_disparity map;
+    int block, margin;           /* pixels of a block that is rendered, and around it */
+    int mark_block, mark_margin; /* of one whose background is marked */
+    uint8_t *known;              /* known_stride bytes a row, bit x % 8 of byte x / 8 */
+    ptrdiff_t known_stride;
+    struct rf_level kept[RF_LEVELS]; /* [i]: level i + 1, from RF_KEPT on */
+    int levels;
+};
+
+/* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
+ * negative by as much as the padding. */
+struct rf_layer {
+    uint16_t *light[3]; /* Q12; R, G, B */
+    int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
+};
+
 /* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
     int16_t least, most; /* Q7.8 */
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
-    int16_t behind;      /* blur of the background in the middle, once there are weights */
+    int16_t behind;      /* blur of the background in the middle, once that is filled */
 };
 
 struct refocus_renderer {
@@ -65,39 +133,50 @@ struct refocus_renderer {
     float max_blur_radius;
 
     struct rf_pool pool;
-    atomic_int run; /* enum rf_run */
+    struct rf_run run;
 
-    /* The prepared photo. */
+    /* The prepared photos, and memory for what a lens setting makes of one of them. */
     bool prepared;
-    int width, height;
-    int pad;            /* pixels beyond each side that may be read */
-    ptrdiff_t stride;   /* elements from row to row, of all padded planes */
-    ptrdiff_t pitch;    /* elements between the planes of a group; see layout.c */
-    uint32_t blend;     /* that the light planes are in */
-    uint16_t *disparity; /* padded, its border is not set */
-    uint8_t *alpha;     /* unpadded, width a row */
-    struct rf_layer front;
-    uint32_t *range;     /* blurs around the cell of pixel (0, 0); see tiles/ranges.h */
-    ptrdiff_t range_stride;
-    uint16_t *smooth[3]; /* front.light, pre-filtered where rays lie far apart */
-    struct rf_highlights highlights[RF_LAMP_PARTS]; /* of the photo in this blend, once */
-    bool highlights_found;                          /* they are found */
-    struct rf_rim *rim; /* of the photo */
-    uint64_t rims;
+    bool previews; /* photos 1 to 3 are made too */
+    struct rf_photo photo[RF_PHOTOS];
+    uint16_t *seen_group, *behind_group;
+    struct rf_made made;
+    struct rf_in_place in_place;
+    struct rf_focus last_focus; /* of the last render, in pixels of photo[0], */
+    bool last_rims;             /* with the rims, */
+    bool blurred;               /* if there was one */
 
-    /* Of the last lens setting. */
+    /*
+     * The window: the part of one of the photos that passes work on, set by rf_use(). What
+     * follows is as if that part were all there is: its size, and its pixel (0, 0) in all
+     * planes. It begins at (origin_x, origin_y) of the photo, a multiple of RF_TILE.
+     */
+    int used; /* of r->photo */
+    int origin_x, origin_y;
+    int width, height;
+    int pad;             /* pixels beyond each side that may be read */
+    struct rf_rect border; /* pixels beyond each side that rf_extend_rows() sets */
+    ptrdiff_t stride;    /* elements from row to row, of all padded planes */
+    ptrdiff_t pitch;     /* elements between the planes of a group; see layout.c */
+    uint32_t blend;      /* that the light planes are in */
+    uint16_t *disparity; /* padded, its border is not set */
+    uint8_t *alpha;      /* alpha_stride a row */
+    ptrdiff_t alpha_stride;
+    struct rf_layer front;
+    uint16_t *smooth[3];    /* front.light, pre-filtered where rays lie far apart */
     struct rf_layer behind; /* the background layer */
     struct rf_level level[RF_LEVELS];
     int levels;
     uint16_t *weight;        /* of smooth, eq. 5, once the background is filled: its memory */
     ptrdiff_t weight_stride; /* is the pyramid's. Those of behind are where its blur was. */
+    uint32_t *range;         /* blurs around the cell of pixel (0, 0); see tiles/ranges.h */
+    ptrdiff_t range_stride;
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
+
     struct rf_taps *taps; /* of the depth upsampler: of columns, then of rows */
-    uint16_t *near_by;    /* how near its samples are, four rows */
-    int32_t *column;      /* and its offsets of samples in a row of the photo, from -2 on */
+    uint16_t *near_by;    /* how near its samples are, four rows, and where between, one */
     uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
-    bool blurred;         /* front.blur is valid */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
@@ -117,6 +196,19 @@ struct refocus_renderer {
     bool set_denser;
     float set_blur;
 };
+
+/* Pixels of `size` in photo i. */
+static inline int rf_reduced(int size, int i)
+{
+    return (size + (1 << i) - 1) >> i;
+}
+
+/* Make a part of a photo the window. */
+void rf_use(struct refocus_renderer *r, int photo, struct rf_rect window);
+static inline struct rf_rect rf_whole(const struct refocus_renderer *r, int photo)
+{
+    return (struct rf_rect){0, 0, r->photo[photo].width, r->photo[photo].height};
+}
 
 /* A worker's scratch: two rows of the largest picture with the margins of spread_row. */
 static inline uint64_t rf_scratch_size(int max_width)

@@ -6,23 +6,65 @@
 #include "planes/format.h"
 #include "renderer/renderer.h"
 
+static void read_disparity(const struct refocus_renderer *r, int y, uint16_t *out)
+{
+    const struct rf_photo *photo = &r->photo[0];
+    const struct refocus_disparity *map = &r->in_place.map;
+    const uint8_t *row = (const uint8_t *)map->samples;
+
+    if (!r->in_place.on)
+        memcpy(out, photo->disparity + y * photo->stride, (size_t)photo->width * 2);
+    else if (map->bits == 16)
+        memcpy(out, row + y * map->stride, (size_t)photo->width * 2);
+    else
+        for (int x = 0; x < photo->width; x++)
+            out[x] = (uint16_t)(row[y * map->stride + x] * 257);
+}
+
+enum { RUN = 256 };
+
+/* Signed blurs of the last render in place of disparities, then without their signs. */
+static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
+{
+    const struct rf_photo *photo = &r->photo[0];
+    const uint64_t rims = r->last_rims ? photo->rims : 0;
+    int16_t *blur = (int16_t *)out;
+    uint16_t row[RUN];
+
+    for (int y = 0; y < photo->height; y++) {
+        for (int x = 0; x < photo->width; x += RUN) {
+            const int n = photo->width - x < RUN ? photo->width - x : RUN;
+
+            memcpy(row, out + y * pitch + x, (size_t)n * 2);
+            r->kernels.signed_blur(blur + y * pitch + x, row, r->last_focus, n);
+        }
+    }
+    for (uint64_t i = 0; i < rims; i++) {
+        int16_t *at = blur + photo->rim[i].y * pitch + photo->rim[i].x, s;
+
+        r->kernels.signed_blur(&s, &photo->rim[i].disparity, r->last_focus, 1);
+        *at = s < *at ? s : *at;
+    }
+    for (int y = 0; y < photo->height; y++)
+        for (int x = 0; x < photo->width; x++)
+            out[y * pitch + x] = (uint16_t)abs(blur[y * pitch + x]);
+}
+
 int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out,
                      ptrdiff_t stride)
 {
+    const struct rf_photo *photo;
+
     if (!r || !out || view > REFOCUS_VIEW_BLUR || stride % 2)
         return REFOCUS_ERR_ARGUMENT;
     if (!r->prepared || (view == REFOCUS_VIEW_BLUR && !r->blurred))
         return REFOCUS_ERR_STATE;
-    if (!rf_good_stride(stride, 2 * (ptrdiff_t)r->width, r->height))
+    photo = &r->photo[0];
+    if (!rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
-    for (int y = 0; y < r->height; y++, out += stride / 2) {
-        const int16_t *s = r->front.blur + y * r->stride;
-
-        if (view == REFOCUS_VIEW_DISPARITY)
-            memcpy(out, r->disparity + y * r->stride, (size_t)r->width * 2);
-        else
-            for (int x = 0; x < r->width; x++)
-                out[x] = (uint16_t)abs(s[x]);
-    }
+    for (int y = 0; y < photo->height; y++)
+        read_disparity(r, y, out + y * (stride / 2));
+    if (view == REFOCUS_VIEW_BLUR)
+        to_blur(r, out, stride / 2);
     return REFOCUS_OK;
 }

@@ -11,12 +11,22 @@
  *     vec_u16_and(a, b)       a & b
  *     vec_u16_or(a, b)        a | b
  *     vec_u16_without(a, b)   a & ~b
+ *     vec_u16_mul(a, b)       (uint16_t)(a * b)
+ *     vec_u16_least(a, b)     a < b ? a : b
+ *     vec_u16_most(a, b)      a > b ? a : b
  *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
  *     vec_u16_xor(a, b)       a ^ b
  *     vec_u16_mul_high(a, b)  (a * b) >> 16
  *     vec_u16_half(a)         a >> 1
  *     vec_u16_max(a, b)       a > b ? a : b
+ *     vec_u16_min(a, b)       a < b ? a : b
+ *     vec_u16_equal(a, b)     a == b ? 0xffff : 0
  *     vec_u16_any(a)          whether any lane is not 0
+ *     vec_u16_bits(mask)      VEC_BITS bits a lane, lane 0 lowest, of lanes all 0 or all 1
+ *     vec_u16_lane0(a)        lane 0
+ *     vec_u16_spread(a)       every lane = lane 0
+ *     vec_u16_offset(s, u)    of signed lanes: (s * u + 2^22) >> 23
+ *     vec_u16_bytes(a, b)     (a & 0xff) | b << 8
  *     vec_u16_even(a, b)      lanes 0, 2, 4 ... of a and then of b
  *     vec_u16_odd(a, b)       lanes 1, 3, 5 ...
  *     vec_u16_zip_low(a, b)   a[0], b[0], a[1], b[1] ... of the lower halves
@@ -29,6 +39,19 @@
  *     vec_u32_add_products(sum, a, b, c, d)
  *                             sum + a * b + c * d, factors below 2^15
  *     vec_u32_add_to(to, v)   to[i] += v[i], 64-bit sums
+ *
+ * and VEC_U8 = 2 VEC_U16 lanes of bytes:
+ *
+ *     vec_u8_load(p)          lane i = p[i]
+ *     vec_u8_set(x)           every lane = x
+ *     vec_u8_absdiff(a, b)    |a - b|
+ *     vec_u8_adds(a, b)       min(a + b, 255)
+ *     vec_u8_subs(a, b)       max(a - b, 0)
+ *     vec_u8_half(v)          v >> 1
+ *     vec_u8_table(p)         the table p[0] to p[15]
+ *     vec_u8_lookup(table, v) table[v]; every v is below 16
+ *     vec_u8_add_wide(sum, v) two vectors of 16-bit sums, in an order of their own, += v
+ *     vec_u8_store_wide(p, sum)  p[i] = the sum of lane i
  */
 #ifndef RF_VEC_H
 #define RF_VEC_H
@@ -36,6 +59,10 @@
 #define RF_VEC_PASTE(name, set)  name##_##set
 #define RF_VEC_EXPAND(name, set) RF_VEC_PASTE(name, set)
 #define RF_VEC(name)             RF_VEC_EXPAND(name, RF_VEC_SET)
+
+#if defined(RF_VEC_AVX2) || defined(RF_VEC_SSE41) || defined(RF_VEC_NEON)
+#define RF_VECTORS /* not plain C */
+#endif
 
 #if defined(RF_VEC_AVX2)
 #include "simd/vec_avx2.h"

@@ -5,7 +5,7 @@
 #include <immintrin.h>
 #include <stdint.h>
 
-enum { VEC_U16 = 16 };
+enum { VEC_U16 = 16, VEC_BITS = 2 };
 typedef __m256i vec_u16;
 
 static inline vec_u16 vec_u16_load(const void *p)
@@ -68,6 +68,42 @@ static inline vec_u16 vec_u16_half(vec_u16 a)
     return _mm256_srli_epi16(a, 1);
 }
 
+static inline vec_u16 vec_u16_min(vec_u16 a, vec_u16 b)
+{
+    return _mm256_min_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_equal(vec_u16 a, vec_u16 b)
+{
+    return _mm256_cmpeq_epi16(a, b);
+}
+
+static inline uint64_t vec_u16_bits(vec_u16 mask)
+{
+    return (uint32_t)_mm256_movemask_epi8(mask);
+}
+
+static inline uint16_t vec_u16_lane0(vec_u16 a)
+{
+    return (uint16_t)_mm_cvtsi128_si32(_mm256_castsi256_si128(a));
+}
+
+static inline vec_u16 vec_u16_spread(vec_u16 a)
+{
+    return _mm256_broadcastw_epi16(_mm256_castsi256_si128(a));
+}
+
+static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
+{
+    return _mm256_srai_epi16(_mm256_add_epi16(_mm256_mulhi_epi16(s, u), _mm256_set1_epi16(64)), 7);
+}
+
+static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
+{
+    return _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi16(0xff)),
+                           _mm256_slli_epi16(b, 8));
+}
+
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
 {
     return _mm256_max_epu16(a, b);
@@ -114,6 +150,79 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
     _mm256_storeu_si256(high,
                         _mm256_add_epi32(_mm256_loadu_si256(high),
                                          _mm256_cvtepu16_epi32(_mm256_extracti128_si256(v, 1))));
+}
+
+static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
+{
+    return _mm256_mullo_epi16(a, b);
+}
+
+static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
+{
+    return _mm256_min_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
+{
+    return _mm256_max_epu16(a, b);
+}
+
+enum { VEC_U8 = 32 };
+typedef __m256i vec_u8;
+
+static inline vec_u8 vec_u8_load(const void *p)
+{
+    return _mm256_loadu_si256((const __m256i *)p);
+}
+
+static inline vec_u8 vec_u8_set(uint8_t x)
+{
+    return _mm256_set1_epi8((char)x);
+}
+
+static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
+{
+    return _mm256_or_si256(_mm256_subs_epu8(a, b), _mm256_subs_epu8(b, a));
+}
+
+static inline vec_u8 vec_u8_adds(vec_u8 a, vec_u8 b)
+{
+    return _mm256_adds_epu8(a, b);
+}
+
+static inline vec_u8 vec_u8_subs(vec_u8 a, vec_u8 b)
+{
+    return _mm256_subs_epu8(a, b);
+}
+
+static inline vec_u8 vec_u8_half(vec_u8 v)
+{
+    return _mm256_and_si256(_mm256_srli_epi16(v, 1), _mm256_set1_epi8(127));
+}
+
+static inline vec_u8 vec_u8_table(const uint8_t *p)
+{
+    return _mm256_broadcastsi128_si256(_mm_loadu_si128((const __m128i *)p));
+}
+
+static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
+{
+    return _mm256_shuffle_epi8(table, v);
+}
+
+/* Sums in the order of the two unpacks: 0-7 and 16-23, 8-15 and 24-31. */
+static inline void vec_u8_add_wide(vec_u16 sum[2], vec_u8 v)
+{
+    const __m256i zero = _mm256_setzero_si256();
+
+    sum[0] = _mm256_add_epi16(sum[0], _mm256_unpacklo_epi8(v, zero));
+    sum[1] = _mm256_add_epi16(sum[1], _mm256_unpackhi_epi8(v, zero));
+}
+
+static inline void vec_u8_store_wide(uint16_t *p, const vec_u16 sum[2])
+{
+    vec_u16_store(p, _mm256_permute2x128_si256(sum[0], sum[1], 0x20));
+    vec_u16_store(p + 16, _mm256_permute2x128_si256(sum[0], sum[1], 0x31));
 }
 
 /* Lanes 0-3 and 8-11, and 4-7 and 12-15: as unpacking leaves them. */

@@ -5,7 +5,7 @@
 #include <arm_neon.h>
 #include <stdint.h>
 
-enum { VEC_U16 = 8 };
+enum { VEC_U16 = 8, VEC_BITS = 8 };
 typedef uint16x8_t vec_u16;
 
 static inline vec_u16 vec_u16_load(const void *p)
@@ -69,6 +69,47 @@ static inline vec_u16 vec_u16_half(vec_u16 a)
     return vshrq_n_u16(a, 1);
 }
 
+static inline vec_u16 vec_u16_min(vec_u16 a, vec_u16 b)
+{
+    return vminq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_equal(vec_u16 a, vec_u16 b)
+{
+    return vceqq_u16(a, b);
+}
+
+static inline uint64_t vec_u16_bits(vec_u16 mask)
+{
+    return vget_lane_u64(vreinterpret_u64_u8(vmovn_u16(mask)), 0);
+}
+
+static inline uint16_t vec_u16_lane0(vec_u16 a)
+{
+    return vgetq_lane_u16(a, 0);
+}
+
+static inline vec_u16 vec_u16_spread(vec_u16 a)
+{
+    return vdupq_lane_u16(vget_low_u16(a), 0);
+}
+
+/* The high half of the product first: rounding down twice is rounding down once. */
+static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
+{
+    const int16x8_t a = vreinterpretq_s16_u16(s), b = vreinterpretq_s16_u16(u);
+    const int16x8_t high =
+        vcombine_s16(vshrn_n_s32(vmull_s16(vget_low_s16(a), vget_low_s16(b)), 16),
+                     vshrn_n_s32(vmull_s16(vget_high_s16(a), vget_high_s16(b)), 16));
+
+    return vreinterpretq_u16_s16(vshrq_n_s16(vaddq_s16(high, vdupq_n_s16(64)), 7));
+}
+
+static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
+{
+    return vsliq_n_u16(a, b, 8);
+}
+
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
 {
     return vmaxq_u16(a, b);
@@ -105,6 +146,82 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     vst1q_u32(sum, vaddw_u16(vld1q_u32(sum), vget_low_u16(v)));
     vst1q_u32(sum + 4, vaddw_u16(vld1q_u32(sum + 4), vget_high_u16(v)));
+}
+
+static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
+{
+    return vmulq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
+{
+    return vminq_u16(a, b);
+}
+
+static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
+{
+    return vmaxq_u16(a, b);
+}
+
+enum { VEC_U8 = 16 };
+typedef uint8x16_t vec_u8;
+
+static inline vec_u8 vec_u8_load(const void *p)
+{
+    return vld1q_u8((const uint8_t *)p);
+}
+
+static inline vec_u8 vec_u8_set(uint8_t x)
+{
+    return vdupq_n_u8(x);
+}
+
+static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
+{
+    return vabdq_u8(a, b);
+}
+
+static inline vec_u8 vec_u8_adds(vec_u8 a, vec_u8 b)
+{
+    return vqaddq_u8(a, b);
+}
+
+static inline vec_u8 vec_u8_subs(vec_u8 a, vec_u8 b)
+{
+    return vqsubq_u8(a, b);
+}
+
+static inline vec_u8 vec_u8_half(vec_u8 v)
+{
+    return vshrq_n_u8(v, 1);
+}
+
+static inline vec_u8 vec_u8_table(const uint8_t *p)
+{
+    return vld1q_u8(p);
+}
+
+static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
+{
+#if defined(__aarch64__)
+    return vqtbl1q_u8(table, v);
+#else
+    const uint8x8x2_t halves = {{vget_low_u8(table), vget_high_u8(table)}};
+
+    return vcombine_u8(vtbl2_u8(halves, vget_low_u8(v)), vtbl2_u8(halves, vget_high_u8(v)));
+#endif
+}
+
+static inline void vec_u8_add_wide(vec_u16 sum[2], vec_u8 v)
+{
+    sum[0] = vaddw_u8(sum[0], vget_low_u8(v));
+    sum[1] = vaddw_u8(sum[1], vget_high_u8(v));
+}
+
+static inline void vec_u8_store_wide(uint16_t *p, const vec_u16 sum[2])
+{
+    vec_u16_store(p, sum[0]);
+    vec_u16_store(p + 8, sum[1]);
 }
 
 typedef struct {

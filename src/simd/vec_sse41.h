@@ -5,7 +5,7 @@
 #include <smmintrin.h>
 #include <stdint.h>
 
-enum { VEC_U16 = 8 };
+enum { VEC_U16 = 8, VEC_BITS = 2 };
 typedef __m128i vec_u16;
 
 static inline vec_u16 vec_u16_load(const void *p)
@@ -68,6 +68,42 @@ static inline vec_u16 vec_u16_half(vec_u16 a)
     return _mm_srli_epi16(a, 1);
 }
 
+static inline vec_u16 vec_u16_min(vec_u16 a, vec_u16 b)
+{
+    return _mm_min_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_equal(vec_u16 a, vec_u16 b)
+{
+    return _mm_cmpeq_epi16(a, b);
+}
+
+static inline uint64_t vec_u16_bits(vec_u16 mask)
+{
+    return (uint32_t)_mm_movemask_epi8(mask);
+}
+
+static inline uint16_t vec_u16_lane0(vec_u16 a)
+{
+    return (uint16_t)_mm_cvtsi128_si32(a);
+}
+
+static inline vec_u16 vec_u16_spread(vec_u16 a)
+{
+    return _mm_shuffle_epi8(a, _mm_set1_epi16(0x0100));
+}
+
+static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
+{
+    return _mm_srai_epi16(_mm_add_epi16(_mm_mulhi_epi16(s, u), _mm_set1_epi16(64)), 7);
+}
+
+static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
+{
+    return _mm_or_si128(_mm_and_si128(a, _mm_set1_epi16(0xff)),
+                           _mm_slli_epi16(b, 8));
+}
+
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
 {
     return _mm_max_epu16(a, b);
@@ -107,6 +143,78 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 
     _mm_storeu_si128(low, _mm_add_epi32(_mm_loadu_si128(low), _mm_unpacklo_epi16(v, zero)));
     _mm_storeu_si128(high, _mm_add_epi32(_mm_loadu_si128(high), _mm_unpackhi_epi16(v, zero)));
+}
+
+static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
+{
+    return _mm_mullo_epi16(a, b);
+}
+
+static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
+{
+    return _mm_min_epu16(a, b);
+}
+
+static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
+{
+    return _mm_max_epu16(a, b);
+}
+
+enum { VEC_U8 = 16 };
+typedef __m128i vec_u8;
+
+static inline vec_u8 vec_u8_load(const void *p)
+{
+    return _mm_loadu_si128((const __m128i *)p);
+}
+
+static inline vec_u8 vec_u8_set(uint8_t x)
+{
+    return _mm_set1_epi8((char)x);
+}
+
+static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
+{
+    return _mm_or_si128(_mm_subs_epu8(a, b), _mm_subs_epu8(b, a));
+}
+
+static inline vec_u8 vec_u8_adds(vec_u8 a, vec_u8 b)
+{
+    return _mm_adds_epu8(a, b);
+}
+
+static inline vec_u8 vec_u8_subs(vec_u8 a, vec_u8 b)
+{
+    return _mm_subs_epu8(a, b);
+}
+
+static inline vec_u8 vec_u8_half(vec_u8 v)
+{
+    return _mm_and_si128(_mm_srli_epi16(v, 1), _mm_set1_epi8(127));
+}
+
+static inline vec_u8 vec_u8_table(const uint8_t *p)
+{
+    return _mm_loadu_si128((const __m128i *)p);
+}
+
+static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
+{
+    return _mm_shuffle_epi8(table, v);
+}
+
+static inline void vec_u8_add_wide(vec_u16 sum[2], vec_u8 v)
+{
+    const __m128i zero = _mm_setzero_si128();
+
+    sum[0] = _mm_add_epi16(sum[0], _mm_unpacklo_epi8(v, zero));
+    sum[1] = _mm_add_epi16(sum[1], _mm_unpackhi_epi8(v, zero));
+}
+
+static inline void vec_u8_store_wide(uint16_t *p, const vec_u16 sum[2])
+{
+    vec_u16_store(p, sum[0]);
+    vec_u16_store(p + 8, sum[1]);
 }
 
 typedef struct {

@@ -4,7 +4,7 @@
 
 static void take_items(struct rf_pool *pool, int worker)
 {
-    while (atomic_load_explicit(pool->run, memory_order_relaxed) != RF_RUN_CANCELLED) {
+    while (!rf_run_cancelled(pool->run)) {
         const int item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
 
         if (item >= pool->count)
@@ -13,6 +13,12 @@ static void take_items(struct rf_pool *pool, int worker)
     }
 }
 
+/* The items of the caller's loop are our workers: each has scratch memory of its own, and takes
+ * items of ours until there are none. */
+static void caller_item(void *context, int32_t worker)
+{
+    take_items(context, worker);
+}
 
 static void *thread_main(void *argument)
 {
@@ -52,11 +58,16 @@ static void join(struct rf_pool *pool, int created)
     pthread_mutex_destroy(&pool->lock);
 }
 
-int rf_pool_start(struct rf_pool *pool, int threads, atomic_int *run)
+int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parallel *parallel,
+                  struct rf_run *run)
 {
     int created = 0;
 
     *pool = (struct rf_pool){.threads = threads, .run = run};
+    if (parallel && parallel->parallel_for) {
+        pool->parallel = *parallel;
+        return REFOCUS_OK;
+    }
     if (pthread_mutex_init(&pool->lock, NULL))
         goto no_lock;
     if (pthread_cond_init(&pool->wake, NULL))
@@ -87,7 +98,8 @@ no_lock:
 
 void rf_pool_end(struct rf_pool *pool)
 {
-    join(pool, pool->threads - 1);
+    if (!pool->parallel.parallel_for)
+        join(pool, pool->threads - 1);
 }
 
 void rf_pool_run(struct rf_pool *pool, rf_work_fn *work, void *context, int count)
@@ -96,7 +108,12 @@ void rf_pool_run(struct rf_pool *pool, rf_work_fn *work, void *context, int coun
     pool->context = context;
     pool->count = count;
     atomic_store_explicit(&pool->next, 0, memory_order_relaxed);
-    if (pool->threads > 1 && count > 1) {
+    if (pool->threads == 1 || count <= 1) {
+        take_items(pool, 0);
+    } else if (pool->parallel.parallel_for) {
+        pool->parallel.parallel_for(pool->parallel.user, caller_item, pool,
+                                    count < pool->threads ? count : pool->threads);
+    } else {
         pthread_mutex_lock(&pool->lock);
         pool->busy = pool->threads - 1;
         pool->generation++;
@@ -107,7 +124,5 @@ void rf_pool_run(struct rf_pool *pool, rf_work_fn *work, void *context, int coun
         while (pool->busy > 0)
             pthread_cond_wait(&pool->done, &pool->lock);
         pthread_mutex_unlock(&pool->lock);
-    } else {
-        take_items(pool, 0);
     }
 }

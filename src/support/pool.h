@@ -10,17 +10,37 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stddef.h>
+
+#include <refocus/render.h>
 
 enum { RF_MAX_THREADS = 64 };
 
 /* A run can be cancelled from outside: RUNNING becomes CANCELLED, nothing else does. */
-enum rf_run { RF_RUN_IDLE, RF_RUN_RUNNING, RF_RUN_CANCELLED };
+enum rf_run_state { RF_RUN_IDLE, RF_RUN_RUNNING, RF_RUN_CANCELLED };
+
+struct rf_run {
+    atomic_int state;             /* enum rf_run_state */
+    void (*looked_at)(void *user); /* tests only, else NULL: called by whoever asks */
+    void *user;
+};
+
+/* Asked by everything that takes long, at least once a millisecond or two. NULL: never. */
+static inline bool rf_run_cancelled(struct rf_run *run)
+{
+    if (!run)
+        return false;
+    if (run->looked_at)
+        run->looked_at(run->user);
+    return atomic_load_explicit(&run->state, memory_order_relaxed) == RF_RUN_CANCELLED;
+}
 
 typedef void rf_work_fn(void *context, int item, int worker);
 
 struct rf_pool {
-    int threads; /* with the calling one */
+    int threads; /* with the calling one; or the most that the caller's may be */
     int started;
+    struct refocus_parallel parallel; /* the caller's, or parallel_for == NULL */
     pthread_t thread[RF_MAX_THREADS];
     pthread_mutex_t lock;
     pthread_cond_t wake, done;
@@ -31,14 +51,16 @@ struct rf_pool {
     void *context;
     int count;
     atomic_int next;
-    atomic_int *run; /* enum rf_run; CANCELLED: hand out no more items */
+    struct rf_run *run; /* CANCELLED: hand out no more items */
 };
 
-/* Returns REFOCUS_OK or REFOCUS_ERR_THREAD, then with nothing left behind. */
-int rf_pool_start(struct rf_pool *pool, int threads, atomic_int *run);
+/* Starts threads of its own, or none where the caller's parallel_for is to be used (NULL or
+ * empty: it is not). Returns REFOCUS_OK or REFOCUS_ERR_THREAD, then with nothing left behind. */
+int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parallel *parallel,
+                  struct rf_run *run);
 void rf_pool_end(struct rf_pool *pool);
 
-/* Returns when all items are done, or those under way once *run is CANCELLED. */
+/* Returns when all items are done, or those under way once the run is cancelled. */
 void rf_pool_run(struct rf_pool *pool, rf_work_fn *work, void *context, int count);
 
 #endif

@@ -27,7 +27,7 @@ part() {
     grep -q '^FAILED ' <<<"$log" || echo "FAILED camera-vm-$1: $ok tests of $2 ran"
     failed=1
 }
-part single 7
+part single 8
 CAMERA_VM_VIVID="n_devs=1 multiplanar=2 node_types=0x1" CAMERA_VM_VIMC=none part multi 1
 CAMERA_VM_LOOPBACK="devices=2 video_nr=0,1 max_buffers=4" CAMERA_VM_VIVID=none CAMERA_VM_VIMC=none \
     part loopback 2

@@ -22,7 +22,7 @@ METHODS = ('sweep', 'search', 'raytrace', 'jittered', 'lightfield', 'blur', 'sca
 
 
 class Usage(Case):
-    SUBCOMMANDS = ('render', 'depth', 'info', 'compare', 'bench')
+    SUBCOMMANDS = ('render', 'depth', 'info', 'compare', 'bench', 'view')
     PAPERS = ('--cell --seed --spread --airy-radius --depth-ratio --star --star-length '
               '--star-angle --star-strength --sharp-radius --middle-ratio --last-ratio '
               '--attention --attention-angle --picture-angle --attention-depth --field '
@@ -34,7 +34,7 @@ class Usage(Case):
         self.assertEqual(text, self.succeeds('-h'))
         for name in self.SUBCOMMANDS:
             self.assertRegex(text, r'(?m)^  %s +\S' % name)
-        for name in ('sheet', 'pull', 'view'):
+        for name in ('sheet',):
             self.assertNotRegex(text, r'(?m)^  %s ' % name)
             self.fails(2, re.compile(r'^refocus: %s: unknown subcommand; ' % name), name,
                        'photo.ppm')
@@ -48,7 +48,14 @@ class Usage(Case):
                       '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
                       '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--estimate --preset --strokes --side-by-side --view --focus-at --blur --json -h --help',
+                     '--estimate --preset --input-size --input-scale --input-mean --far-is-large '
+                     '--stereo-file --upsample --strokes --side-by-side --view --focus-at --blur --json -h --help',
+            'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                    '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
+                    '--focus --focus-at --focus-distance --blur --f-number --focal-length '
+                    '--sensor-width --method --rays --iterations --quality --aperture --blend '
+                    '--sigma --highlights --mirror --background --threads --cpu --repeat --json '
+                    '--settings --save-settings -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-distance --blur '
@@ -583,6 +590,7 @@ class DepthAndInfo(Case):
                                  r'small|this build has no OpenCV)'),
                    'depth', 'photo.ppm', 'depth.pgm', '-o', 'd.png')
         self.fails(2, 'photo.ppm: its depth is given twice; give one of RIGHT, --side-by-side, '
+                   '--stereo-file, '
                    '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
                    '--depth', 'depth.pgm')
         self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '

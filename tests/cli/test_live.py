@@ -47,9 +47,9 @@ def content(name):
         return file.read()
 
 
-def live(*args, stdin=None, timeout=120):
+def live(*args, stdin=None, timeout=120, env=None):
     return subprocess.run([REFOCUS, 'live', *SMALL, *args], input=stdin, capture_output=True,
-                          timeout=timeout * SLOW,
+                          timeout=timeout * SLOW, env={**os.environ, **(env or {})},
                           stdin=None if stdin is not None else subprocess.DEVNULL)
 
 
@@ -75,8 +75,8 @@ class Live(unittest.TestCase):
         self.assertEqual(r['paired'] + r['unpaired'], r['frames_out'] + r['sink_dropped'] +
                          r['dropped_rendered'], r)
 
-    def fails(self, code, words, *args):
-        done = live(*args)
+    def fails(self, code, words, *args, **more):
+        done = live(*args, **more)
         self.assertEqual(done.returncode, code, done.stderr)
         lines = done.stderr.decode().splitlines()
         self.assertEqual(len(lines), 1, lines)
@@ -105,6 +105,19 @@ class Live(unittest.TestCase):
             outs.append(content('out.rgb'))
         self.assertEqual(len(outs[0]), 6 * 64 * 48 * 3)
         self.assertEqual(outs[0], outs[1])
+
+    def test_steady_depth(self):
+        outs = []
+        for more in [], ['--steady', '0'], ['--steady', '0.9']:
+            r = self.report('--camera', 'replay::size 64x48;frames 12', '--depth', DEPTH, '--fast',
+                            '--frames-policy', 'every', '--focus', '0.7', '--out', 'raw:out.rgb',
+                            *more)
+            self.assertEqual((r['frames_out'], r['paired']), (12, 12))
+            self.assertEqual(r['stages_ms']['steady'] is not None, '0.9' in more)
+            outs.append(content('out.rgb'))
+        self.assertEqual(outs[0], outs[1])
+        self.assertEqual(len(outs[0]), len(outs[2]))
+        self.fails(2, '--steady', '--camera', 'replay:', '--depth', DEPTH, '--steady', '0.99')
 
     def test_live_is_what_render_makes(self):
         self.report('--camera', 'replay::format RGB24;size 64x48;frames 1', '--depth', DEPTH,
@@ -383,6 +396,13 @@ class Live(unittest.TestCase):
         self.fails(2, 'less than --blur', *camera, '--depth', DEPTH, '--blur-most', '1')
         self.fails(1, 'it is not there', '--camera', 'y4m:none.y4m', '--depth', DEPTH)
         self.fails(1, 'not understood', '--camera', 'replay::jump', '--depth', DEPTH)
+        if 'RF_WINDOW' in os.environ:
+            for none in ({'SDL_VIDEODRIVER': 'none-such'}, {'DISPLAY': ':none'}):
+                self.fails(1, 'no display', *camera, '--depth', DEPTH, '--out', 'window', env=none)
+        else:
+            self.fails(1, 'this build has no window', *camera, '--depth', DEPTH, '--out', 'window')
+        if 'RF_OPENCV' not in os.environ:
+            self.fails(1, 'this build has no OpenCV', *camera, '--depth', 'estimate:red.onnx')
         version = subprocess.run([REFOCUS, '--version'], capture_output=True, check=True).stdout
         for kind in ('v4l2', 'libcamera'):
             if kind.encode() not in version:

@@ -34,11 +34,13 @@ int check_aim(const struct subject *subject);
 int check_search(const struct subject *subject);
 int check_series(const struct subject *subject);
 int check_light(const struct subject *subject);
+int check_surface(const struct subject *subject);
 int check_focus(void);
 
 /* Prints a line with the time of each kernel, in plain C and by the subject. */
 void bench_rows(const struct subject *subject);
 void bench_aim(const struct subject *subject);
+void bench_search(const struct subject *subject);
 void bench_sweep(const struct subject *subject);
 
 /* Seconds that the fastest of several runs of call(context) takes. */

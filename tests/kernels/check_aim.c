@@ -236,6 +236,75 @@ static bool check_sort(const struct subject *subject, struct sight *s, int n, ui
     return true;
 }
 
+static bool check_tolerances(const struct subject *subject, int n, uint32_t seed)
+{
+    const uint32_t first = seed;
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    int32_t within[RF_RAY_CHUNK];
+
+    for (int i = 0; i < n; i++) { /* long rays, and short ones */
+        const int most = i % 2 ? 32767 : noise_between(&seed, 0, 200);
+
+        u[i] = (int16_t)noise_between(&seed, -most, most);
+        v[i] = (int16_t)(i % 3 ? noise_between(&seed, -most, most) : 0);
+    }
+    subject->kernels.tolerances(within, u, v, n);
+    for (int i = 0; i < n; i++) {
+        const uint64_t square = (uint64_t)((int64_t)u[i] * u[i] + (int64_t)v[i] * v[i]);
+        uint64_t w = 0;
+
+        for (uint64_t bit = 1 << 15; bit; bit /= 2) /* the largest with w |u| <= 2^22 */
+            if ((w + bit) * (w + bit) * square <= UINT64_C(1) << 44)
+                w += bit;
+        if ((uint64_t)within[i] != w)
+            return fail(subject, "tolerances", first, n, i, within[i], (long)w);
+    }
+    return true;
+}
+
+/* Ranges lie all around the strip; rays reach them all. */
+static bool check_settle(const struct subject *subject, int n, uint32_t seed)
+{
+    enum { REACH = 32, CELLS = 2 * REACH + 1 };
+    static uint32_t range[CELLS * CELLS];
+    const uint32_t first = seed, *const middle = range + REACH * (CELLS + 1);
+    const int spread = noise_between(&seed, 0, 300), base = noise_between(&seed, -120, 120);
+    struct rf_search_ray ray[RF_RAY_CHUNK];
+    int32_t start[RF_RAY_CHUNK], offset[RF_RAY_CHUNK];
+    uint8_t settled[RF_RAY_CHUNK];
+
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        const int low = base * 256 + noise_between(&seed, -spread, spread);
+        const int high = low + noise_between(&seed, 0, spread / 2);
+
+        range[i] = (uint32_t)(low & 0xffff) | (uint32_t)high << 16;
+    }
+    for (int i = 0; i < n; i++) {
+        ray[i] = (struct rf_search_ray){0, (int16_t)noise_between(&seed, -32767, 32767),
+                                        (int16_t)noise_between(&seed, -32767, 32767),
+                                        noise_between(&seed, 0, 900)};
+        start[i] = noise_between(&seed, -REACH, REACH) * CELLS +
+                   noise_between(&seed, -REACH, REACH);
+    }
+    subject->kernels.settle(settled, offset, middle, start, ray, 1000, CELLS, n);
+    for (int i = 0; i < n; i++) {
+        const int low = (int16_t)(middle[start[i]] & 0xffff), high = (int16_t)(middle[start[i]] >> 16);
+        const int x = floor_of((int64_t)ray[i].u * low + (1 << 22), 1 << 23);
+        const int y = floor_of((int64_t)ray[i].v * low + (1 << 22), 1 << 23);
+        const bool same = x == floor_of((int64_t)ray[i].u * high + (1 << 22), 1 << 23) &&
+                          y == floor_of((int64_t)ray[i].v * high + (1 << 22), 1 << 23);
+        const uint32_t there = middle[floor_of(y, RF_CELL) * CELLS + floor_of(x, RF_CELL)];
+        const bool good = same && (int16_t)(there >> 16) - low <= ray[i].within &&
+                          high - (int16_t)(there & 0xffff) <= ray[i].within;
+
+        if (settled[i] != good)
+            return fail(subject, "settle", first, n, i, settled[i], good);
+        if (good && offset[i] != x + 1000 * y)
+            return fail(subject, "settle", first, n, i, offset[i], x + 1000 * y);
+    }
+    return true;
+}
+
 int check_aim(const struct subject *subject)
 {
     static struct sight sight;
@@ -258,6 +327,8 @@ int check_aim(const struct subject *subject)
 
         good = check_cells(subject, &s, n, place, seed) &&
                check_windows(subject, &s, n, place, seed) &&
+               check_tolerances(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
+               check_settle(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
                check_aim_at(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
                check_sort(subject, &sight, (int)seed % (RF_RAY_CHUNK + 1), seed);
     }

@@ -72,11 +72,13 @@ int main(int argc, char **argv)
         if (bench && cpu != REFOCUS_CPU_C) {
             bench_aim(&subject);
             bench_sweep(&subject);
+            bench_search(&subject);
             bench_rows(&subject);
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) + check_sweep(&subject) +
                         check_light(&subject) + check_search(&subject) +
-                        check_series(&subject) + check_rows(&subject);
+                        check_series(&subject) + check_rows(&subject) +
+                        check_surface(&subject);
         }
     }
     return failures > 0;

@@ -1,4 +1,4 @@
-/* The search over one tile, against the contract's words, one pixel and ray at a time. */
+/* The search over one strip, against the contract's words, one pixel and ray at a time. */
 #include "check.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 enum {
     PAD = 12,
     SIDE = RF_TILE + 2 * PAD,
-    LANES = RF_TILE * RF_TILE,
+    LANES = RF_STRIP_LANES,
     MOST_BLUR = PAD * 256,
     ORIGIN = PAD * SIDE + PAD,
 };
@@ -81,7 +81,6 @@ static void make_stage(struct stage *s, enum place place, uint32_t seed)
         .stride = SIDE,
         .tests = noise_between(&seed, 1, 5),
         .rays = counts[noise(&seed) % 5],
-        .lanes = RF_TILE,
         .ray = s->ray,
     };
     for (int i = 0; i < 4; i++) {
@@ -119,7 +118,7 @@ static bool check_case(const struct subject *subject, struct stage *s, enum plac
     for (int i = 0; i < LANES; i++)
         for (int n = 0; n < s->job.rays; n++)
             follow(s, i, &s->ray[n]);
-    subject->kernels.search(s->sum, &s->job);
+    subject->kernels.search((uint32_t *const[3]){s->sum[0], s->sum[1], s->sum[2]}, &s->job);
     for (int i = 0; i < 4; i++) {
         if (!guarded_intact(&s->plane[i])) {
             printf("FAIL  %-12s %-6s seed %u: wrote beside plane %d\n", "search", subject->cpu,
@@ -158,4 +157,57 @@ int check_search(const struct subject *subject)
     if (good)
         printf("ok    %-12s %-6s %d cases\n", "search", subject->cpu, (int)seed - 1);
     return !good;
+}
+
+struct bench {
+    struct stage *stage;
+    rf_search_fn *search;
+};
+
+static void call(void *context)
+{
+    const struct bench *b = context;
+    uint32_t *const sum[3] = {b->stage->sum[0], b->stage->sum[1], b->stage->sum[2]};
+
+    for (int i = 0; i < 20; i++)
+        b->search(sum, &b->stage->job);
+}
+
+/* Two surfaces, whose edge runs through the strip, or one. */
+static void bench_case(const struct subject *subject, struct stage *s, bool edge)
+{
+    const double samples = 20.0 * RF_RAY_CHUNK * LANES;
+    struct bench b = {s, subject->plain.search};
+    int16_t *blur;
+    double plain, own;
+
+    make_stage(s, INSIDE, 1);
+    blur = (int16_t *)s->plane[0].row;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        blur[i] = edge && i % SIDE + i / SIDE / 3 < PAD + RF_TILE / 2 ? -1500 : 700;
+    for (int n = 0; n < RF_RAY_CHUNK; n++)
+        s->ray[n].within = 128;
+    s->job.rays = RF_RAY_CHUNK;
+    s->job.tests = 2;
+    plain = best_time(call, &b);
+    b.search = subject->kernels.search;
+    own = best_time(call, &b);
+    printf("ok    %-12s %-6s c %.3f  %s %.3f ns/ray sample\n",
+           edge ? "search, edge" : "search, flat", subject->cpu, plain * 1e9 / samples,
+           subject->cpu, own * 1e9 / samples);
+}
+
+void bench_search(const struct subject *subject)
+{
+    static struct stage s;
+    bool good = true;
+
+    for (int i = 0; i < 4; i++)
+        good = good && guarded_create(&s.plane[i], (size_t)SIDE * SIDE * 2);
+    if (good) {
+        bench_case(subject, &s, false);
+        bench_case(subject, &s, true);
+    }
+    for (int i = 0; i < 4; i++)
+        guarded_destroy(&s.plane[i]);
 }

@@ -3,6 +3,7 @@
 #include "check.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "simd/vec.h"
@@ -64,6 +65,29 @@ static uint16_t c_max(uint16_t a, uint16_t b)
     return a > b ? a : b;
 }
 
+static uint16_t c_min(uint16_t a, uint16_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint16_t c_equal(uint16_t a, uint16_t b)
+{
+    return a == b ? 0xffff : 0;
+}
+
+/* Floor by division; the high half of -32768 * -32768 is beyond what kernels ask for. */
+static uint16_t c_offset(uint16_t a, uint16_t b)
+{
+    const int64_t x = (int64_t)(int16_t)a * (int16_t)b + (1 << 22), one = 1 << 23;
+
+    return (uint16_t)(x >= 0 ? x / one : -((-x + one - 1) / one));
+}
+
+static uint16_t c_bytes(uint16_t a, uint16_t b)
+{
+    return (uint16_t)((a & 0xff) | b << 8);
+}
+
 static vec_u16 half(vec_u16 a, vec_u16 b)
 {
     (void)b;
@@ -88,6 +112,21 @@ static uint16_t c_first(uint16_t a, uint16_t b)
     return a;
 }
 
+static uint16_t c_mul(uint16_t a, uint16_t b)
+{
+    return (uint16_t)((uint32_t)a * b);
+}
+
+static uint16_t c_least(uint16_t a, uint16_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint16_t c_most(uint16_t a, uint16_t b)
+{
+    return a > b ? a : b;
+}
+
 static const struct {
     const char *name;
     operation *run;
@@ -97,8 +136,12 @@ static const struct {
     {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
     {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
-    {"max", vec_u16_max, c_max},
+    {"max", vec_u16_max, c_max},             {"min", vec_u16_min, c_min},
+    {"equal", vec_u16_equal, c_equal},       {"offset", vec_u16_offset, c_offset},
+    {"bytes", vec_u16_bytes, c_bytes},
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
+    {"mul", vec_u16_mul, c_mul},             {"least", vec_u16_least, c_least},
+    {"most", vec_u16_most, c_most},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)
@@ -175,8 +218,19 @@ static int check_order(void)
             return 1;
         }
     }
+    if (vec_u16_lane0(b) != in[N] || vec_u16_any(vec_u16_xor(vec_u16_spread(b),
+                                                             vec_u16_set(in[N])))) {
+        printf("FAIL  vec_u16_lane0 or spread, %s\n", TEXT(RF_VEC_SET));
+        return 1;
+    }
     for (int i = 0; i <= N; i++) { /* one lane alone, then none */
         memset(in, 0, sizeof in);
+        in[i] = 0xffff;
+        if (vec_u16_bits(vec_u16_load(in)) !=
+            (i == N ? 0 : ((UINT64_C(1) << VEC_BITS) - 1) << i * VEC_BITS)) {
+            printf("FAIL  vec_u16_bits, %s: lane %d\n", TEXT(RF_VEC_SET), i);
+            return 1;
+        }
         in[i] = i % 2 ? 1 : 0x8000;
         if (!vec_u16_any(vec_u16_load(in)) != (i == N)) {
             printf("FAIL  vec_u16_any, %s: lane %d\n", TEXT(RF_VEC_SET), i);
@@ -206,6 +260,46 @@ static int check_add_to(void)
                        TEXT(RF_VEC_SET), i, (unsigned)sum[i], (unsigned)should);
                 return 1;
             }
+        }
+    }
+    return 0;
+}
+
+/* Every pair of bytes, at odd addresses. */
+static int check_bytes(void)
+{
+    static const char *const names[] = {"absdiff", "adds", "subs", "half", "lookup", "wide"};
+    const uint8_t codes[16] = {7, 255, 0, 128, 1, 2, 3, 4, 90, 91, 92, 93, 250, 251, 252, 253};
+    uint8_t a[VEC_U8 + 1], out[5][VEC_U8 + 1];
+    uint16_t wide[VEC_U8 + 1];
+
+    for (int pair = 0; pair < 65536; pair++) {
+        const uint8_t y = (uint8_t)(pair >> 8);
+        vec_u16 sum[2] = {vec_u16_set(0xff00), vec_u16_set(0xff00)};
+
+        for (int i = 0; i < (int)VEC_U8; i++)
+            a[1 + i] = (uint8_t)(pair + 37 * i);
+        const vec_u8 v = vec_u8_load(a + 1), w = vec_u8_set(y);
+        const vec_u8 result[5] = {vec_u8_absdiff(v, w), vec_u8_adds(v, w), vec_u8_subs(v, w),
+                                  vec_u8_half(v),
+                                  vec_u8_lookup(vec_u8_table(codes),
+                                                vec_u8_half(vec_u8_half(vec_u8_half(
+                                                    vec_u8_half(v)))))};
+        for (int k = 0; k < 5; k++)
+            memcpy(out[k], &result[k], VEC_U8);
+        vec_u8_add_wide(sum, v);
+        vec_u8_store_wide(wide + 1, sum);
+        for (int i = 0; i < (int)VEC_U8; i++) {
+            const int x = a[1 + i];
+            const int should[6] = {abs(x - y), x + y > 255 ? 255 : x + y, x > y ? x - y : 0, x / 2,
+                                   codes[x / 16], 0xff00 + x};
+
+            for (int k = 0; k < 6; k++)
+                if ((k < 5 ? out[k][i] : wide[1 + i]) != should[k]) {
+                    printf("FAIL  vec_u8_%s, %s: lane %d of %d, %d should be %d\n", names[k],
+                           TEXT(RF_VEC_SET), i, x, y, should[k]);
+                    return 1;
+                }
         }
     }
     return 0;
@@ -247,12 +341,13 @@ static int check_products(void)
 int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
-    int failures = check_set() + check_order() + check_add_to() + check_products();
+    int failures = check_set() + check_order() + check_add_to() + check_products() +
+                   check_bytes();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
         printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 3, (int)VEC_U16);
+               count + 5, (int)VEC_U16);
     return failures;
 }

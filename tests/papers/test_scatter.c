@@ -98,7 +98,7 @@ static void energy(void **state)
                                                 rf_spread_reach(radii[r], i), share};
                 double sum = 0, outside = 0;
 
-                rf_spread_fill(&table, spread, 1);
+                rf_spread_fill(&table, spread, 1, NULL);
                 for (int y = 0; y <= table.reach; y++) {
                     for (int x = -table.reach; x <= table.reach; x++) {
                         const double value = (y ? 2.0 : 1.0) *
@@ -125,7 +125,7 @@ static void uniform_shares(void **state)
     const double each = RF_SPREAD_ONE / (pi * 12.3 * 12.3);
 
     (void)state;
-    rf_spread_fill(&table, REFOCUS_SPREAD_UNIFORM, 1);
+    rf_spread_fill(&table, REFOCUS_SPREAD_UNIFORM, 1, NULL);
     for (int y = 0; y < 16; y++) {
         for (int x = -15; x <= 15; x++) {
             const double r = hypot(x, y), value = share[y * 31 + 15 + x] / each;

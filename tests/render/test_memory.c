@@ -148,6 +148,61 @@ static void formula(void **state)
     }
 }
 
+/* What reduced photos may add; the text of render.h. */
+static double stated_previews(int width, int height, float blur)
+{
+    const double p = 2 * (ceil((double)blur) + 2);
+
+    return (width + p + 400) * (height + p + 200);
+}
+
+/* And strip mode takes at the most. */
+static double stated_in_place(int width, int height, float blur, int threads)
+{
+    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + 28) / 16);
+    const double n = fmax(16 * ceil((2 * p + 9) / 16), m);
+    const double s = 144 + 2 * n - m + fmax(m, 2 * p);
+
+    return 28 * (s + 63) * (s + 16) + 0.78 * (width + 16.0) * (height + 64.0) +
+           4.0 * threads * (width + 512) + 24 * p * p + 131072;
+}
+
+/* The figures that strip mode and reduced photos are for. */
+static void formula_of_modes(void **state)
+{
+    static const int sides[][2] = {{1, 1},     {1, 65535},  {65535, 1},  {16, 16}, {17, 33},
+                                   {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
+    static const float blurs[] = {0, 0.5f, 1, 12, 20, 40, 40.25f, 64, 100, 127};
+    struct refocus_renderer_params params = refocus_renderer_params_default(1920, 1080, 40);
+
+    (void)state;
+    params.threads = 2;
+    params.in_place = 1;
+    assert_true(refocus_renderer_memory(&params) < 6000000);
+    assert_true(stated_in_place(1920, 1080, 40, 2) < 6000000);
+    for (int s = 0; s < 9; s++) {
+        for (int k = 0; k < 10; k++) {
+            const int w = sides[s][0], h = sides[s][1], threads = k % 2 ? 1 : 64;
+            double plain, bytes;
+
+            params = refocus_renderer_params_default(w, h, blurs[k]);
+            params.threads = threads;
+            plain = (double)refocus_renderer_memory(&params);
+            params.previews = 1;
+            bytes = (double)refocus_renderer_memory(&params);
+            if (bytes < plain || bytes - plain > stated_previews(w, h, blurs[k]))
+                fail_msg("%d x %d, K = %g: previews take %.0f bytes more, header %.0f", w, h,
+                         (double)blurs[k], bytes - plain, stated_previews(w, h, blurs[k]));
+            params.previews = 0;
+            params.in_place = 1;
+            bytes = (double)refocus_renderer_memory(&params);
+            if (bytes <= 0 || bytes > stated_in_place(w, h, blurs[k], threads))
+                fail_msg("%d x %d, K = %g: strip mode takes %.0f bytes, header %.0f", w, h,
+                         (double)blurs[k], bytes, stated_in_place(w, h, blurs[k], threads));
+        }
+    }
+}
+
 /* What each method of whole frames may add; the text of render.h. */
 static double extra(uint32_t method, int width, int height, float blur, int threads)
 {
@@ -287,7 +342,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_failure),      cmocka_unit_test(formula),
-        cmocka_unit_test(formula_of_methods),
+        cmocka_unit_test(formula_of_methods), cmocka_unit_test(formula_of_modes),
         cmocka_unit_test(says_what_it_takes), cmocka_unit_test(largest),
         cmocka_unit_test(nothing_while_rendering)};
     return cmocka_run_group_tests(tests, NULL, NULL);

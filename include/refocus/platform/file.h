@@ -108,6 +108,16 @@ REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const vo
                                           const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
 
+/**
+ * The second picture of a stereo file: of an MPO (a JPEG with the other view behind it, CIPA
+ * DC-007), or of a HEIC with two pictures. refocus_photo_read() reads the first, the left one.
+ *
+ * @return as refocus_photo_read(); REFOCUS_ERR_UNSUPPORTED when there is only one picture
+ */
+REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo, const char *path,
+                                          const struct refocus_read_limits *limits,
+                                          struct refocus_reason *reason);
+
 /** Free a photo and set the handle to NULL. A NULL handle is fine. */
 REFOCUS_API void refocus_photo_free(struct refocus_photo **photo);
 

@@ -77,6 +77,16 @@ struct refocus_network {
 REFOCUS_API const char *refocus_cv_network_name(uint32_t index);
 REFOCUS_API int refocus_cv_network(uint32_t index, struct refocus_network *network);
 
+/**
+ * Take width and height from the shape of the input that an ONNX file states; a side that is
+ * left open there, or no such shape, leaves what @p network holds.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file), REFOCUS_ERR_FORMAT
+ *         (the shape is beyond 32 to 2048)
+ */
+REFOCUS_API int refocus_cv_network_fit(struct refocus_network *network, const char *model,
+                                       struct refocus_cv_reason *reason);
+
 /** Depth of one picture, without a unit. */
 struct refocus_estimate {
     float *samples; /**< packed, larger = nearer; freed by refocus_cv_estimate_free() */
@@ -130,6 +140,31 @@ REFOCUS_API void refocus_cv_estimator_destroy(struct refocus_estimator **estimat
 REFOCUS_API int refocus_cv_upsample(const struct refocus_image *photo,
                                     const struct refocus_disparity *map, float sigma_range,
                                     uint16_t *out, struct refocus_cv_reason *reason);
+
+/** Ways of OpenCV to bring a map to the photo's size. */
+enum refocus_cv_filter {
+    REFOCUS_CV_BILINEAR = 0,        /**< means of four samples; the photo is not looked at */
+    REFOCUS_CV_JOINT_BILATERAL = 1, /**< refocus_cv_upsample() with a sigma of a tenth */
+    /* Of OpenCV contrib: bilinear, then smoothed by the photo. */
+    REFOCUS_CV_GUIDED = 2,          /**< guided filter (He et al. 2010) */
+    REFOCUS_CV_FAST_GLOBAL = 3,     /**< fast global smoother (Min et al. 2014) */
+    REFOCUS_CV_JOINT_BILATERAL_FULL = 4, /**< joint bilateral filter at full size */
+};
+
+/** Their names: "bilinear", "joint-bilateral", "guided", "fast-global",
+ *  "joint-bilateral-full"; NULL ends them. */
+REFOCUS_API const char *refocus_cv_filter_name(uint32_t filter);
+
+/**
+ * refocus_cv_upsample() by any of these filters. Those of contrib are in a module,
+ * refocus-ximgproc.so, that is looked for beside this library when it is first asked for.
+ *
+ * @param filter  enum refocus_cv_filter
+ * @return as refocus_cv_upsample(); REFOCUS_ERR_UNSUPPORTED when the module is not there
+ */
+REFOCUS_API int refocus_cv_upsample_by(uint32_t filter, const struct refocus_image *photo,
+                                       const struct refocus_disparity *map, uint16_t *out,
+                                       struct refocus_cv_reason *reason);
 
 #ifdef __cplusplus
 }

@@ -194,7 +194,7 @@ static void estimate(void **state)
 {
     static uint8_t pixels[3 * W * H];
     const struct refocus_image photo = picture(pixels);
-    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0};
+    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0}, fitted;
     struct refocus_estimate result;
     struct refocus_cv_reason reason;
     char path[] = "/tmp/refocus-onnx-XXXXXX";
@@ -208,6 +208,12 @@ static void estimate(void **state)
         pixels[3 * i + 2] = 255;
     }
     write_network(path);
+    /* The file says 48 x 32, whatever the preset does. */
+    assert_int_equal(refocus_cv_network(0, &fitted), REFOCUS_OK);
+    assert_int_equal(refocus_cv_network_fit(&fitted, path, &reason), REFOCUS_OK);
+    assert_int_equal(fitted.width, 48);
+    assert_int_equal(fitted.height, 32);
+    assert_int_equal(refocus_cv_network_fit(&fitted, "/no/such/file", &reason), REFOCUS_ERR_IO);
     for (network.inverse = 0; network.inverse < 2; network.inverse++) {
         const float sign = network.inverse ? -1 : 1;
 
@@ -227,6 +233,9 @@ static void estimate(void **state)
         assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
                          REFOCUS_ERR_FORMAT);
         assert_null(result.samples);
+        fitted.width = 77; /* cut off: it stays */
+        assert_int_equal(refocus_cv_network_fit(&fitted, path, &reason), REFOCUS_OK);
+        assert_int_equal(fitted.width, 77);
     }
     close(file);
     unlink(path);
@@ -238,6 +247,50 @@ static void estimate(void **state)
     for (uint32_t i = 0; refocus_cv_network_name(i); i++)
         assert_int_equal(refocus_cv_network(i, &network), REFOCUS_OK);
     assert_int_equal(refocus_cv_network(99, &network), REFOCUS_ERR_ARGUMENT);
+}
+
+/* Read once, run often, on pictures of any size. */
+static void estimator(void **state)
+{
+    static uint8_t pixels[3 * W * H];
+    struct refocus_image photo = picture(pixels);
+    struct refocus_network network = {48, 32, {0, 0, 0}, 1, 0};
+    struct refocus_estimator *net = NULL;
+    struct refocus_estimate result;
+    struct refocus_cv_reason reason;
+    char path[] = "/tmp/refocus-onnx-XXXXXX";
+    const int file = mkstemp(path);
+
+    (void)state;
+    assert_true(file >= 0);
+    write_network(path);
+    assert_int_equal(refocus_cv_estimator_create(&net, path, &network, &reason), REFOCUS_OK);
+    unlink(path);
+    for (int n = 1; n < 6; n++) {
+        memset(pixels, 10 * n, sizeof pixels);
+        photo.width = W / n;
+        assert_int_equal(refocus_cv_estimator_run(net, &photo, &result, &reason), REFOCUS_OK);
+        assert_int_equal(result.width, 48);
+        for (int i = 0; i < 48 * 32; i++)
+            assert_true(fabsf(result.samples[i] - (float)(30 * n)) < 0.01f);
+        refocus_cv_estimate_free(&result);
+    }
+    photo.width = 0;
+    assert_int_equal(refocus_cv_estimator_run(net, &photo, &result, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_null(result.samples);
+    assert_int_equal(refocus_cv_estimator_run(NULL, &photo, &result, NULL),
+                     REFOCUS_ERR_ARGUMENT);
+    refocus_cv_estimator_destroy(&net);
+    assert_null(net);
+    refocus_cv_estimator_destroy(&net);
+    refocus_cv_estimator_destroy(NULL);
+    assert_int_equal(refocus_cv_estimator_create(&net, path, &network, &reason), REFOCUS_ERR_IO);
+    assert_int_equal(ftruncate(file, 0), 0);
+    close(file);
+    assert_int_equal(refocus_cv_estimator_create(NULL, path, &network, NULL),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_null(net);
 }
 
 static void upsample(void **state)
@@ -258,10 +311,44 @@ static void upsample(void **state)
     assert_int_equal(refocus_cv_upsample(&photo, &coarse, 0, out, NULL), REFOCUS_ERR_ARGUMENT);
 }
 
+/* Every filter keeps a plane; those of contrib are there, or say what is missing. */
+static void upsample_by(void **state)
+{
+    static uint8_t pixels[3 * W * H];
+    static uint16_t map[40 * 25], out[W * H];
+    const struct refocus_image photo = picture(pixels);
+    struct refocus_disparity coarse = refocus_disparity16(map, 40, 25, 80);
+    struct refocus_cv_reason reason;
+    uint32_t filter;
+
+    (void)state;
+    for (int i = 0; i < 40 * 25; i++)
+        map[i] = 30000;
+    for (filter = 0; refocus_cv_filter_name(filter); filter++) {
+        const int status = refocus_cv_upsample_by(filter, &photo, &coarse, out, &reason);
+
+        if (status == REFOCUS_ERR_UNSUPPORTED && filter >= REFOCUS_CV_GUIDED) {
+            assert_non_null(strstr(reason.text, "-Dximgproc=enabled"));
+            continue;
+        }
+        assert_int_equal(status, REFOCUS_OK);
+        for (int i = 0; i < W * H; i++)
+            assert_in_range(out[i], 29998, 30002);
+    }
+    assert_int_equal(filter, 5);
+    assert_int_equal(refocus_cv_upsample_by(filter, &photo, &coarse, out, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+    coarse.bits = 12;
+    assert_int_equal(refocus_cv_upsample_by(0, &photo, &coarse, out, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(stereo), cmocka_unit_test(stereo_refuses),
-                                       cmocka_unit_test(estimate), cmocka_unit_test(upsample)};
+                                       cmocka_unit_test(estimate), cmocka_unit_test(estimator),
+                                       cmocka_unit_test(upsample),
+                                       cmocka_unit_test(upsample_by)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,87 @@
+/** @file temporal.h  Depth of video that does not flicker. */
+#ifndef REFOCUS_TEMPORAL_H
+#define REFOCUS_TEMPORAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <refocus/image.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A filter over the depth maps of a video. Opaque; reentrant: one thread at a time. */
+struct refocus_temporal;
+
+/** How to filter. Start from refocus_temporal_params_default(). */
+struct refocus_temporal_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_temporal_params) */
+    int32_t width;        /**< of the maps, samples, 1 to REFOCUS_MAX_SIDE */
+    int32_t height;       /**< of the maps, samples, 1 to REFOCUS_MAX_SIDE */
+    uint32_t reserved;    /**< 0 */
+    float strength;       /**< share of the past where nothing changes, 0 (off) to 0.95 */
+    float noise;          /**< largest difference between frames that is noise, share of the
+                               range of disparities, 0 to 0.25 */
+};
+
+static inline struct refocus_temporal_params refocus_temporal_params_default(int32_t width,
+                                                                             int32_t height)
+{
+    struct refocus_temporal_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.width = width;
+    params.height = height;
+    params.strength = (float)0.85;
+    params.noise = (float)0.03;
+    return params;
+}
+
+/**
+ * Make a filter. It takes all its memory, about 12 bytes a sample, here.
+ *
+ * @param filter  receives the filter, or NULL on an error
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY
+ */
+REFOCUS_API int refocus_temporal_create(struct refocus_temporal **filter,
+                                        const struct refocus_temporal_params *params);
+
+/** End a filter and set the handle to NULL; a NULL handle is fine. */
+REFOCUS_API void refocus_temporal_destroy(struct refocus_temporal **filter);
+
+/** Forget the past: after a cut, or after a gap. */
+REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
+
+/**
+ * Filter the next map. Blocks of 8 x 8 samples are followed from the last frame, by the photo
+ * where there is one; with p the filtered disparity of the last frame at the place that a sample
+ * d came from, and n the frames that it has been seen in,
+ *
+ *     out = d + k (1 - (d - p)^2 / noise^2) (p - d),    k = min(strength, n / (n + 1))
+ *
+ * while |d - p| < noise and the photo is alike in both places. Else out = d at once, so that
+ * nothing trails behind what moves; but where the photo stands still and d jumps, the
+ * last value stays until the next frame agrees with the new one.
+ *
+ * The scale of disparities has to be the same for all frames: give refocus_depth_to_disparity()
+ * the near_m and far_m (value_near and value_far) that it reported for the first one. Integer
+ * arithmetic: the same bytes on every processor.
+ *
+ * @param photo   the photo of this frame, any packed format and size; NULL = by depth alone
+ * @param map     width x height samples
+ * @param out     receives width x height samples of 16 bits; may be the map's own memory
+ * @param stride  bytes from a row of @p out to the next; even; may be negative
+ * @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT with @p out untouched
+ */
+REFOCUS_API int refocus_temporal_run(struct refocus_temporal *filter,
+                                     const struct refocus_image *photo,
+                                     const struct refocus_disparity *map, uint16_t *out,
+                                     ptrdiff_t stride);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

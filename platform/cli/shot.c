@@ -1,0 +1,64 @@
+#include <stdlib.h>
+#include <string.h>
+#include "report.h"
+#include "shot.h"
+
+/* Focus needs the prepared disparities only where it is given by a pixel. */
+static int choose_focus(struct shot *shot, const struct lens_settings *lens)
+{
+    const struct refocus_image *photo = &shot->input.photo->image;
+    const size_t pixels = (size_t)photo->width * (size_t)photo->height;
+    uint16_t *prepared = NULL;
+    double focus = 0;
+    int status;
+
+    if (isnan(lens->focus) && isnan(lens->focus_distance)) {
+        prepared = malloc(pixels * sizeof *prepared);
+        if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
+                                          prepared, (ptrdiff_t)photo->width * 2) != REFOCUS_OK) {
+            free(prepared);
+            return report_failure(EXIT_FAILED, shot->input.photo_name,
+                                  "not enough memory to find the focus; give --focus");
+        }
+    }
+    status = input_focus(&shot->input, lens, prepared, &focus);
+    shot->engine.params.focus_disparity = (float)focus;
+    free(prepared);
+    return status;
+}
+
+int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings)
+{
+    struct refocus_disparity disparity;
+    const struct refocus_image *image;
+    double blur = 0;
+    int status;
+
+    memset(&shot->input, 0, sizeof shot->input);
+    status = engine_begin(&shot->engine, settings->engine);
+    shot->engine.name = photo;
+    if (status == EXIT_DONE) {
+        report_progress("reading", 0);
+        status = input_read(&shot->input, photo, settings->depth);
+    }
+    if (status == EXIT_DONE)
+        status = input_blur(&shot->input, settings->lens, &blur);
+    if (status != EXIT_DONE)
+        return status;
+    image = &shot->input.photo->image;
+    disparity = refocus_disparity16(shot->input.disparity, shot->input.width,
+                                    shot->input.height, (ptrdiff_t)shot->input.width * 2);
+    report_progress("preparing", 0.15);
+    status = engine_create(&shot->engine, settings->engine, image->width, image->height,
+                           fmax(blur, settings->most_blur));
+    shot->engine.params.max_blur_radius = (float)blur;
+    if (status == EXIT_DONE)
+        status = engine_prepare(&shot->engine, image, &disparity);
+    return status == EXIT_DONE ? choose_focus(shot, settings->lens) : status;
+}
+
+void shot_close(struct shot *shot)
+{
+    engine_end(&shot->engine);
+    input_free(&shot->input);
+}

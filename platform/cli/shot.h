@@ -1,0 +1,24 @@
+/* One photo on the table: read, prepared, with its lens setting in engine.params. */
+#ifndef RF_CLI_SHOT_H
+#define RF_CLI_SHOT_H
+
+#include "engine.h"
+#include "inputs.h"
+
+struct shot_settings {
+    const struct depth_settings *depth;
+    const struct lens_settings *lens;
+    const struct engine_settings *engine;
+    double most_blur; /* the renderer is made for, where that is more than K; 0: K */
+};
+
+struct shot {
+    struct input input;
+    struct engine engine;
+};
+
+/* Exit code; prints why it is not EXIT_DONE. Ended by shot_close(), whatever it returned. */
+int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings);
+void shot_close(struct shot *shot);
+
+#endif

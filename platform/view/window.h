@@ -1,0 +1,105 @@
+/* What the files of the window share. */
+#ifndef RF_VIEW_WINDOW_H
+#define RF_VIEW_WINDOW_H
+
+#include <SDL.h>
+#include "view.h"
+
+enum rf_tool { RF_TOOL_FOCUS, RF_TOOL_PAINT, RF_TOOL_GRADIENT };
+
+enum rf_action {
+    RF_ACT_NONE,
+    RF_ACT_FOCUS,
+    RF_ACT_PAINT,
+    RF_ACT_MORE,
+    RF_ACT_LESS,
+    RF_ACT_BRUSH,
+    RF_ACT_GROUND,
+    RF_ACT_GRADIENT,
+    RF_ACT_FILL,
+    RF_ACT_NEARER,
+    RF_ACT_FARTHER,
+    RF_ACT_LARGER,
+    RF_ACT_SMALLER,
+    RF_ACT_UNDO,
+    RF_ACT_METHOD,
+    RF_ACT_DEPTH,
+    RF_ACT_PEAKING,
+    RF_ACT_BEFORE,
+    RF_ACT_FIT,
+    RF_ACT_PIXELS,
+    RF_ACT_SAVE_PICTURE,
+    RF_ACT_SAVE_SETTINGS,
+    RF_ACT_SAVE_DEPTH,
+    RF_ACT_HELP,
+    RF_ACT_QUIT,
+    RF_ACTIONS
+};
+
+/* A request that is not answered wholly. */
+struct rf_pending {
+    uint64_t request;
+    int time; /* index in the report */
+};
+
+enum { RF_PENDING = 64, RF_PATH = 4096 };
+
+struct rf_window {
+    const struct rf_view_setup *setup;
+    struct rf_view_report *report;
+    struct rf_session *session;
+    struct rf_view_state state;
+
+    SDL_Window *window;
+    SDL_Renderer *renderer;
+    SDL_Texture *texture;
+    int texture_width, texture_height;
+    int width, height;       /* pixels of what is drawn */
+    double density;          /* of them in a unit of the mouse's places */
+    const struct rf_view_frame *frame;
+    Uint32 frame_event;
+    bool redraw, quit, help;
+    bool fitted;             /* the whole photo is shown, also after a change of size */
+
+    enum rf_tool tool;
+    uint32_t stroke_kind;    /* of the next one, enum refocus_stroke_kind */
+    double brush;            /* radius, pixels of the window */
+    double value;            /* disparity to fill with */
+    bool pressed, dragged, painting, panning;
+    bool two_fingers;        /* until all are lifted */
+    double press_x, press_y, last_x, last_y; /* pixels of the window */
+    double press_blur;
+    Uint64 press_counter;    /* when */
+    SDL_FPoint path[RF_PATH];
+    int path_count;
+    uint64_t taps;
+
+    struct rf_pending pending[RF_PENDING];
+    int pending_count;
+};
+
+/* input.c: events, and the buttons along the lower border. */
+void rf_window_event(struct rf_window *w, const SDL_Event *event);
+int rf_window_buttons(const struct rf_window *w);
+SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label, bool *on);
+
+/* actions.c: what they do. */
+void rf_window_act(struct rf_window *w, enum rf_action action);
+void rf_window_show(struct rf_window *w, const char *cause);
+void rf_window_tap(struct rf_window *w, double x, double y);
+void rf_window_blur(struct rf_window *w, double blur);
+void rf_window_zoom(struct rf_window *w, double factor, double x, double y);
+void rf_window_pan(struct rf_window *w, double dx, double dy);
+void rf_window_fit(struct rf_window *w);
+void rf_window_stroke(struct rf_window *w, double x, double y, uint32_t kind);
+void rf_window_stroke_to(struct rf_window *w, double x, double y);
+void rf_window_gradient(struct rf_window *w, double x, double y);
+double rf_window_cpu_ms(void);
+/* A request was made now; cause is a literal. */
+void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause);
+
+/* text.c: capitals, digits and some signs, three pixels by five, enlarged. */
+void rf_text(SDL_Renderer *renderer, const char *text, int x, int y, int size);
+int rf_text_width(const char *text, int size);
+
+#endif

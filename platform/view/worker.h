@@ -1,0 +1,59 @@
+/* The two sides of a session: the calls, and the thread that works. */
+#ifndef RF_VIEW_WORKER_H
+#define RF_VIEW_WORKER_H
+
+#include <pthread.h>
+#include "session.h"
+
+/* Pixels of the reduced photo: a picture of them in a few hundredths of a second. */
+enum { PREVIEW_PIXELS = 800000, PREVIEW_RAYS = 32 };
+
+/* What the painting is asked for, in order. */
+struct order {
+    enum { ORDER_BEGIN, ORDER_POINT, ORDER_UNDO } kind;
+    struct refocus_stroke stroke;
+    bool end_from_depth;
+    float x, y;
+};
+
+struct rf_session {
+    struct rf_session_setup setup;
+    int reduction, width, height; /* of the reduced photo */
+
+    pthread_t thread;
+    bool started;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* Under the lock. */
+    struct rf_view_state state;
+    uint64_t request, answered;   /* the newest one, and the last that is wholly done */
+    struct order *orders;
+    int order_count, order_room;
+    uint32_t save;
+    bool shown, quit, finished;
+    bool rendering;               /* the full picture, */
+    uint64_t rendered;            /* for this request */
+    int status;
+    struct rf_view_frame frames[3];
+    int front, ready, back;       /* ready: -1 when it was taken */
+
+    /* The thread's own. */
+    struct refocus_strokes *strokes;
+    struct refocus_renderer *small, *full;
+    uint8_t *small_photo, *small_out, *full_out, *selection;
+    uint16_t *small_disparity;
+    uint32_t *scratch;
+    int scratch_room;
+    bool small_stale, full_stale; /* the depth has changed since it was prepared */
+    bool have_full;               /* full_out is what full_of says */
+    struct refocus_render_params full_of;
+    uint64_t tap;                 /* the last one that was looked up */
+    float tap_focus;
+};
+
+void *rf_worker_run(void *session);
+
+/* Keep the first status that was no success. */
+void rf_worker_note(struct rf_session *s, int status);
+
+#endif

@@ -1,0 +1,51 @@
+#include "background/background.h"
+
+/* The parents that unknown pixels of `need` at a level take from; x1 <= x0: none do. */
+static struct rf_rect parents(const int16_t *blur, ptrdiff_t stride, struct rf_rect need)
+{
+    struct rf_rect unknown = {need.x1, need.y1, need.x0, need.y0};
+
+    for (int y = need.y0; y < need.y1; y++) {
+        for (int x = need.x0; x < need.x1; x++) {
+            if (blur[y * stride + x] != RF_NO_BLUR)
+                continue;
+            unknown.x0 = x < unknown.x0 ? x : unknown.x0;
+            unknown.x1 = x >= unknown.x1 ? x + 1 : unknown.x1;
+            unknown.y0 = y < unknown.y0 ? y : unknown.y0;
+            unknown.y1 = y + 1;
+        }
+    }
+    if (unknown.x1 <= unknown.x0)
+        return (struct rf_rect){0, 0, 0, 0};
+    return (struct rf_rect){unknown.x0 / 2 - 1, unknown.y0 / 2 - 1, (unknown.x1 - 1) / 2 + 2,
+                            (unknown.y1 - 1) / 2 + 2};
+}
+
+static int clamp(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect need,
+                            struct rf_rect exact)
+{
+    for (int i = 0; i <= r->levels; i++) {
+        const int side = 1 << i;
+        const int width = i ? r->level[i - 1].width : r->width;
+        const int height = i ? r->level[i - 1].height : r->height;
+
+        need = (struct rf_rect){clamp(need.x0, width), clamp(need.y0, height),
+                                clamp(need.x1, width), clamp(need.y1, height)};
+        /* blocks of the whole photo's pyramid? */
+        if ((r->origin_x | r->origin_y) & (side - 1))
+            return false;
+        if ((int64_t)need.x0 * side < exact.x0 || (int64_t)need.y0 * side < exact.y0 ||
+            (int64_t)need.x1 * side > exact.x1 || (int64_t)need.y1 * side > exact.y1)
+            return false;
+        need = parents(i ? r->level[i - 1].blur : r->behind.blur,
+                       i ? r->level[i - 1].stride : r->stride, need);
+        if (need.x1 <= need.x0)
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,320 @@
+/* blocks.c: strip mode. The photo is in the caller's memory; the planes hold a block of
+ * it and a margin at a time, and the passes work on that window.
+ *
+ * The fill of the background takes its colours from all over the photo. So the photo is
+ * gone through twice. First the marks of all pixels are kept, and of the pyramid the
+ * levels from RF_KEPT on, which are then filled; the levels below them are made again
+ * for each block that is rendered. Nothing is approximated: the bytes are those of the
+ * whole.
+ */
+#include <string.h>
+
+#include "background/background.h"
+#include "planes/format.h"
+#include "renderer/bands.h"
+#include "renderer/layout.h"
+#include "renderer/load.h"
+#include "renderer/passes.h"
+
+/* Block number i, row by row, of those of side `block` that cover the photo. */
+static struct rf_rect block_of(const struct refocus_renderer *r, int block, int i)
+{
+    const struct rf_rect all = rf_whole(r, 0);
+    const int across = (all.x1 + block - 1) / block;
+    const int x = i % across * block, y = i / across * block;
+
+    return (struct rf_rect){x, y, x + block < all.x1 ? x + block : all.x1,
+                            y + block < all.y1 ? y + block : all.y1};
+}
+
+static int blocks(const struct refocus_renderer *r, int block)
+{
+    const struct rf_rect all = rf_whole(r, 0);
+
+    return (all.x1 + block - 1) / block * ((all.y1 + block - 1) / block);
+}
+
+static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block,
+                             int margin)
+{
+    const struct rf_rect all = rf_whole(r, 0);
+
+    return (struct rf_rect){block.x0 > margin ? block.x0 - margin : 0,
+                            block.y0 > margin ? block.y0 - margin : 0,
+                            block.x1 + margin < all.x1 ? block.x1 + margin : all.x1,
+                            block.y1 + margin < all.y1 ? block.y1 + margin : all.y1};
+}
+
+static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
+{
+    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y,
+                            part.x1 - r->origin_x, part.y1 - r->origin_y};
+}
+
+/* A part of a picture as a picture. */
+static struct refocus_image image_part(const struct refocus_image *image,
+                                       struct rf_rect part)
+{
+    struct refocus_image out = *image;
+
+    out.width = part.x1 - part.x0;
+    out.height = part.y1 - part.y0;
+    out.plane[0] += part.y0 * image->stride[0] +
+                    (ptrdiff_t)part.x0 * refocus_format_bytes(image->format);
+    return out;
+}
+
+/* Make a part of the caller's photo the window. */
+static void load(struct refocus_renderer *r, struct rf_rect window)
+{
+    const struct refocus_image photo = image_part(&r->in_place.photo, window);
+    struct refocus_disparity map = r->in_place.map;
+
+    map.samples = (const uint8_t *)map.samples + window.y0 * map.stride +
+                  (ptrdiff_t)window.x0 * (map.bits / 8);
+    map.width = photo.width;
+    map.height = photo.height;
+    rf_use(r, 0, window);
+    rf_load_light(r, &photo);
+    rf_load_disparity(r, &map);
+}
+
+void rf_find_rims_in_blocks(struct refocus_renderer *r)
+{
+    const struct rf_in_place *in_place = &r->in_place;
+
+    for (int i = 0; i < blocks(r, in_place->block) && !rf_cancelled(r); i++) {
+        const struct rf_rect block = block_of(r, in_place->block, i);
+
+        load(r, around(r, block, RF_TILE));
+        if (!rf_cancelled(r))
+            rf_find_rims(r, in_window(r, block));
+    }
+}
+
+/* Highlights in a block, by the parts that they are listed in. */
+static void find_in_block(struct refocus_renderer *r, struct rf_rect block)
+{
+    for (int y = block.y0, end; y < block.y1; y = end) {
+        end = (y / RF_LAMP_ROWS + 1) * RF_LAMP_ROWS;
+        end = end < block.y1 ? end : block.y1;
+        rf_find_highlights(r,
+                           in_window(r, (struct rf_rect){block.x0, y, block.x1, end}),
+                           rf_scratch(r, 0));
+    }
+}
+
+static void find_highlights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_photo *photo = &r->photo[0];
+
+    if (f->params->highlight_gain <= 1 || photo->highlights_blend == r->blend)
+        return;
+    photo->highlights_blend = RF_NO_BLEND;
+    r->used = 0;
+    rf_forget_highlights(r);
+    for (int i = 0; i < blocks(r, r->in_place.block) && !rf_cancelled(r); i++) {
+        const struct rf_rect block = block_of(r, r->in_place.block, i);
+
+        load(r, around(r, block, RF_TILE));
+        if (!rf_cancelled(r))
+            find_in_block(r, block);
+    }
+    rf_sort_highlights(r);
+    if (!rf_cancelled(r))
+        photo->highlights_blend = r->blend;
+}
+
+/* Light, blur and smooth light of a window. */
+static void make_window(struct rf_frame *f, struct rf_rect window, enum rf_need need)
+{
+    struct refocus_renderer *r = f->r;
+
+    load(r, window);
+    if (need == RF_NEED_LIGHT || rf_cancelled(r))
+        return;
+    rf_pass_blur(f, need == RF_NEED_LAYERS);
+    if (need == RF_NEED_BLUR || rf_cancelled(r))
+        return;
+    rf_patch_rims(r, f->focus, f->scale);
+    rf_pass_smooth(f);
+}
+
+/* Keep what the background's mark knows of a block. */
+static void keep_known(struct refocus_renderer *r, struct rf_rect block)
+{
+    const struct rf_in_place *in_place = &r->in_place;
+
+    for (int y = block.y0; y < block.y1; y++) {
+        const int16_t *blur =
+            r->behind.blur + (y - r->origin_y) * r->stride - r->origin_x;
+        uint8_t *known = in_place->known + y * in_place->known_stride;
+
+        for (int x = block.x0; x < block.x1; x += 8) {
+            int bits = 0;
+
+            for (int i = 0; i < 8 && x + i < block.x1; i++)
+                bits |= (blur[x + i] != RF_NO_BLUR) << i;
+            known[x / 8] = (uint8_t)bits;
+        }
+    }
+}
+
+/* And what the pyramid has above it: blocks begin at multiples of its pixels. */
+static void keep_level(struct refocus_renderer *r, struct rf_rect block)
+{
+    const struct rf_level *from = &r->level[RF_KEPT - 1];
+    const struct rf_level *to = &r->in_place.kept[RF_KEPT - 1];
+    const int x0 = block.x0 >> RF_KEPT, y0 = block.y0 >> RF_KEPT;
+    const int n = rf_reduced(block.x1 - block.x0, RF_KEPT);
+    const ptrdiff_t dx = (block.x0 - r->origin_x) >> RF_KEPT;
+    const ptrdiff_t dy = (block.y0 - r->origin_y) >> RF_KEPT;
+
+    for (int y = 0; y < rf_reduced(block.y1 - block.y0, RF_KEPT); y++) {
+        const ptrdiff_t in = (dy + y) * from->stride + dx,
+                        out = (y0 + y) * to->stride + x0;
+
+        for (int c = 0; c < 3; c++)
+            memcpy(to->light[c] + out, from->light[c] + in, (size_t)n * 2);
+        memcpy(to->blur + out, from->blur + in, (size_t)n * 2);
+        if (x0 + n == to->width && to->width % 2)
+            to->blur[out + n] = RF_NO_BLUR; /* a column more */
+    }
+}
+
+/* The first time through the photo. */
+static void mark(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_in_place *in_place = &r->in_place;
+    struct rf_level own[RF_LEVELS];
+
+    in_place->levels =
+        rf_pyramid(in_place->kept, r->photo[0].width, r->photo[0].height);
+    for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(r); i++) {
+        const struct rf_rect block = block_of(r, in_place->mark_block, i);
+
+        make_window(f, around(r, block, in_place->mark_margin), RF_NEED_LAYERS);
+        rf_pass_mark(f);
+        keep_known(r, block);
+        rf_background_push(r, 0, RF_KEPT);
+        if (!rf_cancelled(r))
+            keep_level(r, block);
+    }
+    memcpy(own, r->level, sizeof own);
+    memcpy(r->level, in_place->kept, sizeof own);
+    rf_background_push(r, RF_KEPT, in_place->levels);
+    rf_background_pull(r, RF_KEPT, in_place->levels);
+    memcpy(r->level, own, sizeof own);
+}
+
+static void known_band(void *context, int band, int worker)
+{
+    struct refocus_renderer *r = context;
+    const struct rf_in_place *in_place = &r->in_place;
+
+    (void)worker;
+    for (int y = rf_band_start(band); y < rf_band_end(r, band); y++) {
+        const ptrdiff_t at = y * r->stride;
+        const uint8_t *known =
+            in_place->known + (y + r->origin_y) * in_place->known_stride;
+        const int16_t *blur = r->front.blur + at;
+        int16_t *out = r->behind.blur + at;
+
+        for (int x = 0; x < r->width; x++) {
+            const int q = x + r->origin_x;
+
+            out[x] = known[q / 8] >> q % 8 & 1 ? blur[x] : RF_NO_BLUR;
+        }
+        out[r->width] = RF_NO_BLUR; /* a column more if the width is odd */
+        for (int c = 0; c < 3; c++)
+            memcpy(r->behind.light[c] + at, r->smooth[c] + at, (size_t)r->width * 2);
+    }
+}
+
+/* The background of the window from what is kept. */
+static void make_behind(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    const struct rf_level *kept = &r->in_place.kept[RF_KEPT - 1];
+    struct rf_level own;
+    ptrdiff_t at;
+
+    if (blocks(r, r->in_place.block) == 1) { /* the window is all of the photo */
+        rf_pass_mark(f);
+        rf_background_push(r, 0, r->levels);
+        rf_pass_behind(f, r->levels);
+        return;
+    }
+    rf_pool_run(&r->pool, known_band, r, rf_bands(r));
+    rf_background_push(r, 0, RF_KEPT - 1);
+    own = r->level[RF_KEPT - 1];
+    at = (r->origin_y >> RF_KEPT) * kept->stride + (r->origin_x >> RF_KEPT);
+    for (int c = 0; c < 3; c++)
+        r->level[RF_KEPT - 1].light[c] = kept->light[c] + at;
+    r->level[RF_KEPT - 1].blur = kept->blur + at;
+    r->level[RF_KEPT - 1].stride = kept->stride;
+    rf_pass_behind(f, RF_KEPT);
+    r->level[RF_KEPT - 1] = own;
+}
+
+/* Whether the first time through the photo was for this lens and light. */
+static bool is_marked(const struct rf_frame *f)
+{
+    return f->r->made.behind && rf_same_lens(f, 0) && rf_same_light(f);
+}
+
+static void mark_once(struct rf_frame *f)
+{
+    struct rf_made *m = &f->r->made;
+
+    if (blocks(f->r, f->r->in_place.block) == 1 || is_marked(f))
+        return;
+    m->behind = false;
+    mark(f);
+    *m = (struct rf_made){
+        .blur = true, .smooth = true, .focus = f->focus, .shift = f->scale.shift};
+    rf_note_light(f);
+    m->behind = !rf_cancelled(f->r);
+}
+
+void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
+                   void (*tiles)(struct rf_frame *f))
+{
+    struct refocus_renderer *r = f->r;
+    const struct rf_in_place *in_place = &r->in_place;
+    const struct refocus_image *const out = f->out;
+
+    r->blend = f->params->blend;
+    rf_set_weights(f);
+    if (need == RF_NEED_LAYERS) {
+        find_highlights(f);
+        if (!rf_cancelled(r))
+            mark_once(f);
+    }
+    for (int i = 0; i < blocks(r, in_place->block) && !rf_cancelled(r); i++) {
+        const struct rf_rect b = block_of(r, in_place->block, i);
+        const struct rf_rect part = {
+            b.x0 > region.x0 ? b.x0 : region.x0, b.y0 > region.y0 ? b.y0 : region.y0,
+            b.x1 < region.x1 ? b.x1 : region.x1, b.y1 < region.y1 ? b.y1 : region.y1};
+        struct refocus_image image;
+
+        if (part.x0 >= part.x1 || part.y0 >= part.y1)
+            continue;
+        make_window(f, around(r, b, in_place->margin), need);
+        if (need == RF_NEED_LAYERS && !rf_cancelled(r))
+            make_behind(f);
+        if (need == RF_NEED_LAYERS && f->weighted && !rf_cancelled(r) &&
+            f->params->method == REFOCUS_METHOD_SWEEP)
+            rf_pass_weights(f);
+        image =
+            image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
+                                             part.x1 - region.x0, part.y1 - region.y0});
+        f->out = &image;
+        f->region = in_window(r, part);
+        if (!rf_cancelled(r))
+            tiles(f);
+    }
+    f->out = out;
+}

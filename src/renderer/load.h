@@ -1,0 +1,16 @@
+/* load.h: photo and disparities into the planes of the window. */
+#ifndef RF_LOAD_H
+#define RF_LOAD_H
+
+#include "renderer/renderer.h"
+
+/* Light in the blend r->blend, and alpha. `photo` is of the window's size. */
+void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo);
+
+/* Disparities; the map is of the window's size. */
+void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map);
+
+/* Strip mode: the rims of the photo, block by block. */
+void rf_find_rims_in_blocks(struct refocus_renderer *r);
+
+#endif

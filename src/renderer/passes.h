@@ -1,0 +1,49 @@
+/* passes.h: what a lens setting needs before its rays, made as far as it is not there
+ * yet.
+ *
+ *     light of the blend  <-  photo, blend
+ *     blur, bins          <-  disparity, K, df
+ *     rims, lamps in them <-  photo
+ *     smooth              <-  light, blur, spacing of the rays, gain of highlights
+ *     background layer    <-  smooth, blur
+ *
+ * The shape of the aperture, sigma, and rays as dense as before change none of them.
+ * For a region only a window of the photo is worked on: the region, what its rays
+ * reach, what the marks of the background there depend on, and as much around as its
+ * fill asks for. What is in the window is kept for the next call.
+ */
+#ifndef RF_PASSES_H
+#define RF_PASSES_H
+
+#include "methods/method.h"
+
+enum rf_need {
+    RF_NEED_LIGHT, /* the light alone */
+    RF_NEED_BLUR,  /* and blur and bins */
+    RF_NEED_LAYERS,
+};
+
+/* Make what rendering `region` of photo `number` needs and set the window and
+ * f->region; `whole`: of the whole photo. Ends early when cancelled. */
+void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
+                   enum rf_need need, bool whole);
+
+/* The passes themselves, over the window. */
+void rf_set_weights(struct rf_frame *f);
+void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
+void rf_pass_smooth(struct rf_frame *f);
+void rf_pass_mark(struct rf_frame *f);
+void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
+void rf_pass_weights(struct rf_frame *f);
+
+/* Whether what r->made tells of is for this lens, and its light for this frame's; note
+ * the frame's there. */
+bool rf_same_lens(const struct rf_frame *f, int number);
+bool rf_same_light(const struct rf_frame *f);
+void rf_note_light(struct rf_frame *f);
+
+/* Strip mode, blocks.c: render the region, whose tiles of a block `tiles` renders. */
+void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
+                   void (*tiles)(struct rf_frame *f));
+
+#endif

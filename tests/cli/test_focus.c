@@ -1,0 +1,128 @@
+/* Focus pulls of `refocus live`, against a clock of our own: smooth, and without a jump
+ * also when one begins before the other has ended. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <string.h>
+#include "live.h"
+
+static int64_t now;
+
+int64_t live_now_ns(void)
+{
+    return now;
+}
+
+static void begin(struct live_focus *focus, double disparity)
+{
+    struct live_settings settings = {.lens = LENS_SETTINGS_NONE};
+
+    now = 5000000000;
+    settings.lens.focus = disparity;
+    live_focus_init(focus, &settings);
+    focus->blur = 8;
+    focus->blur_most = 16;
+}
+
+static double look(struct live_focus *focus)
+{
+    double disparity, blur;
+
+    live_focus_get(focus, now, &disparity, &blur);
+    return disparity;
+}
+
+static void command(struct live_focus *focus, const char *line)
+{
+    char why[200] = "";
+    bool quit = false;
+
+    if (!live_focus_command(focus, line, &quit, why, sizeof why) || quit)
+        fail_msg("%s: %s", line, why);
+}
+
+/* At 1000 frames a second for so long: never back, and no step above 1.5 times the mean
+ * one. */
+static void watch(struct live_focus *focus, double to, int ms)
+{
+    const double from = look(focus);
+    const double most = 1.5 * fabs(to - from) / ms + 1e-9;
+    double before = from, first = 0;
+
+    for (int i = 0; i < ms; i++) {
+        const double step = (now += 1000000, look(focus)) - before;
+
+        assert_true(step * (to - from) >= 0);
+        assert_true(fabs(step) <= most);
+        first = i == 0 ? fabs(step) : first;
+        before += step;
+    }
+    assert_true(first < fabs(to - from) / ms / 50); /* it starts from rest */
+    assert_true(fabs(before - to) < 1e-9);
+}
+
+static void pulls_are_smooth(void **state)
+{
+    struct live_focus focus;
+
+    (void)state;
+    begin(&focus, 0.1);
+    command(&focus, "pull 0.9 2");
+    assert_true(fabs(look(&focus) - 0.1) < 1e-12);
+    watch(&focus, 0.9, 2000);
+    now += 60000000000;
+    assert_true(look(&focus) == 0.9);
+    command(&focus, "pull 0 0.5");
+    watch(&focus, 0, 500);
+    pthread_mutex_destroy(&focus.lock);
+}
+
+static void one_takes_over_from_another(void **state)
+{
+    struct live_focus focus;
+    double at;
+
+    (void)state;
+    begin(&focus, 0);
+    command(&focus, "pull 1 2");
+    now += 900000000;
+    at = look(&focus);
+    assert_true(at > 0.3 && at < 0.5);
+    command(&focus, "pull 0.2 1");
+    assert_true(fabs(look(&focus) - at) < 1e-12);
+    watch(&focus, 0.2, 1000);
+    command(&focus, "focus 0.7"); /* at once */
+    assert_true(look(&focus) == 0.7);
+    pthread_mutex_destroy(&focus.lock);
+}
+
+static void points_are_asked_for_once(void **state)
+{
+    struct live_focus focus;
+    double point[2], seconds;
+
+    (void)state;
+    begin(&focus, 0.5);
+    assert_false(live_focus_point(&focus, point, &seconds));
+    command(&focus, "pull-at 12,34 1");
+    assert_true(live_focus_point(&focus, point, &seconds));
+    assert_true(point[0] == 12 && point[1] == 34 && seconds == 1);
+    assert_false(live_focus_point(&focus, point, &seconds));
+    live_focus_pull(&focus, 1, seconds);
+    watch(&focus, 1, 1000);
+    live_focus_pull(&focus, (double)NAN, 0); /* nothing is there */
+    assert_true(look(&focus) == 0);
+    pthread_mutex_destroy(&focus.lock);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pulls_are_smooth),
+                                       cmocka_unit_test(one_takes_over_from_another),
+                                       cmocka_unit_test(points_are_asked_for_once)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

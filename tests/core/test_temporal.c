@@ -1,0 +1,248 @@
+/* The temporal filter of depth. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include <refocus/refocus.h>
+
+enum { W = 80, H = 60, SIDE = 20, SCALE = 4, NOISE = 900 };
+
+struct video {
+    uint16_t truth[W * H], map[W * H], out[W * H];
+    uint8_t rgb[3 * W * SCALE * H * SCALE];
+    uint32_t seed;
+};
+static struct video v;
+
+static int noise(int most)
+{
+    v.seed = v.seed * 1664525u + 1013904223u;
+    return (int)((v.seed >> 8) % (uint32_t)(2 * most + 1)) - most;
+}
+
+/* A near square at x before a far wall, both with texture of their own; noise on the map. */
+static void draw(int x)
+{
+    for (int i = 0; i < W * H; i++) {
+        const bool inside = i % W >= x && i % W < x + SIDE && i / W >= 15 && i / W < 15 + SIDE;
+
+        v.truth[i] = inside ? 45000 : 12000;
+        v.map[i] = (uint16_t)(v.truth[i] + noise(NOISE));
+        for (int j = 0; j < SCALE * SCALE; j++) {
+            const int px = i % W * SCALE + j % SCALE, py = i / W * SCALE + j / SCALE;
+            const int u = inside ? i % W - x : i % W, t = inside ? 140 : 20;
+
+            memset(v.rgb + 3 * (py * W * SCALE + px), t + (u * 37 + i / W * 61) % 60, 3);
+        }
+    }
+}
+
+static struct refocus_temporal *make(void)
+{
+    const struct refocus_temporal_params params = refocus_temporal_params_default(W, H);
+    struct refocus_temporal *filter;
+
+    assert_int_equal(refocus_temporal_create(&filter, &params), REFOCUS_OK);
+    v.seed = 3;
+    return filter;
+}
+
+static void run(struct refocus_temporal *filter, bool with_photo)
+{
+    const struct refocus_image photo = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, v.rgb, W * SCALE, H * SCALE, 3 * W * SCALE);
+    const struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
+
+    assert_int_equal(
+        refocus_temporal_run(filter, with_photo ? &photo : NULL, &map, v.out, 2 * W), REFOCUS_OK);
+}
+
+static double error_of(const uint16_t *map)
+{
+    double sum = 0;
+
+    for (int i = 0; i < W * H; i++)
+        sum += abs(map[i] - v.truth[i]);
+    return sum / (W * H);
+}
+
+/* Noise falls by half or more where nothing moves, and edges stay where they are. */
+static void calms(void **state)
+{
+    (void)state;
+    for (int with_photo = 0; with_photo < 2; with_photo++) {
+        struct refocus_temporal *filter = make();
+
+        for (int t = 0; t < 12; t++) {
+            draw(30);
+            run(filter, with_photo);
+        }
+        assert_true(error_of(v.out) < 0.5 * error_of(v.map));
+        for (int i = 0; i < W * H; i++)
+            assert_true(abs(v.out[i] - v.truth[i]) <= NOISE);
+        refocus_temporal_destroy(&filter);
+    }
+}
+
+/* A square that moves leaves nothing behind: no sample is ever of the wrong surface. */
+static void leaves_no_ghosts(void **state)
+{
+    (void)state;
+    for (int with_photo = 0; with_photo < 2; with_photo++) {
+        for (int speed = 1; speed <= 6; speed++) {
+            struct refocus_temporal *filter = make();
+            double calmer = 0;
+
+            for (int t = 0; t < 8; t++) {
+                draw(5 + t * speed);
+                run(filter, with_photo);
+                for (int i = 0; i < W * H; i++)
+                    if (abs(v.out[i] - v.truth[i]) > 2 * NOISE)
+                        fail_msg("photo %d, speed %d, frame %d: a ghost at %d, %d", with_photo,
+                                 speed, t, i % W, i / W);
+                calmer = error_of(v.out) / error_of(v.map);
+            }
+            assert_true(calmer < 0.6); /* followed, not just given up */
+            refocus_temporal_destroy(&filter);
+        }
+    }
+}
+
+/* A sample that jumps for one frame while the photo stands still does not; one that stays at its
+ * new place is believed a frame later. */
+static void waits_for_a_second_look(void **state)
+{
+    struct refocus_temporal *filter = make();
+
+    (void)state;
+    for (int t = 0; t < 6; t++) {
+        draw(30);
+        if (t == 4)
+            v.map[100] = 60000;
+        run(filter, true);
+        assert_true(abs(v.out[100] - 12000) <= NOISE);
+    }
+    for (int t = 0; t < 2; t++) {
+        draw(30);
+        v.map[100] = 60000;
+        run(filter, true);
+    }
+    assert_int_equal(v.out[100], 60000);
+    refocus_temporal_destroy(&filter);
+}
+
+/* Strength 0 changes nothing; neither does a reset filter in its first frame. */
+static void can_be_off(void **state)
+{
+    struct refocus_temporal_params params = refocus_temporal_params_default(W, H);
+    struct refocus_temporal *off, *on = make();
+
+    (void)state;
+    params.strength = 0;
+    assert_int_equal(refocus_temporal_create(&off, &params), REFOCUS_OK);
+    for (int t = 0; t < 3; t++) {
+        draw(10 + t);
+        run(off, true);
+        assert_memory_equal(v.out, v.map, sizeof v.out);
+        refocus_temporal_reset(on);
+        run(on, t % 2);
+        assert_memory_equal(v.out, v.map, sizeof v.out);
+    }
+    refocus_temporal_destroy(&off);
+    refocus_temporal_destroy(&on);
+    refocus_temporal_destroy(&on);
+}
+
+/* 8 bits, bottom-up rows, in place, and sizes down to one sample. */
+static void any_layout(void **state)
+{
+    static const int sizes[][2] = {{1, 1}, {1, 9}, {9, 1}, {8, 8}, {17, 31}};
+
+    (void)state;
+    for (int k = 0; k < 5; k++) {
+        const int w = sizes[k][0], h = sizes[k][1];
+        const struct refocus_temporal_params params = refocus_temporal_params_default(w, h);
+        struct refocus_temporal *a, *b;
+        uint8_t bytes[17 * 31], rgb[3 * 25] = {0};
+        uint16_t out[17 * 31], other[17 * 31];
+        const struct refocus_image photo =
+            refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 5, 5, 15);
+
+        assert_int_equal(refocus_temporal_create(&a, &params), REFOCUS_OK);
+        assert_int_equal(refocus_temporal_create(&b, &params), REFOCUS_OK);
+        for (int t = 0; t < 5; t++) {
+            struct refocus_disparity map = {0};
+
+            for (int i = 0; i < w * h; i++) {
+                const int at = (h - 1 - i / w) * w + i % w;
+
+                bytes[i] = (uint8_t)(100 + noise(5));
+                other[at] = (uint16_t)(bytes[i] * 257);
+            }
+            map.samples = bytes;
+            map.width = w;
+            map.height = h;
+            map.stride = w;
+            map.bits = 8;
+            assert_int_equal(refocus_temporal_run(a, t % 2 ? &photo : NULL, &map, out, 2 * w),
+                             REFOCUS_OK);
+            map = refocus_disparity16(other + (h - 1) * w, w, h, -2 * w);
+            assert_int_equal(refocus_temporal_run(b, t % 2 ? &photo : NULL, &map,
+                                                  other + (h - 1) * w, -2 * w), REFOCUS_OK);
+            for (int y = 0; y < h; y++)
+                assert_memory_equal(out + y * w, other + (h - 1 - y) * w, 2 * (size_t)w);
+        }
+        refocus_temporal_destroy(&a);
+        refocus_temporal_destroy(&b);
+    }
+}
+
+static void bad_arguments(void **state)
+{
+    struct refocus_temporal_params params = refocus_temporal_params_default(W, H), bad[8];
+    struct refocus_temporal *filter;
+    struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
+
+    (void)state;
+    for (int i = 0; i < 8; i++)
+        bad[i] = params;
+    bad[0].struct_size = 1;
+    bad[1].width = 0;
+    bad[2].height = REFOCUS_MAX_SIDE + 1;
+    bad[3].strength = 0.96f;
+    bad[4].strength = -0.1f;
+    bad[5].noise = 0.3f;
+    bad[6].noise = (float)(0.0 / 0.0);
+    bad[7].width = -4;
+    for (int i = 0; i < 8; i++) {
+        assert_int_equal(refocus_temporal_create(&filter, &bad[i]), REFOCUS_ERR_ARGUMENT);
+        assert_null(filter);
+    }
+    assert_int_equal(refocus_temporal_create(NULL, &params), REFOCUS_ERR_ARGUMENT);
+    filter = make();
+    memset(v.out, 7, sizeof v.out);
+    assert_int_equal(refocus_temporal_run(filter, NULL, NULL, v.out, 2 * W),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_temporal_run(filter, NULL, &map, v.out, 2 * W - 2),
+                     REFOCUS_ERR_ARGUMENT);
+    map.width = W - 1;
+    assert_int_equal(refocus_temporal_run(filter, NULL, &map, v.out, 2 * W),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(v.out[0], 0x0707);
+    refocus_temporal_destroy(&filter);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(calms),      cmocka_unit_test(leaves_no_ghosts),
+        cmocka_unit_test(can_be_off), cmocka_unit_test(waits_for_a_second_look),
+        cmocka_unit_test(any_layout), cmocka_unit_test(bad_arguments),
+    };
+
+    return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);
+}

@@ -1,0 +1,64 @@
+/* Key frames: what is taken gives values in their ranges at any time. */
+#include <math.h>
+#include <stdlib.h>
+#include "keys.h"
+#include "options.h"
+#include "report.h"
+
+int report_failure(int exit_code, const char *what, const char *format, ...)
+{
+    (void)what;
+    (void)format;
+    return exit_code;
+}
+
+int report_end_output(void)
+{
+    return EXIT_DONE;
+}
+
+void report_clean(char *clean, size_t size, const char *text)
+{
+    (void)text;
+    if (size > 0)
+        clean[0] = 0;
+}
+
+const char *options_nearest(const char *text, const char *(*word)(const void *list, int i),
+                            const void *list)
+{
+    (void)text;
+    return word(list, 0);
+}
+
+static void check(const struct keys *keys)
+{
+    const double seconds = keys_seconds(keys);
+
+    if (!(seconds > 0 && seconds <= 3600))
+        abort();
+    for (int i = -1; i <= 9; i++) {
+        struct refocus_render_params p = refocus_render_params_default(0.5f, 10);
+
+        keys_apply(keys, seconds * i / 8, &p);
+        if (!(p.focus_disparity >= 0 && p.focus_disparity <= 1 && p.max_blur_radius >= 0 &&
+              p.max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && p.highlight_gain >= 1 &&
+              p.field_falloff >= 0.0009f))
+            abort();
+        if ((double)p.max_blur_radius > fmax(keys_most(keys, "blur", 10), 10) + 1e-4)
+            abort();
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct keys *keys = NULL;
+
+    if (keys_read(&keys, "file", (const char *)data, size) == EXIT_DONE)
+        check(keys);
+    else if (keys)
+        abort();
+    keys_free(keys);
+    return 0;
+}

@@ -1,0 +1,311 @@
+/* The viewer's session: first a quick picture, then the full one, and nobody waits. */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include "session.h"
+
+enum { W = 1200, H = 900, PIXELS = W * H }; /* large enough to be shown reduced first */
+
+static uint8_t *pixels;
+static uint16_t *depth;
+static struct refocus_image photo;
+static struct rf_session_setup setup;
+
+/* What the session's thread did. */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
+static int frames, saves;
+static struct rf_view_result saved;
+static uint16_t saved_depth;
+
+static void on_frame(void *user)
+{
+    assert_ptr_equal(user, &setup);
+    pthread_mutex_lock(&lock);
+    frames++;
+    pthread_cond_signal(&came);
+    pthread_mutex_unlock(&lock);
+}
+
+static void on_save(void *user, const struct rf_view_result *result)
+{
+    assert_ptr_equal(user, &setup);
+    pthread_mutex_lock(&lock);
+    saves++;
+    saved = *result;
+    saved_depth = result->disparity[H / 2 * W + W / 2];
+    pthread_cond_signal(&came);
+    pthread_mutex_unlock(&lock);
+}
+
+static double now_ms(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec / 1e6;
+}
+
+static int slow(void)
+{
+    const char *const factor = getenv("REFOCUS_SLOW");
+
+    return factor ? atoi(factor) : 1;
+}
+
+/* Two surfaces, and a pattern that blur changes. */
+static void make_scene(void)
+{
+    pixels = malloc(3 * (size_t)PIXELS);
+    depth = malloc(2 * (size_t)PIXELS);
+    assert_non_null(pixels);
+    assert_non_null(depth);
+    for (int i = 0; i < PIXELS; i++) {
+        const int x = i % W, y = i / W;
+
+        depth[i] = x > W / 3 && x < 2 * W / 3 ? 50000 : 9000;
+        for (int c = 0; c < 3; c++)
+            pixels[3 * i + c] = (uint8_t)((x / 7 * 31 + y / 5 * 57 + c * 40) & 255);
+    }
+    photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
+    setup.photo = &photo;
+    setup.disparity = depth;
+    setup.params = refocus_render_params_default(0, 0);
+    setup.threads = 2;
+    setup.notify = on_frame;
+    setup.save = on_save;
+    setup.notify_user = setup.save_user = &setup;
+}
+
+static struct rf_view_state whole(float focus, float blur)
+{
+    struct rf_view_state state;
+
+    memset(&state, 0, sizeof state);
+    state.focus = focus;
+    state.blur = blur;
+    state.scale = 1;
+    state.width = W;
+    state.height = H;
+    return state;
+}
+
+static struct rf_session *begin(void)
+{
+    struct rf_session *session;
+
+    assert_int_equal(rf_session_create(&session, &setup), REFOCUS_OK);
+    return session;
+}
+
+/* Wait for a frame of that request or a newer one; full: for the full one. */
+static const struct rf_view_frame *wait_for(struct rf_session *session, uint64_t request, bool full)
+{
+    const double end = now_ms() + 60000.0 * slow();
+    const struct timespec pause = {0, 1000000};
+    const struct rf_view_frame *frame = NULL;
+
+    while (now_ms() < end) {
+        rf_session_tick(session);
+        if (rf_session_frame(session, &frame) && frame->request >= request &&
+            (frame->full || !full))
+            return frame;
+        assert_int_equal(rf_session_status(session), REFOCUS_OK);
+        nanosleep(&pause, NULL);
+    }
+    fail_msg("no frame came");
+    return NULL;
+}
+
+static void expect_render(const struct rf_view_frame *frame, uint32_t method, float focus,
+                          float blur)
+{
+    struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 127);
+    struct refocus_render_params lens = refocus_render_params_default(focus, blur);
+    struct refocus_disparity map = refocus_disparity16(depth, W, H, 2 * W);
+    struct refocus_image out = photo;
+    struct refocus_renderer *renderer;
+    int wrong = 0;
+
+    lens.method = method;
+    out.plane[0] = malloc(3 * (size_t)PIXELS);
+    assert_non_null(out.plane[0]);
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &map), REFOCUS_OK);
+    assert_int_equal(refocus_render(renderer, &lens, &out), REFOCUS_OK);
+    for (int i = 0; i < PIXELS; i++) {
+        const uint8_t *const p = out.plane[0] + 3 * i;
+
+        wrong += frame->pixels[i] != (0xff000000u | (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 |
+                                      p[2]);
+    }
+    assert_int_equal(wrong, 0);
+    refocus_renderer_destroy(&renderer);
+    free(out.plane[0]);
+}
+
+static void test_full_is_render(void **unused)
+{
+    struct rf_session *session = begin();
+    struct rf_view_state state = whole(0.2f, 9);
+    const struct rf_view_frame *frame;
+
+    (void)unused;
+    assert_true(rf_session_reduction(session) > 1);
+    frame = wait_for(session, rf_session_show(session, &state), true);
+    expect_render(frame, REFOCUS_METHOD_SWEEP, 0.2f, 9);
+    state.focus_tap = 1;
+    state.tap_x = W / 2.0;
+    state.tap_y = 11;
+    frame = wait_for(session, rf_session_show(session, &state), true);
+    assert_true(frame->of.focus > 0.7629f && frame->of.focus < 0.763f); /* 50000 / 65535 */
+    expect_render(frame, REFOCUS_METHOD_SWEEP, frame->of.focus, 9);
+    state.tap_x = W / 3.0 + 1; /* at an edge: the nearer one */
+    state.focus_tap = 2;
+    frame = wait_for(session, rf_session_show(session, &state), false);
+    assert_true(frame->of.focus > 0.76f);
+    rf_session_destroy(&session);
+}
+
+/* Raytracing all of it takes many seconds: no call waits for that, nor does what follows. */
+static void test_nobody_waits(void **unused)
+{
+    struct rf_session *session = begin();
+    struct rf_view_state state = whole(0.2f, 30);
+    const struct rf_view_frame *frame;
+    double start, longest = 0;
+    uint64_t request;
+
+    (void)unused;
+    frame = wait_for(session, rf_session_show(session, &state), true);
+    state.method = REFOCUS_METHOD_RAYTRACE;
+    setup.params.rays = 64;
+    for (int i = 0; i < 20; i++) {
+        const struct timespec pause = {0, 20000000};
+
+        state.focus = (float)i / 20;
+        start = now_ms();
+        request = rf_session_show(session, &state);
+        if (now_ms() - start > longest)
+            longest = now_ms() - start;
+        nanosleep(&pause, NULL);
+    }
+    assert_true(longest < 200.0 * slow());
+    state.method = REFOCUS_METHOD_SWEEP;
+    state.blur = 5;
+    request = rf_session_show(session, &state);
+    frame = wait_for(session, request, true);
+    assert_int_equal(frame->request, request);
+    expect_render(frame, REFOCUS_METHOD_SWEEP, state.focus, 5);
+    state.method = REFOCUS_METHOD_RAYTRACE;
+    rf_session_show(session, &state);
+    start = now_ms();
+    rf_session_destroy(&session);
+    assert_true(now_ms() - start < 5000.0 * slow());
+}
+
+static void test_modes(void **unused)
+{
+    struct rf_session *session = begin();
+    struct rf_view_state state = whole(0.2f, 9);
+    const struct rf_view_frame *frame;
+    int wrong = 0;
+
+    (void)unused;
+    state.mode = RF_VIEW_BEFORE;
+    frame = wait_for(session, rf_session_show(session, &state), true);
+    for (int i = 0; i < PIXELS; i++)
+        wrong += frame->pixels[i] !=
+                 (0xff000000u | (uint32_t)pixels[3 * i] << 16 |
+                  (uint32_t)pixels[3 * i + 1] << 8 | pixels[3 * i + 2]);
+    assert_int_equal(wrong, 0);
+    state.mode = RF_VIEW_DEPTH;
+    state.x = W / 2.0; /* moved: right of it there is nothing */
+    state.width = W - 200;
+    frame = wait_for(session, rf_session_show(session, &state), true);
+    assert_int_equal(frame->of.width, W - 200);
+    assert_int_equal(frame->pixels[0], 0xff000000u + (50000 >> 8) * 0x010101u);
+    assert_int_equal(frame->pixels[W / 2 - 1], 0xff000000u + (9000 >> 8) * 0x010101u);
+    assert_int_equal(frame->pixels[W / 2], 0xff202020u);
+    state.width = 16384; /* many windows for a pixel of the photo */
+    state.height = 3;
+    state.scale = 15.9;
+    frame = wait_for(session, rf_session_show(session, &state), true);
+    assert_int_equal(frame->pixels[0], 0xff000000u + (50000 >> 8) * 0x010101u);
+    state.scale = 1.0 / 64;
+    state.mode = RF_VIEW_RESULT;
+    state.peaking = state.selection = true;
+    frame = wait_for(session, rf_session_show(session, &state), true);
+    assert_int_equal(frame->pixels[16383], 0xff202020u);
+    rf_session_destroy(&session);
+}
+
+/* A ground over all, an object of the brush, a slope to what lies below, undo, save. */
+static void test_painting(void **unused)
+{
+    struct rf_session *session = begin();
+    struct rf_view_state state = whole(0.2f, 0);
+    struct refocus_stroke stroke = refocus_stroke_default(REFOCUS_STROKE_ALL, 1);
+    const struct rf_view_frame *frame;
+    uint64_t request;
+
+    (void)unused;
+    state.mode = RF_VIEW_DEPTH;
+    rf_session_show(session, &state);
+    stroke.fill.kind = REFOCUS_FILL_SOLID;
+    stroke.fill.d0 = 0.25f;
+    rf_session_begin(session, &stroke, false);
+    stroke.kind = REFOCUS_STROKE_FILL;
+    stroke.fill =
+        (struct refocus_fill){REFOCUS_FILL_GRADIENT, 1, 1, W / 2.0f, H - 1.0f, W / 2.0f, 0};
+    rf_session_begin(session, &stroke, true);
+    stroke = refocus_stroke_default(REFOCUS_STROKE_BRUSH, 10);
+    stroke.fill.kind = REFOCUS_FILL_SOLID;
+    stroke.fill.d0 = 1;
+    rf_session_begin(session, &stroke, false);
+    rf_session_extend(session, W / 2.0f, H / 2.0f);
+    request = rf_session_extend(session, W / 2.0f + 100, H / 2.0f);
+    frame = wait_for(session, request, true);
+    assert_int_equal(frame->strokes, 3);
+    assert_int_equal(frame->pixels[0], 0xff000000u + 0x40 * 0x010101u);           /* 0.25 */
+    assert_int_equal(frame->pixels[PIXELS - 1], 0xffffffffu);                     /* 1 */
+    assert_int_equal(frame->pixels[H / 2 * W + W / 2 + 50], 0xffffffffu);
+    frame = wait_for(session, rf_session_undo(session), true);
+    assert_int_equal(frame->strokes, 2);
+    assert_true((frame->pixels[H / 2 * W + W / 2 + 50] & 255) < 0xb0);
+    rf_session_undo(session);
+    frame = wait_for(session, rf_session_undo(session), true);
+    assert_int_equal(frame->pixels[W / 2], 0xff000000u + (50000 >> 8) * 0x010101u);
+    wait_for(session, rf_session_undo(session), true); /* there is none: no failure */
+    saves = 0;
+    rf_session_save(session, RF_SAVE_DEPTH);
+    rf_session_save(session, RF_SAVE_PICTURE | RF_SAVE_SETTINGS);
+    pthread_mutex_lock(&lock);
+    while (!(saves > 1 || (saves == 1 && saved.what == 7)))
+        pthread_cond_wait(&came, &lock);
+    pthread_mutex_unlock(&lock);
+    assert_int_equal(saved_depth, 50000);
+    assert_int_equal(saved.picture->width, W);
+    rf_session_destroy(&session);
+    rf_session_destroy(&session);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
+        cmocka_unit_test(test_modes), cmocka_unit_test(test_painting)};
+    int failed;
+
+    make_scene();
+    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    free(pixels);
+    free(depth);
+    return failed;
+}

@@ -1,0 +1,179 @@
+/* Strip mode: the photo stays with the caller, and the bytes are those of the whole. */
+#include "pictures.h"
+
+static struct refocus_renderer *create(const struct picture *p, float blur,
+                                       int in_place)
+{
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(p->width, p->height, blur);
+    const struct refocus_image photo = picture_image(p);
+    const struct refocus_disparity disparity = picture_disparity(p);
+    struct refocus_renderer *renderer;
+
+    limits.threads = 2;
+    limits.in_place = (uint32_t)in_place;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+    return renderer;
+}
+
+static int is_quick(const struct style *style)
+{
+    return style->method == REFOCUS_METHOD_SWEEP && style->rays != REFOCUS_RAYS_FULL;
+}
+
+/* Bars before what is far, with noise in depth and light. */
+static void draw_bars(struct picture *p, int bars)
+{
+    uint32_t state = 4;
+
+    for (int i = 0; i < p->width * p->height; i++) {
+        const uint32_t depth = noise(&state) % 3000;
+
+        p->disparity[i] = (uint16_t)(i % p->width / bars % 2 ? 65535 - depth : depth);
+        for (int c = 0; c < 3; c++)
+            p->rgb[3 * i + c] = (uint8_t)noise(&state);
+    }
+}
+
+/* Of one and several blocks, at whose sides the photo ends in all ways. */
+static void same_bytes(void **state)
+{
+    static const struct {
+        int width, height;
+        float blur;
+        int bars; /* their width, of every other picture; else what picture_make() draws
+                   */
+    } views[] = {
+        {403, 299, 6, 0},  {1, 1, 6, 1},       {1, 700, 6, 0},      {700, 1, 6, 11},
+        {160, 160, 6, 0},  {161, 175, 6, 13},  {191, 333, 6, 0},    {193, 17, 6, 9},
+        {640, 480, 20, 0}, {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
+        {70, 50, 127, 0},  {700, 90, 127, 99}, {250, 301, 40, 0},   {601, 290, 33, 61}};
+
+    (void)state;
+    for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
+        struct picture p = picture_make(views[v].width, views[v].height, 3);
+        const size_t size = 3 * (size_t)p.width * (size_t)p.height;
+        struct refocus_renderer *whole, *strips;
+        uint8_t *expected = malloc(size), *out = malloc(size);
+
+        assert_true(expected && out);
+        if (views[v].bars)
+            draw_bars(&p, views[v].bars);
+        whole = create(&p, views[v].blur, 0);
+        strips = create(&p, views[v].blur, 1);
+        for (int i = 0; i < style_count; i++) {
+            if (styles[i].method > REFOCUS_METHOD_JITTERED &&
+                styles[i].method != REFOCUS_METHOD_BLUR)
+                continue;
+            if (v > 0 && !is_quick(&styles[i]))
+                continue;
+            for (int f = 0; f < 3; f++) {
+                render_style(whole, &p, &styles[i], 0.5f * (float)f, views[v].blur,
+                             expected);
+                memset(out, 0x5a, size);
+                render_style(strips, &p, &styles[i], 0.5f * (float)f, views[v].blur,
+                             out);
+                assert_same_pixels(out, expected, p.width, p.height, styles[i].name);
+            }
+        }
+        refocus_renderer_destroy(&whole);
+        refocus_renderer_destroy(&strips);
+        free(expected);
+        free(out);
+        picture_free(&p);
+    }
+}
+
+/* Formats, strides, 8-bit disparities, alpha, the views. */
+static void formats(void **state)
+{
+    enum { W = 330, H = 240 };
+    struct picture p = picture_make(W, H, 8);
+    uint8_t *photo = malloc(5 * W * H), *map = malloc(W * H);
+    uint8_t *out[2] = {calloc(1, 5 * W * H), calloc(1, 5 * W * H)};
+    uint16_t *view[2] = {calloc(4, W * H), calloc(4, W * H)};
+    struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 9);
+    const struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
+    /* bottom up */
+    struct refocus_image image = refocus_image_packed(
+        REFOCUS_FORMAT_BGRA8, photo + 5 * W * (H - 1), W, H, -5 * W);
+    const struct refocus_disparity disparity = {8, W, H, map, W};
+
+    (void)state;
+    assert_true(photo && map && out[0] && out[1] && view[0] && view[1]);
+    for (int i = 0; i < W * H; i++) {
+        map[i] = (uint8_t)(p.disparity[i] >> 8);
+        for (int c = 0; c < 4; c++)
+            photo[i / W * 5 * W + i % W * 4 + c] =
+                c < 3 ? p.rgb[3 * i + c] : (uint8_t)i;
+    }
+    for (int in_place = 0; in_place < 2; in_place++) {
+        struct refocus_renderer *renderer;
+        const struct refocus_image to =
+            refocus_image_packed(REFOCUS_FORMAT_RGBA8, out[in_place], W, H, 5 * W);
+
+        limits.in_place = (uint32_t)in_place;
+        assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+        assert_int_equal(refocus_prepare(renderer, &image, &disparity), REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
+        for (uint32_t i = 0; i < 2; i++)
+            assert_int_equal(
+                refocus_get_view(renderer, i, view[in_place] + i * W * H, 2 * W),
+                REFOCUS_OK);
+        refocus_renderer_destroy(&renderer);
+    }
+    assert_memory_equal(out[0], out[1], 5 * W * H);
+    assert_memory_equal(view[0], view[1], 4 * W * H);
+    for (int i = 0; i < 2; i++) {
+        free(out[i]);
+        free(view[i]);
+    }
+    free(photo);
+    free(map);
+    picture_free(&p);
+}
+
+static void refused(void **state)
+{
+    struct picture p = picture_make(40, 30, 8);
+    const struct refocus_image photo = picture_image(&p);
+    uint8_t small[6] = {0};
+    const struct refocus_disparity coarse = {8, 3, 2, small, 3};
+    struct refocus_renderer_params limits = refocus_renderer_params_default(40, 30, 9);
+    struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
+    struct refocus_renderer *renderer;
+    uint8_t out[3 * 40 * 30];
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 40, 30, 120);
+
+    (void)state;
+    limits.in_place = 2;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
+    limits.in_place = 1;
+    limits.previews = 1;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
+    limits.previews = 0;
+    limits.methods = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER);
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
+    limits.methods = 0;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &coarse),
+                     REFOCUS_ERR_UNSUPPORTED);
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
+    params.method = REFOCUS_METHOD_SCATTER;
+    assert_int_equal(refocus_prepare(renderer, &photo,
+                                     &(struct refocus_disparity){8, 40, 30, p.rgb, 40}),
+                     REFOCUS_OK);
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes),
+                                       cmocka_unit_test(formats),
+                                       cmocka_unit_test(refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

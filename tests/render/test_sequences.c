@@ -1,0 +1,504 @@
+/* Whatever was rendered or cancelled before, a picture is that of a new renderer; and a
+ * region that of the whole, a reduced picture that of the reduced photo. */
+#include "pictures.h"
+
+#include "renderer/renderer.h"
+
+enum { WIDTH = 403, HEIGHT = 299, MOST = 3 * WIDTH * HEIGHT };
+
+enum mode { PLAIN, PREVIEWS, IN_PLACE };
+
+static const float blurs[] = {0, 1.5f, 3, 6};
+
+/* A style, a lens and a part of the picture. */
+struct setting {
+    const struct style *style;
+    float focus, blur, gain;
+    int reduce;
+    int x, y, width, height; /* all 0: the whole */
+};
+
+/* Not in strip mode. */
+static const uint32_t OF_FRAMES = REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
+                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
+
+static uint32_t pick(uint32_t *state, uint32_t n)
+{
+    return (noise(state) >> 8) % n;
+}
+
+/* Styles that take little time. */
+static const struct style *pick_style(uint32_t *state, int in_place)
+{
+    const struct style *style;
+
+    do {
+        style = &styles[pick(state, (uint32_t)style_count)];
+    } while (style->method == REFOCUS_METHOD_RAYTRACE ||
+             style->rays == REFOCUS_RAYS_FULL || style->rays > 128 ||
+             style->method == REFOCUS_METHOD_DIFFUSION ||
+             (in_place && (OF_FRAMES & REFOCUS_METHOD_BIT(style->method))));
+    return style;
+}
+
+/* Changes some of a setting, so that much of the last one can be used again. */
+static void change(struct setting *s, uint32_t *state, enum mode mode)
+{
+    const uint32_t what = pick(state, 64);
+
+    if (what & 1)
+        s->focus = (float)pick(state, 4) / 3;
+    if (what & 2)
+        s->blur = blurs[pick(state, 4)];
+    if (what & 4)
+        s->style = pick_style(state, mode == IN_PLACE);
+    if (what & 8)
+        s->gain = pick(state, 2) ? 1 : 4;
+    if (what & 16 && mode == PREVIEWS)
+        s->reduce = 1 << pick(state, 4);
+    if (what & 48 || s->reduce > 1) {
+        const int w = (WIDTH + s->reduce - 1) / s->reduce;
+        const int h = (HEIGHT + s->reduce - 1) / s->reduce;
+
+        s->x = s->y = s->width = s->height = 0;
+        if (pick(state, 3)) {
+            s->width = 1 + (int)pick(state, (uint32_t)(w < 60 ? w : 60));
+            s->height = 1 + (int)pick(state, (uint32_t)(h < 60 ? h : 60));
+            s->x = (int)pick(state, (uint32_t)(w - s->width + 1));
+            s->y = (int)pick(state, (uint32_t)(h - s->height + 1));
+        }
+    }
+}
+
+static int render(struct refocus_renderer *renderer, const struct setting *s,
+                  uint8_t *out)
+{
+    struct refocus_render_params params = style_params(s->style, s->focus, s->blur);
+    struct refocus_aperture *aperture = style_aperture(s->style);
+    const int w = s->width ? s->width : (WIDTH + s->reduce - 1) / s->reduce;
+    const int h = s->height ? s->height : (HEIGHT + s->reduce - 1) / s->reduce;
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * (ptrdiff_t)w);
+    int status;
+
+    params.aperture = aperture;
+    params.highlight_gain = s->gain;
+    params.reduce = s->reduce;
+    params.region_x = s->x;
+    params.region_y = s->y;
+    params.region_width = s->width;
+    params.region_height = s->height;
+    memset(out, 0x5a, MOST);
+    status = refocus_render(renderer, &params, &image);
+    refocus_aperture_destroy(&aperture);
+    return status;
+}
+
+static struct refocus_renderer *create(int threads, enum mode mode)
+{
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(WIDTH, HEIGHT, 6);
+    struct refocus_renderer *renderer;
+
+    limits.threads = threads;
+    limits.methods = mode == IN_PLACE ? 0 : REFOCUS_METHODS_ALL;
+    limits.previews = mode == PREVIEWS;
+    limits.in_place = mode == IN_PLACE;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    return renderer;
+}
+
+static void prepare(struct refocus_renderer *renderer, const struct picture *p)
+{
+    const struct refocus_image photo = picture_image(p);
+    const struct refocus_disparity disparity = picture_disparity(p);
+
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+}
+
+/* Cancels when it has been looked `left` times whether to go on. */
+struct canceller {
+    struct refocus_renderer *renderer;
+    atomic_int left, looks;
+};
+
+static void cancel_later(void *user)
+{
+    struct canceller *canceller = user;
+
+    atomic_fetch_add(&canceller->looks, 1);
+    if (atomic_fetch_sub(&canceller->left, 1) == 1)
+        refocus_cancel(canceller->renderer);
+}
+
+static void assert_same(const uint8_t *is, const uint8_t *should,
+                        const struct setting *s, uint32_t seed, int step)
+{
+    for (size_t i = 0; i < MOST; i++)
+        if (is[i] != should[i])
+            fail_msg(
+                "seed %u, step %d, %s, focus %g, blur %g, gain %g, 1/%d, region %d,%d "
+                "%dx%d: byte %zu is %d, should be %d",
+                seed, step, s->style->name, (double)s->focus, (double)s->blur,
+                (double)s->gain, s->reduce, s->x, s->y, s->width, s->height, i, is[i],
+                should[i]);
+}
+
+static void sequence(uint32_t seed, int steps, enum mode mode)
+{
+    struct picture p[2] = {picture_make(WIDTH, HEIGHT, seed),
+                           picture_make(WIDTH, HEIGHT, seed + 1)};
+    struct setting s = {&styles[0], 0.5f, 6, 1, 1, 0, 0, 0, 0};
+    uint8_t *out = malloc(MOST), *expected = malloc(MOST);
+    struct refocus_renderer *renderer = create(2, mode);
+    struct canceller canceller = {renderer, 0, 0};
+    uint32_t state = seed;
+    int shown = 0, cancelled = 0;
+
+    assert_true(out && expected);
+    renderer->run.user = &canceller;
+    prepare(renderer, &p[0]);
+    for (int i = 0; i < steps; i++) {
+        struct refocus_renderer *fresh;
+
+        change(&s, &state, mode);
+        if (pick(&state, 12) == 0)
+            prepare(renderer, &p[shown = !shown]);
+        if (pick(&state, 4) == 0) { /* this one is cancelled, or so it is meant */
+            struct setting other = s;
+
+            change(&other, &state, mode);
+            atomic_store(&canceller.left, 1 + (int)pick(&state, 200));
+            renderer->run.looked_at = cancel_later;
+            cancelled += render(renderer, &other, out) == REFOCUS_ERR_CANCELLED;
+            renderer->run.looked_at = NULL;
+            if (pick(&state, 2))
+                s = other; /* the same again, to its end */
+        }
+        assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
+        fresh = create(1, mode == PREVIEWS ? PREVIEWS : PLAIN);
+        prepare(fresh, &p[shown]);
+        assert_int_equal(render(fresh, &s, expected), REFOCUS_OK);
+        refocus_renderer_destroy(&fresh);
+        assert_same(out, expected, &s, seed, i);
+    }
+    assert_true(cancelled > 0);
+    refocus_renderer_destroy(&renderer);
+    free(out);
+    free(expected);
+    for (int i = 0; i < 2; i++)
+        picture_free(&p[i]);
+}
+
+static void sequences(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 1; seed <= 6; seed++)
+        sequence(seed, 40, seed % 3);
+}
+
+/* Before what is far, bars wide enough for whole blocks of several levels of the
+ * background's pyramid to be unknown. */
+static struct picture wide_bars(void)
+{
+    struct picture p = picture_make(WIDTH, HEIGHT, 9);
+
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        p.disparity[i] = i % WIDTH / 19 % 2 ? 65000 : 2000;
+    return p;
+}
+
+/* A region is that part of the whole, though only a window was worked on. */
+/* The background layer of a window, where it says that it is that of the whole photo.
+ */
+static void assert_same_background(const struct refocus_renderer *part,
+                                   const struct refocus_renderer *whole)
+{
+    const struct rf_rect e = part->made.exact;
+    const ptrdiff_t at = -part->origin_y * part->stride - part->origin_x;
+
+    if (!part->made.behind)
+        return;
+    assert_true(whole->made.behind && part->stride == whole->stride);
+    for (int y = e.y0; y < e.y1; y++) {
+        for (int x = e.x0; x < e.x1; x++) {
+            const ptrdiff_t p = y * part->stride + x;
+            int differ = part->behind.blur[at + p] != whole->behind.blur[p];
+
+            for (int c = 0; c < 3; c++)
+                differ |= part->behind.light[c][at + p] != whole->behind.light[c][p];
+            if (differ)
+                fail_msg("window %d,%d..%d,%d: the background at %d,%d is another",
+                         part->made.window.x0, part->made.window.y0,
+                         part->made.window.x1, part->made.window.y1, x, y);
+        }
+    }
+}
+
+static void regions_of(struct picture p)
+{
+    uint8_t *whole = malloc(MOST), *out = malloc(MOST);
+    struct refocus_renderer *part;
+    uint32_t random = 5;
+    int windows = 0;
+
+    assert_true(whole && out);
+    for (int i = 0; i < 60; i++) {
+        struct refocus_renderer *renderer = create(1 + i % 3, PLAIN);
+        struct setting s = {pick_style(&random, 0),
+                            (float)pick(&random, 5) / 4,
+                            blurs[1 + pick(&random, 3)],
+                            i % 5 ? 1 : 4,
+                            1,
+                            0,
+                            0,
+                            0,
+                            0};
+        int x, y, w = 1 + (int)pick(&random, 40), h = 1 + (int)pick(&random, 40);
+
+        if (i % 2)
+            s.style = &styles[0];
+        prepare(renderer, &p);
+        assert_int_equal(render(renderer, &s, whole), REFOCUS_OK);
+        x = i % 6 == 1   ? 0
+            : i % 6 == 2 ? WIDTH - w
+                         : (int)pick(&random, (uint32_t)(WIDTH - w));
+        y = i % 7 == 1   ? 0
+            : i % 7 == 2 ? HEIGHT - h
+                         : (int)pick(&random, (uint32_t)(HEIGHT - h));
+        s.x = x, s.y = y, s.width = w, s.height = h;
+        part = create(1, PLAIN);
+        prepare(part, &p);
+        assert_int_equal(render(part, &s, out), REFOCUS_OK);
+        windows += part->made.window.x1 - part->made.window.x0 < WIDTH;
+        assert_same_background(part, renderer);
+        refocus_renderer_destroy(&renderer);
+        refocus_renderer_destroy(&part);
+        for (int row = 0; row < h; row++)
+            if (memcmp(out + 3 * row * w, whole + 3 * ((y + row) * WIDTH + x),
+                       3 * (size_t)w))
+                fail_msg("%s, focus %g, blur %g: %dx%d at %d,%d, row %d differs",
+                         s.style->name, (double)s.focus, (double)s.blur, w, h, x, y,
+                         row);
+    }
+    assert_true(windows > 10);
+    free(whole);
+    free(out);
+    picture_free(&p);
+}
+
+static void regions(void **state)
+{
+    (void)state;
+    regions_of(picture_make(WIDTH, HEIGHT, 9));
+    regions_of(wide_bars());
+}
+
+/* The photo at half its size, by what reduce.h says, from the curve of the standard. */
+static double linear(int code)
+{
+    const double v = code / 255.0;
+
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+static uint8_t encode(double light)
+{
+    int code = 0;
+
+    while (code < 255 && (linear(code) + linear(code + 1)) / 2 < light)
+        code++;
+    /* the code whose interval, in codes and not in light, holds it */
+    while (code > 0) {
+        const double v = (code - 0.5) / 255;
+        const double edge = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+
+        if (light >= edge)
+            break;
+        code--;
+    }
+    return (uint8_t)code;
+}
+
+static struct picture half_of(const struct picture *p)
+{
+    const int width = (p->width + 1) / 2, height = (p->height + 1) / 2;
+    const uint8_t black[3] = {0, 0, 0};
+    struct picture half = picture_flat(width, height, black, 0);
+
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++) {
+            int d[4], at[4], own, n = 0, least = 0, most = 0, sum = 0;
+            double light[3] = {0, 0, 0};
+
+            for (int i = 0; i < 4; i++) {
+                const int qx = 2 * x + i % 2 < p->width ? 2 * x + i % 2 : 2 * x;
+                const int qy = 2 * y + i / 2 < p->height ? 2 * y + i / 2 : 2 * y;
+
+                at[i] = qy * p->width + qx;
+                d[i] = p->disparity[at[i]];
+                least = d[i] < d[least] ? i : least;
+                most = d[i] > d[most] ? i : most;
+            }
+            own = -1;
+            for (int i = 0; i < 4;
+                 i++) /* the second nearest: the nearest of the others */
+                own = i != most && d[i] > own ? d[i] : own;
+            for (int i = 0; i < 4; i++) {
+                if (abs(d[i] - own) > 65535 / 32)
+                    continue;
+                n++;
+                sum += d[i];
+                for (int c = 0; c < 3; c++)
+                    light[c] += linear(p->rgb[3 * at[i] + c]);
+            }
+            half.disparity[y * width + x] = (uint16_t)((2 * sum + n) / (2 * n));
+            for (int c = 0; c < 3; c++)
+                half.rgb[3 * (y * width + x) + c] = encode(light[c] / n);
+        }
+    }
+    return half;
+}
+
+/* Within a code of the reduction in real numbers; and rendered as a photo of that size
+ * is. */
+static void reduced(void **state)
+{
+    struct picture p[4] = {picture_make(WIDTH, HEIGHT, 21)};
+    struct refocus_renderer *renderer = create(2, PREVIEWS);
+    uint8_t *out = malloc(MOST), *expected = malloc(MOST);
+
+    (void)state;
+    assert_true(out && expected);
+    prepare(renderer, &p[0]);
+    for (int i = 1; i < 4; i++) {
+        struct setting s = {&styles[0], 0.4f, 0, 1, 1 << i, 0, 0, 0, 0};
+        struct refocus_renderer_params limits;
+        struct refocus_renderer *small;
+        size_t size;
+
+        p[i] = half_of(&p[i - 1]);
+        size = 3 * (size_t)p[i].width * (size_t)p[i].height;
+        assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
+        for (size_t k = 0; k < size; k++)
+            if (abs(out[k] - p[i].rgb[k]) > 1)
+                fail_msg("1/%d: byte %zu is %d, should be %d", s.reduce, k, out[k],
+                         p[i].rgb[k]);
+        memcpy(p[i].rgb, out, size);
+        limits = refocus_renderer_params_default(p[i].width, p[i].height, 6);
+        limits.methods = REFOCUS_METHODS_ALL;
+        assert_int_equal(refocus_renderer_create(&small, &limits), REFOCUS_OK);
+        prepare(small, &p[i]);
+        for (int k = 0; k < style_count; k++) {
+            s.style = &styles[k];
+            s.blur = 6;
+            if (s.style->rays == REFOCUS_RAYS_FULL || s.style->variant ||
+                s.style->method == REFOCUS_METHOD_SCATTER ||
+                s.style->method == REFOCUS_METHOD_INTERPOLATED)
+                continue; /* these have other lengths that are reduced too */
+            assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
+            render_style(small, &p[i], s.style, s.focus, s.blur / (float)s.reduce,
+                         expected);
+            assert_same_pixels(out, expected, p[i].width, p[i].height, s.style->name);
+        }
+        refocus_renderer_destroy(&small);
+    }
+    for (int i = 0; i < 4; i++)
+        picture_free(&p[i]);
+    refocus_renderer_destroy(&renderer);
+    free(out);
+    free(expected);
+}
+
+/* Cancelled at each of the moments at which it looks, a render leaves nothing half
+ * made. */
+static void every_moment(void **state)
+{
+    struct picture p[2] = {picture_make(97, 83, 31), picture_make(97, 83, 32)};
+    const struct refocus_image photo[2] = {picture_image(&p[0]), picture_image(&p[1])};
+    const struct refocus_disparity disparity[2] = {picture_disparity(&p[0]),
+                                                   picture_disparity(&p[1])};
+    struct refocus_render_params params = refocus_render_params_default(0.3f, 12);
+    uint8_t expected[3 * 97 * 83], out[3 * 97 * 83];
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 97, 83, 3 * 97);
+    struct refocus_renderer *renderer = prepared(&p[0], 12, 1);
+    struct canceller canceller = {renderer, 0, 0};
+    int status = REFOCUS_ERR_CANCELLED, cancelled = 0;
+
+    (void)state;
+    params.rays = 16;
+    params.highlight_gain = 3;
+    params.blend = REFOCUS_BLEND_GAMMA;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    memcpy(expected, out, sizeof out);
+    renderer->run.user = &canceller;
+    for (int n = 1; status != REFOCUS_OK; n++) {
+        /* another photo and another lens before */
+        params.focus_disparity = 0.8f;
+        params.blend = REFOCUS_BLEND_LINEAR;
+        assert_int_equal(refocus_prepare(renderer, &photo[1], &disparity[1]),
+                         REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        params.focus_disparity = 0.3f;
+        params.blend = REFOCUS_BLEND_GAMMA;
+        atomic_store(&canceller.left, n);
+        renderer->run.looked_at = cancel_later;
+        status = refocus_prepare(renderer, &photo[0], &disparity[0]);
+        if (status == REFOCUS_OK)
+            status = refocus_render(renderer, &params, &image);
+        else
+            assert_int_equal(refocus_render(renderer, &params, &image),
+                             REFOCUS_ERR_STATE);
+        renderer->run.looked_at = NULL;
+        cancelled += status == REFOCUS_ERR_CANCELLED;
+        if (!renderer->prepared)
+            assert_int_equal(refocus_prepare(renderer, &photo[0], &disparity[0]),
+                             REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        assert_same_pixels(out, expected, 97, 83, "after a cancelled one");
+    }
+    assert_true(cancelled > 50);
+    refocus_renderer_destroy(&renderer);
+    for (int i = 0; i < 2; i++)
+        picture_free(&p[i]);
+}
+
+/* Refused without previews, and for other parts. */
+static void refused(void **state)
+{
+    struct picture p = picture_make(WIDTH, HEIGHT, 2);
+    uint8_t *out = malloc(MOST);
+
+    (void)state;
+    assert_non_null(out);
+    for (int previews = 0; previews < 2; previews++) {
+        struct refocus_renderer *renderer = create(1, previews ? PREVIEWS : PLAIN);
+
+        prepare(renderer, &p);
+        for (int reduce = -1; reduce <= 17; reduce++) {
+            const struct setting s = {&styles[0], 0.5f, 2, 1, reduce, 0, 0, 1, 1};
+            const int good = reduce == 1 ||
+                             (previews && (reduce == 2 || reduce == 4 || reduce == 8));
+
+            if (reduce != 0)
+                assert_int_equal(render(renderer, &s, out),
+                                 good ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
+        }
+        refocus_renderer_destroy(&renderer);
+    }
+    free(out);
+    picture_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sequences), cmocka_unit_test(regions),
+        cmocka_unit_test(every_moment), cmocka_unit_test(reduced),
+        cmocka_unit_test(refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
