@@ -12,6 +12,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import sections
+
 SOURCE = Path(__file__).resolve().parents[1]
 SCENE = SOURCE / "examples" / "data" / "portrait"
 
@@ -50,9 +52,46 @@ def measure(refocus, method, options, threads, repeat):
     return json.loads(done.stdout)
 
 
+def methods(refocus, repeat_most):
+    rows = []
+    for method, options, repeat in RUNS:
+        for threads in (1, 2):
+            n = repeat or repeat_most
+            r = measure(refocus, method, options, threads, n)
+            ms = r["render_ms"]
+            rows.append([f"`{r['method']}`", " ".join(options), r["threads"], r["cpu"], n,
+                         f"{r['prepare_ms']:.1f}", f"{ms['min']:.1f}", f"{ms['median']:.1f}",
+                         f"{r['peak_rss_kib'] / 1024:.0f}"])
+            print(rows[-1], file=sys.stderr)
+    return "\n".join([
+        "# How long it takes\n",
+        "720x540, K = 20, whole frames (everything but reading and writing files); the best and "
+        "the median.\n", machine() + "\n",
+        sections.table(["method", "options", "threads", "cpu", "frames", "prepare ms",
+                        "render ms, best", "median", "peak memory MiB"], rows)])
+
+
+def frames(refocus, repeat):
+    """The table of `refocus bench --frames`."""
+    print("bench --frames", file=sys.stderr)
+    report = json.loads(subprocess.run([refocus, "bench", "--frames", "--repeat", str(repeat),
+                                        "--json"], stdout=subprocess.PIPE, check=True).stdout)
+    rows = [[f"{f['width']}x{f['height']}", f"{f['blur']:g}", f["quality"], f["threads"],
+             f"{f['memcpy_ms']:.2f}", f"{f['box_ms']:.1f}", f"{f['prepare_ms']:.1f}",
+             f"{f['render_ms']:.1f}", f"{1000 / f['render_ms']:.0f}",
+             f"{f['render_ms'] / f['box_ms']:.2f}"] for f in report["frames"]]
+    return "\n".join([
+        "## By size, blur, quality and threads\n",
+        f"`refocus bench --frames`: a made-up scene, the best of {repeat}, in turns with a memcpy "
+        "of the frame and a plain box blur of the same radius, both of one thread.\n",
+        machine() + "\n",
+        sections.table(["size", "K", "quality", "threads", "memcpy ms", "box blur ms",
+                        "prepare ms", "render ms", "frames a second", "to the box blur"], rows)])
+
+
 def interactive(build):
     """Rows on how soon a renderer answers, on a drawn picture of 12 megapixels."""
-    lines = ["\n## Interactive use\n",
+    lines = ["## Interactive use\n",
              "`render-interactive`: 4000x3000, 64 rays, 2 threads; the best of five, milliseconds. "
              "Previews are the photo at 1/2, 1/4 and 1/8 of its size.\n"]
     results = []
@@ -72,7 +111,7 @@ def interactive(build):
               "| --- | --- | --- | --- | --- |"]
     lines += [f"| {c['of']} | {c['cancelled']} | {c['worst_ms']:.1f} | {c['mean_ms']:.1f} "
               f"| {c['worst_cpu_ms']:.1f} |" for c in results[1]["cancel"]]
-    return lines
+    return "\n".join(lines)
 
 
 def format_rows(build, repeat):
@@ -123,35 +162,12 @@ def main():
     args = parser.parse_args()
     refocus = args.build / "platform" / "cli" / "refocus"
 
-    lines = ["# How long it takes\n",
-             "Written by `tests/performance.py`; do not edit. 720x540, K = 20, whole frames "
-             "(everything but reading and writing files); the best and the median.\n",
-             machine() + "\n",
-             "| method | options | threads | cpu | frames | prepare ms | render ms, best | median "
-             "| peak memory MiB |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
-    for method, options, repeat in RUNS:
-        for threads in (1, 2):
-            n = repeat or args.repeat
-            r = measure(refocus, method, options, threads, n)
-            ms = r["render_ms"]
-            prepare = r["prepare_ms"]
-            if isinstance(prepare, dict):
-                prepare = prepare["median"]
-            lines.append(f"| `{r['method']}` | {' '.join(options)} | {r['threads']} | {r['cpu']} "
-                         f"| {n} | {prepare:.1f} | {ms['min']:.1f} | {ms['median']:.1f} "
-                         f"| {r['peak_rss_kib'] / 1024:.0f} |")
-            print(lines[-1], file=sys.stderr)
-    lines += interactive(args.build)
-
-
-    for row in format_rows(args.build, 2 * args.repeat):
-        lines.append(row)
-        print(row, file=sys.stderr)
-    for row in live_rows(refocus, 10):
-        lines.append(row)
-        print(row, file=sys.stderr)
-    args.out.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    sections.put(args.out, "methods", "tests/performance.py", methods(refocus, args.repeat))
+    sections.put(args.out, "frames", "tests/performance.py", frames(refocus, args.repeat))
+    sections.put(args.out, "interactive", "tests/performance.py", interactive(args.build))
+    sections.put(args.out, "formats", "tests/performance.py",
+                 "\n".join(format_rows(args.build, 2 * args.repeat)))
+    sections.put(args.out, "live", "tests/performance.py", "\n".join(live_rows(refocus, 10)))
     print(f"wrote {args.out}", file=sys.stderr)
 
 

@@ -33,7 +33,8 @@ def quality():
 
 def times():
     """(method, options, threads) -> best ms; and the line that names the machine."""
-    lines = (SOURCE / "tests" / "performance.md").read_text(encoding="utf-8").splitlines()
+    page = (SOURCE / "tests" / "performance.md").read_text(encoding="utf-8")
+    lines = page.split("<!-- /methods -->")[0].splitlines()
     found = {}
     for line in lines:
         row = cells(line)

@@ -7,6 +7,7 @@
 #include <refocus/focus.h>
 #include <refocus/image.h>
 #include <refocus/lens.h>
+#include <refocus/measure.h>
 #include <refocus/render.h>
 #include <refocus/status.h>
 #include <refocus/temporal.h>

@@ -122,7 +122,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  *     lightfield    1200 (W + 2P + 64) T + 2^12
  *     scatter       32 W H + 3 (4 P + 80) P^2 + 2^16
  *     foveated      96 (W + 16) (H + 16) + 2^18
- *     interpolated  48 (W + 16) (H + 16) + 4 (W + H + 16) T + 2^16
+ *     interpolated  32 (W + 16) (H + 16) + 24 (W + 64) T + 2^16
  *     diffusion     96 (W + 16) (H + 16) + 2^18
  *
  * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.

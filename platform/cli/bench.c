@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "bench.h"
 #include "bench_rays.h"
 #include "commands.h"
 #include "engine.h"
@@ -13,6 +14,7 @@ struct settings {
     struct engine_settings engine;
     double size[2];
     bool statistics; /* --rays alone */
+    bool frames, kernels;
 };
 
 static const struct option options[] = {
@@ -36,80 +38,20 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, statistics),
      .help = "without a number: no times, but what the rays of the mask meet: how many find a "
              "true intersection after 1, 2, ... tests of the search"},
+    {.kind = OPTION_FLAG,
+     .name = "--frames",
+     .offset = offsetof(struct settings, frames),
+     .help = "a table over blur, quality, threads and, without PHOTO or --size, sizes; in turns "
+             "with a memcpy of the frame and a plain box blur of the same radius"},
+    {.kind = OPTION_FLAG,
+     .name = "--kernels",
+     .offset = offsetof(struct settings, kernels),
+     .help = "no frames, but the loops that they are made of: nanoseconds for a pixel or a ray "
+             "sample, and those of plain C"},
     RUN_OPTIONS(struct settings, engine),
     PAPER_OPTIONS(struct settings, engine.papers),
     {.help = NULL},
 };
-
-/* A photo in memory and its disparities. */
-struct scene {
-    struct refocus_image photo;
-    uint16_t *disparity;
-    int map_width, map_height;
-};
-
-static uint32_t hash(uint32_t x, uint32_t y)
-{
-    uint32_t h = x * 0x9e3779b1u ^ y * 0x85ebca77u;
-
-    h ^= h >> 15;
-    h *= 0x2c1b3c6du;
-    return h ^ h >> 13;
-}
-
-/* A tilted floor before a wall, and upright discs in front of it that hide each other: the
- * same for every size but for its scale, with fine texture everywhere. */
-static uint16_t surface_at(double x, double y, int *which)
-{
-    uint16_t nearest = y > 0.5 ? (uint16_t)(65535 * (0.05 + (y - 0.5) * 1.2)) : 3277;
-
-    *which = y > 0.5;
-    for (int i = 0; i < 12; i++) {
-        const uint32_t h = hash((uint32_t)i + 1, 77);
-        const double dx = x - (h & 255) / 255.0 * 1.33;
-        const double dy = y - (0.2 + (h >> 8 & 255) / 425.0);
-        const double radius = 0.05 + (h >> 16 & 63) / 420.0;
-        const uint16_t d = (uint16_t)(6000 + (h >> 22) * 57);
-
-        if (dx * dx + dy * dy < radius * radius && d > nearest) {
-            nearest = d;
-            *which = i + 2;
-        }
-    }
-    return nearest;
-}
-
-static int make_scene(struct scene *scene, int width, int height)
-{
-    const uint64_t pixels = (uint64_t)width * (uint64_t)height;
-
-    scene->photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
-                                        (ptrdiff_t)width * 3);
-    scene->map_width = width;
-    scene->map_height = height;
-    if (pixels <= SIZE_MAX / 3) {
-        scene->photo.plane[0] = malloc((size_t)pixels * 3);
-        scene->disparity = malloc((size_t)pixels * 2);
-    }
-    if (!scene->photo.plane[0] || !scene->disparity)
-        return report_failure(EXIT_FAILED, "--size", "not enough memory for %dx%d pixels",
-                              width, height);
-    for (int y = 0; y < height; y++) {
-        uint8_t *row = scene->photo.plane[0] + y * scene->photo.stride[0];
-        uint16_t *disparity = scene->disparity + (size_t)y * (size_t)width;
-
-        for (int x = 0; x < width; x++) {
-            int which;
-
-            disparity[x] = surface_at((double)x / height, (double)y / height, &which);
-            for (int c = 0; c < 3; c++)
-                row[3 * x + c] = (uint8_t)((hash((uint32_t)which, (uint32_t)c) & 127) +
-                                           (hash((uint32_t)x, (uint32_t)y) & 63) +
-                                           ((x ^ y) & 8) * 4);
-        }
-    }
-    return EXIT_DONE;
-}
 
 static double megapixels(const struct scene *scene)
 {
@@ -162,6 +104,10 @@ static int check(const struct settings *settings, const char *photo)
         status = input_check_lens(&settings->lens);
     if (status != EXIT_DONE)
         return status;
+    if (settings->frames && settings->statistics)
+        return report_failure(EXIT_WRONG, "--frames",
+                              "it does not go with --rays without a number; leave one of them "
+                              "out");
     if (photo && !isnan(settings->size[0]))
         return report_failure(EXIT_WRONG, "--size",
                               "the photo has a size of its own; leave one of them out");
@@ -265,6 +211,8 @@ static int run(int argc, char **argv)
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;
+    if (settings.kernels)
+        return bench_kernels(&settings.engine);
     status = engine_begin(&engine, &settings.engine);
     if (status == EXIT_DONE && files[0]) {
         engine.name = files[0];
@@ -277,22 +225,24 @@ static int run(int argc, char **argv)
         }
     } else if (status == EXIT_DONE) {
         engine.name = input.photo_name = input.depth_name = "made-up scene";
-        status = make_scene(&scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
+        status = bench_scene_make(&scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
                             isnan(settings.size[0]) ? 540 : (int)settings.size[1]);
         made.image = scene.photo;
         made.info.focus_x = made.info.focus_y = -1;
         input.photo = &made;
     }
-    if (status == EXIT_DONE)
+    if (status == EXIT_DONE && settings.frames)
+        status = bench_frames(&settings.engine,
+                              files[0] || !isnan(settings.size[0]) ? &scene : NULL, files[0]);
+    else if (status == EXIT_DONE)
         status = measure(&engine, &settings, &input, &scene);
-    if (status == EXIT_DONE && !settings.statistics)
+    if (status == EXIT_DONE && !settings.statistics && !settings.frames)
         status = print_report(&settings, &engine, &scene, files[0]);
     engine_end(&engine);
     if (files[0]) {
         input_free(&input);
     } else {
-        free(scene.photo.plane[0]);
-        free(scene.disparity);
+        bench_scene_free(&scene);
     }
     return status;
 }

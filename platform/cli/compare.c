@@ -4,6 +4,7 @@
 #include <string.h>
 #include "commands.h"
 #include "compare.h"
+#include "compare_list.h"
 #include "engine.h"
 #include "inputs.h"
 #include "outputs.h"
@@ -30,9 +31,11 @@ static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "What is compared"},
     {.kind = OPTION_TEXT,
      .name = "--methods",
-     .argument = "NAME,...",
+     .argument = "NAME[:OPTION[=VALUE]...],...",
      .offset = offsetof(struct settings, methods),
-     .help = "methods of 'refocus render', with commas; default: all that know the aperture"},
+     .help = "methods of 'refocus render', with commas, each with options of its own such as "
+             "search:rays=full:iterations=1 or jittered:cell=4; default: all that know the "
+             "aperture"},
     {.kind = OPTION_NUMBER,
      .name = "--border",
      .argument = "N",
@@ -50,53 +53,6 @@ static const struct option options[] = {
     PAPER_OPTIONS(struct settings, engine.papers),
     {.help = NULL},
 };
-
-static const char *method_word(const void *list, int i)
-{
-    (void)list;
-    return refocus_method_name((uint32_t)i);
-}
-
-/* Which methods, each once and in the order given. */
-static int choose_methods(const struct settings *settings, uint32_t method[], int *count)
-{
-    const bool disc = strcmp(settings->engine.aperture, "disc") == 0;
-    const char *text = settings->methods;
-    uint32_t seen = 0;
-
-    *count = 0;
-    for (uint32_t i = 0; !text && i < REFOCUS_METHOD_COUNT; i++)
-        if (disc || i < REFOCUS_METHOD_SCATTER)
-            method[(*count)++] = i;
-    while (text && *text) {
-        const size_t length = strcspn(text, ",");
-        char name[64];
-        uint32_t i = 0;
-
-        snprintf(name, sizeof name, "%.*s", (int)length, text);
-        while (i < REFOCUS_METHOD_COUNT && strcmp(refocus_method_name(i), name) != 0)
-            i++;
-        if (i == REFOCUS_METHOD_COUNT) {
-            const char *nearest = options_nearest(name, method_word, NULL);
-
-            return report_failure(EXIT_WRONG, "--methods", "'%s' is no method%s%s%s", name,
-                                  nearest ? "; did you mean '" : "; 'refocus render --help' lists "
-                                                                 "them",
-                                  nearest ? nearest : "", nearest ? "'?" : "");
-        }
-        if (!disc && i >= REFOCUS_METHOD_SCATTER)
-            return report_failure(EXIT_WRONG, "--aperture",
-                                  "'%s' does not go with %s, which knows a disc alone; leave one "
-                                  "of them out", settings->engine.aperture, name);
-        if (!(seen & REFOCUS_METHOD_BIT(i)))
-            method[(*count)++] = i;
-        seen |= REFOCUS_METHOD_BIT(i);
-        text += length + (text[length] == ',');
-    }
-    if (*count == 0)
-        return report_failure(EXIT_WRONG, "--methods", "no method is named; give one or more");
-    return EXIT_DONE;
-}
 
 static int check(const struct settings *settings, const char *photo)
 {
@@ -177,24 +133,36 @@ static int score(struct comparison *c, const uint8_t *mask, int border)
     return EXIT_DONE;
 }
 
-static int render_all(struct engine *engine, struct comparison *c, const uint32_t *method,
-                      int count, const struct refocus_image *photo, int repeat)
+static int render_all(struct engine *engine, struct comparison *c,
+                      const struct variants *variants, const struct refocus_image *photo,
+                      int repeat)
 {
-    for (int i = 0; i < count; i++) {
-        struct refocus_image out = *photo;
-        int status = add(c, refocus_method_name(method[i]), photo, false);
+    const struct refocus_render_params lens = engine->params;
 
+    for (int i = 0; i < variants->count; i++) {
+        const struct variant *variant = &variants->variant[i];
+        struct refocus_render_params *params = &engine->params;
+        struct refocus_image out = *photo;
+        int status = add(c, variant->label, photo, false);
+
+        *params = variant->engine.params;
+        params->focus_disparity = lens.focus_disparity;
+        params->max_blur_radius = lens.max_blur_radius;
+        engine->field_disparity = variant->engine.field_disparity;
+        if (status == EXIT_DONE)
+            status = papers_place(&variant->settings.papers, params, photo->width,
+                                  photo->height);
         if (status != EXIT_DONE)
             return status;
         out.plane[0] = c->item[c->count - 1].rgb;
         out.stride[0] = (ptrdiff_t)photo->width * 3;
-        engine->params.method = method[i];
-        report_progress(refocus_method_name(method[i]), (i + 0.5) / count);
+        report_progress(refocus_method_name(params->method), (i + 0.5) / variants->count);
         status = engine_render(engine, &out, repeat);
         if (status != EXIT_DONE)
             return status;
         c->item[c->count - 1].ms = engine->render_ms;
-        c->item[c->count - 1].memory = memory_of(engine, photo, method[i]);
+        c->item[c->count - 1].cpu_ms = engine->cpu_ms;
+        c->item[c->count - 1].memory = memory_of(engine, photo, params->method);
     }
     return EXIT_DONE;
 }
@@ -202,13 +170,17 @@ static int render_all(struct engine *engine, struct comparison *c, const uint32_
 static json_t *item_json(const struct compared *item)
 {
     const struct quality_scores *s = &item->scores;
-    json_t *json = json_pack("{s:s, s:o, s:o, s:o, s:o}", "method", item->name, "psnr",
+    const int length = (int)strcspn(item->name, ":");
+    json_t *json = json_pack("{s:s#, s:o, s:o, s:o, s:o, s:o}", "method", item->name, length,
+                             "label", report_text_json(item->name), "psnr",
                              report_number_json(s->psnr), "ssim", report_number_json(s->ssim),
                              "edge_psnr", report_number_json(s->edge_psnr), "rmse",
                              report_number_json(s->rmse));
 
     if (json && item->memory)
         json_object_set_new(json, "render_ms", report_spread_json(item->ms));
+    if (json && item->memory)
+        json_object_set_new(json, "cpu_ms", report_spread_json(item->cpu_ms));
     if (json && item->memory)
         json_object_set_new(json, "renderer_bytes", json_integer((json_int_t)item->memory));
     return json;
@@ -217,6 +189,8 @@ static json_t *item_json(const struct compared *item)
 static int print_report(const struct settings *settings, const struct engine *engine,
                         const struct comparison *c, const char *photo, int border)
 {
+    int widest = 13;
+
     if (settings->engine.json) {
         json_t *rows = json_array();
         json_t *run = engine_json(engine);
@@ -227,9 +201,10 @@ static int print_report(const struct settings *settings, const struct engine *en
         for (int i = 1; i < c->count; i++)
             json_array_append_new(rows, item_json(&c->item[i]));
         if (json && run) {
-            static const char *const of_one[] = {"method", "render_ms", "renderer_bytes"};
+            static const char *const of_one[] = {"method", "render_ms", "cpu_ms",
+                                                  "renderer_bytes"};
 
-            for (int i = 0; i < 3; i++)
+            for (int i = 0; i < 4; i++)
                 json_object_del(run, of_one[i]);
             json_object_update(json, run);
         }
@@ -240,13 +215,16 @@ static int print_report(const struct settings *settings, const struct engine *en
             json_decref(rows);
         return report_print_json(json);
     }
-    printf("%-13s %7s %7s %9s %7s %10s %8s\n", "method", "PSNR", "SSIM", "edge PSNR", "RMSE",
+    for (int i = 1; i < c->count; i++)
+        if ((int)strlen(c->item[i].name) > widest)
+            widest = (int)strlen(c->item[i].name);
+    printf("%-*s %7s %7s %9s %7s %10s %8s\n", widest, "method", "PSNR", "SSIM", "edge PSNR", "RMSE",
            "ms", "MiB");
     for (int i = 1; i < c->count; i++) {
         const struct compared *item = &c->item[i];
         const struct quality_scores *s = &item->scores;
 
-        printf("%-13s %7.2f %7.4f %9.2f %7.2f", item->name, s->psnr, s->ssim, s->edge_psnr,
+        printf("%-*s %7.2f %7.4f %9.2f %7.2f", widest, item->name, s->psnr, s->ssim, s->edge_psnr,
                s->rmse);
         if (item->memory)
             printf(" %10.2f %8.1f", item->ms.median, (double)item->memory / (1 << 20));
@@ -256,7 +234,7 @@ static int print_report(const struct settings *settings, const struct engine *en
 }
 
 static int compare(struct engine *engine, struct input *input, struct comparison *c,
-                   const struct settings *settings, const uint32_t *method, int count)
+                   const struct settings *settings, const struct variants *variants)
 {
     const struct refocus_image *photo = &input->photo->image;
     const struct refocus_depth_map *map = &input->depth_from->depth;
@@ -284,7 +262,7 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     if (status == EXIT_DONE)
         status = add(c, "photo", photo, true);
     if (status == EXIT_DONE)
-        status = render_all(engine, c, method, count, photo, (int)settings->engine.repeat);
+        status = render_all(engine, c, variants, photo, (int)settings->engine.repeat);
     if (status == EXIT_DONE && quality_edge_mask(prepared, c->width, c->height, focus, blur,
                                                  mask) != 0)
         status = report_failure(EXIT_FAILED, "compare", "not enough memory");
@@ -316,22 +294,22 @@ static int run(int argc, char **argv)
     struct refocus_photo *reference = NULL;
     struct engine engine;
     struct input input = {0};
-    uint32_t method[REFOCUS_METHOD_COUNT];
+    struct variants variants = {0};
     const char *files[2];
-    int status, count;
+    int status;
 
     status = options_parse(&compare_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
     status = check(&settings, files[0]);
-    if (status == EXIT_DONE)
-        status = choose_methods(&settings, method, &count);
     if (status != EXIT_DONE)
         return status;
     status = engine_begin(&engine, &settings.engine);
     engine.name = files[0];
-    for (int i = 0; i < count; i++)
-        engine.methods |= REFOCUS_METHOD_BIT(method[i]);
+    if (status == EXIT_DONE)
+        status = variants_begin(&variants, settings.methods, &settings.engine);
+    for (int i = 0; i < variants.count; i++)
+        engine.methods |= variants.variant[i].engine.methods;
     if (status == EXIT_DONE)
         status = input_read(&input, files[0], &settings.depth);
     if (status == EXIT_DONE)
@@ -342,11 +320,12 @@ static int run(int argc, char **argv)
         status = add(&comparison, "reference", &reference->image, true);
     }
     if (status == EXIT_DONE)
-        status = compare(&engine, &input, &comparison, &settings, method, count);
+        status = compare(&engine, &input, &comparison, &settings, &variants);
     report_progress_end();
     for (int i = 0; i < comparison.count; i++)
         free(comparison.item[i].rgb);
     refocus_photo_free(&reference);
+    variants_end(&variants);
     engine_end(&engine);
     input_free(&input);
     return status;

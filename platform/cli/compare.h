@@ -3,17 +3,18 @@
 #define RF_CLI_COMPARE_H
 
 #include <refocus/refocus.h>
+#include "compare_list.h"
 #include "metrics.h"
 #include "report.h"
 
-enum { COMPARE_MOST = REFOCUS_METHOD_COUNT + 2 }; /* and the reference and the photo */
+enum { COMPARE_MOST = VARIANTS_MOST + 2 }; /* and the reference and the photo */
 
 struct compared {
-    const char *name;
+    const char *name; /* NAME:OPTION=VALUE:... */
     uint8_t *rgb; /* packed */
     bool scored;
     struct quality_scores scores;
-    struct spread ms;
+    struct spread ms, cpu_ms;
     uint64_t memory; /* of a renderer for this method alone */
 };
 

@@ -4,7 +4,8 @@
 #include "compare.h"
 #include "text.h"
 
-enum { CROPS = 3, CROP = 96, ZOOM = 2, GAP = 4, LABEL = 2 * ZOOM * (GLYPH_HEIGHT + 3) + GAP };
+enum { CROPS = 3, CROP = 96, ZOOM = 2, GAP = 4, LINE = ZOOM * (GLYPH_HEIGHT + 2),
+       LABEL = 3 * LINE + 2 * GAP };
 
 struct place {
     int x, y;
@@ -106,12 +107,17 @@ struct refocus_image compare_picture(const struct comparison *c, const uint16_t 
     for (int i = 0; i < c->count; i++) {
         const struct compared *item = &c->item[i];
         const int left = GAP + i * cell_w;
-        char text[32] = "";
+        const int length = (int)strcspn(item->name, ":");
+        char text[64] = "";
 
-        draw_text(&image, left, GAP, w * ZOOM, item->name);
+        snprintf(text, sizeof text, "%.*s", length, item->name);
+        draw_text(&image, left, GAP, w * ZOOM, text);
+        snprintf(text, sizeof text, "%s", item->name + length + (item->name[length] == ':'));
+        draw_text(&image, left, GAP + LINE, w * ZOOM, text);
+        text[0] = '\0';
         if (item->scored)
             snprintf(text, sizeof text, "%.2f db", item->scores.psnr);
-        draw_text(&image, left, GAP + ZOOM * (GLYPH_HEIGHT + 2), w * ZOOM, text);
+        draw_text(&image, left, GAP + 2 * LINE, w * ZOOM, text);
         for (int k = 0; k < crops; k++)
             draw_crop(&image, left, LABEL + k * cell_h, item->rgb, c->width, place[k], w, h);
     }

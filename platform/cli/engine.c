@@ -178,30 +178,34 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
 {
     const float focus = engine->params.focus_disparity;
     const float beside = focus + (focus > 0.5f ? -2 : 2) / 65535.0f;
-    double *times;
+    double *times, *cpu_times;
     int status = controls_check_method(&engine->params);
 
     if (status == EXIT_DONE)
         status = bokeh_check_method(&engine->params, engine->has_sides);
     if (status != EXIT_DONE)
         return status;
-    times = malloc((size_t)repeat * sizeof *times);
+    times = malloc(2 * (size_t)repeat * sizeof *times);
     if (!times)
         return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
+    cpu_times = times + repeat;
     engine->params.field_disparity = isnan(engine->field_disparity)
                                          ? engine->params.focus_disparity
                                          : (float)engine->field_disparity;
     for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
-        const double start = report_clock_ms();
+        const double start = report_clock_ms(), cpu_start = report_cpu_ms();
 
         /* every other one is a step of disparity off, or all but rays would be kept */
         engine->params.focus_disparity = (repeat - i) % 2 ? focus : beside;
         status = render_once(engine, out, 0.3 + 0.6 * i / repeat, 0.6 / repeat);
+        cpu_times[i] = report_cpu_ms() - cpu_start;
         times[i] = report_clock_ms() - start;
     }
     engine->params.focus_disparity = focus;
-    if (status == REFOCUS_OK)
+    if (status == REFOCUS_OK) {
         engine->render_ms = report_spread(times, repeat);
+        engine->cpu_ms = report_spread(cpu_times, repeat);
+    }
     free(times);
     if (status == REFOCUS_ERR_CANCELLED)
         return interrupted(engine);
@@ -227,7 +231,7 @@ json_t *engine_json(const struct engine *engine)
                                                      : json_integer(params->rays);
 
     return json_pack(
-        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:I, s:I}", "method",
+        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, s:I}", "method",
         refocus_method_name(params->method), "rays", rays, "blend",
         engine_blend_name(params->blend), "sigma",
         params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "highlights",
@@ -236,6 +240,7 @@ json_t *engine_json(const struct engine *engine)
         (double)params->focus_disparity, "threads", (int)engine->info.threads, "cpu",
         refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms, "prepare_ms",
         engine->prepare_ms, "render_ms", report_spread_json(engine->render_ms),
+        "cpu_ms", report_spread_json(engine->cpu_ms),
         "renderer_bytes", (json_int_t)engine->info.memory, "peak_rss_kib",
         (json_int_t)report_peak_rss_kib());
 }

@@ -154,7 +154,7 @@ struct engine {
     uint32_t methods; /* that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     struct refocus_render_params params;
     double create_ms, prepare_ms;
-    struct spread render_ms;
+    struct spread render_ms, cpu_ms; /* cpu_ms: of all threads, of a render */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -71,12 +71,29 @@ void report_progress_end(void)
     bar_shown = false;
 }
 
-double report_clock_ms(void)
+static double read_clock_ms(clockid_t clock)
 {
     struct timespec now;
 
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+double report_clock_ms(void)
+{
+    return read_clock_ms(CLOCK_MONOTONIC);
+}
+
+double report_cpu_ms(void)
+{
+    return read_clock_ms(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+int report_processors(void)
+{
+    const long count = sysconf(_SC_NPROCESSORS_ONLN);
+
+    return count > 0 && count < 4096 ? (int)count : 1;
 }
 
 int64_t report_peak_rss_kib(void)

@@ -28,6 +28,12 @@ bool report_is_watched(void); /* whether there is such a terminal */
 /* Milliseconds of a clock that only moves forwards. */
 double report_clock_ms(void);
 
+/* Milliseconds of processor time that this process has taken, all threads together. */
+double report_cpu_ms(void);
+
+/* Processors that may be used. */
+int report_processors(void);
+
 /* The most memory this process has held. */
 int64_t report_peak_rss_kib(void);
 

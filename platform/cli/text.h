@@ -1,4 +1,4 @@
-/* Letters of dots for pictures: small letters, digits, '.', '+' and '-'. */
+/* Letters of dots for pictures: small letters, digits, and .+-=: between them. */
 #ifndef RF_CLI_TEXT_H
 #define RF_CLI_TEXT_H
 

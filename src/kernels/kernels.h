@@ -385,6 +385,22 @@ struct rf_decode_job {
 };
 typedef void rf_decode_fn(struct rf_decode_job *job);
 
+/*
+ * series_row: a row of a step of Clenshaw's recursion, on a field V of which a pixel passes
+ * some on to its four neighbours,
+ *
+ *     row = share start + (across (up + down + (left + right)) + own here) - row
+ *
+ * in single precision; elements -1 and n of `here` are read, and the rows `stride` before and
+ * after it. Nothing overlaps.
+ */
+struct rf_series_job {
+    const float *here, *start, *across, *own;
+    ptrdiff_t stride; /* elements */
+    float share;
+};
+typedef void rf_series_row_fn(float *row, const struct rf_series_job *job, int n);
+
 struct rf_kernels {
     rf_encode_fn *encode;
     rf_decode_fn *decode;
@@ -421,6 +437,7 @@ struct rf_kernels {
     rf_find_surfaces_fn *find_surfaces;
     rf_surface_fn *surface;
     rf_median3_fn *median3;
+    rf_series_row_fn *series_row;
 };
 
 /* The best kernels of an instruction set, enum refocus_cpu; false: this processor or build does
@@ -454,5 +471,7 @@ rf_kernels_use_fn rf_search_use_neon, rf_search_use_sse41, rf_search_use_avx2;
 rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;
 rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
 rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;
+rf_kernels_use_fn rf_series_use_c, rf_series_use_neon, rf_series_use_sse41,
+    rf_series_use_avx2;
 
 #endif

@@ -22,13 +22,14 @@ struct work {
     struct rf_series series;
     struct rf_diffusion_layer layer;
     uint8_t *member;
-    float *weight;
+    float *weight; /* W of the layer's pixels; of the series, `across` */
+    float *own, *radius;
     float *plane[CHANNELS];  /* the layer */
     float *scratch[2][CHANNELS];
     float *below[CHANNELS];  /* what has been composited */
     ptrdiff_t stride;
     uint64_t planes_size;    /* floats of a plane */
-    float most_radius;
+    float most_radius, weight_per_square; /* W = weight_per_square radius^2 */
     int steps;
 };
 
@@ -51,12 +52,14 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
             PLANE(work->scratch[i][c]);
     }
     PLANE(work->weight);
-    PLANE(work->layer.radius);
+    PLANE(work->own);
+    PLANE(work->radius);
 #undef PLANE
     work->planes_size = size;
     work->stride = (ptrdiff_t)w + 2;
     work->member = rf_arena_take(arena, w * h, 1);
     work->layer.rings = rf_arena_take(arena, w * h, sizeof(uint16_t));
+    work->layer.span = rf_arena_take(arena, h, sizeof *work->layer.span);
     work->layer.tiles_x = (int)((w + RF_EDGE_TILE - 1) / RF_EDGE_TILE);
     work->layer.tiles_y = (int)((h + RF_EDGE_TILE - 1) / RF_EDGE_TILE);
     work->layer.tile = rf_arena_take(
@@ -80,7 +83,7 @@ static void radius_row(void *context, int y, int worker)
 
     (void)worker;
     for (int x = 0; x < work->f->r->width; x++)
-        work->layer.radius[y * work->stride + x] =
+        work->radius[y * work->stride + x] =
             (float)abs(work->f->r->front.blur[y * work->f->r->stride + x]) / 256;
 }
 
@@ -126,12 +129,21 @@ static void split_layers(struct work *work)
                 number[r->disparity[y * r->stride + x] >> 8];
 }
 
-static void extrapolate_row(void *context, int item, int worker)
+static void extrapolate_tile(void *context, int item, int worker)
 {
     const struct work *work = context;
 
     (void)worker;
-    rf_layer_extrapolate_row(&work->layer, work->layer.box.y0 + item);
+    rf_layer_extrapolate_tile(&work->layer, item);
+}
+
+static float conductance(const struct work *work, float radius)
+{
+    const float most = work->layer.most, part = radius / most;
+
+    if (work->f->params->solver == REFOCUS_SOLVER_ITERATED)
+        return radius < 0.5f ? 0 : work->weight_per_square * radius * radius;
+    return radius < 0.5f ? RF_ACROSS_LEAST : 0.5f * (part < 1 ? part * part : 1);
 }
 
 /* Weights of the region, and the object alone in the planes. */
@@ -141,16 +153,17 @@ static void cut_out_row(void *context, int item, int worker)
     const struct rf_diffusion_layer *layer = &work->layer;
     const struct rf_frame *f = work->f;
     const int y = layer->box.y0 + item;
-    const float scale = f->params->conductivity / (work->most_radius * work->most_radius);
 
     (void)worker;
     for (int x = layer->box.x0; x < layer->box.x1; x++) {
         const ptrdiff_t at = y * work->stride + x, p = y * f->r->stride + x;
         const int ring = layer->rings[(size_t)y * (size_t)f->r->width + (size_t)x];
-        const float radius = ring <= layer->reach ? layer->radius[at] : 0;
+        const float radius = ring == 0              ? work->radius[at]
+                             : ring <= layer->reach ? work->weight[at]
+                                                    : 0;
         const double w = ring == 0 ? rf_weight_of(f, f->r->front.light, p) : 0;
 
-        work->weight[at] = radius < 0.5f ? 0 : scale * radius * radius;
+        work->weight[at] = conductance(work, radius);
         for (int c = 0; c < 3; c++)
             work->plane[c][at] = (float)(w * f->r->front.light[c][p]);
         work->plane[3][at] = (float)w;
@@ -158,10 +171,26 @@ static void cut_out_row(void *context, int item, int worker)
     }
 }
 
+static void own_row(void *context, int item, int worker)
+{
+    const struct work *work = context;
+    const int y = work->layer.box.y0 + item;
+
+    (void)worker;
+    for (int x = work->layer.box.x0; x < work->layer.box.x1; x++) {
+        const float *w = work->weight + y * work->stride + x;
+
+        work->own[y * work->stride + x] =
+            2 - ((w[-work->stride] + w[work->stride]) + (w[-1] + w[1]));
+    }
+}
+
 static void diffuse_channel(void *context, int c, int worker)
 {
     const struct work *work = context;
     const struct rf_frame *f = work->f;
+    const struct rf_heat heat = {f->r, work->layer.box, work->layer.span, work->weight,
+                                 work->own, f->r->kernels.series_row};
 
     (void)worker;
     if (c == 3 && !f->weighted) { /* then weight and alpha are the same */
@@ -171,8 +200,8 @@ static void diffuse_channel(void *context, int c, int worker)
         rf_diffuse_steps(f->r, &work->layer.box, work->weight, work->plane[c],
                          work->scratch[0][c], work->steps);
     else
-        rf_diffuse_series(f->r, &work->layer.box, work->weight, work->plane[c],
-                          work->scratch[0][c], work->scratch[1][c], &work->series);
+        rf_diffuse_series(&heat, &work->series, work->plane[c], work->scratch[0][c],
+                          work->scratch[1][c]);
 }
 
 /* Over: what is below counts as whole wherever there is any of it, because a surface goes on
@@ -196,16 +225,11 @@ static void composite_row(void *context, int item, int worker)
     }
 }
 
-/* Sets a plane to 0, border and all. */
-static void clear(const struct work *work, float *plane)
+/* Rows y0 - 1 to y1 of a plane to 0, sides and all. */
+static void clear(const struct work *work, float *plane, int y0, int y1)
 {
-    enum { AT_ONCE = 1 << 18 };
-    float *from = plane - work->stride - 1;
-
-    for (uint64_t i = 0; i < work->planes_size && !rf_cancelled(work->f->r); i += AT_ONCE)
-        memset(from + i, 0,
-               sizeof(float) * (size_t)(work->planes_size - i < AT_ONCE ? work->planes_size - i
-                                                                        : AT_ONCE));
+    for (int y = y0 - 1; y <= y1 && !rf_cancelled(work->f->r); y++)
+        memset(plane + y * work->stride - 1, 0, sizeof(float) * (size_t)work->stride);
 }
 
 static void do_layer(struct work *work, int number)
@@ -218,25 +242,32 @@ static void do_layer(struct work *work, int number)
     if (!rf_layer_grow(layer) || rf_cancelled(work->f->r))
         return;
     rows = layer->box.y1 - layer->box.y0;
-    /* a pixel's radius is that of its own surface again */
-    rf_pool_run(pool, radius_row, work, work->f->r->height);
-    layer->edge = (struct rf_edge *)(void *)(work->scratch[0][0] - work->stride - 1);
-    rf_layer_list_edge(layer);
-    if (rf_cancelled(work->f->r)) /* the list may have no end */
-        return;
-    rf_pool_run(pool, extrapolate_row, work, rows);
-    clear(work, work->weight);
+    clear(work, work->weight, layer->box.y0, layer->box.y1);
+    if (layer->reach > 0) {
+        layer->edge_x = work->scratch[0][0];
+        layer->edge_y = work->scratch[0][1];
+        layer->edge_radius = work->scratch[0][2];
+        rf_layer_list_edge(layer);
+        if (rf_cancelled(work->f->r)) /* the list may have no end */
+            return;
+        rf_pool_run(pool, extrapolate_tile, work, layer->tiles_x * layer->tiles_y);
+    }
     for (int c = 0; c < CHANNELS; c++) {
-        clear(work, work->plane[c]);
+        clear(work, work->plane[c], layer->box.y0, layer->box.y1);
         for (int i = 0; i < 2; i++)
-            clear(work, work->scratch[i][c]);
+            clear(work, work->scratch[i][c], layer->box.y0, layer->box.y1);
     }
     rf_pool_run(pool, cut_out_row, work, rows);
-    if (layer->reach > 0)
+    if (layer->reach > 0) {
+        if (work->f->params->solver == REFOCUS_SOLVER_FAST) {
+            rf_pool_run(pool, own_row, work, rows);
+            rf_series_make(&work->series, work->steps,
+                           (double)work->weight_per_square * layer->most * layer->most);
+        }
         rf_pool_run(pool, diffuse_channel, work, CHANNELS);
+    }
     if (!rf_cancelled(work->f->r))
         rf_pool_run(pool, composite_row, work, rows);
-    rf_pool_run(pool, radius_row, work, work->f->r->height);
 }
 
 static void write_row(void *context, int item, int worker)
@@ -270,7 +301,7 @@ static void measure(struct work *work)
     work->most_radius = 0;
     for (int y = 0; y < r->height && !rf_cancelled(r); y++)
         for (int x = 0; x < r->width; x++)
-            work->most_radius = fmaxf(work->most_radius, work->layer.radius[y * work->stride + x]);
+            work->most_radius = fmaxf(work->most_radius, work->radius[y * work->stride + x]);
     steps = (double)work->most_radius * work->most_radius / (2 * work->f->params->conductivity);
     work->steps = (int)ceil(steps);
 }
@@ -285,11 +316,13 @@ void rf_diffusion_frame(struct rf_frame *f)
     work->f = f;
     work->layer.r = f->r;
     work->layer.member = work->member;
+    work->layer.radius = work->radius;
+    work->layer.outside = work->weight;
     work->layer.stride = work->stride;
     work->layer.tiles_x = (f->r->width + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
     work->layer.tiles_y = (f->r->height + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
     for (int c = 0; c < CHANNELS; c++)
-        clear(work, work->below[c]);
+        clear(work, work->below[c], 0, f->r->height);
     rf_pool_run(&f->r->pool, radius_row, work, f->r->height);
     if (rf_cancelled(f->r))
         return;
@@ -297,10 +330,9 @@ void rf_diffusion_frame(struct rf_frame *f)
     split_layers(work);
     if (rf_cancelled(f->r))
         return;
-    if (work->steps > 0)
-        rf_series_make(&work->series, work->steps, f->params->conductivity);
     if (work->most_radius < 0.5f)
         work->most_radius = 1; /* nothing conducts */
+    work->weight_per_square = f->params->conductivity / (work->most_radius * work->most_radius);
     for (int i = 0; i < f->params->layers && !rf_cancelled(f->r); i++)
         do_layer(work, i);
     rf_pool_run(&f->r->pool, write_row, work, f->region.y1 - f->region.y0);

@@ -55,26 +55,31 @@ static inline void encode_row(uint8_t *restrict out, struct rf_order o, const in
     }
 }
 
-void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
-                     uint16_t mean[3][RF_TILE * RF_TILE])
+void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
 {
     const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
-    const int n = rect.x1 - rect.x0;
+    const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride + x0;
+    uint8_t *out = pixel(f, o.bytes, x0, y);
 
+    if (o.bytes == 3)
+        encode_row(out, o, 3, mean[0], mean[1], mean[2], to_code, n);
+    else
+        encode_row(out, o, 4, mean[0], mean[1], mean[2], to_code, n);
+    for (int x = 0; o.a >= 0 && x < n; x++)
+        out[x * o.bytes + o.a] = alpha[x];
+}
+
+void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
+                     uint16_t mean[3][RF_TILE * RF_TILE])
+{
     for (int c = 0; f->bright && c < 3; c++)
         clip(mean[c], RF_TILE * RF_TILE);
     for (int y = rect.y0; y < rect.y1; y++) {
         const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
-        const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride + rect.x0;
-        uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
-        if (o.bytes == 3)
-            encode_row(out, o, 3, mean[0] + at, mean[1] + at, mean[2] + at, to_code, n);
-        else
-            encode_row(out, o, 4, mean[0] + at, mean[1] + at, mean[2] + at, to_code, n);
-        for (int x = 0; o.a >= 0 && x < n; x++)
-            out[x * o.bytes + o.a] = alpha[x];
+        rf_encode_row(f, rect.x0, y, rect.x1 - rect.x0,
+                      (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at});
     }
 }
 

@@ -2,30 +2,23 @@
  *
  * A table gives each disparity a blurriness of 0 to 1. The colour is interpolated between
  * three targets: the picture itself (0), one blurred by a radius of r1 c0 (1/2) and one
- * by r2 c0 (1). The blurred ones are smaller the more they are blurred, filtered by three
- * boxes in x and in y, and enlarged again as they are read. Nothing is known of edges.
+ * by r2 c0 (1). The blurred ones are smaller the more they are blurred, filtered in x and in y
+ * (target.c), and enlarged again as they are read. Nothing is known of edges.
  */
 #include "methods/blurriness.h"
-#include "methods/frame.h"
+#include "methods/target.h"
 
 #include <math.h>
 
-enum { CHANNELS = 4, MOST_SHIFT = 3, ROWS = 16 };
-
-/* A picture of 1 / 2^shift the size: light times weight in R, G, B, and the weight. */
-struct target {
-    int shift, width, height;
-    double radius; /* in its own pixels */
-    float *plane[CHANNELS];
-};
+enum { SECOND = 1 << 15 };
 
 struct work {
     struct rf_frame *f;
     uint8_t table[RF_BLURRINESS_SIZE];
-    struct target target[2], turned; /* turned: one with x and y exchanged */
-    struct target *from, *to;        /* of the filter pass that runs */
-    float *row;                      /* scratch of each thread */
-    int row_length;
+    uint16_t share[RF_BLURRINESS_SIZE]; /* of the way to the first target, or SECOND and that
+                                           from there to the second; Q15 */
+    struct rf_target target[2];
+    struct rf_target_work making;
 };
 
 /* Memory when the arena has some; else *counted is filled and the bytes are counted. */
@@ -34,17 +27,19 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
 {
     struct work *work = rf_arena_take(arena, 1, sizeof *work);
     const uint64_t pixels = (uint64_t)limits->width * (uint64_t)limits->height;
+    struct rf_target_work *making;
 
     if (!work)
         work = counted;
-    for (int c = 0; c < CHANNELS; c++) {
-        work->target[0].plane[c] = rf_arena_take(arena, pixels, sizeof(float));
-        work->target[1].plane[c] = rf_arena_take(arena, pixels, sizeof(float));
-        work->turned.plane[c] = rf_arena_take(arena, pixels, sizeof(float));
-    }
-    work->row_length = limits->width > limits->height ? limits->width : limits->height;
-    work->row = rf_arena_take(arena, (uint64_t)work->row_length * (uint64_t)limits->threads,
-                              sizeof(float));
+    making = &work->making;
+    for (int c = 0; c < RF_TARGET_CHANNELS; c++)
+        making->across[c] = rf_arena_take(arena, pixels, sizeof(float));
+    for (int i = 0; i < 2; i++)
+        for (int c = 0; c < 3; c++)
+            work->target[i].light[c] = rf_arena_take(arena, pixels, sizeof(int16_t));
+    making->row_length = limits->width + RF_TARGET_SPARE;
+    making->row = rf_arena_take(arena, (uint64_t)making->row_length * (uint64_t)limits->threads,
+                                RF_TARGET_ROWS * sizeof(float));
     return work;
 }
 
@@ -72,136 +67,89 @@ void rf_blurriness_table(uint8_t table[RF_BLURRINESS_SIZE], double focus, double
     }
 }
 
-/* Size of a target for a blur radius in pixels. */
-static void shape_target(struct target *target, const struct refocus_renderer *r,
-                         double radius)
+/* From a to b by a share in Q15; both Q14, which leaves room for a sign. */
+static inline int16_t between(int16_t a, int16_t b, int16_t share)
 {
-    target->shift = 0;
-    while (target->shift < MOST_SHIFT && radius / (2 << target->shift) >= 2)
-        target->shift++;
-    target->width = (r->width + (1 << target->shift) - 1) >> target->shift;
-    target->height = (r->height + (1 << target->shift) - 1) >> target->shift;
-    target->radius = radius / (1 << target->shift);
+    return (int16_t)(a + (int16_t)((2 * (b - a) * share) >> 16));
 }
 
-/* A row of a target: means of blocks of the picture, whose border is extended. */
-static void reduce_row(void *context, int y, int worker)
+static void mix_rows(int16_t *restrict out, const int16_t *restrict a,
+                     const int16_t *restrict b, int16_t share, int n)
 {
-    const struct work *work = context;
-    const struct target *t = work->to;
-    const struct rf_frame *f = work->f;
-    const int side = 1 << t->shift;
-    const float share = 1.0f / (float)(side * side);
+    for (int x = 0; x < n; x++)
+        out[x] = between(a[x], b[x], share);
+}
 
-    (void)worker;
-    for (int x = 0; x < t->width; x++) {
-        double sum[CHANNELS] = {0, 0, 0, 0};
+/* From the middle of each pixel to that of the next. */
+static inline void lines(int16_t *restrict out, const int16_t *restrict row,
+                         const int16_t *share, int n, const int side)
+{
+    for (int x = 0; x < n; x++)
+        for (int i = 0; i < side; i++)
+            out[x * side + i] = between(row[x], row[x + 1], share[i]);
+}
 
-        for (int j = 0; j < side; j++) {
-            for (int i = 0; i < side; i++) {
-                const ptrdiff_t at = (ptrdiff_t)(y * side + j) * f->r->stride + x * side + i;
-                const double w = rf_weight_of(f, f->r->front.light, at);
+/* Straight lines between the middles of n pixels, each `side` = 2^shift wide, at n * side
+ * places; `row` has pixels -1 and n, too. */
+static void enlarge(int16_t *restrict out, const int16_t *restrict row, int n, int shift)
+{
+    const int side = 1 << shift;
+    int16_t share[1 << RF_TARGET_SHIFTS], *place = out + side / 2;
 
-                sum[3] += w;
-                for (int c = 0; c < 3; c++)
-                    sum[c] += w * f->r->front.light[c][at];
-            }
-        }
-        for (int c = 0; c < CHANNELS; c++)
-            t->plane[c][(size_t)y * (size_t)t->width + (size_t)x] = (float)sum[c] * share;
+    for (int i = 0; i < side; i++)
+        share[i] = (int16_t)((2 * i + 1) << (14 - shift));
+    for (int i = 0; i < side / 2; i++) {
+        out[i] = between(row[-1], row[0], share[side / 2 + i]);
+        out[n * side - side / 2 + i] = between(row[n - 1], row[n], share[i]);
+    }
+    switch (shift) { /* the compiler knows the side in each */
+    case 1:
+        lines(place, row, share, n - 1, 2);
+        break;
+    case 2:
+        lines(place, row, share, n - 1, 4);
+        break;
+    case 3:
+        lines(place, row, share, n - 1, 8);
+        break;
+    default:
+        lines(place, row, share, n - 1, 16);
     }
 }
 
-static int clamp(int v, int most)
+/* Row y of the picture, of one channel of a target. */
+static void enlarged_row(const struct rf_target *b, int c, int y, int16_t *row, int16_t *out)
 {
-    return v < 0 ? 0 : v > most ? most : v;
+    const int place = 2 * y + 1 - (1 << b->shift); /* from the middle of row 0, in halves */
+    const int first = place < 0 ? -1 : place >> (b->shift + 1);
+    const int share = place - first * (2 << b->shift);
+    const int16_t *light = b->light[c];
+    const size_t width = (size_t)b->width;
+
+    if (b->shift == 0)
+        row = out;
+    mix_rows(row, light + width * (size_t)rf_clamp(first, b->height - 1),
+             light + width * (size_t)rf_clamp(first + 1, b->height - 1),
+             (int16_t)(share << (14 - b->shift)), b->width);
+    if (b->shift == 0)
+        return;
+    row[-1] = row[0];
+    row[width] = row[width - 1];
+    enlarge(out, row, b->width, b->shift);
 }
 
-/* One box over a row of n values, ends extended: 2 h + 1 values and the share a of one more at
- * each side. */
-static void box(float *restrict out, size_t step, const float *restrict in, int n, int h,
-                double a)
+/* Between the picture and the first target, or above SECOND between that and the second. */
+static void interpolate(uint16_t *restrict mean, const uint16_t *restrict light,
+                        const int16_t *restrict middle, const int16_t *restrict last,
+                        const uint16_t *restrict share, int n)
 {
-    const double share = 1 / (2 * h + 1 + 2 * a);
-    double sum = 0;
-
-    for (int i = -h; i <= h; i++)
-        sum += in[clamp(i, n - 1)];
     for (int x = 0; x < n; x++) {
-        const float left = in[clamp(x - h - 1, n - 1)], right = in[clamp(x + h + 1, n - 1)];
+        const int16_t second = (int16_t)(share[x] >= SECOND ? -1 : 0);
+        const int16_t sharp = (int16_t)(4 * light[x]);
+        const int16_t a = (int16_t)((middle[x] & second) | (sharp & ~second));
+        const int16_t b = (int16_t)((last[x] & second) | (middle[x] & ~second));
 
-        out[(size_t)x * step] = (float)((sum + a * ((double)left + right)) * share);
-        sum += (double)right - in[clamp(x - h, n - 1)];
-    }
-}
-
-/* Rows of *from, filtered, into columns of *to. Three boxes of variance radius^2 / 12 have the
- * variance of a disc along one axis, radius^2 / 4. */
-static void filter_rows(void *context, int item, int worker)
-{
-    const struct work *work = context;
-    const struct target *from = work->from, *to = work->to;
-    const double variance = from->radius * from->radius / 12;
-    const int n = from->width;
-    int h = 0;
-    double a;
-
-    while ((h + 1) * (h + 2) / 3.0 <= variance)
-        h++;
-    a = (2 * h + 1) * (variance - h * (h + 1) / 3.0) / (2 * ((h + 1.0) * (h + 1.0) - variance));
-    for (int y = item * ROWS; y < (item + 1) * ROWS && y < from->height; y++) {
-        if (rf_cancelled(work->f->r))
-            return;
-        for (int c = 0; c < CHANNELS; c++) {
-            /* rows of both are scratch to each other until the last box */
-            float *row = from->plane[c] + (size_t)y * (size_t)n;
-            float *column = to->plane[c] + y;
-            float *scratch = work->row + (size_t)worker * (size_t)work->row_length;
-
-            box(scratch, 1, row, n, h, a);
-            box(row, 1, scratch, n, h, a);
-            box(column, (size_t)from->height, row, n, h, a);
-        }
-    }
-}
-
-static void turn(struct work *work, struct target *from, struct target *to)
-{
-    to->width = from->height;
-    to->height = from->width;
-    to->radius = from->radius;
-    to->shift = from->shift;
-    work->from = from;
-    work->to = to;
-    rf_pool_run(&work->f->r->pool, filter_rows, work, (from->height + ROWS - 1) / ROWS);
-}
-
-static void make_target(struct work *work, struct target *target, double radius)
-{
-    shape_target(target, work->f->r, radius);
-    work->to = target;
-    rf_pool_run(&work->f->r->pool, reduce_row, work, target->height);
-    turn(work, target, &work->turned);
-    turn(work, &work->turned, target);
-}
-
-/* A target's light and weight at a pixel of the picture, by its four nearest. */
-static void sample(const struct target *t, int x, int y, double share, double out[CHANNELS])
-{
-    const double scale = 1.0 / (1 << t->shift);
-    const double fx = (x + 0.5) * scale - 0.5, fy = (y + 0.5) * scale - 0.5;
-    const int ix = (int)floor(fx), iy = (int)floor(fy);
-    const double ax = fx - ix, ay = fy - iy;
-
-    for (int j = 0; j < 2; j++) {
-        for (int i = 0; i < 2; i++) {
-            const size_t at = (size_t)clamp(iy + j, t->height - 1) * (size_t)t->width +
-                              (size_t)clamp(ix + i, t->width - 1);
-            const double w = share * (i ? ax : 1 - ax) * (j ? ay : 1 - ay);
-
-            for (int c = 0; c < CHANNELS; c++)
-                out[c] += w * t->plane[c][at];
-        }
+        mean[x] = (uint16_t)between(a, b, (int16_t)(share[x] & (SECOND - 1)));
     }
 }
 
@@ -210,29 +158,33 @@ static void write_row(void *context, int item, int worker)
     const struct work *work = context;
     const struct rf_frame *f = work->f;
     const struct refocus_renderer *r = f->r;
-    const int y = f->region.y0 + item;
+    const int y = f->region.y0 + item, x0 = f->region.x0, n = f->region.x1 - x0;
+    const size_t length = (size_t)work->making.row_length;
+    int16_t *row = (int16_t *)(void *)rf_target_scratch(&work->making, worker);
+    int16_t *middle = row + length, *last = middle + length;
+    uint16_t *share = (uint16_t *)(last + length), *means = share + length;
+    const uint16_t *d = r->disparity + y * r->stride + x0, *mean[3];
 
-    (void)worker;
-    for (int x = f->region.x0; x < f->region.x1; x++) {
-        const ptrdiff_t at = y * r->stride + x;
-        const uint32_t d = r->disparity[y * r->stride + x];
-        const int blurriness = work->table[(d * (RF_BLURRINESS_SIZE - 1) + 32767) / 65535];
-        const double b = blurriness * 2 / 255.0, w = rf_weight_of(f, r->front.light, at);
-        double sum[CHANNELS] = {0, 0, 0, 0};
+    for (int x = 0; x < n; x++)
+        share[x] = work->share[(d[x] * (RF_BLURRINESS_SIZE - 1u) + 32767) >> 16];
+    for (int c = 0; c < 3; c++) {
+        enlarged_row(&work->target[0], c, y, row + 1, middle);
+        enlarged_row(&work->target[1], c, y, row + 1, last);
+        interpolate(means + (size_t)c * length, r->front.light[c] + y * r->stride + x0,
+                    middle + x0, last + x0, share, n);
+        mean[c] = means + (size_t)c * length;
+    }
+    rf_encode_row(f, x0, y, n, mean);
+}
 
-        if (blurriness == 0) {
-            rf_copy_tile(f, (struct rf_rect){x, y, x + 1, y + 1});
-            continue;
-        }
-        if (b < 1) {
-            for (int c = 0; c < 3; c++)
-                sum[c] = (1 - b) * w * r->front.light[c][at];
-            sum[3] = (1 - b) * w;
-        }
-        sample(&work->target[0], x, y, b < 1 ? b : 2 - b, sum);
-        if (b > 1)
-            sample(&work->target[1], x, y, b - 1, sum);
-        rf_write_real(f, x, y, sum, sum[3]);
+/* The table again, as shares of the way from one target to the next. */
+static void make_shares(struct work *work)
+{
+    for (int i = 0; i < RF_BLURRINESS_SIZE; i++) {
+        const int b = 2 * work->table[i];
+
+        work->share[i] = (uint16_t)(b <= 255 ? b * 32767 / 255
+                                             : SECOND + (b - 255) * 32767 / 255);
     }
 }
 
@@ -254,8 +206,10 @@ void rf_interpolated_frame(struct rf_frame *f)
     if (middle <= c0 || middle >= last)
         middle = (c0 + last) / 2;
     rf_blurriness_table(work->table, df, p->max_blur_radius, c0, middle, last);
-    make_target(work, &work->target[0], middle);
+    make_shares(work);
+    work->making.f = f;
+    rf_target_make(&work->making, &work->target[0], middle);
     if (!rf_cancelled(f->r))
-        make_target(work, &work->target[1], last);
+        rf_target_make(&work->making, &work->target[1], last);
     rf_pool_run(&f->r->pool, write_row, work, f->region.y1 - f->region.y0);
 }

@@ -76,6 +76,9 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
                      uint16_t mean[3][RF_TILE * RF_TILE]);
 
+/* n Q14 means of row y from column x0 on, at most RF_MEAN_MAX. */
+void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3]);
+
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 

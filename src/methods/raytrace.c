@@ -13,12 +13,11 @@
 void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
+    const struct rf_blur_range reach = rf_blur_range_of(f->r, tx, ty);
     const double K = f->params->max_blur_radius;
     struct rf_exact_sums sums;
     struct rf_path path;
 
-    (void)tx;
-    (void)ty;
     (void)worker;
     memset(&sums, 0, sizeof sums);
     for (int n = 0; n < set->count; n++) {
@@ -30,7 +29,7 @@ void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
             u = fmax(-1, fmin(1, floor(u * K + 0.5) / K));
             v = fmax(-1, fmin(1, floor(v * K + 0.5) / K));
         }
-        rf_path_of(f, u, v, &path);
+        rf_path_of(f, reach, u, v, &path);
         for (int y = rect.y0; y < rect.y1; y++)
             for (int x = rect.x0; x < rect.x1; x++)
                 rf_path_add(f, &path, x, y, set->ray[n].weight, &sums);

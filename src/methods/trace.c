@@ -80,15 +80,40 @@ static bool hit_range(double along, double reach, double df, struct rf_step *ste
     return low <= high;
 }
 
-void rf_path_of(const struct rf_frame *f, double u, double v, struct rf_path *path)
+struct rf_blur_range rf_blur_range_of(const struct refocus_renderer *r, int tx, int ty)
 {
+    const int tiles = (r->pad + RF_TILE - 1) / RF_TILE;
+    int least = INT16_MAX, most = INT16_MIN;
+
+    for (int j = ty - tiles; j <= ty + tiles; j++) {
+        for (int i = tx - tiles; i <= tx + tiles; i++) {
+            const struct rf_bins *bins;
+
+            if (i < 0 || j < 0 || i >= r->tiles_x || j >= r->tiles_y)
+                continue;
+            bins = &r->bins[(size_t)j * r->tiles_x + i];
+            least = bins->least < least ? bins->least : least;
+            most = bins->most > most ? bins->most : most;
+        }
+    }
+    return (struct rf_blur_range){least / 256.0, most / 256.0};
+}
+
+void rf_path_of(const struct rf_frame *f, struct rf_blur_range reach, double u, double v,
+                struct rf_path *path)
+{
+    const double margin = 0.6; /* half a pixel, and blurs are known to 1.25 / 256 */
     const double length = sqrt(u * u + v * v);
     const double K = f->params->max_blur_radius, df = f->params->focus_disparity;
     const bool steep = fabs(v) > fabs(u);
     const double major = steep ? v : u, minor = steep ? u : v;
-    const int from = (int)floor(major * K * (df - 1) + 0.5);
-    const int to = (int)floor(major * K * df + 0.5);
-    const int direction = to >= from ? 1 : -1;
+    const double a = fmax(reach.least, K * (df - 1)), b = fmin(reach.most, K * df);
+    const double first = major * a, last = major * b;
+    const int direction = major >= 0 ? 1 : -1;
+    const int whole_from = (int)floor(major * K * (df - 1) + 0.5);
+    const int whole_to = (int)floor(major * K * df + 0.5);
+    int from = (int)floor(first - direction * margin + 0.5);
+    int to = (int)floor(last + direction * margin + 0.5);
 
     path->u = u;
     path->v = v;
@@ -96,7 +121,11 @@ void rf_path_of(const struct rf_frame *f, double u, double v, struct rf_path *pa
     path->central = length * K < 1e-9;
     if (path->central)
         return;
-    for (int k = from; k != to + direction; k += direction) {
+    if ((from - whole_from) * direction < 0)
+        from = whole_from;
+    if ((to - whole_to) * direction > 0)
+        to = whole_to;
+    for (int k = from; (to - k) * direction >= 0; k += direction) {
         const int other = nearest(k * minor / major);
         struct rf_step *step = &path->step[path->steps];
 

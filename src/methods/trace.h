@@ -21,8 +21,16 @@ struct rf_path {
     struct rf_step step[RF_MAX_STEPS];
 };
 
-/* The way of ray (u, v), the same for every pixel. */
-void rf_path_of(const struct rf_frame *f, double u, double v, struct rf_path *path);
+/* The least and the largest blur K (df - d), in pixels, that rays of a tile can meet. */
+struct rf_blur_range {
+    double least, most;
+};
+struct rf_blur_range rf_blur_range_of(const struct refocus_renderer *r, int tx, int ty);
+
+/* The way of ray (u, v), the same for every pixel of a tile: the part of it where there can be
+ * something. */
+void rf_path_of(const struct rf_frame *f, struct rf_blur_range reach, double u, double v,
+                struct rf_path *path);
 
 /* Sums of eq. 5 over the exact curve of the blend, for the pixels of a tile. */
 struct rf_exact_sums {

@@ -68,8 +68,8 @@ class Usage(Case):
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background '
                        '--threads --cpu --repeat --json -h --help',
-            'bench': self.PAPERS + '--size --depth --depth-unit --near --far --focus --focus-at '
-                     '--focus-rectangle '
+            'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far '
+                     '--focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --method --rays --iterations --quality '
                      '--aperture --blend --sigma --highlights --mirror --background --threads --cpu '
                      '--repeat --json -h --help',
@@ -409,6 +409,35 @@ class Results(Case):
         report = self.reports('render', 'photo.ppm', '--depth', 'low.pgm', '-o', 'out.ppm')
         self.assertEqual((report['width'], report['depth']['width']), (W, W // 4))
 
+    def test_bench_frames(self):
+        report = self.reports('bench', '--frames', '--size', '48x32', '--repeat', '2',
+                              '--threads', '2')
+        rows = report['frames']
+        self.assertEqual([(r['blur'], r['quality'], r['threads']) for r in rows],
+                         [(k, q, 2) for k in (10, 20, 40)
+                          for q in ('preview', 'standard', 'best')])
+        for row in rows:
+            self.assertEqual((row['width'], row['height']), (48, 32))
+            self.assertTrue(all(row[t] > 0 for t in
+                                ('memcpy_ms', 'box_ms', 'prepare_ms', 'render_ms')))
+        text = self.succeeds('bench', 'photo.ppm', '--depth', 'depth.pgm', '--frames',
+                             '--repeat', '1', '--threads', '1')
+        self.assertEqual(len(re.findall(r'(?m)^ *%dx%d ' % (W, H), text)), 9)
+        self.fails(2, '--frames: it does not go with --rays without a number; leave one of them '
+                   'out', 'bench', '--frames', '--rays', '--size', '9x9')
+
+    def test_bench_kernels(self):
+        report = self.reports('bench', '--kernels')
+        names = [k['kernel'] for k in report['kernels']]
+        self.assertIn('sweep', names)
+        self.assertEqual(len(set(names)), len(names))
+        for kernel in report['kernels']:
+            self.assertGreater(kernel['ns'], 0)
+            self.assertGreater(kernel['ns_c'], 0)
+        plain = self.reports('bench', '--kernels', '--cpu', 'c')
+        self.assertEqual(plain['cpu'], 'c')
+        self.assertRegex(self.succeeds('bench', '--kernels'), r'(?m)^sweep +\S+ +\S+ ns/ray sample')
+
     def test_bench(self):
         report = self.reports('bench', '--size', '64x40', '--repeat', '2', '--blur', '5')
         self.assertEqual((report['width'], report['height'], report['repeat'], report['blur']),
@@ -481,6 +510,32 @@ class Papers(Case):
         self.assertGreater(blur['psnr'], photo['psnr'])
         self.fails(2, "--methods: 'swep' is no method; did you mean 'sweep'?", 'compare', *common,
                    '--reference', 'gt.ppm', '--methods', 'blur,swep')
+        report = self.reports(
+            'compare', *common, '--reference', 'gt.ppm', '--iterations', '3', '--methods',
+            'search:rays=full:iterations=1,search,jittered:cell=4:seed=7,search:mirror,sweep:rays=8')
+        self.assertEqual([m['label'] for m in report['methods'][1:]],
+                         ['search:rays=full:iterations=1', 'search', 'jittered:cell=4:seed=7',
+                          'search:mirror', 'sweep:rays=8'])
+        self.assertEqual([m['method'] for m in report['methods'][1:4]],
+                         ['search', 'search', 'jittered'])
+        # each is what render makes of the same options
+        for row, options in ((1, ('--method', 'search', '--rays', 'full', '--iterations', '1')),
+                             (2, ('--method', 'search', '--iterations', '3')),
+                             (3, ('--method', 'jittered', '--cell', '4', '--seed', '7')),
+                             (5, ('--rays', '8'))):
+            self.succeeds('render', *common, *options, '-o', 'own.ppm')
+            own = self.reports('compare', *common, '--reference', 'own.ppm', '--iterations', '3',
+                               '--methods', report['methods'][row]['label'])
+            self.assertEqual(own['methods'][1]['rmse'], 0)
+        for why, methods in (("--rays: 'none' cannot be used; give", 'search:rays=none'),
+                             ('--ray: unknown option; did you mean --rays?', 'search:ray=3'),
+                             ('--mirror: takes no value', 'search:mirror=1'),
+                             ('--threads: unknown option', 'search:threads=1'),
+                             ("--aperture: 'disk' is not known", 'sweep:aperture=disk'),
+                             ('--methods: there are too many; give at most 32',
+                              ','.join('sweep:rays=%d' % i for i in range(1, 40)))):
+            self.fails(2, re.compile('^refocus: ' + re.escape(why)), 'compare', *common,
+                       '--reference', 'gt.ppm', '--methods', methods)
         self.fails(2, '--reference: there is nothing to compare with; give --reference GT',
                    'compare', *common)
         pictures.ppm('tiny.ppm', 4, 3, lambda x, y: (x, y, 0))

@@ -375,12 +375,27 @@ static void bad_apertures(void **state)
     refocus_aperture_destroy(NULL);
 }
 
+/* The list of kernels ends, and nothing is measured for a processor that is none. */
+static void kernels(void **state)
+{
+    struct refocus_kernel_time time = {"untouched", NULL, 0, 0};
+
+    (void)state;
+    assert_int_equal(refocus_measure_kernel(1000, REFOCUS_CPU_C, &time), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_measure_kernel(0, 5, &time), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_measure_kernel(0, REFOCUS_CPU_C, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_string_equal(time.name, "untouched");
+    assert_int_equal(refocus_measure_kernel(0, REFOCUS_CPU_C, &time), REFOCUS_OK);
+    assert_string_equal(time.name, "sweep");
+    assert_true(time.ns > 0 && time.ns_c > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_limits),      cmocka_unit_test(bad_settings),
         cmocka_unit_test(bad_pictures),    cmocka_unit_test(bad_disparities),
         cmocka_unit_test(order_and_size),  cmocka_unit_test(names),
-        cmocka_unit_test(bad_apertures)};
+        cmocka_unit_test(bad_apertures),   cmocka_unit_test(kernels)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -218,7 +218,7 @@ static double extra(uint32_t method, int width, int height, float blur, int thre
     case REFOCUS_METHOD_FOVEATED:
         return 96 * (w + 16) * (h + 16) + 262144;
     case REFOCUS_METHOD_INTERPOLATED:
-        return 48 * (w + 16) * (h + 16) + 4 * (w + h + 16) * t + 65536;
+        return 32 * (w + 16) * (h + 16) + 24 * (w + 64) * t + 65536;
     default:
         return 0;
     }

@@ -1,0 +1,229 @@
+/* measure.c: times of the kernels on rows that look like a photo with two depths. */
+#include <refocus/measure.h>
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "kernels/kernels.h"
+
+enum { N = 1024, MARGIN = RF_SPREAD_MARGIN, ROW = N + 2 * MARGIN, SHORTS = 12, FLOATS = 6 };
+
+/* Rows with a margin: what each kernel takes them for is its business. */
+struct rows {
+    uint16_t shorts[SHORTS][ROW];
+    int16_t blur[3][ROW];
+    uint32_t sums[ROW];
+    uint64_t wide[2][RF_TILE * RF_TILE];
+    float floats[FLOATS][ROW];
+    uint16_t plane[4 * RF_TILE][4 * ROW]; /* blur and light of a strip, one after the other */
+    uint8_t unsure[ROW]; /* all 0 */
+    uint32_t strip_sum[3][RF_STRIP_LANES];
+    struct rf_sorted_rays rays;
+};
+
+typedef void measured_fn(const struct rf_kernels *k, struct rows *r);
+
+static void signed_blur(const struct rf_kernels *k, struct rows *r)
+{
+    k->signed_blur(r->blur[1], r->shorts[0] + MARGIN, (struct rf_focus){20000, 20 << 8}, N);
+}
+
+static void smooth3(const struct rf_kernels *k, struct rows *r)
+{
+    uint16_t *const out[3] = {r->shorts[6], r->shorts[7], r->shorts[8]};
+    const uint16_t *const light[3] = {r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
+                                      r->shorts[2] + MARGIN};
+
+    k->smooth3(out, light, r->blur[0] + MARGIN, 1, 3 << 8, N);
+}
+
+static void spread_row(const struct rf_kernels *k, struct rows *r)
+{
+    k->spread_row(r->shorts[9] + MARGIN, r->shorts[10] + MARGIN, 40, N);
+}
+
+static void dilate_from(const struct rf_kernels *k, struct rows *r)
+{
+    k->dilate_from(r->shorts[9] + MARGIN, r->shorts[0] + MARGIN, N);
+}
+
+static void mark(const struct rf_kernels *k, struct rows *r)
+{
+    k->mark(r->blur[1] + MARGIN, r->blur[0] + MARGIN, r->shorts[0] + MARGIN, N);
+}
+
+static void push(const struct rf_kernels *k, struct rows *r)
+{
+    uint16_t *const out[3] = {r->shorts[6], r->shorts[7], r->shorts[8]};
+    const uint16_t *const upper[3] = {r->shorts[0], r->shorts[1], r->shorts[2]};
+    const uint16_t *const lower[3] = {r->shorts[3], r->shorts[4], r->shorts[5]};
+
+    k->push(out, r->blur[1], upper, lower, r->blur[0], r->blur[2], N / 2);
+}
+
+static void pull(const struct rf_kernels *k, struct rows *r)
+{
+    k->pull(r->shorts[6] + MARGIN, r->blur[2] + MARGIN, r->shorts[0] + MARGIN,
+            r->shorts[1] + MARGIN, r->shorts[7], N / 2);
+}
+
+static void means(const struct rf_kernels *k, struct rows *r)
+{
+    k->means(r->shorts[6], r->sums, rf_mean_scale(64), N);
+}
+
+static void weighted_means(const struct rf_kernels *k, struct rows *r)
+{
+    for (int i = 0; i < N; i += RF_TILE * RF_TILE)
+        k->weighted_means(r->shorts[6], r->wide[0], r->wide[1], RF_TILE * RF_TILE);
+}
+
+static void luminance(const struct rf_kernels *k, struct rows *r)
+{
+    k->luminance(r->shorts[6], r->shorts[0], r->shorts[1], r->shorts[2], N);
+}
+
+static void blend4(const struct rf_kernels *k, struct rows *r)
+{
+    const uint16_t *const row[4] = {r->shorts[0], r->shorts[1], r->shorts[2], r->shorts[3]};
+
+    k->blend4(r->shorts[6], row, (const uint16_t[4]){8000, 24000, 25000, 8535}, N);
+}
+
+static void median3(const struct rf_kernels *k, struct rows *r)
+{
+    k->median3(r->shorts[6] + MARGIN, r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
+               r->shorts[2] + MARGIN, r->unsure, N);
+}
+
+static void series_row(const struct rf_kernels *k, struct rows *r)
+{
+    const struct rf_series_job job = {.here = r->floats[1] + MARGIN,
+                                      .start = r->floats[3],
+                                      .across = r->floats[4],
+                                      .own = r->floats[5],
+                                      .stride = ROW,
+                                      .share = 0.01f};
+
+    memcpy(r->floats[0], r->floats[3], N * sizeof(float));
+    k->series_row(r->floats[0], &job, N);
+}
+
+/* A chunk of rays over a strip, each with one test that some pixels pass. */
+static void sweep(const struct rf_kernels *k, struct rows *r)
+{
+    static const struct rf_slab slab = {-20 * 256, 256, -20 * 256};
+    const ptrdiff_t stride = 4 * ROW, pitch = ROW;
+    uint16_t *strip = r->plane[RF_TILE] + MARGIN;
+    const struct rf_sweep_job job = {.blur = (const int16_t *)strip,
+                                     .stride = stride,
+                                     .pitch = pitch,
+                                     .slabs = 1,
+                                     .slab = &slab,
+                                     .rays = &r->rays};
+    uint32_t *const sum[3] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2]};
+
+    for (int n = 0; n < RF_RAY_CHUNK; n++) {
+        r->rays.tests[n] = 1;
+        r->rays.slab[0][n] = 0;
+        r->rays.offset[0][n] = (int32_t)((n / 8 - 4) * stride + (n % 8 - 4) * 5);
+        r->rays.last[n] = strip + pitch + n % 5;
+    }
+    r->rays.rays = RF_RAY_CHUNK;
+    memset(r->strip_sum, 0, sizeof r->strip_sum);
+    k->sweep(sum, &job);
+}
+
+static const struct {
+    const char *name, *unit;
+    measured_fn *run;
+    double count; /* of units a run */
+} measured[] = {
+    {"sweep", "ray sample", sweep, RF_RAY_CHUNK * RF_STRIP_LANES},
+    {"signed_blur", "pixel", signed_blur, N},
+    {"smooth3", "pixel", smooth3, N},
+    {"spread_row", "pixel", spread_row, N},
+    {"dilate_from", "pixel", dilate_from, N},
+    {"mark", "pixel", mark, N},
+    {"push", "pixel", push, N / 2},
+    {"pull", "pixel", pull, N},
+    {"means", "pixel", means, N},
+    {"weighted_means", "pixel", weighted_means, N},
+    {"luminance", "pixel", luminance, N},
+    {"blend4", "pixel", blend4, N},
+    {"median3", "pixel", median3, N},
+    {"series_row", "pixel", series_row, N},
+};
+
+static void fill(struct rows *r)
+{
+    uint32_t seed = 1;
+
+    for (int x = 0; x < ROW; x++) {
+        for (int i = 0; i < SHORTS; i++)
+            r->shorts[i][x] = (uint16_t)((seed = seed * 1664525u + 1013904223u) >> 20);
+        for (int i = 0; i < FLOATS; i++)
+            r->floats[i][x] = 0.1f + (float)(r->shorts[i][x]) / 16384;
+        r->blur[0][x] = (int16_t)((x / 50 % 2 ? -20 : 12) * 256 + r->shorts[0][x] % 64);
+        r->blur[2][x] = (int16_t)(x / 50 % 2 ? RF_NO_BLUR : r->blur[0][x]);
+        r->sums[x] = 64u * r->shorts[1][x];
+    }
+    for (int i = 0; i < RF_TILE * RF_TILE; i++) {
+        r->wide[1][i] = 1000u + r->shorts[2][i];
+        r->wide[0][i] = r->wide[1][i] * r->shorts[3][i];
+    }
+    for (int y = 0; y < 4 * RF_TILE; y++) {
+        memcpy(r->plane[y], r->blur[0], sizeof r->blur[0]);
+        for (int c = 0; c < 3; c++)
+            memcpy(r->plane[y] + (c + 1) * ROW, r->shorts[c], sizeof r->shorts[c]);
+    }
+}
+
+static double seconds(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double best_ns(measured_fn *run, const struct rf_kernels *kernels, struct rows *rows)
+{
+    enum { AT_ONCE = 20 };
+    const double end = seconds() + 0.02;
+    double best = 1e9;
+
+    do {
+        const double start = seconds();
+        double taken;
+
+        for (int i = 0; i < AT_ONCE; i++)
+            run(kernels, rows);
+        taken = (seconds() - start) / AT_ONCE;
+        best = taken < best ? taken : best;
+    } while (seconds() < end);
+    return best * 1e9;
+}
+
+int refocus_measure_kernel(uint32_t index, uint32_t cpu, struct refocus_kernel_time *time)
+{
+    struct rf_kernels own, plain;
+    uint32_t c = REFOCUS_CPU_C;
+    struct rows *rows;
+
+    if (index >= sizeof measured / sizeof *measured || cpu > REFOCUS_CPU_AVX2 || !time)
+        return REFOCUS_ERR_ARGUMENT;
+    if (!rf_kernels_select(&own, &cpu) || !rf_kernels_select(&plain, &c))
+        return REFOCUS_ERR_UNSUPPORTED;
+    rows = calloc(1, sizeof *rows);
+    if (!rows)
+        return REFOCUS_ERR_MEMORY;
+    fill(rows);
+    *time = (struct refocus_kernel_time){
+        measured[index].name, measured[index].unit,
+        best_ns(measured[index].run, &own, rows) / measured[index].count,
+        best_ns(measured[index].run, &plain, rows) / measured[index].count};
+    free(rows);
+    return REFOCUS_OK;
+}
