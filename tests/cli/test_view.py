@@ -31,7 +31,8 @@ class Viewer:
     def __init__(self, refocus, folder, display, *arguments):
         self.folder = folder
         self.environment = dict(os.environ, DISPLAY=display, SDL_VIDEODRIVER='x11',
-                                SDL_RENDER_DRIVER='software')
+                                SDL_RENDER_DRIVER='software',
+                                SDL_FRAMEBUFFER_ACCELERATION='0')
         self.process = subprocess.Popen(
             [refocus, 'view', *arguments, '--json', '--size', '%dx%d' % (W, H)],
             env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

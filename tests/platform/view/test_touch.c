@@ -1,5 +1,5 @@
-/* The window without a screen (SDL's dummy driver), worked by events of a touch screen: SDL makes a
- * mouse of the first finger, and tells of two as gestures. */
+/* The window without a screen (SDL's dummy driver), worked by events of a touch screen:
+ * SDL makes a mouse of the first finger, and tells of two as gestures. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -78,7 +78,8 @@ static void push_finger_up(void)
     SDL_PushEvent(&event);
 }
 
-/* What two fingers do, a step whenever the window is at rest: it is polled in its loop. */
+/* What two fingers do, a step whenever the window is at rest: it is polled in its loop.
+ */
 static bool move_fingers(void *user)
 {
     struct fingers *const fingers = user;
@@ -126,7 +127,8 @@ static void test_two_fingers(void **unused)
 {
     static uint8_t pixels[3 * W * H];
     static uint16_t depth[W * H];
-    struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
+    struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
     struct rf_view_setup setup;
     struct rf_view_report *const report = calloc(1, sizeof *report);
     struct fingers fingers = {report, 0};
@@ -157,7 +159,8 @@ static void test_two_fingers(void **unused)
     assert_true(fabs((double)report->last.focus - 40000 / 65535.0) < 1e-3);
     assert_true(report->last.blur >= 6 && report->last.blur <= 6);
     assert_int_equal(report->last.focus_tap, 1);
-    assert_true(fabs(report->last.scale - exp(1.0)) < 1e-3); /* five times a tenth, twice over */
+    assert_true(fabs(report->last.scale - exp(1.0)) <
+                1e-3); /* five times a tenth, twice over */
     assert_int_equal(report->strokes, 0);
     assert_string_equal(report->times[report->count - 1].cause, "undo");
     assert_true(report->count > 3 && report->times[0].first_ms > 0);
@@ -167,7 +170,8 @@ static void test_two_fingers(void **unused)
 static void test_no_display(void **unused)
 {
     static uint8_t pixel[3];
-    struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
+    struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
     struct rf_view_setup setup;
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
