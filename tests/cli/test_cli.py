@@ -48,8 +48,9 @@ class Usage(Case):
                       '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
                       '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--estimate --preset --input-size --input-scale --input-mean --far-is-large '
-                     '--stereo-file --upsample --strokes --side-by-side --view --focus-at --blur --json -h --help',
+                     '--snap --upsample --estimate --preset --input-size --input-mean --input-scale '
+                     '--far-is-large --match --strokes --stereo-file --side-by-side --view '
+                     '--focus-at --blur --json -h --help',
             'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
                     '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--focus --focus-at --focus-distance --blur --f-number --focal-length '
@@ -538,6 +539,15 @@ class DepthAndInfo(Case):
                    '--stereo-file, '
                    '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
                    '--depth', 'depth.pgm')
+        self.fails(1, re.compile(r'^refocus: photo.ppm: (it is no stereo file|this build)'),
+                   'depth', 'photo.ppm', '--stereo-file', '-o', 'd.png')
+        self.fails(2, "--input-size: '8,8' cannot be used; give W,H from 32 to 2048", 'depth',
+                   'photo.ppm', '--estimate', 'no.onnx', '--input-size', '8,8', '-o', 'd.png')
+        self.fails(2, re.compile("^refocus: --upsample: 'magic' cannot be used"), 'depth',
+                   'photo.ppm', '--depth', 'depth.pgm', '--full', '--upsample', 'magic', '-o',
+                   'd.png')
+        self.succeeds('depth', 'photo.ppm', '--depth', 'depth.pgm', '--snap', '2', '-o', 'd.png')
+        os.remove('d.png')
         self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '
                                  r'build has no OpenCV)'),
                    'depth', 'photo.ppm', '-o', 'd.png', '--estimate', 'no.onnx')
