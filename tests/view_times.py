@@ -45,7 +45,7 @@ def measure(refocus, display, photo, depth, taps, patience):
         [refocus, 'view', photo, '--depth', depth, '--focus', '0.1', '--json', '--size',
          '1280x960'], stdout=subprocess.PIPE, text=True,
         env=dict(os.environ, DISPLAY=display, SDL_VIDEODRIVER='x11',
-                 SDL_RENDER_DRIVER='software'))
+                 SDL_RENDER_DRIVER='software', SDL_FRAMEBUFFER_ACCELERATION='0'))
     while not xdotool(display, 'search', '--name', os.path.basename(photo)):
         time.sleep(0.2)
     window = xdotool(display, 'search', '--name', os.path.basename(photo)).split()[0]

@@ -8,7 +8,8 @@
 /* What refocus_strokes_load() takes at the most. */
 enum { MAX_BYTES = 64 << 20 };
 
-int painted_read(struct input *input, const char *photo, const struct depth_settings *settings)
+int painted_read(struct input *input, const char *photo,
+                 const struct depth_settings *settings)
 {
     struct refocus_depth_map *const map = &input->made.depth;
     struct refocus_reason reason = {""};
@@ -21,7 +22,8 @@ int painted_read(struct input *input, const char *photo, const struct depth_sett
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!input->photo->image.plane[0])
-        return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; give a photo");
+        return report_failure(EXIT_FAILED, photo,
+                              "it is a depth map, not a photo; give a photo");
     map->width = input->width = input->photo->image.width;
     map->height = input->height = input->photo->image.height;
     map->meaning = REFOCUS_DEPTH_DISPARITY;
@@ -53,9 +55,8 @@ static int take(struct input *input, const struct refocus_strokes *strokes)
 
 int painted_apply(struct input *input, const char *file)
 {
-    struct refocus_disparity base = refocus_disparity16(input->disparity, input->width,
-                                                        input->height,
-                                                        2 * (ptrdiff_t)input->width);
+    struct refocus_disparity base = refocus_disparity16(
+        input->disparity, input->width, input->height, 2 * (ptrdiff_t)input->width);
     struct refocus_strokes_reason reason = {""};
     struct refocus_strokes *strokes = NULL;
     struct refocus_photo_info *const info = &input->made.info;

@@ -5,10 +5,11 @@
 #include "inputs.h"
 
 /* Read a photo without any depth, for strokes to be painted over. */
-int painted_read(struct input *input, const char *photo, const struct depth_settings *settings);
+int painted_read(struct input *input, const char *photo,
+                 const struct depth_settings *settings);
 
-/* Paint the strokes of a file over the disparities, which have the photo's size, or over
- * nothing when there are none yet. Returns an exit code and prints why. */
+/* Paint the strokes of a file over the disparities, which have the photo's size, or
+ * over nothing when there are none yet. Returns an exit code and prints why. */
 int painted_apply(struct input *input, const char *file);
 
 #endif

@@ -22,9 +22,10 @@ struct settings {
 };
 
 static const struct option options[] = {
-    OUTPUT_OPTION(struct settings, output,
-                  "the picture that 's' saves: .jpg, .png or .ppm; settings, depth and strokes "
-                  "get names of it. Default: the photo's name with -refocused.jpg, here"),
+    OUTPUT_OPTION(
+        struct settings, output,
+        "the picture that 's' saves: .jpg, .png or .ppm; settings, depth and strokes "
+        "get names of it. Default: the photo's name with -refocused.jpg, here"),
     {.kind = OPTION_HEADING, .help = "Depth; without any it can be painted"},
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
@@ -41,7 +42,8 @@ static const struct option options[] = {
      .name = SETTINGS_NAME,
      .argument = "FILE",
      .offset = offsetof(struct settings, load),
-     .help = "JSON object of options to begin with, as 'j' saves it; the command line overrules "
+     .help = "JSON object of options to begin with, as 'j' saves it; the command line "
+             "overrules "
              "it",
      .elsewhere = true},
     {.kind = OPTION_NUMBERS,
@@ -94,18 +96,20 @@ static int print_report(const struct input *input, const struct rf_view_report *
     for (int i = 0; i < report->count; i++)
         json_array_append_new(times, time_json(&report->times[i]));
     return report_print_json(json_pack(
-        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}", "file",
-        report_text_json(input->photo_name), "width", (int)input->photo->image.width, "height",
-        (int)input->photo->image.height, "driver", report->driver, "window_width", report->width,
-        "window_height", report->height, "reduction", report->reduction, "method",
-        refocus_method_name(report->last.method), "focus", (double)report->last.focus, "blur",
-        (double)report->last.blur, "strokes", report->strokes, "saved", saving->saved,
-        "times", times, "peak_rss_kib",
+        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}",
+        "file", report_text_json(input->photo_name), "width",
+        (int)input->photo->image.width, "height", (int)input->photo->image.height,
+        "driver", report->driver, "window_width", report->width, "window_height",
+        report->height, "reduction", report->reduction, "method",
+        refocus_method_name(report->last.method), "focus", (double)report->last.focus,
+        "blur", (double)report->last.blur, "strokes", report->strokes, "saved",
+        saving->saved, "times", times, "peak_rss_kib",
         (json_int_t)report_peak_rss_kib()));
 }
 
 /* The options that make the same picture. */
-static int save_settings(void *of, const struct refocus_render_params *lens, const char *file)
+static int save_settings(void *of, const struct refocus_render_params *lens,
+                         const char *file)
 {
     struct settings settings = *(const struct settings *)of;
 
@@ -137,7 +141,8 @@ static int show(struct settings *settings, struct engine *engine, struct input *
                                  .settings = save_settings,
                                  .of = settings,
                                  .quiet = settings->engine.json};
-    struct rf_view_setup setup = {.title = input->photo_name, .stop = interrupted,
+    struct rf_view_setup setup = {.title = input->photo_name,
+                                  .stop = interrupted,
                                   .fullscreen = settings->fullscreen};
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
@@ -148,17 +153,20 @@ static int show(struct settings *settings, struct engine *engine, struct input *
     setup.session.photo = &input->photo->image;
     setup.session.disparity = input->disparity;
     setup.session.params = engine->params;
-    setup.session.threads = isnan(settings->engine.threads) ? 0 : (int)settings->engine.threads;
+    setup.session.threads =
+        isnan(settings->engine.threads) ? 0 : (int)settings->engine.threads;
     setup.session.cpu = (uint32_t)settings->engine.cpu;
     setup.session.save = view_save;
     setup.session.save_user = &saving;
     setup.width = isnan(settings->size[0]) ? 0 : (int)settings->size[0];
     setup.height = isnan(settings->size[1]) ? 0 : (int)settings->size[1];
-    setup.quit_after_ms = isnan(settings->seconds) ? 0 : (int)(settings->seconds * 1000);
+    setup.quit_after_ms =
+        isnan(settings->seconds) ? 0 : (int)(settings->seconds * 1000);
     status = choose_state(input, settings, &setup.state);
-    if (status == EXIT_DONE && !view_make_names(&saving.names, settings->output,
-                                                input->photo_name))
-        status = report_failure(EXIT_FAILED, input->photo_name, "its name is too long to make "
+    if (status == EXIT_DONE &&
+        !view_make_names(&saving.names, settings->output, input->photo_name))
+        status = report_failure(EXIT_FAILED, input->photo_name,
+                                "its name is too long to make "
                                 "others of it; give --output");
     if (status == EXIT_DONE) {
         report_progress_end();
@@ -175,17 +183,19 @@ static int show(struct settings *settings, struct engine *engine, struct input *
 
 static int check_method(const struct settings *settings)
 {
-    const uint32_t without_memory =
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    const uint32_t without_memory = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
+                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
+                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
+                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
+                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
 
     if (without_memory & REFOCUS_METHOD_BIT(settings->engine.method))
         return EXIT_DONE;
-    return report_failure(EXIT_WRONG, "--method",
-                          "'%s' is not for the window; give sweep, search, raytrace, jittered "
-                          "or blur",
-                          refocus_method_name((uint32_t)settings->engine.method));
+    return report_failure(
+        EXIT_WRONG, "--method",
+        "'%s' is not for the window; give sweep, search, raytrace, jittered "
+        "or blur",
+        refocus_method_name((uint32_t)settings->engine.method));
 }
 
 static int open_photo(struct settings *settings, const char *photo)
@@ -231,7 +241,8 @@ static int run(int argc, char **argv)
     if (status == EXIT_DONE)
         status = check_method(&settings);
     if (status == EXIT_DONE && settings.output) {
-        const char *const inputs[] = {files[0], settings.depth.file, settings.engine.aperture};
+        const char *const inputs[] = {files[0], settings.depth.file,
+                                      settings.engine.aperture};
 
         status = output_check(settings.output, endings, inputs, 3);
     }
@@ -242,12 +253,18 @@ const struct command view_command = {
     .name = "view",
     .usage = "PHOTO [options]",
     .summary = "interactive window: tap to focus, change the aperture, paint depth",
-    .notes = "Tap or click to focus; drag or turn the wheel for the aperture; ctrl and the wheel, "
-             "or two fingers, to enlarge; drag with the right button to move. Keys: t focus, m "
-             "method, d depth, k peaking, b before and after, p paint an object, a more of it, x "
-             "less of it, o brush, g gradient, l a layer of the whole picture, f fill anew, 0 to "
-             "9, page up and page down the disparity to fill with, [ ] brush, u undo, home and "
-             "end the size, s save the picture, j the settings, w depth and strokes, h keys, q "
+    .notes = "Tap or click to focus; drag or turn the wheel for the aperture; ctrl and "
+             "the wheel, "
+             "or two fingers, to enlarge; drag with the right button to move. Keys: t "
+             "focus, m "
+             "method, d depth, k peaking, b before and after, p paint an object, a "
+             "more of it, x "
+             "less of it, o brush, g gradient, l a layer of the whole picture, f fill "
+             "anew, 0 to "
+             "9, page up and page down the disparity to fill with, [ ] brush, u undo, "
+             "home and "
+             "end the size, s save the picture, j the settings, w depth and strokes, h "
+             "keys, q "
              "quit.",
     .options = options,
     .files_least = 1,

@@ -13,15 +13,16 @@ struct view_saving {
     struct view_names names;
     const struct input *input;
     /* Writes the options that make the picture; an exit code. */
-    int (*settings)(void *of, const struct refocus_render_params *lens, const char *file);
+    int (*settings)(void *of, const struct refocus_render_params *lens,
+                    const char *file);
     void *of;
     bool quiet; /* say nothing of what was saved */
     int saved;  /* files written, and failures */
     int failed;
 };
 
-/* Names beside `output`, or made of the photo's in this folder when it is NULL; false when
- * they are too long. */
+/* Names beside `output`, or made of the photo's in this folder when it is NULL; false
+ * when they are too long. */
 bool view_make_names(struct view_names *names, const char *output, const char *photo);
 
 /* For rf_session_setup.save; user is a struct view_saving. */

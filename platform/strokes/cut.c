@@ -110,14 +110,16 @@ static void start(struct rf_cut *cut)
     }
 }
 
-/* What may still flow between a node of a tree and its neighbour, away from the object. */
+/* What may still flow between a node of a tree and its neighbour, away from the object.
+ */
 static int32_t outward(const struct rf_cut *cut, const struct rf_cut_node *p, int d)
 {
     return p->tree == OBJECT ? p->capacity[d]
                              : cut->nodes[p->neighbour[d]].capacity[7 - d];
 }
 
-/* Let the tree grow from a node; the direction in which it meets the other tree, or -1. */
+/* Let the tree grow from a node; the direction in which it meets the other tree, or -1.
+ */
 static int grow(struct rf_cut *cut, int32_t node)
 {
     struct rf_cut_node *const p = &cut->nodes[node];
@@ -236,7 +238,8 @@ static void mark(struct rf_cut *cut, struct rf_cut_node *p, int32_t distance)
     }
 }
 
-/* Whether something may flow from a node's neighbour (of its own tree) down to the node. */
+/* Whether something may flow from a node's neighbour (of its own tree) down to the
+ * node. */
 static bool feeds(const struct rf_cut *cut, const struct rf_cut_node *p, int d)
 {
     const struct rf_cut_node *const q = &cut->nodes[p->neighbour[d]];
@@ -312,7 +315,8 @@ void rf_cut_solve(struct rf_cut *cut)
             continue;
         }
         augment(cut, node, direction);
-        for (int32_t orphan = pop_orphan(cut); orphan != NOBODY; orphan = pop_orphan(cut))
+        for (int32_t orphan = pop_orphan(cut); orphan != NOBODY;
+             orphan = pop_orphan(cut))
             adopt(cut, orphan);
     }
 }

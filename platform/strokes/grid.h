@@ -4,26 +4,27 @@
 
 #include "internal.h"
 
-/* Of each pixel. The first two are where strokes say what it is; what is not open keeps its
- * label. */
+/* Of each pixel. The first two are where strokes say what it is; what is not open keeps
+ * its label. */
 enum {
-    RF_INSIDE = 1,      /* of the object */
-    RF_SEED = 2,        /* and that is certain */
-    RF_OPEN = 4,        /* to be found out */
+    RF_INSIDE = 1, /* of the object */
+    RF_SEED = 2,   /* and that is certain */
+    RF_OPEN = 4,   /* to be found out */
 };
 
 struct rf_grid {
     int level;
     struct rf_area area; /* in pixels of the level */
     uint8_t *state;
-    /* Scores of where a pixel lies, of an area of a coarser level that holds this one. */
+    /* Scores of where a pixel lies, of an area of a coarser level that holds this one.
+     */
     const int16_t *place;
     struct rf_area place_area;
     int place_shift;
 };
 
-/* Find the least cut among the open pixels, or settle for a good one near their labels; they
- * are not open afterwards. */
+/* Find the least cut among the open pixels, or settle for a good one near their labels;
+ * they are not open afterwards. */
 int rf_grid_cut(struct rf_grid *grid, struct rf_selector *selector,
                 const struct rf_pyramid *pyramid, bool settle);
 
@@ -34,7 +35,8 @@ void rf_grid_refine(struct rf_grid *fine, struct rf_grid *coarse,
 struct rf_area rf_grid_finer_area(const struct rf_grid *coarse,
                                   const struct rf_pyramid *pyramid);
 
-/* Drop what does not hang together with a certain pixel; stack: a number for each pixel. */
+/* Drop what does not hang together with a certain pixel; stack: a number for each
+ * pixel. */
 void rf_grid_connect(struct rf_grid *grid, int32_t *stack);
 
 /* Cut the area to what is inside, and a margin. */

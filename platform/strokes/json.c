@@ -21,7 +21,8 @@ struct reading {
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-static int refuse(struct refocus_strokes_reason *reason, int status, const char *why, ...)
+static int
+refuse(struct refocus_strokes_reason *reason, int status, const char *why, ...)
 {
     va_list arguments;
 
@@ -46,7 +47,8 @@ static const char *strange_key(json_t *object, const char *const *known)
     const char *key;
     json_t *value;
 
-    json_object_foreach(object, key, value) {
+    json_object_foreach(object, key, value)
+    {
         int i = 0;
 
         while (known[i] && strcmp(known[i], key))
@@ -57,7 +59,8 @@ static const char *strange_key(json_t *object, const char *const *known)
     return NULL;
 }
 
-static bool read_number(const json_t *value, double least, double greatest, float *number)
+static bool read_number(const json_t *value, double least, double greatest,
+                        float *number)
 {
     const double v = json_is_number(value) ? json_number_value(value) : greatest + 1;
 
@@ -76,7 +79,8 @@ static int read_key(struct reading *reading, int index, json_t *object, const ch
     if (!value || read_number(value, least, greatest, number))
         return REFOCUS_OK;
     return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                  "strokes[%d].%s must be a number from %g to %g", index, key, least, greatest);
+                  "strokes[%d].%s must be a number from %g to %g", index, key, least,
+                  greatest);
 }
 
 static bool read_end(const json_t *end, float *x, float *y, float *d)
@@ -98,7 +102,8 @@ static int read_fill(struct reading *reading, int index, json_t *object,
 
     if (solid && gradient)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d] has both a disparity and a gradient; give one", index);
+                      "strokes[%d] has both a disparity and a gradient; give one",
+                      index);
     if (solid)
         fill->kind = REFOCUS_FILL_SOLID;
     if (!gradient)
@@ -107,9 +112,10 @@ static int read_fill(struct reading *reading, int index, json_t *object,
     if (!json_is_array(gradient) || json_array_size(gradient) != 2 ||
         !read_end(json_array_get(gradient, 0), &fill->x0, &fill->y0, &fill->d0) ||
         !read_end(json_array_get(gradient, 1), &fill->x1, &fill->y1, &fill->d1))
-        return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d].gradient must be [[X, Y, D], [X, Y, D]] with D from 0 to 1",
-                      index);
+        return refuse(
+            reading->reason, REFOCUS_ERR_FORMAT,
+            "strokes[%d].gradient must be [[X, Y, D], [X, Y, D]] with D from 0 to 1",
+            index);
     dx = fill->x1 - fill->x0;
     dy = fill->y1 - fill->y0;
     if (dx < 1 && dx > -1 && dy < 1 && dy > -1)
@@ -119,8 +125,8 @@ static int read_fill(struct reading *reading, int index, json_t *object,
 }
 
 /* The points of a stroke; *points is to be freed. */
-static int read_points(struct reading *reading, int index, json_t *object, float **points,
-                       int *count)
+static int read_points(struct reading *reading, int index, json_t *object,
+                       float **points, int *count)
 {
     json_t *const list = json_object_get(object, "points");
     const size_t size = json_is_array(list) ? json_array_size(list) : 0;
@@ -129,11 +135,12 @@ static int read_points(struct reading *reading, int index, json_t *object, float
     *count = 0;
     if (size == 0)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d].points must be a list of [X, Y], one at least", index);
+                      "strokes[%d].points must be a list of [X, Y], one at least",
+                      index);
     if (size > REFOCUS_MAX_STROKE_POINTS)
         return refuse(reading->reason, REFOCUS_ERR_SIZE,
-                      "strokes[%d] has %zu points; all strokes may have %d", index, size,
-                      (int)REFOCUS_MAX_STROKE_POINTS);
+                      "strokes[%d] has %zu points; all strokes may have %d", index,
+                      size, (int)REFOCUS_MAX_STROKE_POINTS);
     *points = malloc(2 * size * sizeof **points);
     if (!*points)
         return no_memory(reading->reason);
@@ -144,9 +151,10 @@ static int read_points(struct reading *reading, int index, json_t *object, float
         if (!json_is_array(point) || json_array_size(point) != 2 ||
             !read_number(json_array_get(point, 0), -0.5, reading->width - 0.5, p) ||
             !read_number(json_array_get(point, 1), -0.5, reading->height - 0.5, p + 1))
-            return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                          "strokes[%d].points[%zu] must be a pixel, 0 to %d and 0 to %d", index,
-                          i, (int)reading->width - 1, (int)reading->height - 1);
+            return refuse(
+                reading->reason, REFOCUS_ERR_FORMAT,
+                "strokes[%d].points[%zu] must be a pixel, 0 to %d and 0 to %d", index,
+                i, (int)reading->width - 1, (int)reading->height - 1);
     }
     *count = (int)size;
     return REFOCUS_OK;
@@ -168,17 +176,18 @@ static int read_kind(struct reading *reading, int index, json_t *object,
         kind++;
     if (!name || kind == sizeof kinds / sizeof *kinds)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d].kind must be all, object, more, less, brush or fill", index);
+                      "strokes[%d].kind must be all, object, more, less, brush or fill",
+                      index);
     *stroke = refocus_stroke_default(kind, 0);
-    strange = strange_key(object,
-                          kind == REFOCUS_STROKE_ALL || kind == REFOCUS_STROKE_FILL ? plain
-                          : kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE
-                              ? selecting
-                              : painted);
+    strange = strange_key(
+        object, kind == REFOCUS_STROKE_ALL || kind == REFOCUS_STROKE_FILL ? plain
+                : kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE
+                    ? selecting
+                    : painted);
     if (strange)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d] has a key '%.40s', which '%s' does not take", index, strange,
-                      name);
+                      "strokes[%d] has a key '%.40s', which '%s' does not take", index,
+                      strange, name);
     return REFOCUS_OK;
 }
 
@@ -190,8 +199,8 @@ static int read_stroke(struct reading *reading, int index, json_t *object,
     *points = NULL;
     *count = 0;
     if (!json_is_object(object))
-        return refuse(reading->reason, REFOCUS_ERR_FORMAT, "strokes[%d] must be an object",
-                      index);
+        return refuse(reading->reason, REFOCUS_ERR_FORMAT,
+                      "strokes[%d] must be an object", index);
     status = read_kind(reading, index, object, stroke);
     if (status == REFOCUS_OK)
         status = read_fill(reading, index, object, &stroke->fill);
@@ -199,7 +208,8 @@ static int read_stroke(struct reading *reading, int index, json_t *object,
         return status;
     if (stroke->kind == REFOCUS_STROKE_FILL && stroke->fill.kind == REFOCUS_FILL_NONE)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d] must have a disparity or a gradient to fill with", index);
+                      "strokes[%d] must have a disparity or a gradient to fill with",
+                      index);
     if (stroke->kind == REFOCUS_STROKE_ALL || stroke->kind == REFOCUS_STROKE_FILL)
         return REFOCUS_OK;
     if (!json_object_get(object, "radius"))
@@ -208,7 +218,8 @@ static int read_stroke(struct reading *reading, int index, json_t *object,
     status = read_key(reading, index, object, "radius", 0.5, 4096, &stroke->radius);
     if (status == REFOCUS_OK)
         status = read_key(reading, index, object, "reach", 1, 64, &stroke->reach);
-    return status == REFOCUS_OK ? read_points(reading, index, object, points, count) : status;
+    return status == REFOCUS_OK ? read_points(reading, index, object, points, count)
+                                : status;
 }
 
 static int paint(struct reading *reading, int index, json_t *object)
@@ -221,10 +232,11 @@ static int paint(struct reading *reading, int index, json_t *object)
     if (status == REFOCUS_OK) {
         status = refocus_strokes_begin(reading->strokes, &stroke, NULL);
         if (status == REFOCUS_ERR_STATE)
-            status = refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                            "strokes[%d] is '%s', which needs %s before it", index,
-                            kinds[stroke.kind],
-                            stroke.kind == REFOCUS_STROKE_FILL ? "a layer" : "an object");
+            status =
+                refuse(reading->reason, REFOCUS_ERR_FORMAT,
+                       "strokes[%d] is '%s', which needs %s before it", index,
+                       kinds[stroke.kind],
+                       stroke.kind == REFOCUS_STROKE_FILL ? "a layer" : "an object");
         else if (status == REFOCUS_OK && count > 0)
             status = refocus_strokes_extend(reading->strokes, points, count, NULL);
         if (status == REFOCUS_ERR_MEMORY)
@@ -240,7 +252,8 @@ static int paint(struct reading *reading, int index, json_t *object)
 /* All but the strokes. */
 static int read_head(struct reading *reading, json_t *root)
 {
-    static const char *const known[] = {"refocus-strokes", "width", "height", "strokes", NULL};
+    static const char *const known[] = {"refocus-strokes", "width", "height", "strokes",
+                                        NULL};
     json_t *const width = json_object_get(root, "width");
     json_t *const height = json_object_get(root, "height");
     const char *strange;
@@ -250,11 +263,12 @@ static int read_head(struct reading *reading, json_t *root)
                       "no file of strokes: it has no key 'refocus-strokes'");
     if (json_integer_value(json_object_get(root, "refocus-strokes")) != VERSION)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "'refocus-strokes' must be %d, the version that is known here", VERSION);
+                      "'refocus-strokes' must be %d, the version that is known here",
+                      VERSION);
     strange = strange_key(root, known);
     if (strange)
-        return refuse(reading->reason, REFOCUS_ERR_FORMAT, "it has an unknown key '%.40s'",
-                      strange);
+        return refuse(reading->reason, REFOCUS_ERR_FORMAT,
+                      "it has an unknown key '%.40s'", strange);
     if (!json_is_integer(width) || !json_is_integer(height))
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
                       "width and height must be those of the photo, %dx%d",
@@ -293,8 +307,8 @@ static int paint_all(struct reading *reading, json_t *root)
     return status;
 }
 
-int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, size_t size,
-                         struct refocus_strokes_reason *reason)
+int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
+                         size_t size, struct refocus_strokes_reason *reason)
 {
     struct refocus_strokes_reason unread;
     struct reading reading = {strokes, reason ? reason : &unread, 0, 0};
@@ -317,8 +331,8 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, siz
         if (json_error_code(&error) == json_error_out_of_memory || error.line < 1 ||
             !error.text[0])
             return no_memory(reading.reason);
-        return refuse(reading.reason, REFOCUS_ERR_FORMAT, "line %d is no JSON: %s", error.line,
-                      error.text);
+        return refuse(reading.reason, REFOCUS_ERR_FORMAT, "line %d is no JSON: %s",
+                      error.line, error.text);
     }
     status = read_head(&reading, root);
     if (status == REFOCUS_OK)
@@ -330,7 +344,8 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, siz
 static json_t *fill_json(const struct refocus_fill *fill)
 {
     return json_pack("[[f, f, f], [f, f, f]]", (double)fill->x0, (double)fill->y0,
-                     (double)fill->d0, (double)fill->x1, (double)fill->y1, (double)fill->d1);
+                     (double)fill->d0, (double)fill->x1, (double)fill->y1,
+                     (double)fill->d1);
 }
 
 static json_t *points_json(const float *points, int count)
@@ -347,20 +362,24 @@ static json_t *points_json(const float *points, int count)
     return list;
 }
 
-static json_t *stroke_json(const struct refocus_stroke *stroke, const float *points, int count)
+static json_t *stroke_json(const struct refocus_stroke *stroke, const float *points,
+                           int count)
 {
     const uint32_t kind = stroke->kind;
     json_t *const object = json_pack("{s:s}", "kind", kinds[kind]);
     int failed = !object;
 
     if (kind != REFOCUS_STROKE_ALL && kind != REFOCUS_STROKE_FILL) {
-        failed |= json_object_set_new(object, "radius", json_real((double)stroke->radius));
+        failed |=
+            json_object_set_new(object, "radius", json_real((double)stroke->radius));
         if (kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE)
-            failed |= json_object_set_new(object, "reach", json_real((double)stroke->reach));
+            failed |=
+                json_object_set_new(object, "reach", json_real((double)stroke->reach));
         failed |= json_object_set_new(object, "points", points_json(points, count));
     }
     if (stroke->fill.kind == REFOCUS_FILL_SOLID)
-        failed |= json_object_set_new(object, "disparity", json_real((double)stroke->fill.d0));
+        failed |= json_object_set_new(object, "disparity",
+                                      json_real((double)stroke->fill.d0));
     if (stroke->fill.kind == REFOCUS_FILL_GRADIENT)
         failed |= json_object_set_new(object, "gradient", fill_json(&stroke->fill));
     if (!failed)
@@ -369,7 +388,8 @@ static json_t *stroke_json(const struct refocus_stroke *stroke, const float *poi
     return NULL;
 }
 
-int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, size_t *size)
+int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
+                         size_t *size)
 {
     json_t *root, *list;
     int32_t width, height;
@@ -390,7 +410,8 @@ int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, siz
 
         refocus_strokes_get(strokes, i, &stroke, &points, &count);
         /* One that was begun and never drawn selects nothing, and has no words. */
-        if (count > 0 || stroke.kind == REFOCUS_STROKE_ALL || stroke.kind == REFOCUS_STROKE_FILL)
+        if (count > 0 || stroke.kind == REFOCUS_STROKE_ALL ||
+            stroke.kind == REFOCUS_STROKE_FILL)
             failed = json_array_append_new(list, stroke_json(&stroke, points, count));
     }
     if (!failed)
@@ -403,19 +424,21 @@ int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, siz
     return REFOCUS_OK;
 }
 #else
-int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, size_t size,
-                         struct refocus_strokes_reason *reason)
+int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
+                         size_t size, struct refocus_strokes_reason *reason)
 {
     (void)strokes;
     (void)bytes;
     (void)size;
     if (reason)
-        snprintf(reason->text, sizeof reason->text, "this build reads no files of strokes; "
+        snprintf(reason->text, sizeof reason->text,
+                 "this build reads no files of strokes; "
                  "build it with jansson");
     return REFOCUS_ERR_UNSUPPORTED;
 }
 
-int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, size_t *size)
+int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
+                         size_t *size)
 {
     (void)strokes;
     if (text)

@@ -17,13 +17,14 @@ void rf_pyramid_row(const struct rf_pyramid *pyramid, int level, int32_t x, int3
 {
     const struct refocus_image *const photo = &pyramid->photo;
     const int bytes = refocus_format_bytes(photo->format);
-    const bool blue_first = photo->format == REFOCUS_FORMAT_BGR8 ||
-                            photo->format == REFOCUS_FORMAT_BGRA8;
+    const bool blue_first =
+        photo->format == REFOCUS_FORMAT_BGR8 || photo->format == REFOCUS_FORMAT_BGRA8;
     const int red = blue_first ? 2 : 0, blue = blue_first ? 0 : 2;
     const uint8_t *p;
 
     if (level > 0) {
-        memcpy(row, pyramid->level[level] + (size_t)y * (size_t)pyramid->width[level] + x,
+        memcpy(row,
+               pyramid->level[level] + (size_t)y * (size_t)pyramid->width[level] + x,
                (size_t)count * sizeof *row);
         return;
     }
@@ -73,7 +74,8 @@ int rf_pyramid_create(struct rf_pyramid *pyramid, const struct refocus_image *ph
         }
         for (int32_t y = 0; y < rest; y++) {
             rf_pyramid_row(pyramid, k - 1, 0, 2 * y, w, rows);
-            rf_pyramid_row(pyramid, k - 1, 0, 2 * y + 1 < h ? 2 * y + 1 : 2 * y, w, rows + w);
+            rf_pyramid_row(pyramid, k - 1, 0, 2 * y + 1 < h ? 2 * y + 1 : 2 * y, w,
+                           rows + w);
             halve_row(pyramid->level[k] + (size_t)y * (size_t)half, rows, rows + w, w);
         }
         pyramid->width[k] = half;

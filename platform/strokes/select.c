@@ -3,11 +3,12 @@
 #include <string.h>
 #include "grid.h"
 
-/* Pixels of the level at which a selection begins: enough for thin parts, few enough for a
- * cut of all of them in some milliseconds. */
+/* Pixels of the level at which a selection begins: enough for thin parts, few enough
+ * for a cut of all of them in some milliseconds. */
 enum { FIRST_PIXELS = 12000, ROUNDS = 3 };
 
-/* Levels that are not worth an exact cut: a coarser one has found the edge to a pixel or two. */
+/* Levels that are not worth an exact cut: a coarser one has found the edge to a pixel
+ * or two. */
 enum { SETTLED_LEVELS = 2 };
 
 /* Scores of where a pixel lies. */
@@ -15,7 +16,8 @@ enum { UNDER_BRUSH = RF_BIT, FARTHEST = -3 * RF_BIT, OUT_OF_REACH = -1000 };
 
 enum { PLACE, DISTANCE, STACK, STATES }; /* which scratch; STATES is the first of two */
 
-void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count, size_t size)
+void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count,
+                          size_t size)
 {
     void *more;
     size_t bytes;
@@ -44,8 +46,8 @@ void rf_selector_free(struct rf_selector *selector)
 }
 
 /* What the strokes can reach, in whole pixels of the coarsest level that is needed. */
-static int choose_area(const struct rf_pyramid *pyramid, const struct rf_stroke *strokes,
-                       int count, struct rf_area *area)
+static int choose_area(const struct rf_pyramid *pyramid,
+                       const struct rf_stroke *strokes, int count, struct rf_area *area)
 {
     const int32_t w = pyramid->width[0], h = pyramid->height[0];
     int32_t x0 = w, y0 = h, x1 = 0, y1 = 0;
@@ -58,7 +60,8 @@ static int choose_area(const struct rf_pyramid *pyramid, const struct rf_stroke 
         if (s->kind == REFOCUS_STROKE_LESS || strokes[i].count == 0)
             continue;
         /* A quarter more, to see what lies around. */
-        one = rf_brush_area(&strokes[i], (double)s->radius * (double)s->reach * 1.25, w, h);
+        one = rf_brush_area(&strokes[i], (double)s->radius * (double)s->reach * 1.25, w,
+                            h);
         x0 = one.x < x0 ? one.x : x0;
         y0 = one.y < y0 ? one.y : y0;
         x1 = one.x + one.width > x1 ? one.x + one.width : x1;
@@ -74,10 +77,10 @@ static int choose_area(const struct rf_pyramid *pyramid, const struct rf_stroke 
     return level;
 }
 
-/* What the strokes say of each pixel: certain ones, and scores by the distance. Where two
- * strokes are certain of a pixel the later one is right. */
-static void read_stroke(const struct rf_stroke *stroke, struct rf_grid *grid, int16_t *place,
-                        uint16_t *distance)
+/* What the strokes say of each pixel: certain ones, and scores by the distance. Where
+ * two strokes are certain of a pixel the later one is right. */
+static void read_stroke(const struct rf_stroke *stroke, struct rf_grid *grid,
+                        int16_t *place, uint16_t *distance)
 {
     const int64_t pixels = rf_area_pixels(grid->area);
     const bool less = stroke->stroke.kind == REFOCUS_STROKE_LESS;
@@ -99,8 +102,8 @@ static void read_stroke(const struct rf_stroke *stroke, struct rf_grid *grid, in
     }
 }
 
-/* Count colours of both sides. At first: what is under the brush, and what is far from it; then
- * what was selected, and what was not. */
+/* Count colours of both sides. At first: what is under the brush, and what is far from
+ * it; then what was selected, and what was not. */
 static int count_colours(const struct rf_grid *grid, const int16_t *place, bool first,
                          struct rf_selector *selector, const struct rf_pyramid *pyramid)
 {
@@ -115,15 +118,16 @@ static int count_colours(const struct rf_grid *grid, const int16_t *place, bool 
     for (int32_t y = 0; y < grid->area.height; y++) {
         const size_t at = (size_t)y * (size_t)grid->area.width;
 
-        rf_pyramid_row(pyramid, grid->level, grid->area.x, grid->area.y + y, grid->area.width,
-                       row);
+        rf_pyramid_row(pyramid, grid->level, grid->area.x, grid->area.y + y,
+                       grid->area.width, row);
         for (int32_t x = 0; x < grid->area.width; x++) {
             const uint8_t state = grid->state[at + (size_t)x];
             const int16_t score = place[at + (size_t)x];
             const int bin = rf_bin(row[x]);
 
             if (state & RF_SEED)
-                *(state & RF_INSIDE ? &likeness->object[bin] : &likeness->outside[bin]) += SURE;
+                *(state & RF_INSIDE ? &likeness->object[bin]
+                                    : &likeness->outside[bin]) += SURE;
             else if (first ? score == UNDER_BRUSH : state & RF_INSIDE)
                 likeness->object[bin]++;
             else if (!first || score < FARTHEST / 2)
@@ -144,8 +148,8 @@ static void open_reach(struct rf_grid *grid, const int16_t *place)
             grid->state[i] = place[i] == OUT_OF_REACH ? 0 : RF_OPEN;
 }
 
-/* What is out of reach but closed in by what is not, as the middle of a large object that was
- * painted along its border, is in reach after all. */
+/* What is out of reach but closed in by what is not, as the middle of a large object
+ * that was painted along its border, is in reach after all. */
 static void close_reach(struct rf_area area, int16_t *place, int32_t *stack)
 {
     enum { AROUND = OUT_OF_REACH - 1 };
@@ -155,7 +159,8 @@ static void close_reach(struct rf_area area, int16_t *place, int32_t *stack)
     for (int32_t i = 0; i < pixels; i++) {
         const int32_t x = i % w, y = i / w;
 
-        if (place[i] == OUT_OF_REACH && (x == 0 || y == 0 || x == w - 1 || y == h - 1)) {
+        if (place[i] == OUT_OF_REACH &&
+            (x == 0 || y == 0 || x == w - 1 || y == h - 1)) {
             place[i] = AROUND;
             stack[depth++] = i;
         }
@@ -173,16 +178,19 @@ static void close_reach(struct rf_area area, int16_t *place, int32_t *stack)
         }
     }
     for (int32_t i = 0; i < pixels; i++)
-        place[i] = place[i] == OUT_OF_REACH ? FARTHEST : place[i] == AROUND ? OUT_OF_REACH : place[i];
+        place[i] = place[i] == OUT_OF_REACH ? FARTHEST
+                   : place[i] == AROUND     ? OUT_OF_REACH
+                                            : place[i];
 }
 
 static int select_coarse(struct rf_grid *grid, struct rf_selector *selector,
-                         const struct rf_pyramid *pyramid, const struct rf_stroke *strokes,
-                         int count)
+                         const struct rf_pyramid *pyramid,
+                         const struct rf_stroke *strokes, int count)
 {
     const int64_t pixels = rf_area_pixels(grid->area);
     int16_t *const place = rf_selector_scratch(selector, PLACE, pixels, sizeof *place);
-    uint16_t *const distance = rf_selector_scratch(selector, DISTANCE, pixels, sizeof *distance);
+    uint16_t *const distance =
+        rf_selector_scratch(selector, DISTANCE, pixels, sizeof *distance);
     int32_t *const stack = rf_selector_scratch(selector, STACK, pixels, sizeof *stack);
     int status = REFOCUS_OK;
 

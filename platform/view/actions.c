@@ -32,7 +32,8 @@ void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause)
                        (double)SDL_GetPerformanceFrequency();
     struct rf_view_time *time;
 
-    if (request == 0 || w->report->count == RF_VIEW_TIMES || w->pending_count == RF_PENDING)
+    if (request == 0 || w->report->count == RF_VIEW_TIMES ||
+        w->pending_count == RF_PENDING)
         return;
     time = &w->report->times[w->report->count];
     /* Until they are answered the two hold the time of the question, below 0. */
@@ -83,7 +84,8 @@ void rf_window_fit(struct rf_window *w)
 
 void rf_window_zoom(struct rf_window *w, double factor, double x, double y)
 {
-    const double px = w->state.x + x / w->state.scale, py = w->state.y + y / w->state.scale;
+    const double px = w->state.x + x / w->state.scale,
+                 py = w->state.y + y / w->state.scale;
 
     w->state.scale = clamp(w->state.scale * factor, 1.0 / 64, 16);
     w->state.x = px - x / w->state.scale;
@@ -115,7 +117,8 @@ static void inside(const struct rf_window *w, double x, double y, float *px, flo
     *py = (float)clamp(photo_y(w, y), 0, photo->height - 1);
 }
 
-static void begin_stroke(struct rf_window *w, struct refocus_stroke *stroke, bool end_from_depth)
+static void begin_stroke(struct rf_window *w, struct refocus_stroke *stroke,
+                         bool end_from_depth)
 {
     w->state.selection = w->tool != RF_TOOL_FOCUS;
     rf_session_show(w->session, &w->state);

@@ -19,7 +19,8 @@ static int take_memory(struct rf_session *s)
     s->selection = malloc(small);
     s->small_disparity = malloc(2 * small);
     s->full_out = malloc(3 * (size_t)pixels);
-    if (!s->small_photo || !s->small_out || !s->selection || !s->small_disparity || !s->full_out)
+    if (!s->small_photo || !s->small_out || !s->selection || !s->small_disparity ||
+        !s->full_out)
         return REFOCUS_ERR_MEMORY;
     return refocus_strokes_create(&s->strokes, photo, s->setup.disparity ? &map : NULL);
 }

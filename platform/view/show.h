@@ -7,20 +7,20 @@
 #include "session.h"
 
 struct rf_show {
-    const uint8_t *rgb;        /* packed */
+    const uint8_t *rgb; /* packed */
     int width, height;
     int reduction;             /* pixels of the photo for one of these, each way */
     const uint16_t *disparity; /* of the photo's size, packed */
     int photo_width, photo_height;
-    const uint8_t *selection;  /* packed, 255 = covered; NULL: none */
+    const uint8_t *selection; /* packed, 255 = covered; NULL: none */
     int selection_width, selection_height, selection_reduction;
-    float focus;               /* for peaking */
+    float focus; /* for peaking */
 };
 
 /* Draw state's part of the photo into state->width x state->height pixels. scratch:
  * RF_SHOW_SCRATCH numbers a column, and as many again. */
 enum { RF_SHOW_SCRATCH = 10 };
-void rf_show(const struct rf_show *show, const struct rf_view_state *state, uint32_t *pixels,
-             uint32_t *scratch);
+void rf_show(const struct rf_show *show, const struct rf_view_state *state,
+             uint32_t *pixels, uint32_t *scratch);
 
 #endif

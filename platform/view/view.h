@@ -4,10 +4,11 @@
 
 #include "session.h"
 
-/* From an event to the first picture that answers it, and to the full one; milliseconds, < 0
- * when something newer came before it. */
+/* From an event to the first picture that answers it, and to the full one;
+ * milliseconds, < 0 when something newer came before it. */
 struct rf_view_time {
-    const char *cause; /* "open", "tap", "aperture", "paint", "zoom" or the name of a key's action */
+    const char *cause; /* "open", "tap", "aperture", "paint", "zoom" or the name of a
+                          key's action */
     double first_ms, full_ms;
     double first_cpu_ms; /* processor time of all threads up to the first one */
 };
@@ -16,21 +17,21 @@ struct rf_view_setup {
     struct rf_session_setup session; /* all but notify, which is the window's */
     struct rf_view_state state;      /* focus, blur and method to begin with */
     const char *title;               /* UTF-8 */
-    int width, height;               /* of the window; 0 = as large as the photo asks for */
+    int width, height; /* of the window; 0 = as large as the photo asks for */
     bool fullscreen;
-    bool (*stop)(void *user);        /* polled: whether to end; may be NULL */
+    bool (*stop)(void *user); /* polled: whether to end; may be NULL */
     void *stop_user;
-    int quit_after_ms;               /* 0 = never */
+    int quit_after_ms; /* 0 = never */
 };
 
 enum { RF_VIEW_TIMES = 4096 };
 struct rf_view_report {
     struct rf_view_time times[RF_VIEW_TIMES];
     int count;
-    char driver[32];                 /* of SDL: "x11", "wayland", "kmsdrm", ... */
-    int width, height;               /* of the window, pixels */
-    int reduction;                   /* of the first pictures */
-    int strokes;                     /* of the painting in the end */
+    char driver[32];   /* of SDL: "x11", "wayland", "kmsdrm", ... */
+    int width, height; /* of the window, pixels */
+    int reduction;     /* of the first pictures */
+    int strokes;       /* of the painting in the end */
     struct rf_view_state last;
 };
 
@@ -40,9 +41,10 @@ struct rf_view_report {
 #define RF_VIEW_CALL
 #endif
 
-/* Show the window until it is closed. Returns REFOCUS_OK or a status, with words in reason
- * (256 bytes). To be called from the main thread. */
-RF_VIEW_CALL int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report, char *reason);
+/* Show the window until it is closed. Returns REFOCUS_OK or a status, with words in
+ * reason (256 bytes). To be called from the main thread. */
+RF_VIEW_CALL int rf_view_run(const struct rf_view_setup *setup,
+                             struct rf_view_report *report, char *reason);
 
 /* Keys and what they do, two of each line; NULL ends them. */
 const char *rf_view_key(int index, const char **what);

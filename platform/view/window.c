@@ -16,7 +16,8 @@ static void notify(void *user)
 
 static double now_ms(void)
 {
-    return (double)SDL_GetPerformanceCounter() * 1000 / (double)SDL_GetPerformanceFrequency();
+    return (double)SDL_GetPerformanceCounter() * 1000 /
+           (double)SDL_GetPerformanceFrequency();
 }
 
 static int fail(char *reason, const char *what)
@@ -46,8 +47,8 @@ static int open_window(struct rf_window *w, char *reason)
     int width, height;
 
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-    /* Not those that nobody sees, unless they are asked for by SDL_VIDEODRIVER; and libwayland
-     * complains on its own where it cannot be. */
+    /* Not those that nobody sees, unless they are asked for by SDL_VIDEODRIVER; and
+     * libwayland complains on its own where it cannot be. */
     if (!SDL_GetHint(SDL_HINT_VIDEODRIVER))
         SDL_SetHint(SDL_HINT_VIDEODRIVER, SDL_getenv("XDG_RUNTIME_DIR")
                                               ? "x11,wayland,KMSDRM,RPI,vivante"
@@ -88,11 +89,13 @@ static void take_frame(struct rf_window *w)
 {
     const struct rf_view_state *const of = &w->frame->of;
 
-    if (!w->texture || w->texture_width != of->width || w->texture_height != of->height) {
+    if (!w->texture || w->texture_width != of->width ||
+        w->texture_height != of->height) {
         if (w->texture)
             SDL_DestroyTexture(w->texture);
-        w->texture = SDL_CreateTexture(w->renderer, SDL_PIXELFORMAT_ARGB8888,
-                                       SDL_TEXTUREACCESS_STREAMING, of->width, of->height);
+        w->texture =
+            SDL_CreateTexture(w->renderer, SDL_PIXELFORMAT_ARGB8888,
+                              SDL_TEXTUREACCESS_STREAMING, of->width, of->height);
         w->texture_width = of->width;
         w->texture_height = of->height;
     }
@@ -102,7 +105,8 @@ static void take_frame(struct rf_window *w)
 
 static void set_grey(struct rf_window *w, int grey, int alpha)
 {
-    SDL_SetRenderDrawColor(w->renderer, (Uint8)grey, (Uint8)grey, (Uint8)grey, (Uint8)alpha);
+    SDL_SetRenderDrawColor(w->renderer, (Uint8)grey, (Uint8)grey, (Uint8)grey,
+                           (Uint8)alpha);
 }
 
 static void draw_circle(struct rf_window *w, double x, double y, double radius)
@@ -120,7 +124,8 @@ static void draw_circle(struct rf_window *w, double x, double y, double radius)
 /* Where the focus is, what is being painted, and the brush. */
 static void draw_marks(struct rf_window *w)
 {
-    if (w->tool == RF_TOOL_FOCUS && w->state.focus_tap > 0 && w->state.mode == RF_VIEW_RESULT) {
+    if (w->tool == RF_TOOL_FOCUS && w->state.focus_tap > 0 &&
+        w->state.mode == RF_VIEW_RESULT) {
         const int half = (int)(14 * w->density);
         const int x = (int)((w->state.tap_x + 0.5 - w->state.x) * w->state.scale);
         const int y = (int)((w->state.tap_y + 0.5 - w->state.y) * w->state.scale);
@@ -137,8 +142,8 @@ static void draw_marks(struct rf_window *w)
     if (w->tool == RF_TOOL_PAINT)
         draw_circle(w, w->last_x, w->last_y, w->brush);
     else if (w->pressed)
-        SDL_RenderDrawLine(w->renderer, (int)w->press_x, (int)w->press_y, (int)w->last_x,
-                           (int)w->last_y);
+        SDL_RenderDrawLine(w->renderer, (int)w->press_x, (int)w->press_y,
+                           (int)w->last_x, (int)w->last_y);
 }
 
 static void draw_buttons(struct rf_window *w)
@@ -147,7 +152,8 @@ static void draw_buttons(struct rf_window *w)
         const char *label;
         bool on;
         const SDL_Rect place = rf_window_button(w, i, &label, &on);
-        const int dot = place.w > rf_text_width(label, 2) + 6 ? (int)(2 * w->density) : 1;
+        const int dot =
+            place.w > rf_text_width(label, 2) + 6 ? (int)(2 * w->density) : 1;
 
         set_grey(w, on ? 90 : 20, 180);
         SDL_RenderFillRect(w->renderer, &place);
@@ -296,7 +302,8 @@ static int start_session(struct rf_window *w, char *reason)
     return status;
 }
 
-int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report, char *reason)
+int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report,
+                char *reason)
 {
     struct rf_window *const w = SDL_calloc(1, sizeof *w);
     int status;
@@ -316,7 +323,8 @@ int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report
     if (status == REFOCUS_OK)
         status = start_session(w, reason);
     if (status == REFOCUS_OK) {
-        SDL_snprintf(report->driver, sizeof report->driver, "%s", SDL_GetCurrentVideoDriver());
+        SDL_snprintf(report->driver, sizeof report->driver, "%s",
+                     SDL_GetCurrentVideoDriver());
         report->width = w->width;
         report->height = w->height;
         report->reduction = rf_session_reduction(w->session);

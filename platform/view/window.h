@@ -54,22 +54,22 @@ struct rf_window {
     SDL_Renderer *renderer;
     SDL_Texture *texture;
     int texture_width, texture_height;
-    int width, height;       /* pixels of what is drawn */
-    double density;          /* of them in a unit of the mouse's places */
+    int width, height; /* pixels of what is drawn */
+    double density;    /* of them in a unit of the mouse's places */
     const struct rf_view_frame *frame;
     Uint32 frame_event;
     bool redraw, quit, help;
-    bool fitted;             /* the whole photo is shown, also after a change of size */
+    bool fitted; /* the whole photo is shown, also after a change of size */
 
     enum rf_tool tool;
-    uint32_t stroke_kind;    /* of the next one, enum refocus_stroke_kind */
-    double brush;            /* radius, pixels of the window */
-    double value;            /* disparity to fill with */
+    uint32_t stroke_kind; /* of the next one, enum refocus_stroke_kind */
+    double brush;         /* radius, pixels of the window */
+    double value;         /* disparity to fill with */
     bool pressed, dragged, painting, panning;
-    bool two_fingers;        /* until all are lifted */
+    bool two_fingers;                        /* until all are lifted */
     double press_x, press_y, last_x, last_y; /* pixels of the window */
     double press_blur;
-    Uint64 press_counter;    /* when */
+    Uint64 press_counter; /* when */
     SDL_FPoint path[RF_PATH];
     int path_count;
     uint64_t taps;
@@ -81,7 +81,8 @@ struct rf_window {
 /* input.c: events, and the buttons along the lower border. */
 void rf_window_event(struct rf_window *w, const SDL_Event *event);
 int rf_window_buttons(const struct rf_window *w);
-SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label, bool *on);
+SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label,
+                          bool *on);
 
 /* actions.c: what they do. */
 void rf_window_act(struct rf_window *w, enum rf_action action);

@@ -34,7 +34,8 @@ static float focus_at(const struct rf_session *s, double at_x, double at_y)
 
     for (int j = -RADIUS; j <= RADIUS; j++) {
         for (int i = -RADIUS; i <= RADIUS; i++) {
-            const int x = (int)(at_x + 0.5) + i * step, y = (int)(at_y + 0.5) + j * step;
+            const int x = (int)(at_x + 0.5) + i * step,
+                      y = (int)(at_y + 0.5) + j * step;
 
             if (x >= 0 && x < w && y >= 0 && y < h)
                 values[n++] = d[(size_t)y * (size_t)w + (size_t)x];
@@ -50,8 +51,8 @@ static float focus_at(const struct rf_session *s, double at_x, double at_y)
 }
 
 /* The lens of a state, for the full picture or for the reduced one. */
-static struct refocus_render_params lens_of(const struct rf_session *s,
-                                            const struct rf_view_state *state, bool full)
+static struct refocus_render_params
+lens_of(const struct rf_session *s, const struct rf_view_state *state, bool full)
 {
     const int reduction = full ? 1 : s->reduction;
     struct refocus_render_params params = s->setup.params;
@@ -69,9 +70,11 @@ static struct refocus_render_params lens_of(const struct rf_session *s,
     return params;
 }
 
-static bool same_lens(const struct refocus_render_params *a, const struct refocus_render_params *b)
+static bool same_lens(const struct refocus_render_params *a,
+                      const struct refocus_render_params *b)
 {
-    return a->method == b->method && !memcmp(&a->focus_disparity, &b->focus_disparity, 4) &&
+    return a->method == b->method &&
+           !memcmp(&a->focus_disparity, &b->focus_disparity, 4) &&
            !memcmp(&a->max_blur_radius, &b->max_blur_radius, 4);
 }
 
@@ -119,7 +122,8 @@ static void paint(struct rf_session *s, struct order *orders, int count)
                 look_up_end(s, &orders[i].stroke.fill);
             status = refocus_strokes_begin(s->strokes, &orders[i].stroke, NULL);
         }
-        /* More without an object before it, or nothing to undo, is no failure of ours. */
+        /* More without an object before it, or nothing to undo, is no failure of ours.
+         */
         if (status != REFOCUS_OK && status != REFOCUS_ERR_STATE)
             rf_worker_note(s, status);
         s->small_stale = s->full_stale = true;
@@ -127,8 +131,8 @@ static void paint(struct rf_session *s, struct order *orders, int count)
     }
 }
 
-static int make_renderer(struct rf_session *s, struct refocus_renderer **renderer, int width,
-                         int height, int reduction)
+static int make_renderer(struct rf_session *s, struct refocus_renderer **renderer,
+                         int width, int height, int reduction)
 {
     struct refocus_renderer_params params = refocus_renderer_params_default(
         width, height, (float)REFOCUS_MAX_BLUR_RADIUS / (float)reduction);
@@ -151,14 +155,15 @@ static uint32_t *back_pixels(struct rf_session *s, const struct rf_view_state *s
     }
     if (state->width > s->scratch_room) {
         free(s->scratch);
-        s->scratch = malloc(RF_SHOW_SCRATCH * ((size_t)state->width + 1) * sizeof *s->scratch);
+        s->scratch =
+            malloc(RF_SHOW_SCRATCH * ((size_t)state->width + 1) * sizeof *s->scratch);
         s->scratch_room = s->scratch ? state->width : 0;
     }
     return frame->pixels && s->scratch ? frame->pixels : NULL;
 }
 
-static void publish(struct rf_session *s, const struct rf_view_state *state, uint64_t request,
-                    bool full)
+static void publish(struct rf_session *s, const struct rf_view_state *state,
+                    uint64_t request, bool full)
 {
     const struct refocus_image *const photo = s->setup.photo;
     const bool result = state->mode == RF_VIEW_RESULT;
@@ -181,8 +186,8 @@ static void publish(struct rf_session *s, const struct rf_view_state *state, uin
         rf_worker_note(s, REFOCUS_ERR_MEMORY);
         return;
     }
-    if (state->selection && !refocus_strokes_selection(s->strokes, s->selection, s->width,
-                                                       s->height, s->width))
+    if (state->selection && !refocus_strokes_selection(s->strokes, s->selection,
+                                                       s->width, s->height, s->width))
         show.selection = s->selection;
     if (full && (result || photo->stride[0] == 3 * (ptrdiff_t)photo->width)) {
         show.rgb = result ? s->full_out : photo->plane[0];
@@ -206,8 +211,9 @@ static void publish(struct rf_session *s, const struct rf_view_state *state, uin
 static int prepare_small(struct rf_session *s)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_image image = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, s->small_photo, s->width, s->height, 3 * (ptrdiff_t)s->width);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->small_photo, s->width, s->height,
+                             3 * (ptrdiff_t)s->width);
     const struct refocus_disparity map = refocus_disparity16(
         s->small_disparity, s->width, s->height, 2 * (ptrdiff_t)s->width);
     int status;
@@ -224,8 +230,9 @@ static int prepare_small(struct rf_session *s)
 static int render_small(struct rf_session *s, const struct rf_view_state *state)
 {
     const struct refocus_render_params params = lens_of(s, state, false);
-    const struct refocus_image out = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, s->small_out, s->width, s->height, 3 * (ptrdiff_t)s->width);
+    const struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->small_out, s->width, s->height,
+                             3 * (ptrdiff_t)s->width);
     const int status = prepare_small(s);
 
     return status == REFOCUS_OK ? refocus_render(s->small, &params, &out) : status;
@@ -237,8 +244,8 @@ static int render_full(struct rf_session *s, const struct rf_view_state *state)
     const struct refocus_image *const photo = s->setup.photo;
     const struct refocus_render_params params = lens_of(s, state, true);
     const struct refocus_image out =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height,
-                             3 * (ptrdiff_t)photo->width);
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width,
+                             photo->height, 3 * (ptrdiff_t)photo->width);
     const struct refocus_disparity map = refocus_disparity16(
         disparity_of(s), photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
     int status = REFOCUS_OK;
@@ -277,8 +284,8 @@ static void end_full(struct rf_session *s)
     pthread_mutex_unlock(&s->lock);
 }
 
-/* Both pictures of a state, the second one unless something newer comes; true when both are
- * done, or cannot be. */
+/* Both pictures of a state, the second one unless something newer comes; true when both
+ * are done, or cannot be. */
 static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t request)
 {
     const struct refocus_render_params params = lens_of(s, state, true);
@@ -319,9 +326,10 @@ static void save(struct rf_session *s, const struct rf_view_state *state, uint32
     const struct refocus_image *const photo = s->setup.photo;
     const struct refocus_render_params params = lens_of(s, state, true);
     const struct refocus_image picture =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height,
-                             3 * (ptrdiff_t)photo->width);
-    const struct rf_view_result result = {what, &picture, &params, disparity_of(s), s->strokes};
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width,
+                             photo->height, 3 * (ptrdiff_t)photo->width);
+    const struct rf_view_result result = {what, &picture, &params, disparity_of(s),
+                                          s->strokes};
     int status = REFOCUS_OK;
 
     /* Nothing cancels this one: what is saved is what was asked for. */
@@ -346,8 +354,9 @@ static void find_focus(struct rf_session *s, struct rf_view_state *state)
 }
 
 /* Wait for something to do; false at the end. */
-static bool take_work(struct rf_session *s, struct rf_view_state *state, uint64_t *request,
-                      struct order **orders, int *count, uint32_t *what)
+static bool take_work(struct rf_session *s, struct rf_view_state *state,
+                      uint64_t *request, struct order **orders, int *count,
+                      uint32_t *what)
 {
     bool quit;
 

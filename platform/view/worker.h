@@ -26,16 +26,16 @@ struct rf_session {
     pthread_cond_t wake;
     /* Under the lock. */
     struct rf_view_state state;
-    uint64_t request, answered;   /* the newest one, and the last that is wholly done */
+    uint64_t request, answered; /* the newest one, and the last that is wholly done */
     struct order *orders;
     int order_count, order_room;
     uint32_t save;
     bool shown, quit, finished;
-    bool rendering;               /* the full picture, */
-    uint64_t rendered;            /* for this request */
+    bool rendering;    /* the full picture, */
+    uint64_t rendered; /* for this request */
     int status;
     struct rf_view_frame frames[3];
-    int front, ready, back;       /* ready: -1 when it was taken */
+    int front, ready, back; /* ready: -1 when it was taken */
 
     /* The thread's own. */
     struct refocus_strokes *strokes;
@@ -47,7 +47,7 @@ struct rf_session {
     bool small_stale, full_stale; /* the depth has changed since it was prepared */
     bool have_full;               /* full_out is what full_of says */
     struct refocus_render_params full_of;
-    uint64_t tap;                 /* the last one that was looked up */
+    uint64_t tap; /* the last one that was looked up */
     float tap_focus;
 };
 

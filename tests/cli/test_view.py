@@ -31,7 +31,8 @@ class Viewer:
     def __init__(self, refocus, folder, display, *arguments):
         self.folder = folder
         self.environment = dict(os.environ, DISPLAY=display, SDL_VIDEODRIVER='x11',
-                                SDL_RENDER_DRIVER='software')
+                                SDL_RENDER_DRIVER='software',
+                                SDL_FRAMEBUFFER_ACCELERATION='0')
         self.process = subprocess.Popen(
             [refocus, 'view', *arguments, '--json', '--size', '%dx%d' % (W, H)],
             env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -227,8 +228,13 @@ def painted(refocus, folder, display):
     viewer.key('t')
     viewer.tap(400, 200)
     viewer.drag([(300, 300), (350, 320)], button='3')  # to move
+    viewer.key('j')
+    settings = folder + '/p-settings.json'
+    viewer.until(lambda: os.path.exists(settings), 'settings saved')
     report = viewer.end()
-    check(abs(report['focus'] - 0.6) < 1e-4, report['focus'])
+    with open(settings) as file:
+        focus = json.load(file)['focus']
+    check(abs(focus - 0.6) < 1e-4, focus)
     check([one for one in report['times'] if one['cause'] == 'paint' and one['first_ms']], 'paint')
 
 

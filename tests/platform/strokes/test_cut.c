@@ -9,7 +9,8 @@
 
 enum { W = 4, H = 3, PIXELS = W * H };
 
-static const int dx[8] = {-1, 0, 1, -1, 1, -1, 0, 1}, dy[8] = {-1, -1, -1, 0, 0, 1, 1, 1};
+static const int dx[8] = {-1, 0, 1, -1, 1, -1, 0, 1},
+                 dy[8] = {-1, -1, -1, 0, 0, 1, 1, 1};
 
 static uint32_t state = 7;
 

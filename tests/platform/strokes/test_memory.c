@@ -1,5 +1,5 @@
-/* Every allocation fails once: REFOCUS_ERR_MEMORY, what was painted stays as it was, and
- * nothing is kept. The linker sends the library's calls here. */
+/* Every allocation fails once: REFOCUS_ERR_MEMORY, what was painted stays as it was,
+ * and nothing is kept. The linker sends the library's calls here. */
 #include "picture.h"
 
 #include <stdio.h>
@@ -59,8 +59,10 @@ static uint16_t base[W * H], before[W * H];
 
 static const char file[] =
     "{\"refocus-strokes\": 1, \"width\": 160, \"height\": 120, \"strokes\": ["
-    "{\"kind\": \"more\", \"radius\": 5, \"points\": [[70, 70], [90, 60]], \"disparity\": 0.3},"
-    "{\"kind\": \"object\", \"radius\": 5, \"points\": [[20, 20], [9, 6]], \"disparity\": 0.3}]}";
+    "{\"kind\": \"more\", \"radius\": 5, \"points\": [[70, 70], [90, 60]], "
+    "\"disparity\": 0.3},"
+    "{\"kind\": \"object\", \"radius\": 5, \"points\": [[20, 20], [9, 6]], "
+    "\"disparity\": 0.3}]}";
 
 /* Does all there is until something fails; what was there must be there then. */
 static int paint_all(struct refocus_strokes *strokes, int *count)
@@ -113,7 +115,8 @@ static void test_every_allocation(void **unused)
             status = paint_all(strokes, &count);
             if (status != REFOCUS_OK) {
                 assert_int_equal(refocus_strokes_count(strokes), count);
-                assert_memory_equal(refocus_strokes_disparity(strokes), before, sizeof before);
+                assert_memory_equal(refocus_strokes_disparity(strokes), before,
+                                    sizeof before);
             }
         } else {
             assert_null(strokes);

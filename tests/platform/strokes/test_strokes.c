@@ -31,7 +31,8 @@ static void test_selects_to_the_edge(void **unused)
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
     d = refocus_strokes_disparity(strokes);
     for (int i = 0; i < W * H; i++)
-        wrong += (d[i] != 0) != in_disc(i % W, i / W, W, H) || (d[i] != 0 && d[i] != 32768);
+        wrong +=
+            (d[i] != 0) != in_disc(i % W, i / W, W, H) || (d[i] != 0 && d[i] != 32768);
     assert_int_equal(wrong, 0);
     refocus_strokes_destroy(&strokes);
 }
@@ -54,7 +55,8 @@ static void test_segments_and_undo(void **unused)
     paint(strokes, REFOCUS_STROKE_FILL, 1, 0.9f, NULL, 0);
     paint(strokes, REFOCUS_STROKE_MORE, 12, -1, elsewhere, 2);
     paint(strokes, REFOCUS_STROKE_BRUSH, 12, 1, elsewhere, 2);
-    assert_memory_not_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
+    assert_memory_not_equal(refocus_strokes_disparity(strokes), expected,
+                            sizeof expected);
     for (int i = 0; i < 4; i++)
         assert_int_equal(refocus_strokes_undo(strokes, NULL), REFOCUS_OK);
     assert_memory_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
@@ -64,7 +66,8 @@ static void test_segments_and_undo(void **unused)
     assert_int_equal(changed.height, 2 * (H / 3) + 1);
     assert_int_equal(refocus_strokes_begin(strokes, &object, NULL), REFOCUS_OK);
     for (int i = 0; i < OVER; i++)
-        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, NULL), REFOCUS_OK);
+        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, NULL),
+                         REFOCUS_OK);
     assert_memory_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
     while (refocus_strokes_count(strokes) > 0)
         assert_int_equal(refocus_strokes_undo(strokes, NULL), REFOCUS_OK);
@@ -88,7 +91,8 @@ static void test_changed(void **unused)
         int outside = 0;
 
         memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
-        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, &c), REFOCUS_OK);
+        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, &c),
+                         REFOCUS_OK);
         for (int p = 0; p < W * H; p++)
             outside += before[p] != refocus_strokes_disparity(strokes)[p] &&
                        !(p % W >= c.x && p % W < c.x + c.width && p / W >= c.y &&
@@ -112,7 +116,8 @@ static void test_gradient(void **unused)
     (void)unused;
     for (size_t i = 0; i < sizeof fills / sizeof *fills; i++) {
         const struct refocus_fill *const f = &fills[i];
-        const double dx = (double)f->x1 - (double)f->x0, dy = (double)f->y1 - (double)f->y0;
+        const double dx = (double)f->x1 - (double)f->x0,
+                     dy = (double)f->y1 - (double)f->y0;
 
         ground.fill = *f;
         assert_int_equal(refocus_strokes_begin(strokes, &ground, NULL), REFOCUS_OK);
@@ -140,7 +145,8 @@ static double to_segment(double x, double y, const float *a, const float *b)
 
 static void test_brush(void **unused)
 {
-    const float path[] = {10.25f, 20, 200, 31.5f, 200, 150, 319.5f, -0.5f, 30, 239, 30, 239};
+    const float path[] = {10.25f, 20,    200, 31.5f, 200, 150,
+                          319.5f, -0.5f, 30,  239,   30,  239};
     const float radii[] = {0.5f, 7.3f, 40};
 
     (void)unused;
@@ -153,7 +159,8 @@ static void test_brush(void **unused)
             double least = INFINITY;
 
             for (int s = 0; s < 5; s++)
-                least = fmin(least, to_segment(p % W, p / W, path + 2 * s, path + 2 * s + 2));
+                least = fmin(least,
+                             to_segment(p % W, p / W, path + 2 * s, path + 2 * s + 2));
             if (fabs(least - (double)radii[i]) > 1e-3)
                 wrong += (refocus_strokes_disparity(strokes)[p] != 0) !=
                          (least < (double)radii[i]);
@@ -176,7 +183,8 @@ static void test_base_and_selection(void **unused)
         base[i] = (uint16_t)i;
     assert_int_equal(refocus_strokes_create(&strokes, &photo, &map), REFOCUS_OK);
     assert_memory_equal(refocus_strokes_disparity(strokes), base, sizeof base);
-    paint(strokes, REFOCUS_STROKE_OBJECT, 16, -1, over, OVER); /* selected, not filled */
+    paint(strokes, REFOCUS_STROKE_OBJECT, 16, -1, over,
+          OVER); /* selected, not filled */
     assert_memory_equal(refocus_strokes_disparity(strokes), base, sizeof base);
     assert_int_equal(refocus_strokes_selection(strokes, mask, 64, 48, 64), REFOCUS_OK);
     for (int i = 0; i < 64 * 48; i++)
@@ -203,9 +211,11 @@ static void test_formats(void **unused)
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
     memcpy(expected, refocus_strokes_disparity(strokes), sizeof expected);
     refocus_strokes_destroy(&strokes);
-    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8; format++) {
+    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8;
+         format++) {
         const int bytes = refocus_format_bytes(format);
-        const int turned = format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
+        const int turned =
+            format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
         struct refocus_image other = refocus_image_packed(
             format, pixels + (size_t)(H - 1) * (size_t)bytes * W, W, H, -bytes * W);
 
@@ -215,7 +225,8 @@ static void test_formats(void **unused)
                     photo.plane[0][3 * i + (turned ? 2 - c : c)];
         assert_int_equal(refocus_strokes_create(&strokes, &other, NULL), REFOCUS_OK);
         paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
-        assert_memory_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
+        assert_memory_equal(refocus_strokes_disparity(strokes), expected,
+                            sizeof expected);
         refocus_strokes_destroy(&strokes);
     }
 }
@@ -257,13 +268,17 @@ static void test_refusals(void **unused)
             stroke.fill.kind = REFOCUS_FILL_GRADIENT; /* between the same points */
         if (i == 8)
             stroke.radius = 4097;
-        assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL),
+                         REFOCUS_ERR_ARGUMENT);
     }
     assert_int_equal(refocus_strokes_count(strokes), 1);
     paint(strokes, REFOCUS_STROKE_OBJECT, 3, 0.5f, NULL, 0);
-    assert_int_equal(refocus_strokes_extend(strokes, nan_point, 1, NULL), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_strokes_extend(strokes, out, 1, NULL), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_strokes_extend(strokes, in, 0, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_extend(strokes, nan_point, 1, NULL),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_extend(strokes, out, 1, NULL),
+                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_extend(strokes, in, 0, NULL),
+                     REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_strokes_undo(strokes, NULL), REFOCUS_OK);
     for (int i = 1; i < REFOCUS_MAX_STROKES; i++)
         paint(strokes, REFOCUS_STROKE_BRUSH, 1, 0.5f, NULL, 0);
@@ -272,11 +287,13 @@ static void test_refusals(void **unused)
     refocus_strokes_destroy(&strokes);
     refocus_strokes_destroy(&strokes);
     bad.format = 99;
-    assert_int_equal(refocus_strokes_create(&strokes, &bad, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_create(&strokes, &bad, NULL),
+                     REFOCUS_ERR_ARGUMENT);
     assert_null(strokes);
 }
 
-/* Where colours mix a selection is a matter of every bit: the same one on every processor. */
+/* Where colours mix a selection is a matter of every bit: the same one on every
+ * processor. */
 static void test_same_everywhere(void **unused)
 {
     const float path[] = {60.3f, 170, 100.7f, 70.25f, 240, 60, 250.5f, 180};
@@ -294,7 +311,8 @@ static void test_same_everywhere(void **unused)
             (uint8_t)((noise.plane[0][i] + 3 * (int)(state >> 26) + i / 3 % W / 2) / 3);
     }
     assert_int_equal(refocus_strokes_create(&strokes, &noise, NULL), REFOCUS_OK);
-    stroke.fill = (struct refocus_fill){REFOCUS_FILL_GRADIENT, 0.2f, 0.7f, 3, 9, 300, 211};
+    stroke.fill =
+        (struct refocus_fill){REFOCUS_FILL_GRADIENT, 0.2f, 0.7f, 3, 9, 300, 211};
     assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_OK);
     assert_int_equal(refocus_strokes_extend(strokes, path, 4, NULL), REFOCUS_OK);
     paint(strokes, REFOCUS_STROKE_BRUSH, 20.2f, 0.9f, path, 2);
@@ -354,26 +372,28 @@ static int figure_around(const struct refocus_depth_map *map, int x, int y)
 static void test_scene(void **unused)
 {
     const char *const root = getenv("REFOCUS_SOURCE_ROOT");
-    const float head[] = {262, 215, 320, 190, 380, 170, 460, 180, 480, 225, 400, 230,
-                          400, 280, 400, 340, 400, 385, 340, 375, 450, 380};
-    const float body[] = {250, 480, 300, 440, 400, 420, 500, 440, 560, 500,
-                          450, 520, 300, 510, 220, 520, 200, 500, 250, 445,
-                          300, 412, 345, 395, 455, 398, 510, 415, 550, 440,
-                          580, 480, 585, 525};
+    const float head[] = {262, 215, 320, 190, 380, 170, 460, 180, 480, 225, 400,
+                          230, 400, 280, 400, 340, 400, 385, 340, 375, 450, 380};
+    const float body[] = {250, 480, 300, 440, 400, 420, 500, 440, 560, 500, 450, 520,
+                          300, 510, 220, 520, 200, 500, 250, 445, 300, 412, 345, 395,
+                          455, 398, 510, 415, 550, 440, 580, 480, 585, 525};
     struct refocus_photo *scene = NULL, *depth = NULL;
     struct refocus_strokes *strokes;
     char path[4096];
     int both = 0, either = 0;
 
     (void)unused;
-    snprintf(path, sizeof path, "%s/examples/data/portrait/allfocus.png", root ? root : ".");
+    snprintf(path, sizeof path, "%s/examples/data/portrait/allfocus.png",
+             root ? root : ".");
     if (refocus_photo_read(&scene, path, NULL, NULL) == REFOCUS_ERR_UNSUPPORTED) {
         printf("SKIPPED: no PNG in this build\n");
         skip();
     }
     assert_non_null(scene);
-    snprintf(path, sizeof path, "%s/examples/data/portrait/disparity.png", root ? root : ".");
-    assert_int_equal(refocus_depth_read(&depth, path, NULL, 0, 0, NULL, NULL), REFOCUS_OK);
+    snprintf(path, sizeof path, "%s/examples/data/portrait/disparity.png",
+             root ? root : ".");
+    assert_int_equal(refocus_depth_read(&depth, path, NULL, 0, 0, NULL, NULL),
+                     REFOCUS_OK);
     assert_int_equal(refocus_strokes_create(&strokes, &scene->image, NULL), REFOCUS_OK);
     paint(strokes, REFOCUS_STROKE_OBJECT, 14, 1, head, 11);
     paint(strokes, REFOCUS_STROKE_MORE, 16, -1, body, 17);
@@ -400,12 +420,17 @@ static void test_scene(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_selects_to_the_edge), cmocka_unit_test(test_segments_and_undo),
-        cmocka_unit_test(test_changed),             cmocka_unit_test(test_gradient),
-        cmocka_unit_test(test_brush),               cmocka_unit_test(test_base_and_selection),
-        cmocka_unit_test(test_formats),             cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_selects_to_the_edge),
+        cmocka_unit_test(test_segments_and_undo),
+        cmocka_unit_test(test_changed),
+        cmocka_unit_test(test_gradient),
+        cmocka_unit_test(test_brush),
+        cmocka_unit_test(test_base_and_selection),
+        cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_same_everywhere),
-        cmocka_unit_test(test_small),               cmocka_unit_test(test_scene),
+        cmocka_unit_test(test_small),
+        cmocka_unit_test(test_scene),
     };
     int failed;
 

@@ -106,7 +106,8 @@ static struct rf_session *begin(void)
 }
 
 /* Wait for a frame of that request or a newer one; full: for the full one. */
-static const struct rf_view_frame *wait_for(struct rf_session *session, uint64_t request, bool full)
+static const struct rf_view_frame *wait_for(struct rf_session *session,
+                                            uint64_t request, bool full)
 {
     const double end = now_ms() + 60000.0 * slow();
     const struct timespec pause = {0, 1000000};
@@ -124,8 +125,8 @@ static const struct rf_view_frame *wait_for(struct rf_session *session, uint64_t
     return NULL;
 }
 
-static void expect_render(const struct rf_view_frame *frame, uint32_t method, float focus,
-                          float blur)
+static void expect_render(const struct rf_view_frame *frame, uint32_t method,
+                          float focus, float blur)
 {
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 127);
     struct refocus_render_params lens = refocus_render_params_default(focus, blur);
@@ -143,8 +144,8 @@ static void expect_render(const struct rf_view_frame *frame, uint32_t method, fl
     for (int i = 0; i < PIXELS; i++) {
         const uint8_t *const p = out.plane[0] + 3 * i;
 
-        wrong += frame->pixels[i] != (0xff000000u | (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 |
-                                      p[2]);
+        wrong += frame->pixels[i] !=
+                 (0xff000000u | (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2]);
     }
     assert_int_equal(wrong, 0);
     refocus_renderer_destroy(&renderer);
@@ -165,7 +166,8 @@ static void test_full_is_render(void **unused)
     state.tap_x = W / 2.0;
     state.tap_y = 11;
     frame = wait_for(session, rf_session_show(session, &state), true);
-    assert_true(frame->of.focus > 0.7629f && frame->of.focus < 0.763f); /* 50000 / 65535 */
+    assert_true(frame->of.focus > 0.7629f &&
+                frame->of.focus < 0.763f); /* 50000 / 65535 */
     expect_render(frame, REFOCUS_METHOD_SWEEP, frame->of.focus, 9);
     state.tap_x = W / 3.0 + 1; /* at an edge: the nearer one */
     state.focus_tap = 2;
@@ -174,7 +176,8 @@ static void test_full_is_render(void **unused)
     rf_session_destroy(&session);
 }
 
-/* Raytracing all of it takes many seconds: no call waits for that, nor does what follows. */
+/* Raytracing all of it takes many seconds: no call waits for that, nor does what
+ * follows. */
 static void test_nobody_waits(void **unused)
 {
     struct rf_session *session = begin();
@@ -248,9 +251,9 @@ static void test_modes(void **unused)
     state.mode = RF_VIEW_BEFORE;
     frame = wait_for(session, rf_session_show(session, &state), true);
     for (int i = 0; i < PIXELS; i++)
-        wrong += frame->pixels[i] !=
-                 (0xff000000u | (uint32_t)pixels[3 * i] << 16 |
-                  (uint32_t)pixels[3 * i + 1] << 8 | pixels[3 * i + 2]);
+        wrong +=
+            frame->pixels[i] != (0xff000000u | (uint32_t)pixels[3 * i] << 16 |
+                                 (uint32_t)pixels[3 * i + 1] << 8 | pixels[3 * i + 2]);
     assert_int_equal(wrong, 0);
     state.mode = RF_VIEW_DEPTH;
     state.x = W / 2.0; /* moved: right of it there is nothing */
@@ -289,8 +292,8 @@ static void test_painting(void **unused)
     stroke.fill.d0 = 0.25f;
     rf_session_begin(session, &stroke, false);
     stroke.kind = REFOCUS_STROKE_FILL;
-    stroke.fill =
-        (struct refocus_fill){REFOCUS_FILL_GRADIENT, 1, 1, W / 2.0f, H - 1.0f, W / 2.0f, 0};
+    stroke.fill = (struct refocus_fill){
+        REFOCUS_FILL_GRADIENT, 1, 1, W / 2.0f, H - 1.0f, W / 2.0f, 0};
     rf_session_begin(session, &stroke, true);
     stroke = refocus_stroke_default(REFOCUS_STROKE_BRUSH, 10);
     stroke.fill.kind = REFOCUS_FILL_SOLID;
@@ -300,8 +303,8 @@ static void test_painting(void **unused)
     request = rf_session_extend(session, W / 2.0f + 100, H / 2.0f);
     frame = wait_for(session, request, true);
     assert_int_equal(frame->strokes, 3);
-    assert_int_equal(frame->pixels[0], 0xff000000u + 0x40 * 0x010101u);           /* 0.25 */
-    assert_int_equal(frame->pixels[PIXELS - 1], 0xffffffffu);                     /* 1 */
+    assert_int_equal(frame->pixels[0], 0xff000000u + 0x40 * 0x010101u); /* 0.25 */
+    assert_int_equal(frame->pixels[PIXELS - 1], 0xffffffffu);           /* 1 */
     assert_int_equal(frame->pixels[H / 2 * W + W / 2 + 50], 0xffffffffu);
     frame = wait_for(session, rf_session_undo(session), true);
     assert_int_equal(frame->strokes, 2);
@@ -327,8 +330,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
-        cmocka_unit_test(test_hold),
-        cmocka_unit_test(test_modes), cmocka_unit_test(test_painting)};
+        cmocka_unit_test(test_hold), cmocka_unit_test(test_modes),
+        cmocka_unit_test(test_painting)};
     int failed;
 
     make_scene();

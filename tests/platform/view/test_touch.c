@@ -1,10 +1,11 @@
-/* The window without a screen (SDL's dummy driver), worked by events of a touch screen: SDL makes a
- * mouse of the first finger, and tells of two as gestures. */
+/* The window without a screen (SDL's dummy driver), worked by events of a touch screen:
+ * SDL makes a mouse of the first finger, and tells of two as gestures. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <SDL.h>
@@ -54,34 +55,65 @@ static void push_key(SDL_Keycode key)
     SDL_PushEvent(&event);
 }
 
-/* What two fingers do, one after the other, as soon as the window takes events. */
-static int fingers(void *user)
+/* Whether all that was asked for has been shown. */
+static bool answered(const struct rf_view_report *report)
 {
-    SDL_Event lifted;
+    for (int i = 0; i < report->count; i++)
+        if (report->times[i].first_ms < 0)
+            return false;
+    return report->count > 0;
+}
 
-    (void)user;
-    SDL_Delay(700);
-    push_mouse(SDL_MOUSEBUTTONDOWN, 100, 80); /* a tap on the nearer half */
-    push_mouse(SDL_MOUSEBUTTONUP, 100, 80);
-    SDL_Delay(100);
-    push_mouse(SDL_MOUSEBUTTONDOWN, 200, 100); /* the first of two: no tap, no aperture */
-    push_pinch(0.5f, 0.5f, 0);
-    for (int i = 0; i < 5; i++) {
-        push_mouse(SDL_MOUSEMOTION, 200 - 10 * i, 100);
-        push_pinch(0.5f, 0.5f, 0.1f);
+struct fingers {
+    const struct rf_view_report *report;
+    int step;
+};
+
+static void push_finger_up(void)
+{
+    SDL_Event event;
+
+    memset(&event, 0, sizeof event);
+    event.type = SDL_FINGERUP;
+    SDL_PushEvent(&event);
+}
+
+/* What two fingers do, a step whenever the window is at rest: it is polled in its loop.
+ */
+static bool move_fingers(void *user)
+{
+    struct fingers *const fingers = user;
+
+    if (!answered(fingers->report))
+        return false;
+    switch (fingers->step++) {
+    case 0: /* a tap on the nearer half */
+        push_mouse(SDL_MOUSEBUTTONDOWN, 100, 80);
+        push_mouse(SDL_MOUSEBUTTONUP, 100, 80);
+        break;
+    case 2: /* the first of two: no tap, no aperture */
+        push_mouse(SDL_MOUSEBUTTONDOWN, 200, 100);
+        push_pinch(0.5f, 0.5f, 0);
+        for (int i = 0; i < 5; i++) {
+            push_mouse(SDL_MOUSEMOTION, 200 - 10 * i, 100);
+            push_pinch(0.5f, 0.5f, 0.1f);
+        }
+        push_mouse(SDL_MOUSEBUTTONUP, 160, 100);
+        push_finger_up();
+        break;
+    case 4: /* a stroke that the second finger takes back */
+        push_key(SDLK_p);
+        push_mouse(SDL_MOUSEBUTTONDOWN, 200, 100);
+        push_pinch(0.5f, 0.5f, 0);
+        push_mouse(SDL_MOUSEBUTTONUP, 200, 100);
+        break;
+    case 6:
+        push_key(SDLK_q);
+        break;
+    default:
+        break;
     }
-    push_mouse(SDL_MOUSEBUTTONUP, 160, 100);
-    memset(&lifted, 0, sizeof lifted);
-    lifted.type = SDL_FINGERUP;
-    SDL_PushEvent(&lifted);
-    SDL_Delay(100);
-    push_key(SDLK_p);
-    push_mouse(SDL_MOUSEBUTTONDOWN, 200, 100); /* a stroke that the second finger takes back */
-    push_pinch(0.5f, 0.5f, 0);
-    push_mouse(SDL_MOUSEBUTTONUP, 200, 100);
-    SDL_Delay(300);
-    push_key(SDLK_q);
-    return 0;
+    return false;
 }
 
 static void no_save(void *user, const struct rf_view_result *result)
@@ -95,10 +127,11 @@ static void test_two_fingers(void **unused)
 {
     static uint8_t pixels[3 * W * H];
     static uint16_t depth[W * H];
-    struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
+    struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
     struct rf_view_setup setup;
     struct rf_view_report *const report = calloc(1, sizeof *report);
-    SDL_Thread *thread;
+    struct fingers fingers = {report, 0};
     char reason[256] = "";
 
     (void)unused;
@@ -116,19 +149,18 @@ static void test_two_fingers(void **unused)
     setup.title = "test";
     setup.width = W;
     setup.height = H;
-    setup.quit_after_ms = 60000;
+    setup.quit_after_ms = 100000;
+    setup.stop = move_fingers;
+    setup.stop_user = &fingers;
     setenv("SDL_VIDEODRIVER", "dummy", 1);
-    assert_int_equal(SDL_Init(0), 0);
-    thread = SDL_CreateThread(fingers, "fingers", NULL);
-    assert_non_null(thread);
     assert_int_equal(rf_view_run(&setup, report, reason), REFOCUS_OK);
-    SDL_WaitThread(thread, NULL);
     assert_string_equal(reason, "");
     assert_string_equal(report->driver, "dummy");
     assert_true(fabs((double)report->last.focus - 40000 / 65535.0) < 1e-3);
     assert_true(report->last.blur >= 6 && report->last.blur <= 6);
     assert_int_equal(report->last.focus_tap, 1);
-    assert_true(fabs(report->last.scale - exp(1.0)) < 1e-3); /* five times a tenth, twice over */
+    assert_true(fabs(report->last.scale - exp(1.0)) <
+                1e-3); /* five times a tenth, twice over */
     assert_int_equal(report->strokes, 0);
     assert_string_equal(report->times[report->count - 1].cause, "undo");
     assert_true(report->count > 3 && report->times[0].first_ms > 0);
@@ -138,7 +170,8 @@ static void test_two_fingers(void **unused)
 static void test_no_display(void **unused)
 {
     static uint8_t pixel[3];
-    struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
+    struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
     struct rf_view_setup setup;
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
