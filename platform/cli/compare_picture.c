@@ -60,22 +60,6 @@ static int find_crops(const uint16_t *d, int width, int height, int w, int h,
     return count;
 }
 
-static void draw_text(const struct refocus_image *image, int left, int top, int width,
-                      const char *text)
-{
-    for (int i = 0; text[i]; i++) {
-        for (int y = 0; y < GLYPH_HEIGHT * ZOOM; y++) {
-            for (int x = 0; x < GLYPH_WIDTH * ZOOM; x++) {
-                const int at = i * (GLYPH_WIDTH + 1) * ZOOM + x;
-
-                if (at < width && text_dot(text[i], x / ZOOM, y / ZOOM))
-                    memset(image->plane[0] + (top + y) * image->stride[0] + 3 * (left + at), 240,
-                           3);
-            }
-        }
-    }
-}
-
 static void draw_crop(const struct refocus_image *image, int left, int top, const uint8_t *rgb,
                       int width, struct place at, int w, int h)
 {
@@ -108,10 +92,10 @@ struct refocus_image compare_picture(const struct comparison *c, const uint16_t 
         const int left = GAP + i * cell_w;
         char text[32] = "";
 
-        draw_text(&image, left, GAP, w * ZOOM, item->name);
+        text_draw(&image, left, GAP, ZOOM, w * ZOOM, item->name);
         if (item->scored)
             snprintf(text, sizeof text, "%.2f db", item->scores.psnr);
-        draw_text(&image, left, GAP + ZOOM * (GLYPH_HEIGHT + 2), w * ZOOM, text);
+        text_draw(&image, left, GAP + ZOOM * (GLYPH_HEIGHT + 2), ZOOM, w * ZOOM, text);
         for (int k = 0; k < crops; k++)
             draw_crop(&image, left, LABEL + k * cell_h, item->rgb, c->width, place[k], w, h);
     }
