@@ -90,36 +90,6 @@ static int check(const struct settings *settings, const char *photo)
     return status;
 }
 
-/* The picture to render into: all of the photo or the region; plane[0] is the caller's. */
-static int make_output(struct refocus_image *out, struct engine *engine,
-                       const struct input *input, const struct settings *settings)
-{
-    const struct refocus_image *photo = &input->photo->image;
-    const double *region = settings->region;
-    int width = photo->width, height = photo->height;
-
-    if (!isnan(region[0])) {
-        if (region[2] < 1 || region[3] < 1 || region[0] + region[2] > width ||
-            region[1] + region[3] > height)
-            return report_failure(EXIT_WRONG, "--region",
-                                  "%g,%g,%g,%g does not lie within the %dx%d pixels of %s",
-                                  region[0], region[1], region[2], region[3], width, height,
-                                  input->photo_name);
-        engine->params.region_x = (int32_t)region[0];
-        engine->params.region_y = (int32_t)region[1];
-        engine->params.region_width = width = (int32_t)region[2];
-        engine->params.region_height = height = (int32_t)region[3];
-    }
-    *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
-                                (ptrdiff_t)width * 3);
-    if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)
-        out->plane[0] = malloc((size_t)width * 3 * (size_t)height);
-    if (!out->plane[0])
-        return report_failure(EXIT_FAILED, input->photo_name,
-                              "not enough memory for %dx%d pixels", width, height);
-    return EXIT_DONE;
-}
-
 /* Replace the rendered picture by the layer of --view. */
 static int make_view(struct refocus_image *out, const struct engine *engine,
                      const struct input *input, int view)
@@ -182,7 +152,7 @@ static int render(struct shot *shot, struct refocus_image *out,
     int status = shot_open(shot, photo, &wanted);
 
     if (status == EXIT_DONE)
-        status = make_output(out, &shot->engine, &shot->input, settings);
+        status = shot_output(shot, settings->region, out);
     if (status == EXIT_DONE)
         status = engine_render(&shot->engine, out, (int)settings->engine.repeat);
     if (status == EXIT_DONE && settings->view != VIEW_NONE)
