@@ -4,35 +4,21 @@
 #include <string.h>
 #include "commands.h"
 #include "engine.h"
-#include "falsecolour.h"
 #include "inputs.h"
 #include "outputs.h"
 #include "settings.h"
 #include "shot.h"
-
-enum view { VIEW_NONE, VIEW_DEPTH, VIEW_BLUR };
+#include "stereo_views.h"
+#include "views.h"
 
 struct settings {
     struct depth_settings depth;
     struct lens_settings lens;
     struct engine_settings engine;
     const char *output, *load, *save;
-    double region[4];
+    double region[4], parallax;
     int view;
 };
-
-static const char *view_name(uint32_t index)
-{
-    static const char *const names[] = {"none", "depth", "blur"};
-    return index < 3 ? names[index] : NULL;
-}
-
-static const char *view_summary(uint32_t index)
-{
-    static const char *const summaries[] = {"the refocused photo", "the disparities",
-                                            "the blur radii"};
-    return index < 3 ? summaries[index] : NULL;
-}
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
@@ -62,7 +48,15 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, view),
      .choice = view_name,
      .summary = view_summary,
-     .help = "write a picture in false colours with a legend instead"},
+     .help = "write a picture of how it is made instead"},
+    {.kind = OPTION_NUMBER,
+     .name = "--parallax",
+     .argument = "PIXELS",
+     .offset = offsetof(struct settings, parallax),
+     .least = 0,
+     .greatest = STEREO_MOST,
+     .help = "anaglyph: between the eyes at disparity 1 when 0 is in focus; default 1/50 of "
+             "the width"},
     {.kind = OPTION_HEADING, .help = "Running"},
     SETTINGS_OPTIONS(struct settings, load, save),
     RUN_OPTIONS(struct settings, engine),
@@ -83,38 +77,14 @@ static int check(const struct settings *settings, const char *photo)
     if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
                                 "a view is always of the whole; leave --region or --view out");
+    if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH && !isnan(settings->parallax))
+        status = report_failure(EXIT_WRONG, "--parallax",
+                                "goes with --view anaglyph; give that too");
     if (status == EXIT_DONE)
         status = output_check(settings->output, endings, inputs, 4);
     if (status == EXIT_DONE && settings->save)
         status = settings_check(settings->save, inputs, 3);
     return status;
-}
-
-/* Replace the rendered picture by the layer of --view. */
-static int make_view(struct refocus_image *out, const struct engine *engine,
-                     const struct input *input, int view)
-{
-    const int width = out->width, height = out->height;
-    const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
-    const bool known = range.near_m > 0 && range.far_m > range.near_m;
-    uint16_t *values = malloc((size_t)width * (size_t)height * sizeof *values);
-    int status = values ? refocus_get_view(engine->renderer,
-                                           view == VIEW_DEPTH ? REFOCUS_VIEW_DISPARITY
-                                                              : REFOCUS_VIEW_BLUR,
-                                           values, (ptrdiff_t)width * 2)
-                        : REFOCUS_ERR_MEMORY;
-
-    if (status == REFOCUS_OK) {
-        free(out->plane[0]);
-        *out = view == VIEW_DEPTH
-                   ? falsecolour_depth(values, width, height, known ? &range : NULL)
-                   : falsecolour_blur(values, width, height, engine->params.max_blur_radius);
-        status = out->plane[0] ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
-    }
-    free(values);
-    if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, "--view", "%s", refocus_strerror(status));
-    return EXIT_DONE;
 }
 
 static int print_report(const struct settings *settings, const struct engine *engine,
@@ -154,9 +124,8 @@ static int render(struct shot *shot, struct refocus_image *out,
     if (status == EXIT_DONE)
         status = shot_output(shot, settings->region, out);
     if (status == EXIT_DONE)
-        status = engine_render(&shot->engine, out, (int)settings->engine.repeat);
-    if (status == EXIT_DONE && settings->view != VIEW_NONE)
-        status = make_view(out, &shot->engine, &shot->input, settings->view);
+        status = views_render(shot, out, settings->view, settings->parallax,
+                              (int)settings->engine.repeat);
     return status;
 }
 
@@ -165,7 +134,8 @@ static int run(int argc, char **argv)
     struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
                                 .lens = LENS_SETTINGS_NONE,
                                 .engine = ENGINE_SETTINGS_NONE(1),
-                                .region = {NAN}};
+                                .region = {NAN},
+                                .parallax = NAN};
     struct shot shot;
     struct refocus_image out = {0};
     const char *files[2];

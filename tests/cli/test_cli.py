@@ -42,7 +42,7 @@ class Usage(Case):
                       '--focus --focus-at '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
-                      '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
+                      '--highlights --mirror --background --threads --cpu --repeat --json --view --parallax --region '
                       '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
                      '--estimate --preset --input-size --input-scale --input-mean --far-is-large '
@@ -54,7 +54,7 @@ class Usage(Case):
                      '--quality --aperture --blend --sigma --highlights --mirror --background '
                      '--threads --cpu --repeat --json --settings --save-settings -h --help',
             'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                    '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
+                    '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back --wiggle '
                     '--focus --focus-at --focus-distance --blur --f-number --focal-length '
                     '--sensor-width --method --rays --iterations --quality --aperture --blend '
                     '--sigma --highlights --mirror --background --threads --cpu --repeat --json '
@@ -746,7 +746,7 @@ class Extremes(Case):
                               'out.ppm', '--method', method)
                 self.same(pictures.read_pnm('out.ppm'), pictures.read_pnm('one.ppm'))
             self.succeeds(*self.render('--depth', 'one.pgm', '--method', method))
-        for view in ('depth', 'blur'):
+        for view in ('depth', 'blur', 'overlay', 'peaking', 'anaglyph'):
             self.succeeds('render', 'one.ppm', '--depth', 'one.pgm', '-o', 'out.ppm', '--view',
                           view)
 
@@ -758,8 +758,9 @@ class Extremes(Case):
             report = self.reports('render', 'long.ppm', '--depth', depth, '--blur', '5', '-o',
                                   'out.png')
             self.assertEqual((report['width'], report['height']), (65535, 1))
-        self.succeeds('render', 'long.ppm', '--depth', 'long.pgm', '--view', 'depth', '-o',
-                      'out.png')
+        for view in ('depth', 'anaglyph'):
+            self.succeeds('render', 'long.ppm', '--depth', 'long.pgm', '--view', view, '-o',
+                          'out.png')
 
     def test_absurd_size(self):
         with open('huge.ppm', 'wb') as file:
