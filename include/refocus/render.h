@@ -156,7 +156,9 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
  * caller's memory is not used after the return. In strip mode (params.in_place) they are not
  * copied, and stay with the renderer until the next refocus_prepare() or its end.
  *
- * @param photo      all in focus; at most max_width x max_height
+ * @param photo      all in focus; at most max_width x max_height; any enum refocus_format.
+ *                   Each byte is read once, each plane in order: camera memory may be
+ *                   uncached
  * @param disparity  of any size; covers the same view as the photo. Another size than
  *                   the photo's is brought to it by following the photo's edges.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED, in strip
@@ -346,10 +348,27 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  * but the light of the photo. A region costs what lies in it and around it. None of this changes
  * a byte.
  *
- * @param params  see struct refocus_render_params
- * @param out     of the size of the region, any format and stride; may not overlap
- *                itself
+ * A photo of Y, U and V is rendered in Y, U and V, chroma at its own resolution, by the sweep
+ * alone. Averaged are the luminance L of each pixel and, for each sample of chroma, the light
+ * that blue and red have more than that. With g the curve of the blend, Y' the luma of the mean
+ * light of the pixels that share the sample, and B', R', G' the colour by the photo's matrix:
+ *
+ *     E = Kr g(R') + Kg g(G') + Kb g(B') - g(Y')     L   = g(Y) + E
+ *     D_b = g(B') - g(Y') - E                        D_r = g(R') - g(Y') - E
+ *
+ * and back in the same way from their means. A sample of chroma has the blur of that pixel of
+ * its own which is the sharpest; sigma weighs by L; highlights are told and given back by L.
+ * Samples that nothing changed keep their codes, so that one colour stays that colour, even
+ * where its codes are none.
+ *
+ * @param params  see struct refocus_render_params; of a photo of Y, U and V the region begins and
+ *                ends at even columns and, in 4:2:0, rows, or at the picture's end
+ * @param out     of the size of the region, any stride; may not overlap itself. Any format of
+ *                R, G, B of a photo of R, G, B; any of 4:2:0 of one of 4:2:0; YUYV of YUYV. Its
+ *                matrix and range are the photo's, whatever they say.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
+ *         REFOCUS_ERR_UNSUPPORTED (another format than these; of a photo of Y, U and V another
+ *         method than the sweep, or a reduced picture),
  *         REFOCUS_ERR_CANCELLED. On REFOCUS_ERR_CANCELLED parts of @p out are written,
  *         on the others none. Allocates nothing.
  */

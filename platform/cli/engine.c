@@ -237,6 +237,8 @@ static int render_once(struct engine *engine, const struct refocus_image *out, d
 
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
 {
+    const float focus = engine->params.focus_disparity;
+    const float beside = focus + (focus > 0.5f ? -2 : 2) / 65535.0f;
     double *times = malloc((size_t)repeat * sizeof *times);
     int status = REFOCUS_OK;
 
@@ -248,9 +250,12 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
     for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
         const double start = report_clock_ms();
 
+        /* every other one is a step of disparity off, or all but rays would be kept */
+        engine->params.focus_disparity = (repeat - i) % 2 ? focus : beside;
         status = render_once(engine, out, 0.3 + 0.6 * i / repeat, 0.6 / repeat);
         times[i] = report_clock_ms() - start;
     }
+    engine->params.focus_disparity = focus;
     if (status == REFOCUS_OK)
         engine->render_ms = report_spread(times, repeat);
     free(times);

@@ -9,6 +9,7 @@
 #include "options.h"
 
 struct network_settings;
+struct stereo_settings;
 
 struct depth_settings {
     const char *file, *unit;
@@ -17,6 +18,8 @@ struct depth_settings {
     const char *invalid;  /* names of codes for "no value", or NULL */
     bool full;            /* bring the depth to the photo's size */
     bool optional;        /* a photo without any will do: its disparities are NULL then */
+    double snap;          /* edges of a map of the photo's size may be off by so much; 0: as
+                             they are */
     int upsample;         /* how; 0: as the core does, else 1 + enum refocus_cv_filter */
 };
 
@@ -162,7 +165,7 @@ int input_read_depth(struct input *input, const char *file,
 /* Read a photo, and make depth: of it and the right one of a stereo pair, NULL when they lie
  * side by side in one, or within the file as two pictures; or by a network. */
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      bool within, const struct depth_settings *settings);
+                      const struct stereo_settings *how, const struct depth_settings *settings);
 int input_read_estimate(struct input *input, const char *photo, const char *model,
                         const struct network_settings *network,
                         const struct depth_settings *settings);

@@ -145,9 +145,11 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
         size[0] = width;
         size[1] = height;
     }
-    out = live_queue_fill(&live->rendered, width, height, &memory);
+    out = live_queue_fill(&live->rendered, picture->image.format, width, height, &memory);
     if (!out)
         return false;
+    out->image.matrix = picture->image.matrix;
+    out->image.range = picture->image.range;
     status = memory ? refocus(live, picture, map, &out->image) : REFOCUS_ERR_MEMORY;
     if (status != REFOCUS_OK) {
         live_queue_return(&live->rendered, out);

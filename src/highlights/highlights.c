@@ -368,7 +368,7 @@ static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int
     at = y * r->stride + x;
     /* from half a pixel of blur on, all of it from one pixel and a half on */
     blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < (r->yuv.on ? 1 : 3); c++) /* of Y, U and V all three are one plane */
         r->front.light[c][at] =
             (uint16_t)(r->front.light[c][at] +
                        sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));

@@ -75,12 +75,17 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 
+/* The same for a photo of Y, U and V, from job->luma and job->chroma. */
+void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                         struct rf_decode_job *job);
+void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect);
+
 /* One pixel given as codes; alpha is the photo's. */
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
 
 /* rect: at most RF_TILE x RF_TILE, inside one tile. */
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);
-rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
 
 #endif

@@ -75,7 +75,7 @@ static void load(struct refocus_renderer *r, struct rf_rect window)
     map.width = photo.width;
     map.height = photo.height;
     rf_use(r, 0, window);
-    rf_load_light(r, &photo);
+    rf_load_light(r, &photo, NULL);
     rf_load_disparity(r, &map);
 }
 

@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "background/background.h"
+#include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/reduce.h"
+#include "renderer/render_yuv.h"
 #include "tiles/ranges.h"
 
 static void reblend_band(void *context, int band, int worker)
@@ -15,11 +17,14 @@ static void reblend_band(void *context, int band, int worker)
     struct refocus_renderer *r = f->r;
     uint8_t *blend = &r->photo[r->used].band_blend[band];
 
-    (void)worker;
     if (*blend == f->params->blend)
         return;
-    rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
-                    rf_band_end(r, band));
+    if (r->yuv.on)
+        rf_yuv_reblend_rows(r, (uint8_t *)rf_scratch(r, worker), rf_band_start(band),
+                            rf_band_end(r, band));
+    else
+        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
+                        rf_band_end(r, band));
     *blend = (uint8_t)f->params->blend;
 }
 
@@ -50,6 +55,14 @@ static void blur_band(void *context, int band, int worker)
     rf_bin_tiles(f->r, f->scale, band);
 }
 
+static void chroma_blur_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_yuv_blur_rows(f->r, rf_band_start(band), rf_band_end(f->r, band));
+}
+
 static void range_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -69,8 +82,10 @@ static void smooth_band(void *context, int band, int worker)
                                    : r->behind.light;
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
-    (void)worker;
-    rf_prefilter_rows(r, out, in, f->prefilter_above, i, band);
+    if (r->yuv.on)
+        rf_smooth_yuv_band(f, band, worker);
+    else
+        rf_prefilter_rows(r, out, in, f->prefilter_above, i, band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
@@ -113,8 +128,12 @@ static void mark_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
 
-    rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
-                            rf_band_end(f->r, band));
+    if (f->r->yuv.on)
+        rf_background_yuv_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+                                    rf_band_end(f->r, band));
+    else
+        rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+                                rf_band_end(f->r, band));
 }
 
 void rf_pass_blur(struct rf_frame *f, bool layers)
@@ -128,6 +147,8 @@ void rf_pass_smooth(struct rf_frame *f)
 {
     mark_lamps(f);
     rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
+    if (f->r->yuv.on)
+        rf_pool_run(&f->r->pool, chroma_blur_band, f, rf_bands(f->r));
     prefilter_with_highlights(f);
 }
 
@@ -147,7 +168,10 @@ void rf_pass_behind(struct rf_frame *f, int levels)
 {
     struct refocus_renderer *r = f->r;
 
-    rf_background_pull(r, 0, levels);
+    if (r->yuv.on)
+        rf_background_yuv_fill(r);
+    else
+        rf_background_pull(r, 0, levels);
     rf_pool_run(&r->pool, note_band, r, rf_bands(r));
 }
 
@@ -308,7 +332,8 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     if (r->used == 0)
         m->half = false;
     rf_pass_mark(f);
-    rf_background_push(r, 0, r->levels);
+    if (!r->yuv.on)
+        rf_background_push(r, 0, r->levels);
     if (rf_cancelled(r))
         return false;
     if (!contains(m->window, rf_whole(r, r->used)) &&
@@ -438,6 +463,8 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
         rf_reduce_once(r);
     rf_use(r, number, rf_whole(r, number));
     f->region = region;
+    if (r->yuv.on)
+        rf_yuv_set_blend(r, f->params->blend);
     rf_pool_run(&r->pool, reblend_band, f, rf_bands(r));
     if (rf_cancelled(r))
         return;
@@ -457,7 +484,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     } else {
         make_in_window(f, number, &parts, layers);
     }
-    if (layers && f->weighted && is_sweep(f))
+    if (layers && f->weighted && is_sweep(f) && !r->yuv.on)
         make_weights(f);
     f->region = in_window(r, region);
 }

@@ -9,6 +9,7 @@
 #include "renderer/params.h"
 #include "renderer/passes.h"
 #include "renderer/rays.h"
+#include "renderer/render_yuv.h"
 
 struct method {
     const char *name, *summary;
@@ -61,19 +62,6 @@ const char *refocus_method_summary(uint32_t method)
     return method < REFOCUS_METHOD_COUNT ? methods[method].summary : NULL;
 }
 
-int refocus_format_bytes(uint32_t format)
-{
-    switch (format) {
-    case REFOCUS_FORMAT_RGB8:
-    case REFOCUS_FORMAT_BGR8:
-        return 3;
-    case REFOCUS_FORMAT_RGBA8:
-    case REFOCUS_FORMAT_BGRA8:
-        return 4;
-    }
-    return 0;
-}
-
 /* The part of a photo to render; false if it is not inside. */
 static bool region_of(const struct refocus_renderer *r,
                       const struct refocus_render_params *p, int number,
@@ -117,8 +105,12 @@ static void tile_item(void *context, int item, int worker)
         smaller((ty + 1) * RF_TILE, f->region.y1),
     };
 
-    if (f->params->max_blur_radius > 0)
+    if (f->params->max_blur_radius > 0 && f->r->yuv.on)
+        rf_sweep_yuv_tile(f, tx, ty, rect, worker);
+    else if (f->params->max_blur_radius > 0)
         methods[f->params->method].tile(f, tx, ty, rect, worker);
+    else if (f->r->yuv.on)
+        rf_copy_yuv_tile(f, rect);
     else
         rf_copy_tile(f, rect); /* a pinhole */
 }
@@ -173,7 +165,7 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
         rf_run_blocks(f, region, need, run_tiles);
         return;
     }
-    rf_run_passes(f, number, region, need, method->frame != NULL);
+    rf_run_passes(f, number, region, need, method->frame != NULL || r->yuv.on);
     if (rf_cancelled(r))
         return;
     if (method->frame && !pinhole)
@@ -202,7 +194,7 @@ int refocus_render(struct refocus_renderer *r,
     struct refocus_render_params own;
     struct rf_exact exact;
     struct rf_rect region;
-    int number = 0;
+    int number = 0, status;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
@@ -212,10 +204,13 @@ int refocus_render(struct refocus_renderer *r,
         return REFOCUS_ERR_ARGUMENT;
     while (1 << number < params->reduce)
         number++;
-    if (!region_of(r, params, number, &region) || !rf_good_image(out) ||
+    if (!region_of(r, params, number, &region) || !rf_good_picture(out) ||
         out->width != region.x1 - region.x0 || out->height != region.y1 - region.y0)
         return REFOCUS_ERR_ARGUMENT;
     own = reduced(params);
+    f.params = params;
+    if ((status = rf_check_yuv(&f, region)))
+        return status;
     f.params = &own;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.focus = rf_focus_of(own.focus_disparity, own.max_blur_radius);

@@ -42,11 +42,12 @@ class Usage(Case):
                       '--focus --focus-at '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
-                      '--highlights --mirror --background --threads --cpu --repeat --json --view --parallax --region '
-                      '--settings --save-settings -h --help',
+                      '--highlights --mirror --background --threads --cpu --repeat --json --view '
+                      '--parallax --region --settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--estimate --preset --input-size --input-scale --input-mean --far-is-large '
-                     '--stereo-file --upsample --strokes --side-by-side --view --focus-at --blur --json -h --help',
+                     '--snap --upsample --estimate --preset --input-size --input-mean --input-scale '
+                     '--far-is-large --match --strokes --stereo-file --side-by-side --view '
+                     '--focus-at --blur --json -h --help',
             'sheet': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid '
                      '--speckle --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-distance --blur '
@@ -54,7 +55,8 @@ class Usage(Case):
                      '--quality --aperture --blend --sigma --highlights --mirror --background '
                      '--threads --cpu --repeat --json --settings --save-settings -h --help',
             'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                    '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back --wiggle '
+                    '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
+                    '--wiggle '
                     '--focus --focus-at --focus-distance --blur --f-number --focal-length '
                     '--sensor-width --method --rays --iterations --quality --aperture --blend '
                     '--sigma --highlights --mirror --background --threads --cpu --repeat --json '
@@ -541,6 +543,15 @@ class DepthAndInfo(Case):
                    '--stereo-file, '
                    '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
                    '--depth', 'depth.pgm')
+        self.fails(1, re.compile(r'^refocus: photo.ppm: (it is no stereo file|this build)'),
+                   'depth', 'photo.ppm', '--stereo-file', '-o', 'd.png')
+        self.fails(2, "--input-size: '8,8' cannot be used; give W,H from 32 to 2048", 'depth',
+                   'photo.ppm', '--estimate', 'no.onnx', '--input-size', '8,8', '-o', 'd.png')
+        self.fails(2, re.compile("^refocus: --upsample: 'magic' cannot be used"), 'depth',
+                   'photo.ppm', '--depth', 'depth.pgm', '--full', '--upsample', 'magic', '-o',
+                   'd.png')
+        self.succeeds('depth', 'photo.ppm', '--depth', 'depth.pgm', '--snap', '2', '-o', 'd.png')
+        os.remove('d.png')
         self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '
                                  r'build has no OpenCV)'),
                    'depth', 'photo.ppm', '-o', 'd.png', '--estimate', 'no.onnx')
@@ -583,12 +594,12 @@ class DepthAndInfo(Case):
         self.strokes('s.json', {'kind': 'all', 'disparity': 2})
         self.fails(1, 's.json: strokes[0].disparity must be a number from 0 to 1', *command,
                    's.json')
-        self.fails(1, 'no.json: No such file or directory', *command, 'no.json')
-        self.fails(1, '.: Is a directory', *command, '.')
+        self.fails(1, 'no.json: cannot open it: No such file or directory', *command, 'no.json')
+        self.fails(1, '.: cannot read it: Is a directory', *command, '.')
         self.fails(1, re.compile(r'^refocus: photo.ppm: line 1 is no JSON: '), *command,
                    'photo.ppm')
         for content, why in ((b'', 'it is empty'), (b' ' * (64 << 20) + b' ',
-                                                    'it has more than 67108864 bytes')):
+                                                    'it is larger than the limit of 67108864 bytes')):
             with open('s.json', 'wb') as file:
                 file.write(content)
             self.fails(1, 's.json: ' + why, *command, 's.json')

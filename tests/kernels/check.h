@@ -33,6 +33,7 @@ int check_sweep(const struct subject *subject);
 int check_aim(const struct subject *subject);
 int check_search(const struct subject *subject);
 int check_light(const struct subject *subject);
+int check_yuv(const struct subject *subject);
 int check_surface(const struct subject *subject);
 int check_focus(void);
 

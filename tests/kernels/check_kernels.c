@@ -77,7 +77,8 @@ int main(int argc, char **argv)
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) + check_sweep(&subject) +
                         check_light(&subject) + check_search(&subject) +
-                        check_rows(&subject) + check_surface(&subject);
+                        check_rows(&subject) + check_surface(&subject) +
+                        check_yuv(&subject);
         }
     }
     return failures > 0;

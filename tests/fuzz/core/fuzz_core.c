@@ -142,16 +142,19 @@ static int render(struct refocus_renderer *renderer, struct refocus_render_param
 {
     const int whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
     const int w = whole ? width : p->region_width, h = whole ? height : p->region_height;
-    const int bytes = refocus_format_bytes(format);
-    struct refocus_image image = refocus_image_packed(
-        format, out + GUARD, w, h, (ptrdiff_t)(w > 0 && w <= MAX_SIDE ? w : 1) * bytes);
+    const int possible = w > 0 && w <= MAX_SIDE && h > 0 && h <= MAX_SIDE;
+    struct refocus_image image =
+        refocus_image_planar(format, out + GUARD, possible ? w : 1, possible ? h : 1);
     int status;
+
+    image.width = w;
+    image.height = h;
 
     memset(out, 0xa5, capacity);
     status = refocus_render(renderer, p, &image);
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT
-          || status == REFOCUS_ERR_STATE);
-    const size_t written = status == REFOCUS_OK ? (size_t)w * (size_t)h * (size_t)bytes : 0;
+          || status == REFOCUS_ERR_STATE || status == REFOCUS_ERR_UNSUPPORTED);
+    const size_t written = status == REFOCUS_OK ? refocus_image_bytes(format, w, h) : 0;
     for (size_t i = 0; i < capacity; i++)
         check((i >= GUARD && i < GUARD + written) || out[i] == 0xa5);
     return status;
@@ -163,13 +166,12 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     static uint8_t photo[4 * MAX_SIDE * MAX_SIDE], out[2][CAPACITY];
     static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
     const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
-    const uint32_t format = 1 + take(in, 1) % 4, out_format = 1 + take(in, 1) % 4;
+    const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % 8;
+    const uint32_t format = 1 + kind % 8; /* bits 3 and 4: matrix and range */
     const int bits = take(in, 1) & 1 ? 16 : 8;
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
     const int same = (int)take(in, 1) & 1;
-    const ptrdiff_t stride = (ptrdiff_t)width * refocus_format_bytes(format);
-    const struct refocus_image image =
-        refocus_image_packed(format, photo + stride * (height - 1), width, height, -stride);
+    struct refocus_image image = refocus_image_planar(format, photo, width, height);
     const struct refocus_disparity map = {
         (uint32_t)bits, same ? width : dw, same ? height : dh, disparity,
         (ptrdiff_t)(same ? width : dw) * bits / 8};
@@ -177,6 +179,12 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     struct refocus_aperture *aperture = take_aperture(in, wild);
     int status;
 
+    image.matrix = kind >> 3 & 1;
+    image.range = kind >> 4 & 1;
+    for (int i = 0; i < refocus_format_planes(format); i++) { /* bottom-up */
+        image.plane[i] += image.stride[i] * (refocus_plane_rows(format, i, height) - 1);
+        image.stride[i] = -image.stride[i];
+    }
     take_extras(in, wild, &lens);
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);

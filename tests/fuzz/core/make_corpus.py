@@ -61,6 +61,13 @@ def main():
         "wild_nan": b"\2" + limits(9, 9, 3, 1)[1:] + picture(9, 9, 1, 1, 16)
         + struct.pack(">ff", float("nan"), 1) + b"\xff" * 40,
     }
+    for form, out, name in ((5, 5, "nv12"), (6, 7, "nv21"), (7, 6, "i420"), (8, 8, "yuyv")):
+        seeds[name] = (limits(48, 40, 9, 2) + picture(47, 39, form, out, 16)
+                       + lens(.3, 9, 9, 0, 64, gain=3) + DISC)
+        seeds[name + "_full"] = (limits(40, 30, 5, 1) + picture(33, 30, form + 24, out, 8, depth=(9, 7))
+                                 + lens(1, 5, 5, 0, 65, blend=1, sigma=300) + MASK)
+        seeds[name + "_region"] = (limits(48, 48, 10, 2) + picture(48, 48, form + 8, out, 16)
+                                   + lens(.8, 7, 10, 0, 32, region=(6, 8, 20, 16)) + POLYGON)
     papers = ["jittered", "lightfield", "blur", "scatter", "foveated", "interpolated", "diffusion"]
     for method, name in enumerate(papers, 3):
         seeds[name] = (limits(40, 30, 8, 2) + picture(40, 27, 1, 1, 16)
