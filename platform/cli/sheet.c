@@ -18,9 +18,11 @@ struct settings {
     double region[4];
 };
 
-#define LIST(name_, argument_, field_, help_)                                               \
-    {.kind = OPTION_TEXT, .name = name_, .argument = argument_,                             \
-     .offset = offsetof(struct settings, sheet.field_), .help = help_}
+#define LIST(name_, argument_, field_, help_)                                          \
+    {                                                                                  \
+        .kind = OPTION_TEXT, .name = name_, .argument = argument_,                     \
+        .offset = offsetof(struct settings, sheet.field_), .help = help_               \
+    }
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
@@ -29,22 +31,37 @@ static const struct option options[] = {
     DEPTH_UNIT_OPTIONS(struct settings, depth),
     REPAIR_OPTIONS(struct settings, depth),
     {.kind = OPTION_HEADING, .help = "The sheet"},
-    {.kind = OPTION_CHOICE, .name = "--kind", .argument = "WHAT",
-     .offset = offsetof(struct settings, sheet.kind), .choice = sheet_kind_name,
-     .summary = sheet_kind_summary, .help = "what differs from cell to cell; default focus"},
-    LIST("--focuses", "D,D...", focuses, "disparities in focus; default 0,0.25,0.5,0.75,1"),
+    {.kind = OPTION_CHOICE,
+     .name = "--kind",
+     .argument = "WHAT",
+     .offset = offsetof(struct settings, sheet.kind),
+     .choice = sheet_kind_name,
+     .summary = sheet_kind_summary,
+     .help = "what differs from cell to cell; default focus"},
+    LIST("--focuses", "D,D...", focuses,
+         "disparities in focus; default 0,0.25,0.5,0.75,1"),
     LIST("--blurs", "K,K...", blurs,
-         "blur radii in pixels of the photo; default a quarter of --blur, half, and all of it"),
+         "blur radii in pixels of the photo; default a quarter of --blur, half, and "
+         "all of it"),
     LIST("--f-numbers", "N,N...", f_numbers, "in place of --blurs, as --f-number"),
     LIST("--apertures", "A,A...", apertures,
          "shapes as --aperture takes them; default the disc and polygons"),
     LIST("--sigmas", "S,S...", sigmas, "as --sigma; default off,400,100,30"),
-    {.kind = OPTION_INTEGER, .name = "--cell-width", .argument = "PIXELS",
-     .offset = offsetof(struct settings, sheet.cell_width), .least = 8, .greatest = 8192,
+    {.kind = OPTION_INTEGER,
+     .name = "--cell-width",
+     .argument = "PIXELS",
+     .offset = offsetof(struct settings, sheet.cell_width),
+     .least = 8,
+     .greatest = 8192,
      .help = "width of a cell, at most that of the photo; default 320"},
-    {.kind = OPTION_NUMBERS, .name = "--region", .argument = "X,Y,W,H",
-     .offset = offsetof(struct settings, region), .least = 0, .greatest = REFOCUS_MAX_SIDE,
-     .count = 4, .help = "cells show only this part of the picture, pixels"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--region",
+     .argument = "X,Y,W,H",
+     .offset = offsetof(struct settings, region),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SIDE,
+     .count = 4,
+     .help = "cells show only this part of the picture, pixels"},
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
@@ -61,8 +78,8 @@ static const struct option options[] = {
 static int check(const struct settings *settings, const char *photo)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
-    const char *const inputs[] = {photo, settings->depth.file, settings->engine.aperture,
-                                  settings->load};
+    const char *const inputs[] = {photo, settings->depth.file,
+                                  settings->engine.aperture, settings->load};
     struct lens_settings lens = settings->lens;
     int status = input_check_depth(&settings->depth);
 
@@ -118,7 +135,8 @@ static int render_cell(struct shot *shot, const struct refocus_render_params *us
 }
 
 /* Size of a cell that shows `full` and is no wider than was asked for. */
-static void cell_size(const struct refocus_image *full, double wanted, int *width, int *height)
+static void cell_size(const struct refocus_image *full, double wanted, int *width,
+                      int *height)
 {
     const int most = isnan(wanted) ? 320 : (int)wanted;
 
@@ -163,14 +181,16 @@ static int make(struct shot *shot, struct sheet *sheet, const char *photo,
 {
     struct lens_settings lens = settings->lens;
     const struct shot_settings wanted = {
-        .depth = &settings->depth, .lens = &lens, .engine = &settings->engine,
+        .depth = &settings->depth,
+        .lens = &lens,
+        .engine = &settings->engine,
         .most_blur = isnan(sheet->most_blur) ? 0 : sheet->most_blur};
     int status;
 
     if (!isnan(sheet->least_f_number))
         lens.f_number = sheet->least_f_number;
-    if (settings->sheet.kind == SHEET_FOCUS && isnan(lens.focus) && isnan(lens.focus_at[0]) &&
-        isnan(lens.focus_distance))
+    if (settings->sheet.kind == SHEET_FOCUS && isnan(lens.focus) &&
+        isnan(lens.focus_at[0]) && isnan(lens.focus_distance))
         lens.focus = 1; /* each cell has its own: none has to be found */
     status = shot_open(shot, photo, &wanted);
     if (status == EXIT_DONE)
@@ -194,16 +214,18 @@ static int print_report(const struct settings *settings, const struct shot *shot
         return EXIT_DONE;
     cells = json_array();
     for (int i = 0; i < sheet->count && cells; i++)
-        if (json_array_append_new(cells, report_text_json(sheet->cell[i].caption)) != 0) {
+        if (json_array_append_new(cells, report_text_json(sheet->cell[i].caption)) !=
+            0) {
             json_decref(cells);
             cells = NULL;
         }
     return report_print_json(json_pack(
         "{s:o, s:o, s:i, s:i, s:s, s:i, s:o, s:s}", "photo",
-        report_text_json(shot->input.photo_name), "output", report_text_json(settings->output),
-        "width", (int)picture->width, "height", (int)picture->height, "kind",
-        sheet_kind_name((uint32_t)settings->sheet.kind), "columns", sheet->columns, "cells",
-        cells, "method", refocus_method_name(shot->engine.params.method)));
+        report_text_json(shot->input.photo_name), "output",
+        report_text_json(settings->output), "width", (int)picture->width, "height",
+        (int)picture->height, "kind", sheet_kind_name((uint32_t)settings->sheet.kind),
+        "columns", sheet->columns, "cells", cells, "method",
+        refocus_method_name(shot->engine.params.method)));
 }
 
 static int run(int argc, char **argv)
@@ -247,7 +269,8 @@ const struct command sheet_command = {
     .name = "sheet",
     .usage = "PHOTO -o OUT [options]",
     .summary = "contact sheet over focus and aperture",
-    .notes = "Lists have commas between their values, at most 16 of them. Each cell is rendered "
+    .notes = "Lists have commas between their values, at most 16 of them. Each cell is "
+             "rendered "
              "at full size and made smaller then: what it shows is what render makes.\n"
              "Ctrl-C ends with status 1 and leaves what was at OUT as it was.",
     .options = options,

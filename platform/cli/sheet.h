@@ -21,10 +21,10 @@ struct sheet_settings {
 
 struct sheet_cell {
     char caption[48];
-    double focus, blur, sigma;                /* NAN: as --focus, --blur and --sigma say */
-    int blend;                                /* -1: as --blend says */
-    const struct refocus_aperture *aperture;  /* NULL: as --aperture says */
-    bool untouched;                           /* the photo itself */
+    double focus, blur, sigma; /* NAN: as --focus, --blur and --sigma say */
+    int blend;                 /* -1: as --blend says */
+    const struct refocus_aperture *aperture; /* NULL: as --aperture says */
+    bool untouched;                          /* the photo itself */
 };
 
 struct sheet {
@@ -43,19 +43,21 @@ int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
 
 /* The cells, for a photo with its blur. */
 int sheet_fill(struct sheet *sheet, const struct sheet_settings *settings,
-               const struct lens_settings *lens, const struct input *input, double blur);
+               const struct lens_settings *lens, const struct input *input,
+               double blur);
 
 /* After sheet_begin(), whatever it returned. */
 void sheet_end(struct sheet *sheet);
 
-/* A picture for cells of that size, their captions and gaps; plane[0] is to be freed and NULL
- * when *why says why not. */
-struct refocus_image sheet_picture(const struct sheet *sheet, int cell_width, int cell_height,
-                                   const char **why);
+/* A picture for cells of that size, their captions and gaps; plane[0] is to be freed
+ * and NULL when *why says why not. */
+struct refocus_image sheet_picture(const struct sheet *sheet, int cell_width,
+                                   int cell_height, const char **why);
 
-/* Put a picture, at least as large as a cell, into cell i: averaged over areas of squared
- * values, which is close to averaging light and stays within integers. */
-void sheet_picture_put(const struct refocus_image *picture, const struct sheet *sheet, int i,
-                       const struct refocus_image *full, int cell_width, int cell_height);
+/* Put a picture, at least as large as a cell, into cell i: averaged over areas of
+ * squared values, which is close to averaging light and stays within integers. */
+void sheet_picture_put(const struct refocus_image *picture, const struct sheet *sheet,
+                       int i, const struct refocus_image *full, int cell_width,
+                       int cell_height);
 
 #endif

@@ -13,7 +13,8 @@ const char *sheet_kind_summary(uint32_t index)
 {
     static const char *const summaries[] = {
         "columns of --focuses, rows of --blurs or --f-numbers", "--apertures",
-        "columns of --sigmas, a row for each --blend", "the photo, and what render makes of it"};
+        "columns of --sigmas, a row for each --blend",
+        "the photo, and what render makes of it"};
     return index < 4 ? summaries[index] : NULL;
 }
 
@@ -23,9 +24,10 @@ static const char *next(const char *at, char *text, size_t size, const char *nam
     const size_t length = strcspn(at, ",");
 
     if (length == 0 || length >= size) {
-        report_failure(EXIT_WRONG, name,
-                       length ? "one of its values is too long" :
-                                "one of its values is empty; give values with commas between");
+        report_failure(
+            EXIT_WRONG, name,
+            length ? "one of its values is too long"
+                   : "one of its values is empty; give values with commas between");
         return NULL;
     }
     memcpy(text, at, length);
@@ -40,7 +42,8 @@ static int too_many(const char *name)
 }
 
 /* Values of one range; an exit code. */
-static int read_list(const struct option *range, const char *list, double *values, int *count)
+static int read_list(const struct option *range, const char *list, double *values,
+                     int *count)
 {
     char text[64];
 
@@ -48,7 +51,8 @@ static int read_list(const struct option *range, const char *list, double *value
         if (*count == SHEET_LIST)
             return too_many(range->name);
         list = next(list, text, sizeof text, range->name);
-        if (!list || options_set(range, range->name, text, values + *count) != OPTIONS_PARSED)
+        if (!list ||
+            options_set(range, range->name, text, values + *count) != OPTIONS_PARSED)
             return EXIT_WRONG;
         list = *list ? list + 1 : NULL;
     }
@@ -57,29 +61,32 @@ static int read_list(const struct option *range, const char *list, double *value
 
 static int read_focuses(const char *list, double *values, int *count)
 {
-    static const struct option range = {.kind = OPTION_NUMBER, .name = "--focuses",
-                                        .greatest = 1};
+    static const struct option range = {
+        .kind = OPTION_NUMBER, .name = "--focuses", .greatest = 1};
     return read_list(&range, list, values, count);
 }
 
 static int read_blurs(const char *list, double *values, int *count)
 {
-    static const struct option range = {.kind = OPTION_NUMBER, .name = "--blurs",
-                                        .greatest = REFOCUS_MAX_BLUR_RADIUS};
+    static const struct option range = {
+        .kind = OPTION_NUMBER, .name = "--blurs", .greatest = REFOCUS_MAX_BLUR_RADIUS};
     return read_list(&range, list, values, count);
 }
 
 static int read_f_numbers(const char *list, double *values, int *count)
 {
-    static const struct option range = {.kind = OPTION_NUMBER, .name = "--f-numbers",
-                                        .above = true, .greatest = 1000};
+    static const struct option range = {
+        .kind = OPTION_NUMBER, .name = "--f-numbers", .above = true, .greatest = 1000};
     return read_list(&range, list, values, count);
 }
 
 static int read_sigmas(const char *list, double *values, int *count)
 {
-    static const struct option range = {.kind = OPTION_NUMBER, .name = "--sigmas", .least = 1,
-                                        .greatest = 1e30, .word = "off",
+    static const struct option range = {.kind = OPTION_NUMBER,
+                                        .name = "--sigmas",
+                                        .least = 1,
+                                        .greatest = 1e30,
+                                        .word = "off",
                                         .word_value = INFINITY};
     return read_list(&range, list, values, count);
 }
@@ -105,8 +112,9 @@ static struct sheet_cell *add(struct sheet *sheet)
 static int begin_apertures(struct sheet *sheet, const char *list,
                            const struct engine_settings *engine)
 {
-    static const char usual[] = "disc,polygon:3,polygon:4,polygon:5,polygon:6,polygon:7:10,"
-                                "polygon:8,polygon:9";
+    static const char usual[] =
+        "disc,polygon:3,polygon:4,polygon:5,polygon:6,polygon:7:10,"
+        "polygon:8,polygon:9";
     int status = EXIT_DONE;
 
     for (list = list ? list : usual; list && status == EXIT_DONE;) {
@@ -126,7 +134,8 @@ static int begin_apertures(struct sheet *sheet, const char *list,
             struct sheet_cell *cell = add(sheet);
 
             cell->aperture = sheet->aperture[sheet->apertures - 1].params.aperture;
-            snprintf(cell->caption, sizeof cell->caption, "%.47s", slash ? slash + 1 : shape);
+            snprintf(cell->caption, sizeof cell->caption, "%.47s",
+                     slash ? slash + 1 : shape);
         }
     }
     sheet->columns = sheet->count < 4 ? sheet->count : 4;
@@ -184,9 +193,9 @@ int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
 }
 
 /* The rows: blur radii, and what captions call them. */
-static int make_rows(const struct sheet_settings *settings, const struct lens_settings *lens,
-                     const struct input *input, double blur, double *blurs,
-                     char captions[][16], int *count)
+static int make_rows(const struct sheet_settings *settings,
+                     const struct lens_settings *lens, const struct input *input,
+                     double blur, double *blurs, char captions[][16], int *count)
 {
     double f_numbers[SHEET_LIST];
     int status = EXIT_DONE;
@@ -215,7 +224,8 @@ static int make_rows(const struct sheet_settings *settings, const struct lens_se
 }
 
 static int fill_focus(struct sheet *sheet, const struct sheet_settings *settings,
-                      const struct lens_settings *lens, const struct input *input, double blur)
+                      const struct lens_settings *lens, const struct input *input,
+                      double blur)
 {
     double focuses[SHEET_LIST], blurs[SHEET_LIST];
     char captions[SHEET_LIST][16];
@@ -239,9 +249,11 @@ static int fill_focus(struct sheet *sheet, const struct sheet_settings *settings
 static int fill_sigma(struct sheet *sheet, const char *list)
 {
     double sigmas[SHEET_LIST];
-    const int status = read_sigmas(list ? list : "off,400,100,30", sigmas, &sheet->columns);
+    const int status =
+        read_sigmas(list ? list : "off,400,100,30", sigmas, &sheet->columns);
 
-    for (int i = 0; status == EXIT_DONE && engine_blend_name((uint32_t)(i / sheet->columns));
+    for (int i = 0;
+         status == EXIT_DONE && engine_blend_name((uint32_t)(i / sheet->columns));
          i++) {
         struct sheet_cell *cell = add(sheet);
 

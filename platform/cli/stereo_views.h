@@ -1,5 +1,6 @@
-/* What eyes beside the camera see: a photo and its disparities warped sideways, and rendered
- * through the lens there. What comes out from behind something is filled from the far side. */
+/* What eyes beside the camera see: a photo and its disparities warped sideways, and
+ * rendered through the lens there. What comes out from behind something is filled from
+ * the far side. */
 #ifndef RF_CLI_STEREO_VIEWS_H
 #define RF_CLI_STEREO_VIEWS_H
 
@@ -8,17 +9,18 @@
 enum { STEREO_MOST = 256 }; /* pixels of parallax */
 
 /*
- * Warp a packed RGB8 photo with packed disparities of its size into another of each. A pixel
- * of disparity d moves by
+ * Warp a packed RGB8 photo with packed disparities of its size into another of each. A
+ * pixel of disparity d moves by
  *
  *     parallax (d - focus)  pixels to the right
  *
- * in steps of 1/256, so that the plane in focus stays where it is; the nearest that meets a
- * pixel wins. nearest: room for a row. All in integers: the same bits everywhere.
+ * in steps of 1/256, so that the plane in focus stays where it is; the nearest that
+ * meets a pixel wins. nearest: room for a row. All in integers: the same bits
+ * everywhere.
  */
-void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity, double focus,
-                 double parallax, const struct refocus_image *view, uint16_t *seen,
-                 int32_t *nearest);
+void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity,
+                 double focus, double parallax, const struct refocus_image *view,
+                 uint16_t *seen, int32_t *nearest);
 
 struct stereo {
     struct refocus_image view;

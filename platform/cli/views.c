@@ -25,14 +25,14 @@ const char *view_summary(uint32_t index)
 
 static int lost(int status)
 {
-    return status == REFOCUS_OK ? EXIT_DONE
-                                : report_failure(EXIT_FAILED, "--view", "%s",
-                                                 refocus_strerror(status));
+    return status == REFOCUS_OK
+               ? EXIT_DONE
+               : report_failure(EXIT_FAILED, "--view", "%s", refocus_strerror(status));
 }
 
-/* The limits of what is sharp, K |d - df| = 1/2 pixel, unless there are others: where more than
- * 1/16 of the picture has another blur than K |d - df|. Along depth edges some have: pixels that
- * mix two surfaces are given the disparity of one of them. */
+/* The limits of what is sharp, K |d - df| = 1/2 pixel, unless there are others: where
+ * more than 1/16 of the picture has another blur than K |d - df|. Along depth edges
+ * some have: pixels that mix two surfaces are given the disparity of one of them. */
 static bool find_limits(const struct shot *shot, const uint16_t *blur,
                         const uint16_t *disparity, struct blur_limits *limits)
 {
@@ -67,8 +67,8 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
     int status = disparity && blur ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
 
     if (status == REFOCUS_OK)
-        status = refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, disparity,
-                                  (ptrdiff_t)width * 2);
+        status = refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
+                                  disparity, (ptrdiff_t)width * 2);
     if (status == REFOCUS_OK)
         status = refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_BLUR, blur,
                                   (ptrdiff_t)width * 2);
@@ -76,10 +76,10 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
         peaking_draw(photo, blur, out);
     } else if (status == REFOCUS_OK) {
         if (view == VIEW_BLUR)
-            made = falsecolour_blur(blur, disparity, width, height,
-                                    (double)shot->engine.params.max_blur_radius, range,
-                                    find_limits(shot, blur, disparity, &limits) ? &limits
-                                                                                : NULL);
+            made = falsecolour_blur(
+                blur, disparity, width, height,
+                (double)shot->engine.params.max_blur_radius, range,
+                find_limits(shot, blur, disparity, &limits) ? &limits : NULL);
         else
             made = falsecolour_depth(disparity, width, height, range,
                                      view == VIEW_OVERLAY ? photo : NULL);
@@ -94,10 +94,13 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
     return lost(status);
 }
 
-/* The left eye in red over the right one: things in focus lie in the plane of the screen. */
-static int make_anaglyph(struct shot *shot, const struct refocus_image *out, double parallax)
+/* The left eye in red over the right one: things in focus lie in the plane of the
+ * screen. */
+static int make_anaglyph(struct shot *shot, const struct refocus_image *out,
+                         double parallax)
 {
-    const double apart = isnan(parallax) ? fmin(out->width / 50.0, STEREO_MOST) : parallax;
+    const double apart =
+        isnan(parallax) ? fmin(out->width / 50.0, STEREO_MOST) : parallax;
     const size_t pixels = (size_t)out->width * (size_t)out->height;
     struct refocus_image left = *out;
     struct stereo stereo;
@@ -117,8 +120,8 @@ static int make_anaglyph(struct shot *shot, const struct refocus_image *out, dou
     return status;
 }
 
-int views_render(struct shot *shot, struct refocus_image *out, int view, double parallax,
-                 int repeat)
+int views_render(struct shot *shot, struct refocus_image *out, int view,
+                 double parallax, int repeat)
 {
     int status;
 
