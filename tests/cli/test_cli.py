@@ -789,19 +789,23 @@ class Extremes(Case):
         if not least:
             self.skipTest('a sanitizer takes more address space than that')
         pictures.png('black.png', 1500, 1000, [bytes(4500)] * 1000)
-        codes = set()
-        for more in range(0, 80000, 5000):
-            out = 'out%d.png' % more
-            result = self.run_it('render', 'black.png', '--depth', 'depth.pgm', '--blur', '9',
-                                 '--threads', '1', '--rays', '8', '-o', out,
-                                 preexec_fn=limit(least + more))
-            codes.add(result.returncode)
-            self.assertEqual(os.path.exists(out), result.returncode == 0)
-            if result.returncode != 0:
-                self.assertRegex(result.stderr, r'^refocus: .*: .*\n$')
-                self.assertEqual(result.stderr.count('\n'), 1)
-        self.assertIn(1, codes)
-        self.assertTrue(codes <= {0, 1}, codes)
+        for command in (('render',), ('render', '--view', 'blur'),
+                        ('render', '--view', 'anaglyph'),
+                        ('sheet', '--kind', 'before-after', '--cell-width', '1500')):
+            codes = set()
+            for more in range(0, 110000, 5000):
+                out = 'out%d.png' % more
+                result = self.run_it(command[0], 'black.png', *command[1:], '--depth',
+                                     'depth.pgm', '--blur', '9', '--threads', '1', '--rays',
+                                     '8', '-o', out, preexec_fn=limit(least + more))
+                codes.add(result.returncode)
+                self.assertEqual(os.path.exists(out), result.returncode == 0)
+                if result.returncode != 0:
+                    self.assertRegex(result.stderr, r'^refocus: .*: .*\n$')
+                    self.assertEqual(result.stderr.count('\n'), 1)
+                else:
+                    os.remove(out)
+            self.assertEqual(codes, {0, 1}, command)
 
 
 class Running(Case):
