@@ -24,12 +24,14 @@ struct depth_settings {
 };
 
 struct lens_settings {
-    double focus, focus_at[2], focus_distance;
+    double focus, focus_at[2], focus_distance, focus_rectangle[4];
     double blur, f_number, focal_length, sensor_width;
 };
 
 #define DEPTH_SETTINGS_NONE {.near_m = NAN, .far_m = NAN}
-#define LENS_SETTINGS_NONE {NAN, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN}
+#define LENS_SETTINGS_NONE                                                                  \
+    {.focus = NAN, .focus_at = {NAN, NAN}, .focus_distance = NAN, .focus_rectangle = {NAN}, \
+     .blur = NAN, .f_number = NAN, .focal_length = NAN, .sensor_width = NAN}
 
 /* Rows of tables of options, for settings with a member of the types above. */
 #define DEPTH_FILE_OPTION(type, member)                                                     \
@@ -93,8 +95,16 @@ struct lens_settings {
      .least = -INFINITY,                                                                    \
      .greatest = INFINITY,                                                                  \
      .count = 2,                                                                            \
-     .help = "focus on the surface at that pixel: the median of the 5x5 around it; "        \
-             "without any --focus...: the point that the file names, else the centre"},     \
+     .help = "focus on the surface at that pixel: the nearer one at an edge; without any "  \
+             "--focus...: the point that the file names, else the centre"},                 \
+    {.kind = OPTION_NUMBERS,                                                                \
+     .name = "--focus-rectangle",                                                           \
+     .argument = "X,Y,W,H",                                                                 \
+     .offset = offsetof(type, member.focus_rectangle),                                      \
+     .least = 0,                                                                            \
+     .greatest = REFOCUS_MAX_SIDE,                                                          \
+     .count = 4,                                                                            \
+     .help = "focus on the nearest surface that has a quarter of that rectangle, pixels"},  \
     {.kind = OPTION_NUMBER,                                                                 \
      .name = "--focus-distance",                                                            \
      .argument = "M",                                                                       \
@@ -180,8 +190,8 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
 int input_focus(const struct input *input, const struct lens_settings *settings,
                 const uint16_t *prepared, double *focus);
 
-/* Median of the 5x5 disparities around a pixel, of fewer at the border. */
-double input_median_at(const uint16_t *disparity, int width, int height, int x, int y);
+/* Disparity of the surface at a pixel: refocus_focus_at_point(). */
+double input_surface_at(const uint16_t *disparity, int width, int height, int x, int y);
 
 /* Exit code for what a function of the file library returned. */
 int input_exit_code(int status);

@@ -45,7 +45,7 @@ static void find_focus(struct live *live, int width, int height)
     disparity = malloc((size_t)width * (size_t)height * 2);
     if (disparity && refocus_get_view(live->engine->renderer, REFOCUS_VIEW_DISPARITY, disparity,
                                       (ptrdiff_t)width * 2) == REFOCUS_OK)
-        live_focus_pull(&live->focus, input_median_at(disparity, width, height, x, y), seconds);
+        live_focus_pull(&live->focus, input_surface_at(disparity, width, height, x, y), seconds);
     free(disparity);
 }
 

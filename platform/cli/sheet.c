@@ -45,7 +45,8 @@ static const struct option options[] = {
          "all of it"),
     LIST("--f-numbers", "N,N...", f_numbers, "in place of --blurs, as --f-number"),
     LIST("--apertures", "A,A...", apertures,
-         "shapes as --aperture takes them; default the disc and polygons"),
+         "shapes as --aperture takes them; default a disc, polygons, a heart and a "
+         "star"),
     LIST("--sigmas", "S,S...", sigmas, "as --sigma; default off,400,100,30"),
     {.kind = OPTION_INTEGER,
      .name = "--cell-width",
@@ -65,6 +66,8 @@ static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
+    CONTROL_OPTIONS(struct settings, engine.controls),
+    BOKEH_OPTIONS(struct settings, engine.bokeh),
     {.kind = OPTION_HEADING, .help = "Rendering"},
     METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine),
@@ -75,11 +78,22 @@ static const struct option options[] = {
     {.help = NULL},
 };
 
+static bool focus_is_given(const struct lens_settings *lens)
+{
+    return !isnan(lens->focus) || !isnan(lens->focus_at[0]) ||
+           !isnan(lens->focus_distance) || !isnan(lens->focus_rectangle[0]);
+}
+
 static int check(const struct settings *settings, const char *photo)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
-    const char *const inputs[] = {photo, settings->depth.file,
-                                  settings->engine.aperture, settings->load};
+    const char *const inputs[] = {photo,
+                                  settings->depth.file,
+                                  settings->engine.aperture,
+                                  settings->engine.papers.field_map,
+                                  settings->engine.controls.focus_map,
+                                  settings->engine.controls.sharp_mask,
+                                  settings->load};
     struct lens_settings lens = settings->lens;
     int status = input_check_depth(&settings->depth);
 
@@ -92,9 +106,11 @@ static int check(const struct settings *settings, const char *photo)
     if (status == EXIT_DONE)
         status = input_check_lens(&lens);
     if (status == EXIT_DONE)
-        status = output_check(settings->output, endings, inputs, 4);
+        status = controls_check(&settings->engine.controls, focus_is_given(&lens));
+    if (status == EXIT_DONE)
+        status = output_check(settings->output, endings, inputs, 7);
     if (status == EXIT_DONE && settings->save)
-        status = settings_check(settings->save, inputs, 4);
+        status = settings_check(settings->save, inputs, 7);
     return status;
 }
 
@@ -189,8 +205,7 @@ static int make(struct shot *shot, struct sheet *sheet, const char *photo,
 
     if (!isnan(sheet->least_f_number))
         lens.f_number = sheet->least_f_number;
-    if (settings->sheet.kind == SHEET_FOCUS && isnan(lens.focus) &&
-        isnan(lens.focus_at[0]) && isnan(lens.focus_distance))
+    if (settings->sheet.kind == SHEET_FOCUS && !focus_is_given(&lens))
         lens.focus = 1; /* each cell has its own: none has to be found */
     status = shot_open(shot, photo, &wanted);
     if (status == EXIT_DONE)
@@ -243,6 +258,7 @@ static int run(int argc, char **argv)
 
     if (status != OPTIONS_PARSED)
         return status;
+    settings.engine.bokeh.f_number = settings.lens.f_number;
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;

@@ -112,9 +112,8 @@ static struct sheet_cell *add(struct sheet *sheet)
 static int begin_apertures(struct sheet *sheet, const char *list,
                            const struct engine_settings *engine)
 {
-    static const char usual[] =
-        "disc,polygon:3,polygon:4,polygon:5,polygon:6,polygon:7:10,"
-        "polygon:8,polygon:9";
+    static const char usual[] = "disc,polygon:3,polygon:4,polygon:5,polygon:6:15,"
+                                "polygon:8,heart,star:5";
     int status = EXIT_DONE;
 
     for (list = list ? list : usual; list && status == EXIT_DONE;) {

@@ -93,16 +93,20 @@ typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort
  *                 sum += light[q]; next ray
  *         sum += last[n][p]
  *
- * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
- * strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
+ * Light is Q12, at most 4095, or 4, 8 or 16 times that as `bright` says; sums are exact.
+ * Pointers are to the strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480
+ * (Q7.8).
  */
+/* Light that highlights reach: white, 4, 8 or 16 times that. */
+enum rf_bright { RF_WHITE, RF_BRIGHT, RF_BRIGHTER, RF_BRIGHTEST };
+
 struct rf_sweep_job {
     const int16_t *blur;     /* light is in the three planes after it, pitch apart */
     ptrdiff_t stride, pitch; /* elements */
     int slabs;
     const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
-    bool bright;  /* highlights are in the light */
+    enum rf_bright bright;
 
     /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
     const uint16_t *weight;
@@ -111,7 +115,8 @@ struct rf_sweep_job {
 typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
 
 /* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. Those
- * of the front lie in a plane with a stride of its own, those of the background as its light. */
+ * of the front lie in a plane with a stride of its own, those of the background as its light.
+ * Never RF_BRIGHTEST but for the reference. */
 enum { RF_WEIGHT_MAX = 32767 };
 typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 

@@ -50,7 +50,7 @@ static void blur_band(void *context, int band, int worker)
     const struct rf_frame *f = context;
 
     (void)worker;
-    rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_signed_blur_rows(f->r, &f->plan, rf_band_start(band), rf_band_end(f->r, band));
     rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
 }
@@ -98,19 +98,36 @@ static void prefilter(struct rf_frame *f)
         rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
 }
 
+/* How far apart rays are at a blur of 1. */
+static double ray_gap(const struct refocus_render_params *p)
+{
+    return sqrt(3.14159265358979 / (p->rays == REFOCUS_RAYS_FULL ? INT_MAX : p->rays));
+}
+
 static void mark_lamps(struct rf_frame *f)
 {
-    const int rays = f->params->rays == REFOCUS_RAYS_FULL ? INT_MAX : f->params->rays;
+    const float gain = f->r->yuv.on ? fminf(f->params->highlight_gain, RF_PLAIN_GAIN)
+                                    : f->params->highlight_gain;
 
-    f->bright = f->params->highlight_gain > 1 &&
-                rf_mark_highlights(f->r, f->scale, sqrt(3.14159265358979 / rays));
+    f->bright = RF_WHITE;
+    if (gain > 1 && rf_mark_highlights(f->r, f->scale, ray_gap(f->params)))
+        f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT
+                    : gain <= 2 * RF_PLAIN_GAIN ? RF_BRIGHTER
+                                                : RF_BRIGHTEST;
+}
+
+void rf_pass_bright(struct rf_frame *f)
+{
+    if (f->bright > RF_BRIGHT)
+        rf_add_bright_highlights(f->r, f->params->highlight_gain, ray_gap(f->params),
+                                 (f->bright == RF_BRIGHTER ? 8 : 16) * RF_LIGHT_MAX);
 }
 
 /* The light is the photo's again afterwards, whatever happens. */
 static void prefilter_with_highlights(struct rf_frame *f)
 {
-    const float gain = f->params->highlight_gain;
-    const int added = f->bright ? rf_add_highlights(f->r, gain) : 0;
+    const float gain = fminf(f->params->highlight_gain, RF_PLAIN_GAIN);
+    const int added = f->bright != RF_WHITE ? rf_add_highlights(f->r, gain) : 0;
 
     prefilter(f);
     rf_remove_highlights(f->r, gain, added);
@@ -195,8 +212,8 @@ bool rf_same_lens(const struct rf_frame *f, int number)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->blur && m->photo == number && m->focus.disparity == f->focus.disparity &&
-           m->focus.radius == f->focus.radius && m->shift == f->scale.shift;
+    return m->blur && m->photo == number && !memcmp(&m->plan, &f->plan, sizeof m->plan) &&
+           m->shift == f->scale.shift;
 }
 
 bool rf_same_light(const struct rf_frame *f)
@@ -258,14 +275,14 @@ static void make_blur(struct rf_frame *f, bool layers)
         *m = (struct rf_made){.half = m->half && r->used,
                               .photo = r->used,
                               .window = window,
-                              .focus = f->focus,
+                              .plan = f->plan,
                               .shift = f->scale.shift};
         rf_pass_blur(f, layers);
         m->blur = !rf_cancelled(r);
     }
     if (m->blur && layers && !m->rims) {
         m->blur = false; /* until all rims are in */
-        rf_patch_rims(r, f->focus, f->scale);
+        rf_patch_rims(r, &f->plan, f->scale);
         m->blur = m->rims = !rf_cancelled(r);
     }
 }
@@ -285,7 +302,7 @@ static void make_smooth(struct rf_frame *f)
         m->half = false; /* it lies where the background layer does */
     m->lamps = f->params->highlight_gain > 1;
     if (m->ranges) {
-        f->bright = false;
+        f->bright = RF_WHITE;
         prefilter(f);
     } else {
         rf_pass_smooth(f);
@@ -444,7 +461,7 @@ static void find_highlights(struct rf_frame *f)
     struct refocus_renderer *r = f->r;
     struct rf_photo *photo = &r->photo[r->used];
 
-    if (f->params->highlight_gain <= 1 || photo->highlights_blend == r->blend)
+    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
         return;
     photo->highlights_blend = RF_NO_BLEND;
     rf_forget_highlights(r);
@@ -480,9 +497,15 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     }
     if (is_there(f, number, &parts, layers)) {
         rf_use(r, number, r->made.window);
-        f->bright = layers && r->made.bright;
+        f->bright = layers ? r->made.bright : RF_WHITE;
     } else {
+        if (r->made.spread) /* the background takes smooth light without it */
+            r->made = (struct rf_made){.half = r->made.half};
         make_in_window(f, number, &parts, layers);
+    }
+    if (layers && !rf_cancelled(r) && !r->made.spread && f->bright > RF_BRIGHT) {
+        rf_pass_bright(f);
+        r->made.spread = true;
     }
     if (layers && f->weighted && is_sweep(f) && !r->yuv.on)
         make_weights(f);

@@ -3,6 +3,16 @@
 #include "planes/format.h"
 #include "planes/yuv.h"
 
+/* What is made of R, G and B alone. */
+static bool has_look(const struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+
+    return p->cat_eye > 0 || p->fringe != 0 || p->grain > 0 ||
+           (p->star_spikes > 0 && p->star_strength > 0) ||
+           (p->aperture && rf_aperture_has_sides(p->aperture));
+}
+
 int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
 {
     const struct refocus_renderer *r = f->r;
@@ -13,7 +23,7 @@ int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
     if (!r->yuv.on)
         return REFOCUS_OK;
     if (rf_chroma_down(f->out->format) != r->yuv.down ||
-        f->params->method != REFOCUS_METHOD_SWEEP || f->params->reduce > 1)
+        f->params->method != REFOCUS_METHOD_SWEEP || f->params->reduce > 1 || has_look(f))
         return REFOCUS_ERR_UNSUPPORTED;
     if (region.x0 % 2 || (region.x1 % 2 && region.x1 < r->photo[0].width) ||
         (region.y0 & odd_rows) || ((region.y1 & odd_rows) && region.y1 < r->photo[0].height))

@@ -8,8 +8,11 @@
 
 #include <refocus/render.h>
 
+#include "aperture/cat_eye.h"
 #include "colour/transfer.h"
 #include "colour/yuv.h"
+#include "finish/finish.h"
+#include "focus/focus.h"
 #include "highlights/highlights.h"
 #include "highlights/rims.h"
 #include "kernels/kernels.h"
@@ -28,6 +31,7 @@ enum {
 /* Rays and runs of equal weight among them. */
 struct rf_ray_set {
     struct refocus_ray *ray;
+    struct refocus_ray *before; /* those before the focus: the same, or as many others */
     int count;
     uint64_t total_weight;
     bool equal; /* all rays weigh the same */
@@ -65,7 +69,8 @@ struct rf_made {
     bool lamps;  /* and highlights marked and widened in them */
     bool ranges; /* its ranges; before, its cells are where the background's blur will be */
     bool smooth; /* the pre-filtered light */
-    bool bright; /* with light given back to lamps */
+    enum rf_bright bright; /* with light given back to lamps, */
+    bool spread; /* that beyond 4 times white as well */
     bool behind; /* the background layer, */
     bool weighed; /* but with weights of `sigma` in place of its blur */
     float sigma;
@@ -74,7 +79,7 @@ struct rf_made {
     int photo;
     struct rf_rect window; /* of that photo, to which all of it is limited */
     struct rf_rect exact;  /* where it is as if made for the whole photo */
-    struct rf_focus focus;
+    struct rf_focus_plan plan;
     int shift; /* of the bins */
     uint32_t blend;
     float gain;
@@ -169,7 +174,7 @@ struct refocus_renderer {
     uint16_t *seen_group, *behind_group;
     struct rf_made made;
     struct rf_in_place in_place;
-    struct rf_focus last_focus; /* of the last render, in pixels of photo[0], */
+    struct rf_focus_plan last_plan; /* of the last render, in pixels of photo[0], */
     bool last_rims;             /* with the rims, */
     bool blurred;               /* if there was one */
 
@@ -211,6 +216,11 @@ struct refocus_renderer {
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 
+    struct rf_star *star; /* of this lens setting */
+    int stars;
+    struct rf_grain *grain; /* of this lens setting */
+    uint32_t renders;       /* so far, that had maps of their own */
+
     uint8_t *work;       /* memory of the methods that work on whole frames, one at a time */
     uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
     uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
@@ -223,6 +233,7 @@ struct refocus_renderer {
     int set_rays;
     bool set_denser;
     float set_blur;
+    struct rf_cat_eye cat_eye; /* made when it is first asked for */
 };
 
 /* Pixels of `size` in photo i. */

@@ -28,6 +28,10 @@ class Usage(Case):
               '--attention --attention-angle --picture-angle --attention-depth --field '
               '--field-at --field-disparity --field-radius --field-falloff --field-angle '
               '--field-map --layers --solver --conductivity ')
+    CONTROLS = ('--focus-width --focus-transition --also-focus --focus-plane --tilt-line '
+                '--tilt-angle --tilt-compress --focus-map --sharp-mask --far-clamp --near-clamp '
+                '--blur-limit --bokeh --curvature --open-f-number --squeeze --ring --edge '
+                '--edge-before --cat-eye --fringe --grain --highlight-stops ')
 
     def test_help(self):
         text = self.succeeds('--help')
@@ -38,8 +42,9 @@ class Usage(Case):
 
     def test_help_lists_every_option(self):
         options = {
-            'render': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                      '--focus --focus-at '
+            'render': self.PAPERS + self.CONTROLS +
+                      '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                      '--focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
                       '--highlights --mirror --background --threads --cpu --repeat --json --view '
@@ -48,26 +53,28 @@ class Usage(Case):
                      '--snap --upsample --estimate --preset --input-size --input-mean --input-scale '
                      '--far-is-large --match --strokes --stereo-file --side-by-side --view '
                      '--focus-at --blur --json -h --help',
-            'sheet': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid '
-                     '--speckle --kind --focuses --blurs --f-numbers --apertures --sigmas '
-                     '--cell-width --region --focus --focus-at --focus-distance --blur '
-                     '--f-number --focal-length --sensor-width --method --rays --iterations '
+            'sheet': self.PAPERS + self.CONTROLS +
+                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                     '--kind --focuses --blurs --f-numbers --apertures --sigmas '
+                     '--cell-width --region --focus --focus-at --focus-rectangle '
+                     '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background '
                      '--threads --cpu --repeat --json --settings --save-settings -h --help',
             'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
                     '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
-                    '--focus --focus-at --focus-distance --blur --f-number --focal-length '
-                    '--sensor-width --method --rays --iterations --quality --aperture --blend '
+                    '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
                     '--sigma --highlights --mirror --background --threads --cpu --repeat --json '
                     '--settings --save-settings -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
-                       '--depth-unit --near --far --focus --focus-at --focus-distance --blur '
-                       '--f-number --focal-length --sensor-width --rays --iterations '
+                       '--depth-unit --near --far --focus --focus-at --focus-rectangle '
+                       '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background '
                        '--threads --cpu --repeat --json -h --help',
             'bench': self.PAPERS + '--size --depth --depth-unit --near --far --focus --focus-at '
+                     '--focus-rectangle '
                      '--focus-distance --blur --method --rays --iterations --quality '
                      '--aperture --blend --sigma --highlights --mirror --background --threads --cpu '
                      '--repeat --json -h --help',
@@ -175,7 +182,8 @@ class Limits(Case):
                    'X,Y,W,H from 0 to 65535')
 
     def test_what_excludes_what(self):
-        twice = 'the focus is given twice; give one of --focus, --focus-at and --focus-distance'
+        twice = ('the focus is given twice; give one of --focus, --focus-at, --focus-distance '
+                 'and --focus-rectangle')
         self.fails(2, '--focus-at: ' + twice,
                    *self.render('--focus', '1', '--focus-at', '1,1'))
         self.fails(2, '--focus-distance: ' + twice,
@@ -210,7 +218,7 @@ class Limits(Case):
                           "polygon:BLADES:DEGREES with 3 to 16 blades" % shape,
                        *self.render('--aperture', shape))
         self.fails(2, "--aperture: 'dics' is not known; give disc, polygon:BLADES, "
-                      "polygon:BLADES:DEGREES or a mask picture",
+                      "polygon:BLADES:DEGREES, heart, star or a mask picture",
                    *self.render('--aperture', 'dics'))
         self.fails(1, 'wide.pgm: 256x1 pixels are too many for an aperture; give at most '
                       '255x255', *self.render('--aperture', 'wide.pgm'))
@@ -321,7 +329,7 @@ class Results(Case):
                    *self.render('--focus-distance', '1', '--near', '1'))
 
     def test_focus_at_is_robust(self):
-        """Wrong single samples do not win: the median of 5x5 is asked."""
+        """Wrong single samples do not win."""
         pictures.pgm('specks.pgm', W, H,
                      lambda x, y: 255 if (x, y) in ((10, 10), (0, 0), (1, 1)) else 51)
         for at in ('10,10', '0,0', '2,1'):

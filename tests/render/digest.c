@@ -317,6 +317,69 @@ static void yuv_views_same(void **state)
     }
 }
 
+/* A dark picture with lamps of 4 x 4 pixels. */
+static struct picture night(int width, int height)
+{
+    struct picture p = picture_make(width, height, 123);
+
+    for (int i = 0; i < width * height; i++) {
+        const bool lamp = i % width % 17 < 4 && i / width % 19 < 4;
+
+        for (int c = 0; c < 3; c++)
+            p.rgb[3 * i + c] = lamp ? (c == 2 ? 200 : 255) : p.rgb[3 * i + c] / 5;
+    }
+    return p;
+}
+
+/* Effects: the same on every instruction set and with any number of threads. */
+static void effects(void **state)
+{
+    enum { W = 83, H = 61 };
+    static uint8_t out[3 * W * H];
+    const float focus = 0.4f, blur = 11;
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct picture p = night(W, H);
+    const struct refocus_image photo = picture_image(&p);
+    const struct refocus_disparity disparity = picture_disparity(&p);
+    struct refocus_render_params params;
+    uint64_t plain[64];
+    const char *name;
+
+    (void)state;
+    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++) {
+        struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, blur);
+        struct refocus_renderer *renderer;
+
+        limits.methods = REFOCUS_METHODS_ALL;
+        limits.cpu = cpu;
+        limits.threads = (int32_t)cpu;
+        if (refocus_renderer_create(&renderer, &limits) != REFOCUS_OK)
+            continue;
+        assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+        for (int i = 0; effect_params(i, focus, blur, &params, &name); i++) {
+            struct refocus_aperture *aperture = effect_aperture(i);
+            uint64_t is;
+
+            params.aperture = aperture;
+            assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+            refocus_aperture_destroy(&aperture);
+            is = hash(out, sizeof out);
+            if (cpu == REFOCUS_CPU_C) {
+                char line[80];
+
+                plain[i] = is;
+                snprintf(line, sizeof line, "effect: %s", name);
+                check_golden(is, line);
+            } else if (is != plain[i]) {
+                fail_msg("effect %s: %s differs from plain C", name, refocus_cpu_name(cpu));
+            }
+        }
+        refocus_renderer_destroy(&renderer);
+    }
+    picture_free(&p);
+}
+
 /* A coarse map brought to the photo's size. */
 static void upsampled(void **state)
 {
@@ -370,6 +433,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures),
                                        cmocka_unit_test(yuv_views_same),
+                                       cmocka_unit_test(effects),
                                        cmocka_unit_test(upsampled),
                                        cmocka_unit_test(ray_sets)};
     const bool update = argc == 3 && !strcmp(argv[2], "--update");

@@ -60,13 +60,31 @@ static void take_pixels(struct input *in, uint8_t *to, size_t size)
         to[i] = in->size > 0 ? in->data[i % in->size] : (uint8_t)(i * 37);
 }
 
+static struct refocus_aperture_params take_opening(struct input *in, int wild)
+{
+    struct refocus_aperture_params p = refocus_aperture_params_default();
+
+    p.figure = (uint32_t)take_in(in, wild, 0, 2);
+    p.blades = take_in(in, wild, 2, 16);
+    if (p.blades == 2)
+        p.blades = 0;
+    p.rotation_deg = (double)take_fraction(in, wild, 360);
+    p.curvature = p.figure ? 0 : (double)take_fraction(in, wild, 1);
+    p.opening = p.figure ? 0 : (double)take_fraction(in, wild, 1);
+    p.squeeze = 0.5 + (double)take_fraction(in, wild, 1.5f);
+    p.hole = (double)take_fraction(in, wild, 0.9f);
+    p.edge_behind = 1 - (double)take_fraction(in, wild, 2);
+    p.edge_before = take(in, 1) & 1 ? p.edge_behind : -p.edge_behind;
+    return p;
+}
+
 static struct refocus_aperture *take_aperture(struct input *in, int wild)
 {
     struct refocus_aperture *aperture = NULL;
     uint8_t mask[16];
     int status = REFOCUS_OK;
 
-    switch (take(in, 1) % 4) {
+    switch (take(in, 1) % 5) {
     case 1:
         status = refocus_aperture_create_disc(&aperture);
         break;
@@ -81,6 +99,11 @@ static struct refocus_aperture *take_aperture(struct input *in, int wild)
             mask[i] = (uint8_t)take(in, 1);
         status = refocus_aperture_create_mask(&aperture, mask, 4, 4, 4);
         break;
+    case 4: {
+        const struct refocus_aperture_params params = take_opening(in, wild);
+        status = refocus_aperture_create(&aperture, &params);
+        break;
+    }
     }
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT);
     check(status == REFOCUS_OK || !aperture);
@@ -113,6 +136,38 @@ static void take_extras(struct input *in, int wild, struct refocus_render_params
     p->conductivity = 0.01f + take_fraction(in, wild, 0.99f);
 }
 
+/* Focus beyond a lens, and the look of the blur; `map` serves for all of its pictures. */
+static void take_controls(struct input *in, int wild, const struct refocus_disparity *map,
+                          struct refocus_render_params *p)
+{
+    const uint32_t maps = take(in, 1);
+
+    p->tilt_across = take_fraction(in, wild, 128) - (wild ? 0 : 64);
+    p->tilt_down = take_fraction(in, wild, 3);
+    p->tilt_x = take_fraction(in, wild, 1);
+    p->depth_share = 1 - take_fraction(in, wild, 1);
+    p->focus_half_width = take_fraction(in, wild, 0.3f);
+    p->focus_transition = take_fraction(in, wild, 1);
+    p->bands = take_in(in, wild, 0, REFOCUS_MAX_BANDS - 1);
+    for (int i = 0; i < p->bands && i < REFOCUS_MAX_BANDS - 1; i++)
+        p->band[i] = (struct refocus_band){take_fraction(in, wild, 1),
+                                           take_fraction(in, wild, 0.2f),
+                                           take_fraction(in, wild, 1)};
+    p->focus_map = maps & 1 ? map : NULL;
+    p->sharp_map = maps & 2 ? map : NULL;
+    p->field_map = maps & 4 ? map : NULL;
+    if (maps & 4)
+        p->field = REFOCUS_FIELD_PICTURE;
+    p->least_disparity = take_fraction(in, wild, 0.5f);
+    p->most_disparity = 1 - take_fraction(in, wild, 0.5f);
+    p->blur_limit = 127 - take_fraction(in, wild, 127);
+    p->cat_eye = take_fraction(in, wild, 0.9f);
+    p->fringe = take_fraction(in, wild, 1) - (wild ? 0 : 0.5f);
+    p->grain = take_fraction(in, wild, 4);
+    if (p->method != REFOCUS_METHOD_SWEEP && !wild)
+        p->cat_eye = p->fringe = 0;
+}
+
 static struct refocus_render_params take_lens(struct input *in, int wild, float most)
 {
     struct refocus_render_params p = refocus_render_params_default(
@@ -124,7 +179,7 @@ static struct refocus_render_params take_lens(struct input *in, int wild, float 
         p.rays = REFOCUS_RAYS_FULL;
     p.blend = (uint32_t)take_in(in, wild, 0, 2);
     p.sigma = 1 + take_fraction(in, wild, 300);
-    p.highlight_gain = 1 + take_fraction(in, wild, 3);
+    p.highlight_gain = 1 + take_fraction(in, wild, 15);
     p.iterations = take_in(in, wild, 1, 8);
     p.mirror = (uint8_t)take_in(in, wild, 0, 1);
     p.background = (uint8_t)take_in(in, wild, 0, 1);
@@ -186,6 +241,10 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
         image.stride[i] = -image.stride[i];
     }
     take_extras(in, wild, &lens);
+    if (in->size > 0 && take(in, 1) & 1)
+        take_controls(in, wild, &map, &lens);
+    else if (!wild && lens.method != REFOCUS_METHOD_DIFFUSION)
+        lens.field = REFOCUS_FIELD_LENS;
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);
     status = refocus_prepare(renderer, &image, &map);
