@@ -9,6 +9,7 @@ extern const struct command depth_command;
 extern const struct command info_command;
 extern const struct command bench_command;
 extern const struct command pull_command;
+extern const struct command sheet_command;
 extern const struct command compare_command;
 extern const struct command live_command;
 extern const struct command view_command;

@@ -61,22 +61,6 @@ static int find_crops(const uint16_t *d, int width, int height, int w, int h,
     return count;
 }
 
-static void draw_text(const struct refocus_image *image, int left, int top, int width,
-                      const char *text)
-{
-    for (int i = 0; text[i]; i++) {
-        for (int y = 0; y < GLYPH_HEIGHT * ZOOM; y++) {
-            for (int x = 0; x < GLYPH_WIDTH * ZOOM; x++) {
-                const int at = i * (GLYPH_WIDTH + 1) * ZOOM + x;
-
-                if (at < width && text_dot(text[i], x / ZOOM, y / ZOOM))
-                    memset(image->plane[0] + (top + y) * image->stride[0] + 3 * (left + at), 240,
-                           3);
-            }
-        }
-    }
-}
-
 static void draw_crop(const struct refocus_image *image, int left, int top, const uint8_t *rgb,
                       int width, struct place at, int w, int h)
 {
@@ -111,13 +95,13 @@ struct refocus_image compare_picture(const struct comparison *c, const uint16_t 
         char text[64] = "";
 
         snprintf(text, sizeof text, "%.*s", length, item->name);
-        draw_text(&image, left, GAP, w * ZOOM, text);
+        text_draw(&image, left, GAP, ZOOM, w * ZOOM, text);
         snprintf(text, sizeof text, "%s", item->name + length + (item->name[length] == ':'));
-        draw_text(&image, left, GAP + LINE, w * ZOOM, text);
+        text_draw(&image, left, GAP + LINE, ZOOM, w * ZOOM, text);
         text[0] = '\0';
         if (item->scored)
             snprintf(text, sizeof text, "%.2f db", item->scores.psnr);
-        draw_text(&image, left, GAP + 2 * LINE, w * ZOOM, text);
+        text_draw(&image, left, GAP + 2 * LINE, ZOOM, w * ZOOM, text);
         for (int k = 0; k < crops; k++)
             draw_crop(&image, left, LABEL + k * cell_h, item->rgb, c->width, place[k], w, h);
     }

@@ -1,8 +1,10 @@
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "falsecolour.h"
+#include "peaking.h"
 #include "text.h"
 
 enum {
@@ -17,7 +19,8 @@ struct colour {
     uint8_t r, g, b;
 };
 
-static const struct colour paper = {16, 16, 16}, ink = {240, 240, 240}, sharp = {0, 255, 120};
+static const struct colour paper = {16, 16, 16}, ink = {240, 240, 240}, sharp = {0, 255, 120},
+                           near_line = {255, 0, 200}, far_line = {255, 255, 255};
 
 /* Equal steps from 0 to 1, dark to light so that it reads in grey too. */
 static const struct colour ramp[] = {{24, 16, 64},   {38, 80, 180},  {28, 150, 160},
@@ -131,8 +134,29 @@ static void draw_depth_legend(const struct refocus_image *image, int top, int sc
     }
 }
 
+/* A sample of a colour and what it stands for, which begins behind it. */
+static void write_key(const struct refocus_image *image, int top, int scale, int x,
+                      struct colour colour, const char *text)
+{
+    fill(image, top, scale, x, 25, GLYPH_HEIGHT, GLYPH_HEIGHT, colour);
+    write_text(image, top, scale, x + 10 + (int)strlen(text) * (GLYPH_WIDTH + 1) / 2, 25, text);
+}
+
+/* "near 0.552 1.23 m" */
+static void write_limit(char text[32], const char *name, double d,
+                        const struct refocus_depth_range *range)
+{
+    if (d < 0 || d > 1)
+        snprintf(text, 32, "%s all", name);
+    else if (range)
+        snprintf(text, 32, "%s %.3f %.3g m", name, d, refocus_depth_of_disparity(range, d));
+    else
+        snprintf(text, 32, "%s %.3f", name, d);
+}
+
 static void draw_blur_legend(const struct refocus_image *image, int top, int scale,
-                             double greatest)
+                             double greatest, const struct refocus_depth_range *range,
+                             const struct blur_limits *limits)
 {
     char text[32];
 
@@ -141,12 +165,58 @@ static void draw_blur_legend(const struct refocus_image *image, int top, int sca
         snprintf(text, sizeof text, "%.3g px", greatest * i / (TICKS - 1));
         write_text(image, top, scale, tick_x(image, scale, i), 16, text);
     }
-    fill(image, top, scale, 4, 25, GLYPH_HEIGHT, GLYPH_HEIGHT, sharp);
-    write_text(image, top, scale, 30, 25, "sharp");
+    write_key(image, top, scale, 4, sharp, "sharp");
+    if (!limits || image->width / scale < LEGEND_WIDTH)
+        return;
+    write_limit(text, "near", limits->near_disparity, range);
+    write_key(image, top, scale, 54, near_line, text);
+    write_limit(text, "far", limits->far_disparity, range);
+    write_key(image, top, scale, 184, far_line, text);
+}
+
+/* Over the sharp pixels that have one of the others within `reach` in a row or column. */
+static void draw_limits(const struct refocus_image *image, const uint16_t *blur,
+                        const uint16_t *disparity, int height, int reach)
+{
+    enum { HALF_PIXEL = 128 };
+    const int width = image->width;
+
+    for (int y = 0; y < height; y++) {
+        uint8_t *row = image->plane[0] + y * image->stride[0];
+
+        for (int x = 0; x < width; x++) {
+            const size_t here = (size_t)y * (size_t)width + (size_t)x;
+            bool found = false;
+
+            for (int k = 0; k < 4 * reach && blur[here] < HALF_PIXEL && !found; k++) {
+                const int far = k / 4 + 1;
+                const int i = x + (k % 4 == 0 ? far : k % 4 == 1 ? -far : 0);
+                const int j = y + (k % 4 == 2 ? far : k % 4 == 3 ? -far : 0);
+                const size_t there = (size_t)j * (size_t)width + (size_t)i;
+
+                found = i >= 0 && i < width && j >= 0 && j < height && blur[there] >= HALF_PIXEL;
+                if (found)
+                    memcpy(row + 3 * x,
+                           disparity[there] > disparity[here] ? &near_line : &far_line, 3);
+            }
+        }
+    }
+}
+
+static void lay_over(const struct refocus_image *image, const struct refocus_image *photo)
+{
+    for (int y = 0; y < photo->height; y++) {
+        const uint8_t *from = photo->plane[0] + y * photo->stride[0];
+        uint8_t *row = image->plane[0] + y * image->stride[0];
+
+        for (int x = 0; x < 3 * photo->width; x++)
+            row[x] = (uint8_t)((row[x] + peaking_luma(from + x - x % 3) + 1) / 2);
+    }
 }
 
 struct refocus_image falsecolour_depth(const uint16_t *values, int width, int height,
-                                       const struct refocus_depth_range *range)
+                                       const struct refocus_depth_range *range,
+                                       const struct refocus_image *photo)
 {
     struct colour *colours = malloc(65536 * sizeof *colours);
     int scale;
@@ -160,6 +230,8 @@ struct refocus_image falsecolour_depth(const uint16_t *values, int width, int he
     for (int v = 0; v < 65536; v++)
         colours[v] = colour_at(v / 65535.0);
     paint(&image, values, height, colours);
+    if (photo)
+        lay_over(&image, photo);
     if (scale > 0)
         draw_depth_legend(&image, height, scale, range);
 end:
@@ -167,8 +239,10 @@ end:
     return image;
 }
 
-struct refocus_image falsecolour_blur(const uint16_t *values, int width, int height,
-                                      double greatest)
+struct refocus_image falsecolour_blur(const uint16_t *values, const uint16_t *disparity,
+                                      int width, int height, double greatest,
+                                      const struct refocus_depth_range *range,
+                                      const struct blur_limits *limits)
 {
     struct colour *colours = malloc(65536 * sizeof *colours);
     int scale;
@@ -182,8 +256,9 @@ struct refocus_image falsecolour_blur(const uint16_t *values, int width, int hei
     for (int v = 0; v < 65536; v++)
         colours[v] = v < 128 || greatest <= 0 ? sharp : colour_at(v / 256.0 / greatest);
     paint(&image, values, height, colours);
+    draw_limits(&image, values, disparity, height, scale > 1 ? scale : 1);
     if (scale > 0)
-        draw_blur_legend(&image, height, scale, greatest);
+        draw_blur_legend(&image, height, scale, greatest, range, limits);
 end:
     free(colours);
     return image;

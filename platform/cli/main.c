@@ -9,6 +9,7 @@
 #include "report.h"
 
 static const struct command *const commands[] = {&render_command, &depth_command,
+                                                 &sheet_command,
                                                  &pull_command,
                                                  &info_command, &compare_command,
                                                  &bench_command, &live_command,

@@ -9,13 +9,14 @@
 #include "report.h"
 #include "settings.h"
 #include "shot.h"
+#include "stereo_views.h"
 
 struct settings {
     struct depth_settings depth;
     struct lens_settings lens;
     struct engine_settings engine;
     const char *output, *keys, *load, *save;
-    double from, to, blur_from, blur_to, seconds, fps; /* NAN: not given */
+    double from, to, blur_from, blur_to, seconds, fps, wiggle; /* NAN: not given */
     int ease;
     bool back;
 };
@@ -50,6 +51,9 @@ static const struct option options[] = {
      .help = "how it goes from one to the other; default smooth"},
     {.kind = OPTION_FLAG, .name = "--back", .offset = offsetof(struct settings, back),
      .help = "and the same way back, so that it can be repeated"},
+    NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST,
+           "in place of a pull: the eye swings sideways, and what is not in focus moves by so "
+           "many pixels, at disparity 1 when 0 is in focus"),
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
@@ -96,6 +100,12 @@ static int check(const struct settings *s, const char *photo)
         status = report_failure(EXIT_WRONG, "--keys",
                                 "is in place of --from, --to, --blur-from, --blur-to and "
                                 "--seconds; leave them out");
+    if (status == EXIT_DONE && !isnan(s->wiggle) &&
+        (s->keys || s->back ||
+         !(isnan(s->from) && isnan(s->to) && isnan(s->blur_from) && isnan(s->blur_to))))
+        status = report_failure(EXIT_WRONG, "--wiggle",
+                                "is in place of --keys, --from, --to, --blur-from, --blur-to "
+                                "and --back; leave them out");
     if (status == EXIT_DONE)
         status = animation_check(s->output, inputs, 5);
     if (status == EXIT_DONE && s->save)
@@ -109,11 +119,31 @@ static int position(int i, int there)
     return i < there ? i : 2 * (there - 1) - i;
 }
 
-static int write_frames(struct shot *shot, const struct keys *keys, const struct settings *s,
-                        int *frames)
+/* Frame i of `count` that go round: the eye swings as sin. */
+static double swing(double parallax, int i, int count)
+{
+    const double turn = 6.283185307179586;
+
+    return parallax / 2 * sin(turn * i / count);
+}
+
+static int render_frame(struct shot *shot, const struct keys *keys, const struct stereo *stereo,
+                        const struct settings *s, int i, int count, int there,
+                        const struct refocus_image *out)
+{
+    if (stereo)
+        return stereo_render(stereo, shot, swing(s->wiggle, i, count), out);
+    keys_apply(keys, position(i, there) / given(s->fps, 25), &shot->engine.params);
+    return engine_render(&shot->engine, out, 1);
+}
+
+/* stereo: NULL in a pull. */
+static int write_frames(struct shot *shot, const struct keys *keys, const struct stereo *stereo,
+                        const struct settings *s, int *frames)
 {
     const double fps = given(s->fps, 25);
-    const int there = (int)(keys_seconds(keys) * fps + 0.5) + 1;
+    const double seconds = stereo ? given(s->seconds, 2) - 1 / fps : keys_seconds(keys);
+    const int there = (int)(seconds * fps + 0.5) + 1;
     const int count = s->back && there > 2 ? 2 * there - 2 : there;
     const struct refocus_image *photo = &shot->input.photo->image;
     struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, photo->width,
@@ -126,8 +156,7 @@ static int write_frames(struct shot *shot, const struct keys *keys, const struct
         return report_failure(EXIT_FAILED, shot->input.photo_name, "not enough memory");
     status = animation_open(&animation, s->output, out.width, out.height, fps, count);
     for (int i = 0; i < count && status == EXIT_DONE; i++) {
-        keys_apply(keys, position(i, there) / fps, &shot->engine.params);
-        status = engine_render(&shot->engine, &out, 1);
+        status = render_frame(shot, keys, stereo, s, i, count, there, &out);
         if (status == EXIT_DONE)
             status = animation_write(animation, &out);
         report_progress("pulling", (i + 1.0) / count);
@@ -136,6 +165,17 @@ static int write_frames(struct shot *shot, const struct keys *keys, const struct
     *frames = count;
     free(out.plane[0]);
     return status == EXIT_DONE ? closed : status;
+}
+
+static int wiggle(struct shot *shot, const struct settings *s, int *frames)
+{
+    struct stereo stereo;
+    int status = stereo_open(&stereo, shot);
+
+    if (status == EXIT_DONE)
+        status = write_frames(shot, NULL, &stereo, s, frames);
+    stereo_close(&stereo);
+    return status;
 }
 
 static int pull(struct shot *shot, const char *photo, struct keys **keys,
@@ -153,10 +193,12 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys,
         return status;
     }
     status = shot_open(shot, photo, &wanted);
+    if (status == EXIT_DONE && !isnan(s->wiggle))
+        return wiggle(shot, s, frames);
     if (status == EXIT_DONE && !*keys)
         status = make_keys(keys, s, (double)shot->engine.params.max_blur_radius);
     if (status == EXIT_DONE)
-        status = write_frames(shot, *keys, s, frames);
+        status = write_frames(shot, *keys, NULL, s, frames);
     return status;
 }
 
@@ -179,7 +221,7 @@ static int run(int argc, char **argv)
                                 .lens = LENS_SETTINGS_NONE,
                                 .engine = ENGINE_SETTINGS_NONE(1),
                                 .from = NAN, .to = NAN, .blur_from = NAN, .blur_to = NAN,
-                                .seconds = NAN, .fps = NAN};
+                                .seconds = NAN, .fps = NAN, .wiggle = NAN};
     struct keys *keys = NULL;
     struct shot shot;
     const char *files[2];
@@ -190,7 +232,7 @@ static int run(int argc, char **argv)
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;
-    if (isnan(settings.lens.focus)) /* each frame has its own: none has to be found */
+    if (isnan(settings.lens.focus) && isnan(settings.wiggle)) /* each frame has its own: none has to be found */
         settings.lens.focus = given(settings.from, 1);
     status = pull(&shot, files[0], &keys, &settings, &frames);
     report_progress_end();

@@ -4,35 +4,21 @@
 #include <string.h>
 #include "commands.h"
 #include "engine.h"
-#include "falsecolour.h"
 #include "inputs.h"
 #include "outputs.h"
 #include "settings.h"
 #include "shot.h"
-
-enum view { VIEW_NONE, VIEW_DEPTH, VIEW_BLUR };
+#include "stereo_views.h"
+#include "views.h"
 
 struct settings {
     struct depth_settings depth;
     struct lens_settings lens;
     struct engine_settings engine;
     const char *output, *load, *save;
-    double region[4];
+    double region[4], parallax;
     int view;
 };
-
-static const char *view_name(uint32_t index)
-{
-    static const char *const names[] = {"none", "depth", "blur"};
-    return index < 3 ? names[index] : NULL;
-}
-
-static const char *view_summary(uint32_t index)
-{
-    static const char *const summaries[] = {"the refocused photo", "the disparities",
-                                            "the blur radii"};
-    return index < 3 ? summaries[index] : NULL;
-}
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
@@ -64,7 +50,15 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, view),
      .choice = view_name,
      .summary = view_summary,
-     .help = "write a picture in false colours with a legend instead"},
+     .help = "write a picture of how it is made instead"},
+    {.kind = OPTION_NUMBER,
+     .name = "--parallax",
+     .argument = "PIXELS",
+     .offset = offsetof(struct settings, parallax),
+     .least = 0,
+     .greatest = STEREO_MOST,
+     .help = "anaglyph: between the eyes at disparity 1 when 0 is in focus; default 1/50 of "
+             "the width"},
     {.kind = OPTION_HEADING, .help = "Running"},
     SETTINGS_OPTIONS(struct settings, load, save),
     RUN_OPTIONS(struct settings, engine),
@@ -92,68 +86,14 @@ static int check(const struct settings *settings, const char *photo)
     if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
                                 "a view is always of the whole; leave --region or --view out");
+    if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH && !isnan(settings->parallax))
+        status = report_failure(EXIT_WRONG, "--parallax",
+                                "goes with --view anaglyph; give that too");
     if (status == EXIT_DONE)
         status = output_check(settings->output, endings, inputs, 7);
     if (status == EXIT_DONE && settings->save)
         status = settings_check(settings->save, inputs, 6);
     return status;
-}
-
-/* The picture to render into: all of the photo or the region; plane[0] is the caller's. */
-static int make_output(struct refocus_image *out, struct engine *engine,
-                       const struct input *input, const struct settings *settings)
-{
-    const struct refocus_image *photo = &input->photo->image;
-    const double *region = settings->region;
-    int width = photo->width, height = photo->height;
-
-    if (!isnan(region[0])) {
-        if (region[2] < 1 || region[3] < 1 || region[0] + region[2] > width ||
-            region[1] + region[3] > height)
-            return report_failure(EXIT_WRONG, "--region",
-                                  "%g,%g,%g,%g does not lie within the %dx%d pixels of %s",
-                                  region[0], region[1], region[2], region[3], width, height,
-                                  input->photo_name);
-        engine->params.region_x = (int32_t)region[0];
-        engine->params.region_y = (int32_t)region[1];
-        engine->params.region_width = width = (int32_t)region[2];
-        engine->params.region_height = height = (int32_t)region[3];
-    }
-    *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
-                                (ptrdiff_t)width * 3);
-    if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)
-        out->plane[0] = malloc((size_t)width * 3 * (size_t)height);
-    if (!out->plane[0])
-        return report_failure(EXIT_FAILED, input->photo_name,
-                              "not enough memory for %dx%d pixels", width, height);
-    return EXIT_DONE;
-}
-
-/* Replace the rendered picture by the layer of --view. */
-static int make_view(struct refocus_image *out, const struct engine *engine,
-                     const struct input *input, int view)
-{
-    const int width = out->width, height = out->height;
-    const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
-    const bool known = range.near_m > 0 && range.far_m > range.near_m;
-    uint16_t *values = malloc((size_t)width * (size_t)height * sizeof *values);
-    int status = values ? refocus_get_view(engine->renderer,
-                                           view == VIEW_DEPTH ? REFOCUS_VIEW_DISPARITY
-                                                              : REFOCUS_VIEW_BLUR,
-                                           values, (ptrdiff_t)width * 2)
-                        : REFOCUS_ERR_MEMORY;
-
-    if (status == REFOCUS_OK) {
-        free(out->plane[0]);
-        *out = view == VIEW_DEPTH
-                   ? falsecolour_depth(values, width, height, known ? &range : NULL)
-                   : falsecolour_blur(values, width, height, engine->params.max_blur_radius);
-        status = out->plane[0] ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
-    }
-    free(values);
-    if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, "--view", "%s", refocus_strerror(status));
-    return EXIT_DONE;
 }
 
 static int print_report(const struct settings *settings, const struct engine *engine,
@@ -191,11 +131,10 @@ static int render(struct shot *shot, struct refocus_image *out,
     int status = shot_open(shot, photo, &wanted);
 
     if (status == EXIT_DONE)
-        status = make_output(out, &shot->engine, &shot->input, settings);
+        status = shot_output(shot, settings->region, out);
     if (status == EXIT_DONE)
-        status = engine_render(&shot->engine, out, (int)settings->engine.repeat);
-    if (status == EXIT_DONE && settings->view != VIEW_NONE)
-        status = make_view(out, &shot->engine, &shot->input, settings->view);
+        status = views_render(shot, out, settings->view, settings->parallax,
+                              (int)settings->engine.repeat);
     return status;
 }
 
@@ -204,7 +143,8 @@ static int run(int argc, char **argv)
     struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
                                 .lens = LENS_SETTINGS_NONE,
                                 .engine = ENGINE_SETTINGS_NONE(1),
-                                .region = {NAN}};
+                                .region = {NAN},
+                                .parallax = NAN};
     struct shot shot;
     struct refocus_image out = {0};
     const char *files[2];

@@ -67,3 +67,31 @@ void shot_close(struct shot *shot)
     engine_end(&shot->engine);
     input_free(&shot->input);
 }
+
+int shot_output(struct shot *shot, const double region[4], struct refocus_image *out)
+{
+    const struct refocus_image *photo = &shot->input.photo->image;
+    struct refocus_render_params *params = &shot->engine.params;
+    int width = photo->width, height = photo->height;
+
+    if (!isnan(region[0])) {
+        if (region[2] < 1 || region[3] < 1 || region[0] + region[2] > width ||
+            region[1] + region[3] > height)
+            return report_failure(EXIT_WRONG, "--region",
+                                  "%g,%g,%g,%g does not lie within the %dx%d pixels of %s",
+                                  region[0], region[1], region[2], region[3], width, height,
+                                  shot->input.photo_name);
+        params->region_x = (int32_t)region[0];
+        params->region_y = (int32_t)region[1];
+        params->region_width = width = (int32_t)region[2];
+        params->region_height = height = (int32_t)region[3];
+    }
+    *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
+                                (ptrdiff_t)width * 3);
+    if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)
+        out->plane[0] = malloc((size_t)width * 3 * (size_t)height);
+    if (!out->plane[0])
+        return report_failure(EXIT_FAILED, shot->input.photo_name,
+                              "not enough memory for %dx%d pixels", width, height);
+    return EXIT_DONE;
+}

@@ -21,4 +21,8 @@ struct shot {
 int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings);
 void shot_close(struct shot *shot);
 
+/* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y, width
+ * and height in it; plane[0] is to be freed. Exit code as above. */
+int shot_output(struct shot *shot, const double region[4], struct refocus_image *out);
+
 #endif

@@ -1,5 +1,7 @@
+#include <ctype.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 #include "text.h"
 
 /* Five dots a row, the leftmost in bit 4. */
@@ -22,6 +24,9 @@ static const struct {
     {'=', {0x00, 0x00, 0x1f, 0x00, 0x1f, 0x00, 0x00}},
     {':', {0x00, 0x0c, 0x0c, 0x00, 0x0c, 0x0c, 0x00}},
     {'-', {0x00, 0x00, 0x00, 0x1f, 0x00, 0x00, 0x00}},
+    {'/', {0x01, 0x01, 0x02, 0x04, 0x08, 0x10, 0x10}},
+    {',', {0x00, 0x00, 0x00, 0x00, 0x0c, 0x04, 0x08}},
+    {'_', {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x1f}},
     {'a', {0x00, 0x00, 0x0e, 0x01, 0x0f, 0x11, 0x0f}},
     {'b', {0x10, 0x10, 0x16, 0x19, 0x11, 0x11, 0x1e}},
     {'c', {0x00, 0x00, 0x0e, 0x10, 0x10, 0x11, 0x0e}},
@@ -56,4 +61,22 @@ bool text_dot(char letter, int x, int y)
         if (font[i].letter == letter)
             return font[i].rows[y] >> (GLYPH_WIDTH - 1 - x) & 1;
     return false;
+}
+
+void text_draw(const struct refocus_image *image, int left, int top, int zoom, int room,
+               const char *text)
+{
+    enum { INK = 240 };
+
+    for (; *text && room > 0; text++) {
+        const char letter = (char)tolower((unsigned char)*text);
+
+        for (int y = 0; y < GLYPH_HEIGHT * zoom; y++)
+            for (int x = 0; x < GLYPH_WIDTH * zoom && x < room; x++)
+                if (text_dot(letter, x / zoom, y / zoom))
+                    memset(image->plane[0] + (top + y) * image->stride[0] + 3 * (left + x),
+                           INK, 3);
+        left += (GLYPH_WIDTH + 1) * zoom;
+        room -= (GLYPH_WIDTH + 1) * zoom;
+    }
 }

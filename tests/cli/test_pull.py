@@ -159,9 +159,9 @@ class Pull(Case):
         shutil.rmtree(folder)
 
     def test_interrupted(self):
-        for name in ('f-%02d.ppm', 'a.y4m', 'a.apng'):
+        for name, *more in (('f-%02d.ppm',), ('a.y4m',), ('a.apng',), ('a.y4m', '--wiggle', '9')):
             before = sorted(os.listdir('.'))
-            process = subprocess.Popen([REFOCUS, *self.pull('-o', name, '--seconds', '3600')],
+            process = subprocess.Popen([REFOCUS, *self.pull('-o', name, '--seconds', '3600', *more)],
                                        stderr=subprocess.PIPE, text=True)
             while sorted(os.listdir('.')) == before and process.poll() is None:
                 time.sleep(0.01)
