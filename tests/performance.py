@@ -114,6 +114,46 @@ def interactive(build):
     return "\n".join(lines)
 
 
+def format_rows(build, repeat):
+    """Pixel formats by turns, prepared and rendered, against RGB."""
+    yield "\n## Pixel formats\n"
+    yield ("Prepare and render by turns in each format, CPU time of one thread, the best of "
+           f"{repeat}; 720x540, K = 20.\n")
+    yield "| rays | format | prepare ms | render ms | both | of RGB8 |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for rays in (32, 64, 128):
+        done = subprocess.run([build / "tests" / "quality" / "refocus-format-times", SCENE, "20",
+                               str(rays), str(repeat)], stdout=subprocess.PIPE, text=True,
+                              check=True)
+        rows = [line.split() for line in done.stdout.splitlines()]
+        for name, prepare, render, both in rows:
+            yield (f"| {rays} | {name} | {prepare} | {render} | {both} "
+                   f"| {100 * float(both) / float(rows[0][3]):.0f} % |")
+
+
+def live_rows(refocus, seconds):
+    """Frames of the replay source at 30 a second, from the camera to the sink."""
+    yield "\n## Live\n"
+    yield (f"`refocus live` with the replay source, 30 frames a second for {seconds} s, depth of "
+           "the same size, K = 20, `--out null`; milliseconds.\n")
+    yield ("| camera | rendered in | frames a second | latency, median | 99 % | prepare | render "
+           "| outside rendering | peak memory MiB |")
+    yield "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+    for size in ("640x480", "1280x720"):
+        for form in ("NV12", "YUYV", "RGB24"):
+            done = subprocess.run(
+                [refocus, "live", "--camera", f"replay::format {form};size {size};fps 30",
+                 "--depth", f"replay::format Z16;size {size};fps 30", "--focus", "0.5",
+                 "--blur", "20", "--duration", str(seconds), "--no-commands", "--json"],
+                stdout=subprocess.PIPE, check=True)
+            r = json.loads(done.stdout)
+            stage = r["stages_ms"]
+            yield (f"| {form} {size} | {r['rendered_in']} | {r['fps']:.1f} "
+                   f"| {r['latency_ms']['median']:.1f} | {r['latency_ms']['p99']:.1f} "
+                   f"| {stage['prepare']['median']:.1f} | {stage['render']['median']:.1f} "
+                   f"| {100 * r['outside_rendering']:.1f} % | {r['peak_rss_kib'] / 1024:.0f} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", type=Path)
@@ -125,6 +165,8 @@ def main():
     sections.put(args.out, "methods", "tests/performance.py", methods(refocus, args.repeat))
     sections.put(args.out, "frames", "tests/performance.py", frames(refocus, args.repeat))
     sections.put(args.out, "interactive", "tests/performance.py", interactive(args.build))
+    formats = "\n".join([*format_rows(args.build, 2 * args.repeat), *live_rows(refocus, 10)])
+    sections.put(args.out, "formats", "tests/performance.py", formats)
     print(f"wrote {args.out}", file=sys.stderr)
 
 

@@ -18,6 +18,22 @@ enum refocus_format {
     REFOCUS_FORMAT_BGR8 = 2,  /**< 3 bytes a pixel: B, G, R */
     REFOCUS_FORMAT_RGBA8 = 3, /**< 4 bytes a pixel, alpha not premultiplied */
     REFOCUS_FORMAT_BGRA8 = 4, /**< 4 bytes a pixel, alpha not premultiplied */
+    REFOCUS_FORMAT_NV12 = 5,  /**< 4:2:0: plane 0 of Y, plane 1 of U V */
+    REFOCUS_FORMAT_NV21 = 6,  /**< 4:2:0: plane 0 of Y, plane 1 of V U */
+    REFOCUS_FORMAT_I420 = 7,  /**< 4:2:0: planes of Y, U and V; also called YUV420, YU12 */
+    REFOCUS_FORMAT_YUYV = 8,  /**< 4:2:2 in plane 0: Y U Y V for two pixels */
+};
+
+/** What the weights of R, G and B in Y are: Y = Kr R + (1 - Kr - Kb) G + Kb B. */
+enum refocus_matrix {
+    REFOCUS_MATRIX_BT601 = 0, /**< Kr = 0.299, Kb = 0.114 */
+    REFOCUS_MATRIX_BT709 = 1, /**< Kr = 0.2126, Kb = 0.0722 */
+};
+
+/** Codes of black and white in Y, and of U and V. */
+enum refocus_range {
+    REFOCUS_RANGE_LIMITED = 0, /**< Y 16 to 235, U and V 128 +- 112 */
+    REFOCUS_RANGE_FULL = 1,    /**< Y 0 to 255, U and V 128 +- 127.5 */
 };
 
 /** Largest width and height of a picture, in pixels. */
@@ -36,6 +52,8 @@ struct refocus_image {
     int32_t height;  /**< pixels, 1 to REFOCUS_MAX_SIDE */
     uint8_t *plane[3];
     ptrdiff_t stride[3]; /**< bytes from a row to the next one below */
+    uint32_t matrix;     /**< enum refocus_matrix; of formats with Y */
+    uint32_t range;      /**< enum refocus_range; of formats with Y */
 };
 
 /** A packed picture; see struct refocus_image for the arguments. */
@@ -54,8 +72,50 @@ static inline struct refocus_image refocus_image_packed(uint32_t format, void *p
     return image;
 }
 
-/** Bytes of one pixel of a packed format; 0 for an unknown one. Thread-safe. */
+/** Bytes of one pixel of a packed format of R, G and B; 0 for any other. Thread-safe. */
 REFOCUS_API int refocus_format_bytes(uint32_t format);
+
+/** Whether a format is one of Y, U and V. Thread-safe. */
+REFOCUS_API int refocus_format_is_yuv(uint32_t format);
+
+/** Planes of a format; 0 for an unknown one. Thread-safe. */
+REFOCUS_API int refocus_format_planes(uint32_t format);
+
+/** Bytes of a row of plane @p plane of a picture of @p width pixels, and the rows of that plane
+ *  of one of @p height; 0 for a plane or format that is not. Thread-safe. */
+REFOCUS_API ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane, int32_t width);
+REFOCUS_API int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height);
+
+/**
+ * A picture whose planes follow each other in one block of memory, rows without gaps, BT.601
+ * in limited range; refocus_image_bytes() long.
+ */
+static inline struct refocus_image refocus_image_planar(uint32_t format, void *memory,
+                                                        int32_t width, int32_t height)
+{
+    struct refocus_image image = refocus_image_packed(format, memory, width, height, 0);
+    uint8_t *at = (uint8_t *)memory;
+    int plane;
+
+    for (plane = 0; plane < refocus_format_planes(format); plane++) {
+        image.plane[plane] = at;
+        image.stride[plane] = refocus_plane_row_bytes(format, plane, width);
+        at += image.stride[plane] * refocus_plane_rows(format, plane, height);
+    }
+    return image;
+}
+
+/** Bytes of a picture's planes, rows without gaps; 0 for an unknown format. Thread-safe. */
+static inline uint64_t refocus_image_bytes(uint32_t format, int32_t width, int32_t height)
+{
+    uint64_t bytes = 0;
+    int plane;
+
+    for (plane = 0; plane < refocus_format_planes(format); plane++)
+        bytes += (uint64_t)refocus_plane_row_bytes(format, plane, width) *
+                 (uint64_t)refocus_plane_rows(format, plane, height);
+    return bytes;
+}
 
 /**
  * A map of disparities in the caller's memory: 1 nearest, 0 farthest.

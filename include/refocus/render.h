@@ -15,6 +15,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <refocus/aperture.h>
+#include <refocus/focus.h>
 #include <refocus/image.h>
 #include <refocus/status.h>
 
@@ -156,7 +157,9 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
  * caller's memory is not used after the return. In strip mode (params.in_place) they are not
  * copied, and stay with the renderer until the next refocus_prepare() or its end.
  *
- * @param photo      all in focus; at most max_width x max_height
+ * @param photo      all in focus; at most max_width x max_height; any enum refocus_format.
+ *                   Each byte is read once, each plane in order: camera memory may be
+ *                   uncached
  * @param disparity  of any size; covers the same view as the photo. Another size than
  *                   the photo's is brought to it by following the photo's edges.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED, in strip
@@ -208,15 +211,37 @@ enum refocus_spread {
     REFOCUS_SPREAD_LOMMEL = 1,  /**< as light is bent at the aperture, eq. 13 */
 };
 
-/** Where `diffusion` blurs. Distances are of (x, y, d) to the field's centre: x and y in
- *  parts of the picture's width, d the disparity. */
+/**
+ * Where it is blurred, Kosloff & Barsky 2007. Distances are of (x, y, d) to the field's
+ * centre: x and y in parts of the picture's width, d the disparity.
+ *
+ *     r = K clamp((distance - field_radius) / field_falloff, 0, 1)
+ *
+ * What is nearer than the centre (for a picture: than df) is blurred as what lies before the
+ * focus of a lens is, over what is behind it; the rest as what lies behind. Both sides of a
+ * plane are one side each.
+ */
 enum refocus_field {
-    REFOCUS_FIELD_LENS = 0,     /**< r = K |d - df| */
+    REFOCUS_FIELD_LENS = 0,     /**< r = K |d - df|, and what follows in the parameters */
     REFOCUS_FIELD_CYLINDER = 1, /**< sharp in an upright cylinder: distance in x and d */
     REFOCUS_FIELD_PLUS = 2,     /**< sharp in two upright slabs: the lesser of x and d */
     REFOCUS_FIELD_PLANE = 3,    /**< sharp by an upright plane: x cos a + d sin a */
     REFOCUS_FIELD_SPHERE = 4,   /**< sharp in a sphere: distance in x, y and d */
     REFOCUS_FIELD_PICTURE = 5,  /**< r = K v of a map of values 0..1 */
+};
+
+/** Bands in focus at once, the one about focus_disparity among them; largest growth of
+ *  the disparity in focus over the picture. */
+enum { REFOCUS_MAX_BANDS = 16, REFOCUS_MAX_TILT = 64 };
+
+/**
+ * A band in focus: sharp within half_width of its disparity; from half_width + transition on
+ * as blurred as by a lens focused at its middle; in between in proportion.
+ */
+struct refocus_band {
+    float disparity;  /**< middle, 0 to 1 */
+    float half_width; /**< 0 to 1 */
+    float transition; /**< 0 to 1; 0 = none, at once the lens's blur */
 };
 
 /** How `diffusion` is computed. */
@@ -236,8 +261,8 @@ struct refocus_render_params {
     uint32_t blend;         /**< enum refocus_blend */
     float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
                                  eq. 5: >= 1; INFINITY = plain average */
-    float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 4
-                                 times white, where they are blurred */
+    float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 16
+                                 times white, 2^stops, where they are blurred */
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
     uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
     uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
@@ -251,7 +276,8 @@ struct refocus_render_params {
     /* What follows is of single methods; the others ignore it, but not its range. */
 
     int32_t cell;           /**< jittered: a, the side of a cell in mask pixels, 1 to 16 */
-    uint32_t seed;          /**< jittered: which pixel of each cell; any number */
+    uint32_t seed;          /**< jittered: which pixel of each cell; grain: which grain; any
+                                 number */
 
     uint32_t spread;        /**< scatter: enum refocus_spread */
     float airy_radius;      /**< scatter, Lommel: first dark ring of a point in focus, 0.25 to
@@ -259,10 +285,12 @@ struct refocus_render_params {
                                  from the middle and u = 3.8317 r / airy_radius */
     float depth_ratio;      /**< scatter: z1 / z0, 1 to 1000, for the 1 / z^2 of eq. 20; 1 = all
                                  samples count the same */
-    int32_t star_spikes;    /**< scatter: of a star filter, 0 = none, else 2 to 16 */
+    int32_t star_spikes;    /**< scatter, sweep: of a star filter, 0 = none, else 2 to 16; sweep
+                                 gives them to small clipped lamps */
     float star_length;      /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS */
     float star_angle;       /**< degrees of the first spike, counter-clockwise from the right */
-    float star_strength;    /**< share of the light that goes to the spikes, 0 to 1 */
+    float star_strength;    /**< share of the light that goes to the spikes, 0 to 1; sweep adds
+                                 it */
 
     float sharp_radius;     /**< interpolated: c0, blur radius up to which blurriness is 0;
                                  0.5 to 16 pixels */
@@ -277,7 +305,7 @@ struct refocus_render_params {
     float attention_depth;  /**< foveated: how far the volume reaches before and behind the
                                  focus, in disparity, 0 to 1 */
 
-    uint32_t field;         /**< diffusion: enum refocus_field */
+    uint32_t field;         /**< sweep, search, blur, diffusion: enum refocus_field */
     float field_x, field_y; /**< centre, 0 to 1 of width and height */
     float field_disparity;  /**< centre, 0 to 1 */
     float field_radius;     /**< distance up to which nothing is blurred, 0 to 4 */
@@ -287,7 +315,60 @@ struct refocus_render_params {
     int32_t layers;         /**< diffusion: that the picture is split into by depth, 1 to 8 */
     uint32_t solver;        /**< diffusion: enum refocus_solver */
     float conductivity;     /**< diffusion: weight W where blur is strongest, 0.01 to 1 */
-    const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size */
+    const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size, read
+                                 between its samples. This map and the next two are the caller's;
+                                 they are needed until the next render, or the last
+                                 refocus_get_view() of REFOCUS_VIEW_BLUR */
+
+    /*
+     * Focus beyond that of a plain lens: of sweep, search, blur and diffusion, the others
+     * refuse it. A pixel (x, y) of disparity d, clamped to least_disparity..most_disparity,
+     * is blurred by
+     *
+     *     s = K e,  e = depth_share (df - d) + across (x - tilt_x) + down (y - tilt_y)
+     *
+     * with x and y in parts of the width and the height, df from focus_disparity or
+     * focus_map; then e is shortened by the bands, |e| and |s| are limited to 1 and blur_limit,
+     * and |s| is multiplied by 1 - sharp_map. With a field other than that of the lens only the
+     * last two and the clamps of d apply. The defaults change nothing.
+     */
+    float tilt_x, tilt_y;       /**< place at which df is in focus, 0 to 1; default 0.5 */
+    float tilt_across, tilt_down; /**< growth of the disparity in focus from the left to the
+                                 right and from the top to the bottom, up to REFOCUS_MAX_TILT
+                                 either way: a tilted plane of focus, see focus.h */
+    float depth_share;          /**< 0 to 1: how much depth counts. Below 1 with a tilt: depth is
+                                 compressed along a line, Yang et al. 2016, fig. 13(a); 0 = only
+                                 the place counts, as in pictures of miniatures */
+    float focus_half_width;     /**< of the band about df: 0 to 1 */
+    float focus_transition;     /**< 0 to 1; see struct refocus_band */
+    int32_t bands;              /**< in focus beside it, 0 to REFOCUS_MAX_BANDS - 1 */
+    struct refocus_band band[REFOCUS_MAX_BANDS - 1];
+    const struct refocus_disparity *focus_map; /**< NULL, or df of each place in place of
+                                 focus_disparity: any size, read between its samples */
+    const struct refocus_disparity *sharp_map; /**< NULL, or what stays sharp whatever its depth:
+                                 1 wholly, 0 not at all; any size */
+    float least_disparity;      /**< what is farther counts as this far, 0 to 1; default 0 */
+    float most_disparity;       /**< what is nearer counts as this near, from least_disparity to 1;
+                                 default 1 */
+    float blur_limit;           /**< no blur is larger: 0 to REFOCUS_MAX_BLUR_RADIUS pixels, the
+                                 default */
+
+    /* The look of the blur beyond the aperture's: of sweep, the others refuse it; also an
+     * aperture that differs before and behind the focus, which needs a number of rays. */
+    float cat_eye;              /**< 0 to 0.9: how much of its width the opening has lost in the
+                                 corners, where it is the part common to two circles, one pushed
+                                 out and one pushed in; it grows with the square of the distance
+                                 from the middle of the picture. What is drawn on a mask is
+                                 squeezed into it. 0 = nothing, the default */
+    float fringe;               /**< -0.5 to 0.5: longitudinal colour: by how much the blur of red
+                                 and blue behind the focus, and of green before it, is smaller
+                                 than the other; below 0 the other way round. Takes twice the
+                                 time. 0 = none, the default */
+    float grain;                /**< 0 to 4, any method: how much of the noise that a blur
+                                 averages away is put back. It is measured where this lens
+                                 leaves the photo sharp (anywhere, when it does so nowhere), by
+                                 brightness, and laid over the blurred parts as luma noise by
+                                 `seed`. 0 = none, the default; 1 = as much as there was */
 
     int32_t reduce;         /**< 1, or with a renderer for previews 2, 4 or 8: the picture at that
                                  part of its size, rounded up. The photo is reduced by halves, in
@@ -329,6 +410,10 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
     params.field_falloff = (float)0.3;
     params.layers = 4;
     params.conductivity = (float)0.125;
+    params.tilt_x = params.tilt_y = (float)0.5;
+    params.depth_share = 1;
+    params.most_disparity = 1;
+    params.blur_limit = REFOCUS_MAX_BLUR_RADIUS;
     params.reduce = 1;
     return params;
 }
@@ -346,10 +431,29 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  * but the light of the photo. A region costs what lies in it and around it. None of this changes
  * a byte.
  *
- * @param params  see struct refocus_render_params
- * @param out     of the size of the region, any format and stride; may not overlap
- *                itself
+ * A photo of Y, U and V is rendered in Y, U and V, chroma at its own resolution, by the sweep
+ * alone. Averaged are the luminance L of each pixel and, for each sample of chroma, the light
+ * that blue and red have more than that. With g the curve of the blend, Y' the luma of the mean
+ * light of the pixels that share the sample, and B', R', G' the colour by the photo's matrix:
+ *
+ *     E = Kr g(R') + Kg g(G') + Kb g(B') - g(Y')     L   = g(Y) + E
+ *     D_b = g(B') - g(Y') - E                        D_r = g(R') - g(Y') - E
+ *
+ * and back in the same way from their means. A sample of chroma has the blur of that pixel of
+ * its own which is the sharpest; sigma weighs by L; highlights are told and given back by L,
+ * up to 4 times white.
+ * Samples that nothing changed keep their codes, so that one colour stays that colour, even
+ * where its codes are none.
+ *
+ * @param params  see struct refocus_render_params; of a photo of Y, U and V the region begins and
+ *                ends at even columns and, in 4:2:0, rows, or at the picture's end
+ * @param out     of the size of the region, any stride; may not overlap itself. Any format of
+ *                R, G, B of a photo of R, G, B; any of 4:2:0 of one of 4:2:0; YUYV of YUYV. Its
+ *                matrix and range are the photo's, whatever they say.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
+ *         REFOCUS_ERR_UNSUPPORTED (another format than these; of a photo of Y, U and V another
+ *         method than the sweep, a reduced picture, cat's eye, fringe, star filter,
+ *         grain or an aperture that differs before and behind the focus),
  *         REFOCUS_ERR_CANCELLED. On REFOCUS_ERR_CANCELLED parts of @p out are written,
  *         on the others none. Allocates nothing.
  */

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <refocus/platform/convert.h>
 #include "backend.h"
+#include "sink.h"
 #ifdef RF_HAVE_JPEG
 #include <turbojpeg.h>
 #endif
@@ -254,6 +255,80 @@ int refocus_convert_rgb8(struct refocus_converter *converter, const struct refoc
                 copy_row(converter, frame, i, y / 2);
         convert_row(out->plane[0] + y * out->stride[0], converter->row, frame->format,
                     frame->width, &c);
+    }
+    return REFOCUS_OK;
+}
+
+uint32_t refocus_frame_image_format(uint32_t frame_format)
+{
+    switch (frame_format) {
+    case REFOCUS_FRAME_YUYV:
+    case REFOCUS_FRAME_UYVY:
+        return REFOCUS_FORMAT_YUYV;
+    case REFOCUS_FRAME_NV12:
+        return REFOCUS_FORMAT_NV12;
+    case REFOCUS_FRAME_NV21:
+        return REFOCUS_FORMAT_NV21;
+    case REFOCUS_FRAME_YUV420:
+        return REFOCUS_FORMAT_I420;
+    default:
+        return REFOCUS_FORMAT_NONE;
+    }
+}
+
+/* Whether a picture can hold the frame. */
+static bool fits(const struct refocus_frame *frame, const struct refocus_image *out)
+{
+    if (!out || out->format != refocus_frame_image_format(frame->format) ||
+        out->width != frame->width || out->height != frame->height)
+        return false;
+    for (int i = 0; i < rf_format_planes(rf_frame_format_of(out->format)); i++) {
+        const ptrdiff_t row = (ptrdiff_t)rf_plane_row(rf_frame_format_of(out->format), i, out->width);
+
+        if (!out->plane[i] || (out->stride[i] < 0 ? -out->stride[i] : out->stride[i]) < row)
+            return false;
+    }
+    return true;
+}
+
+int refocus_convert_copy(struct refocus_converter *converter, const struct refocus_frame *frame,
+                         struct refocus_image *out, struct refocus_reason *reason)
+{
+    struct refocus_reason unheard;
+    int status;
+
+    reason = reason ? reason : &unheard;
+    reason->text[0] = '\0';
+    if (!converter || !frame)
+        return REFOCUS_ERR_ARGUMENT;
+    if (!refocus_frame_image_format(frame->format))
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "frames of this format have to become RGB8");
+    if (!fits(frame, out))
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "the picture to copy into must be like the frame");
+    status = check(frame, reason);
+    if (status == REFOCUS_OK)
+        status = reserve_rows(converter, frame, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    out->matrix = frame->matrix;
+    out->range = frame->flags & REFOCUS_FRAME_FULL_RANGE ? REFOCUS_RANGE_FULL
+                                                         : REFOCUS_RANGE_LIMITED;
+    for (int i = 0; i < rf_format_planes(frame->format); i++) {
+        const size_t bytes = (size_t)rf_plane_row(frame->format, i, frame->width);
+
+        for (int y = 0; y < rf_plane_rows(rf_frame_format_of(out->format), i, out->height); y++) {
+            uint8_t *row = out->plane[i] + y * out->stride[i];
+
+            if (frame->format == REFOCUS_FRAME_UYVY) {
+                copy_row(converter, frame, i, y);
+                for (size_t x = 0; x < bytes; x++)
+                    row[x] = converter->row[i][x ^ 1];
+            } else {
+                memcpy(row, frame->plane[i] + y * frame->stride[i], bytes);
+            }
+        }
     }
     return REFOCUS_OK;
 }

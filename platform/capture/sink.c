@@ -47,8 +47,15 @@ static int close_null(struct refocus_sink *sink, struct refocus_reason *reason)
     return REFOCUS_OK;
 }
 
+static bool take_all(const struct refocus_sink *sink, uint32_t format)
+{
+    (void)sink;
+    (void)format;
+    return true;
+}
+
 const struct rf_sink_ops rf_sink_null = {
-    .scheme = "null", .open = open_null, .start = start_null, .write = write_null,
+    .scheme = "null", .open = open_null, .takes = take_all, .start = start_null, .write = write_null,
     .close = close_null};
 
 static const struct rf_sink_ops *find_window(struct refocus_reason *reason)
@@ -122,23 +129,47 @@ int refocus_sink_open(struct refocus_sink **result, const char *name,
     return status;
 }
 
-int refocus_sink_start(struct refocus_sink *sink, int width, int height, double fps,
-                       struct refocus_reason *reason)
+int refocus_sink_takes(struct refocus_sink *sink, uint32_t format)
+{
+    if (!sink)
+        return 0;
+    return format == REFOCUS_FORMAT_RGB8 || (rf_frame_format_of(format) && sink->ops->takes &&
+                                             sink->ops->takes(sink, format));
+}
+
+int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_image *like,
+                             double fps, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if (!sink || width < 1 || height < 1 || width > REFOCUS_MAX_SIDE ||
-        height > REFOCUS_MAX_SIDE)
+    if (!sink || !like || like->width < 1 || like->height < 1 ||
+        like->width > REFOCUS_MAX_SIDE || like->height > REFOCUS_MAX_SIDE)
         return REFOCUS_ERR_ARGUMENT;
-    status = sink->ops->start(sink, width, height, fps > 0 ? fps : 30, reason);
-    sink->started = status == REFOCUS_OK;
-    sink->width = width;
-    sink->height = height;
+    sink->started = false;
+    if (!refocus_sink_takes(sink, like->format))
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "this sink does not take such pictures; give it RGB8");
+    sink->width = like->width;
+    sink->height = like->height;
+    sink->format = like->format;
+    sink->matrix = like->matrix;
+    sink->range = like->range;
     sink->fps = fps > 0 ? fps : 30;
+    status = sink->ops->start(sink, like->width, like->height, sink->fps, reason);
+    sink->started = status == REFOCUS_OK;
     return status;
+}
+
+int refocus_sink_start(struct refocus_sink *sink, int width, int height, double fps,
+                       struct refocus_reason *reason)
+{
+    const struct refocus_image like = {
+        .format = REFOCUS_FORMAT_RGB8, .width = width, .height = height};
+
+    return refocus_sink_start_image(sink, &like, fps, reason);
 }
 
 int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *image,
@@ -150,10 +181,10 @@ int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *im
     reason->text[0] = '\0';
     if (!sink || !sink->started)
         return rf_capture_fail(reason, REFOCUS_ERR_STATE, "the sink is not started");
-    if (!image || !image->plane[0] || image->format != REFOCUS_FORMAT_RGB8 ||
-        image->width != sink->width || image->height != sink->height)
+    if (!image || !image->plane[0] || image->format != sink->format || image->width != sink->width ||
+        image->height != sink->height)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "give an RGB8 picture of the size that was announced");
+                               "give a picture of the size and format that were announced");
     return sink->ops->write(sink, image, reason);
 }
 

@@ -13,11 +13,15 @@ struct refocus_sink {
     bool started;
     int width, height;
     double fps;
+    uint32_t format, matrix, range; /* of pictures to come: enum refocus_format and so on */
 };
 
 struct rf_sink_ops {
     const char *scheme; /* before the colon, or NULL for a pattern of pictures */
     int (*open)(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason);
+    /* Formats of Y, U and V; NULL: none. */
+    bool (*takes)(const struct refocus_sink *sink, uint32_t format);
+    /* sink->format and so on are set. */
     int (*start)(struct refocus_sink *sink, int width, int height, double fps,
                  struct refocus_reason *reason);
     int (*write)(struct refocus_sink *sink, const struct refocus_image *image,
@@ -32,5 +36,11 @@ extern const struct rf_sink_ops rf_sink_null, rf_sink_y4m, rf_sink_raw, rf_sink_
  * mean of its pixels; or as packed RGB. The frame's planes are written to. */
 void rf_encode(const struct refocus_image *image, const struct refocus_frame *frame);
 bool rf_can_encode(uint32_t format);
+
+/* The frame format of a picture's; REFOCUS_FRAME_ANY for none. */
+uint32_t rf_frame_format_of(uint32_t image_format);
+
+/* The rows of a picture of Y, U and V into a frame of the same format. */
+void rf_copy_frame(const struct refocus_image *image, const struct refocus_frame *frame);
 
 #endif

@@ -17,7 +17,8 @@ struct stream {
     char *path;
     int fd;
     bool y4m, begun;
-    struct refocus_frame frame; /* of the y4m stream, in memory */
+    uint32_t format, range;     /* of its pictures: enum refocus_format, refocus_range */
+    struct refocus_frame frame; /* in memory */
     uint8_t *memory;
     size_t bytes;
 };
@@ -108,6 +109,77 @@ static int open_raw(struct refocus_sink *sink, const char *rest, struct refocus_
     return open_stream(sink, rest, false, reason);
 }
 
+static bool is_422(uint32_t format)
+{
+    return format == REFOCUS_FORMAT_YUYV;
+}
+
+static uint32_t range_of(const struct refocus_sink *sink)
+{
+    return sink->format == REFOCUS_FORMAT_RGB8 ? (uint32_t)REFOCUS_RANGE_LIMITED : sink->range;
+}
+
+static bool takes_yuv(const struct refocus_sink *sink, uint32_t format)
+{
+    (void)sink;
+    (void)format;
+    return true;
+}
+
+/* Planes of y4m are those of YUV420; in 4:2:2 U and V have all rows. */
+static bool lay_out(struct stream *stream, int width, int height)
+{
+    struct refocus_frame *frame = &stream->frame;
+    const size_t half = ((size_t)width + 1) / 2;
+
+    rf_frame_clear(frame);
+    frame->format = stream->y4m ? REFOCUS_FRAME_YUV420 : REFOCUS_FRAME_RGB24;
+    frame->width = width;
+    frame->height = height;
+    stream->bytes = (size_t)rf_frame_bytes(frame->format, rf_plane_row(frame->format, 0, width),
+                                           width, height);
+    if (is_422(stream->format))
+        stream->bytes = ((size_t)width + 2 * half) * (size_t)height;
+    stream->memory = malloc(stream->bytes);
+    if (!stream->memory)
+        return false;
+    rf_frame_lay_out(frame, stream->memory, rf_plane_row(frame->format, 0, width));
+    if (is_422(stream->format))
+        frame->plane[2] = frame->plane[1] + half * (size_t)height;
+    return true;
+}
+
+/* Samples of a row that lie `step` bytes apart. */
+static void take_row(uint8_t *to, const uint8_t *from, int step, int n)
+{
+    if (step == 1)
+        memcpy(to, from, (size_t)n);
+    else
+        for (int x = 0; x < n; x++)
+            to[x] = from[x * step];
+}
+
+/* Y, U and V in planes of their own. */
+static void take_apart(const struct refocus_image *image, struct stream *stream)
+{
+    const int half = (image->width + 1) / 2;
+    const bool planar = image->format == REFOCUS_FORMAT_I420, packed = is_422(image->format);
+    const bool swapped = image->format == REFOCUS_FORMAT_NV21;
+    uint8_t *at = stream->memory;
+
+    for (int i = 0; i < 3; i++) {
+        const int plane = packed ? 0 : planar ? i : i > 0;
+        const int step = i == 0 ? (packed ? 2 : 1) : packed ? 4 : planar ? 1 : 2;
+        const int first = i == 0 || planar ? 0 : packed ? 2 * i - 1 : (i == 2) ^ swapped;
+        const int n = i == 0 ? image->width : half;
+
+        for (int y = 0; y < (i == 0 ? image->height
+                                    : rf_plane_rows(rf_frame_format_of(image->format), plane, image->height));
+             y++, at += n)
+            take_row(at, image->plane[plane] + y * image->stride[plane] + first, step, n);
+    }
+}
+
 static int start_stream(struct refocus_sink *sink, int width, int height, double fps,
                         struct refocus_reason *reason)
 {
@@ -115,31 +187,26 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
     char header[128];
 
     if (stream->begun) {
-        if (width == stream->frame.width && height == stream->frame.height)
+        if (width == stream->frame.width && height == stream->frame.height &&
+            is_422(sink->format) == is_422(stream->format) && range_of(sink) == stream->range)
             return REFOCUS_OK;
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "%.120s: a stream of %dx%d has begun, and %dx%d came; begin "
-                               "another", stream->path, stream->frame.width,
+                               "%.120s: a stream of %dx%d has begun, and %dx%d came, or other "
+                               "colours; begin another", stream->path, stream->frame.width,
                                stream->frame.height, width, height);
     }
-    rf_frame_clear(&stream->frame);
-    stream->frame.format = stream->y4m ? REFOCUS_FRAME_YUV420 : REFOCUS_FRAME_RGB24;
-    stream->frame.width = width;
-    stream->frame.height = height;
-    stream->bytes = (size_t)rf_frame_bytes(
-        stream->frame.format, rf_plane_row(stream->frame.format, 0, width), width, height);
-    stream->memory = malloc(stream->bytes);
-    if (!stream->memory)
+    stream->format = sink->format;
+    stream->range = range_of(sink);
+    if (!lay_out(stream, width, height))
         return rf_capture_fail_memory(reason);
-    rf_frame_lay_out(&stream->frame, stream->memory,
-                     rf_plane_row(stream->frame.format, 0, width));
     /* y4m says the size at once: only a header that was written is begun. */
     stream->begun = true;
     if (!stream->y4m)
         return REFOCUS_OK;
     snprintf(header, sizeof header,
-             "YUV4MPEG2 W%d H%d F%d:1000 Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n", width, height,
-             (int)(fps * 1000 + 0.5));
+             "YUV4MPEG2 W%d H%d F%d:1000 Ip A1:1 C%s XCOLORRANGE=%s\n", width, height,
+             (int)(fps * 1000 + 0.5), is_422(stream->format) ? "422" : "420jpeg",
+             stream->range == REFOCUS_RANGE_FULL ? "FULL" : "LIMITED");
     return write_all(stream, header, strlen(header), reason);
 }
 
@@ -149,7 +216,10 @@ static int write_stream(struct refocus_sink *sink, const struct refocus_image *i
     struct stream *stream = sink->state;
     int status = REFOCUS_OK;
 
-    rf_encode(image, &stream->frame);
+    if (image->format == REFOCUS_FORMAT_RGB8)
+        rf_encode(image, &stream->frame);
+    else
+        take_apart(image, stream);
     if (stream->y4m)
         status = write_all(stream, "FRAME\n", 6, reason);
     if (status == REFOCUS_OK)
@@ -172,6 +242,7 @@ static int close_stream(struct refocus_sink *sink, struct refocus_reason *reason
 
 const struct rf_sink_ops rf_sink_y4m = {.scheme = "y4m",
                                         .open = open_y4m,
+                                        .takes = takes_yuv,
                                         .start = start_stream,
                                         .write = write_stream,
                                         .close = close_stream};

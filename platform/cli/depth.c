@@ -19,7 +19,8 @@ struct settings {
     const char *output, *model, *strokes;
     struct network_settings network;
     int view;
-    bool side_by_side, stereo_file;
+    struct stereo_settings stereo;
+    bool side_by_side;
     bool json;
 };
 
@@ -39,6 +40,22 @@ static const char *view_summary(uint32_t index)
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
 
+static const char *match_name(uint32_t index)
+{
+    static const char *const names[] = {"checked", "plain", "wls"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+static const char *match_summary(uint32_t index)
+{
+    static const char *const words[] = {
+        "both ways; what disagrees is filled", "OpenCV's semi-global matching as it is",
+        "filled by weighted least squares; needs the module refocus-ximgproc"};
+
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
 static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
                   "the disparities to write, 1 = nearest: .png or .pgm of 16 bits (65535 = 1) "
@@ -51,6 +68,14 @@ static const struct option options[] = {
      .name = "--full",
      .offset = offsetof(struct settings, depth.full),
      .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_INTEGER,
+     .name = "--snap",
+     .argument = "N",
+     .offset = offsetof(struct settings, depth.snap),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SNAP,
+     .help = "move edges of depth of the photo's size onto the photo's, where they are off by "
+             "up to N pixels; default 0: leave them"},
     {.kind = OPTION_CHOICE,
      .name = "--upsample",
      .argument = "HOW",
@@ -106,8 +131,15 @@ static const struct option options[] = {
              "stereo pair"},
     {.kind = OPTION_FLAG,
      .name = "--stereo-file",
-     .offset = offsetof(struct settings, stereo_file),
+     .offset = offsetof(struct settings, stereo.within),
      .help = "FILE holds both pictures of a stereo pair: an MPO or a stereo HEIC"},
+    {.kind = OPTION_CHOICE,
+     .name = "--match",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, stereo.method),
+     .choice = match_name,
+     .summary = match_summary,
+     .help = "how a stereo pair is matched"},
     {.kind = OPTION_FLAG,
      .name = "--side-by-side",
      .offset = offsetof(struct settings, side_by_side),
@@ -285,7 +317,7 @@ static int write_output(const struct settings *settings, const struct input *inp
 
 static bool is_made(const struct settings *settings, const char *const *files)
 {
-    return files[1] || settings->side_by_side || settings->stereo_file || settings->model;
+    return files[1] || settings->side_by_side || settings->stereo.within || settings->model;
 }
 
 static int check(const struct settings *settings, const char *const *files)
@@ -299,7 +331,7 @@ static int check(const struct settings *settings, const char *const *files)
     if (status == EXIT_DONE)
         status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
     if (status == EXIT_DONE &&
-        (files[1] != NULL) + settings->side_by_side + settings->stereo_file +
+        (files[1] != NULL) + settings->side_by_side + settings->stereo.within +
                 (settings->model != NULL) +
                 (settings->depth.file != NULL) > 1)
         return report_failure(EXIT_WRONG, files[0],
@@ -325,11 +357,11 @@ static int read_input(const struct settings *settings, const char *const *files,
         return input_read_estimate(input, files[0], settings->model, &settings->network,
                                    &settings->depth);
     if (is_made(settings, files))
-        return input_read_stereo(input, files[0], files[1], settings->stereo_file,
+        return input_read_stereo(input, files[0], files[1], &settings->stereo,
                                  &settings->depth);
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);
-    if (settings->depth.file || settings->depth.full ||
+    if (settings->depth.file || settings->depth.full || settings->depth.snap > 0 ||
         (is_jpeg(settings->output) && settings->view == VIEW_NONE))
         return input_read(input, files[0], &settings->depth);
     return input_read_depth(input, files[0], &settings->depth);

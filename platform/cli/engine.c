@@ -1,8 +1,6 @@
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <refocus/platform/file.h>
 #include "engine.h"
 #include "interrupt.h"
@@ -13,7 +11,7 @@ static const struct {
     float highlight_gain, sigma;
 } qualities[] = {{"preview", "32 rays", 32, 4, 1e30f},
                  {"standard", "64 rays", 64, 4, 1e30f},
-                 {"best", "128 rays, and bright samples count more (--sigma 400)", 128, 4, 400}};
+                 {"best", "128 rays, and bright samples count more (--sigma 400)", 128, 8, 400}};
 
 static const struct {
     const char *name, *summary;
@@ -43,82 +41,18 @@ const char *engine_blend_summary(uint32_t index)
     return index < sizeof blends / sizeof *blends ? blends[index].summary : NULL;
 }
 
-/* "polygon:6" or "polygon:6:15". */
-static int polygon_aperture(struct engine *engine, const char *shape)
-{
-    double degrees = 0;
-    long blades;
-    char *end;
-
-    errno = 0;
-    blades = strtol(shape + strlen("polygon:"), &end, 10);
-    if (errno == 0 && end != shape + strlen("polygon:") && *end == ':') {
-        const char *number = end + 1;
-
-        degrees = number[strspn(number, "+-.0123456789")] == '\0' ? strtod(number, &end) : NAN;
-        if (end == number)
-            degrees = NAN;
-    }
-    if (errno != 0 || *end != '\0' || blades < 3 || blades > 16 || !isfinite(degrees))
-        return report_failure(EXIT_WRONG, "--aperture",
-                              "'%s' cannot be used; give polygon:BLADES or "
-                              "polygon:BLADES:DEGREES with 3 to 16 blades",
-                              shape);
-    if (refocus_aperture_create_polygon(&engine->aperture, (int)blades, degrees) !=
-        REFOCUS_OK)
-        return report_failure(EXIT_FAILED, "--aperture", "not enough memory");
-    return EXIT_DONE;
-}
-
-/* A mask out of a greyscale picture. */
-static int mask_aperture(struct engine *engine, const char *file)
-{
-    int width, height, status;
-    uint8_t *mask = papers_read_grey(file, &width, &height);
-
-    if (!mask)
-        return EXIT_FAILED;
-    if (width > REFOCUS_MAX_APERTURE_SIDE || height > REFOCUS_MAX_APERTURE_SIDE) {
-        free(mask);
-        return report_failure(EXIT_FAILED, file, "%dx%d pixels are too many for an aperture; "
-                              "give at most %dx%d", width, height, REFOCUS_MAX_APERTURE_SIDE,
-                              REFOCUS_MAX_APERTURE_SIDE);
-    }
-    status = refocus_aperture_create_mask(&engine->aperture, mask, width, height, width);
-    free(mask);
-    if (status == REFOCUS_OK)
-        return EXIT_DONE;
-    return report_failure(EXIT_FAILED, file, "%s",
-                          status == REFOCUS_ERR_ARGUMENT
-                              ? "no pixel of the aperture is open; give white where light passes"
-                              : refocus_strerror(status));
-}
-
-static int make_aperture(struct engine *engine, const char *shape)
-{
-    if (strcmp(shape, "disc") == 0) {
-        if (refocus_aperture_create_disc(&engine->aperture) != REFOCUS_OK)
-            return report_failure(EXIT_FAILED, "--aperture", "not enough memory");
-        return EXIT_DONE;
-    }
-    if (strncmp(shape, "polygon:", strlen("polygon:")) == 0)
-        return polygon_aperture(engine, shape);
-    if (!strpbrk(shape, "./") && access(shape, F_OK) != 0)
-        return report_failure(EXIT_WRONG, "--aperture",
-                              "'%s' is not known; give disc, polygon:BLADES, "
-                              "polygon:BLADES:DEGREES or a mask picture",
-                              shape);
-    return mask_aperture(engine, shape);
-}
-
 /* Methods whose circles of confusion are circles. */
-static int check_aperture(uint32_t method, const char *aperture)
+static int check_aperture(uint32_t method, const struct engine_settings *settings)
 {
-    if (method < REFOCUS_METHOD_SCATTER || strcmp(aperture, "disc") == 0)
+    if (method < REFOCUS_METHOD_SCATTER ||
+        bokeh_is_plain_disc(&settings->bokeh, settings->aperture))
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--aperture",
                           "'%s' does not go with --method %s, which knows a disc alone; leave "
-                          "one of them out", aperture, refocus_method_name(method));
+                          "one of them out",
+                          strcmp(settings->aperture, "disc") ? settings->aperture
+                                                             : "such a disc",
+                          refocus_method_name(method));
 }
 
 int engine_begin(struct engine *engine, const struct engine_settings *settings)
@@ -143,12 +77,17 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     params->background = settings->background;
     engine->methods = REFOCUS_METHOD_BIT(params->method);
     engine->field_disparity = settings->papers.field_disparity;
-    status = make_aperture(engine, settings->aperture);
+    engine->has_sides = bokeh_has_sides(&settings->bokeh);
+    status = bokeh_aperture(&settings->bokeh, settings->aperture, &engine->aperture);
     params->aperture = engine->aperture;
     if (status == EXIT_DONE)
-        status = check_aperture(params->method, settings->aperture);
+        status = check_aperture(params->method, settings);
     if (status == EXIT_DONE)
         status = papers_apply(&settings->papers, params, &engine->field_map);
+    if (status == EXIT_DONE)
+        status = controls_apply(&settings->controls, params, &engine->controls);
+    if (status == EXIT_DONE)
+        status = bokeh_apply(&settings->bokeh, !isnan(settings->highlights), params);
     return status;
 }
 
@@ -237,21 +176,32 @@ static int render_once(struct engine *engine, const struct refocus_image *out, d
 
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
 {
-    double *times = malloc(2 * (size_t)repeat * sizeof *times), *cpu_times = times + repeat;
-    int status = REFOCUS_OK;
+    const float focus = engine->params.focus_disparity;
+    const float beside = focus + (focus > 0.5f ? -2 : 2) / 65535.0f;
+    double *times, *cpu_times;
+    int status = controls_check_method(&engine->params);
 
+    if (status == EXIT_DONE)
+        status = bokeh_check_method(&engine->params, engine->has_sides);
+    if (status != EXIT_DONE)
+        return status;
+    times = malloc(2 * (size_t)repeat * sizeof *times);
     if (!times)
         return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
+    cpu_times = times + repeat;
     engine->params.field_disparity = isnan(engine->field_disparity)
                                          ? engine->params.focus_disparity
                                          : (float)engine->field_disparity;
     for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
         const double start = report_clock_ms(), cpu_start = report_cpu_ms();
 
+        /* every other one is a step of disparity off, or all but rays would be kept */
+        engine->params.focus_disparity = (repeat - i) % 2 ? focus : beside;
         status = render_once(engine, out, 0.3 + 0.6 * i / repeat, 0.6 / repeat);
         cpu_times[i] = report_cpu_ms() - cpu_start;
         times[i] = report_clock_ms() - start;
     }
+    engine->params.focus_disparity = focus;
     if (status == REFOCUS_OK) {
         engine->render_ms = report_spread(times, repeat);
         engine->cpu_ms = report_spread(cpu_times, repeat);
@@ -271,6 +221,7 @@ void engine_end(struct engine *engine)
     refocus_renderer_destroy(&engine->renderer);
     refocus_aperture_destroy(&engine->aperture);
     free((void *)engine->field_map.samples);
+    controls_free(&engine->controls);
 }
 
 json_t *engine_json(const struct engine *engine)

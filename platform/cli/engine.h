@@ -4,6 +4,8 @@
 
 #include <math.h>
 #include <refocus/refocus.h>
+#include "bokeh.h"
+#include "controls.h"
 #include "options.h"
 #include "papers.h"
 #include "report.h"
@@ -15,6 +17,8 @@ struct engine_settings {
     const char *aperture;
     bool mirror, background, json;
     struct paper_settings papers;
+    struct control_settings controls;
+    struct bokeh_settings bokeh;
 };
 
 enum { QUALITY_STANDARD = 1 };
@@ -22,7 +26,8 @@ enum { QUALITY_STANDARD = 1 };
 #define ENGINE_SETTINGS_NONE(repeat_default)                                                \
     {.quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,             \
      .highlights = NAN,                                                                     \
-     .repeat = repeat_default, .aperture = "disc", .papers = PAPER_SETTINGS_NONE}
+     .repeat = repeat_default, .aperture = "disc", .papers = PAPER_SETTINGS_NONE,          \
+     .controls = CONTROL_SETTINGS_NONE, .bokeh = BOKEH_SETTINGS_NONE}
 
 const char *engine_quality_name(uint32_t index);
 const char *engine_quality_summary(uint32_t index);
@@ -77,7 +82,8 @@ const char *engine_blend_summary(uint32_t index);
      .argument = "SHAPE",                                                                   \
      .offset = offsetof(type, member.aperture),                                             \
      .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "       \
-             "blades, or a mask picture of at most 255x255, white = open"},                 \
+             "blades, heart, star or star:POINTS, or a mask picture of at most 255x255, "   \
+             "white = open"},                                                               \
     {.kind = OPTION_CHOICE,                                                                 \
      .name = "--blend",                                                                     \
      .argument = "NAME",                                                                    \
@@ -100,7 +106,7 @@ const char *engine_blend_summary(uint32_t index);
      .argument = "GAIN",                                                                    \
      .offset = offsetof(type, member.highlights),                                           \
      .least = 1,                                                                            \
-     .greatest = 4,                                                                         \
+     .greatest = 16,                                                                        \
      .word = "off",                                                                         \
      .word_value = 1,                                                                       \
      .help = "sweep: light given back to small clipped lamps, up to GAIN times white; "     \
@@ -142,6 +148,8 @@ struct engine {
     struct refocus_renderer_info info;
     struct refocus_aperture *aperture;
     struct refocus_disparity field_map; /* samples NULL: none */
+    struct controls controls;
+    bool has_sides; /* the aperture's light differs before and behind the focus */
     double field_disparity;             /* NAN: that in focus */
     uint32_t methods; /* that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     struct refocus_render_params params;

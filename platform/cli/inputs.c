@@ -72,14 +72,15 @@ int input_check_depth(const struct depth_settings *settings)
 int input_check_lens(const struct lens_settings *settings)
 {
     const int ways = given(settings->focus) + given(settings->focus_at[0]) +
-                     given(settings->focus_distance);
+                     given(settings->focus_distance) + given(settings->focus_rectangle[0]);
 
     if (ways > 1)
         return report_failure(EXIT_WRONG,
-                              given(settings->focus_distance) ? "--focus-distance"
-                                                              : "--focus-at",
-                              "the focus is given twice; give one of --focus, --focus-at and "
-                              "--focus-distance");
+                              given(settings->focus_rectangle[0]) ? "--focus-rectangle"
+                              : given(settings->focus_distance)   ? "--focus-distance"
+                                                                  : "--focus-at",
+                              "the focus is given twice; give one of --focus, --focus-at, "
+                              "--focus-distance and --focus-rectangle");
     if (given(settings->blur) && given(settings->f_number))
         return report_failure(EXIT_WRONG, "--f-number",
                               "the blur is given twice; give --blur or --f-number");
@@ -146,6 +147,36 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
     return EXIT_DONE;
 }
 
+/* Move the edges of a map of the photo's size onto the photo's. */
+static int snap(struct input *input, const struct depth_settings *settings)
+{
+    const struct refocus_snap_params params =
+        refocus_snap_params_default((int32_t)settings->snap);
+    const ptrdiff_t stride = (ptrdiff_t)input->width * 2;
+    const struct refocus_disparity map =
+        refocus_disparity16(input->disparity, input->width, input->height, stride);
+    uint16_t *out = malloc((size_t)stride * (size_t)input->height);
+    int status = REFOCUS_ERR_MEMORY;
+
+    if (out)
+        status = refocus_depth_snap(&input->photo->image, &map, &params, out, stride);
+    if (status != REFOCUS_OK) {
+        free(out);
+        return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
+                              refocus_strerror(status));
+    }
+    free(input->disparity);
+    input->disparity = out;
+    return EXIT_DONE;
+}
+
+static bool worth_snapping(const struct input *input, const struct depth_settings *settings)
+{
+    return settings->snap > 0 && input->photo && input->photo->image.plane[0] &&
+           input->photo->image.width == input->width &&
+           input->photo->image.height == input->height;
+}
+
 static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
 {
     return input->photo && input->photo->image.plane[0] &&
@@ -188,6 +219,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
                               refocus_strerror(status));
+    if (worth_snapping(input, settings))
+        return snap(input, settings);
     return worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
 }
 
@@ -327,22 +360,32 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
     return EXIT_DONE;
 }
 
-static int compare(const void *a, const void *b)
+double input_surface_at(const uint16_t *disparity, int width, int height, int x, int y)
 {
-    return *(const uint16_t *)a - *(const uint16_t *)b;
+    const struct refocus_disparity map =
+        refocus_disparity16(disparity, width, height, (ptrdiff_t)width * 2);
+    float focus = 0;
+
+    refocus_focus_at_point(&map, x, y, 0, &focus);
+    return focus;
 }
 
-double input_median_at(const uint16_t *disparity, int width, int height, int x, int y)
+static int focus_in_rectangle(const struct input *input, const double rectangle[4],
+                              const uint16_t *prepared, double *focus)
 {
-    uint16_t values[25];
-    int n = 0;
+    const int width = input->photo->image.width, height = input->photo->image.height;
+    const struct refocus_disparity map =
+        refocus_disparity16(prepared, width, height, (ptrdiff_t)width * 2);
+    float found = 0;
 
-    for (int j = y - 2; j <= y + 2; j++)
-        for (int i = x - 2; i <= x + 2; i++)
-            if (i >= 0 && i < width && j >= 0 && j < height)
-                values[n++] = disparity[(size_t)j * (size_t)width + (size_t)i];
-    qsort(values, (size_t)n, sizeof *values, compare);
-    return values[n / 2] / 65535.0;
+    if (refocus_focus_in_rectangle(&map, (int)rectangle[0], (int)rectangle[1],
+                                   (int)rectangle[2], (int)rectangle[3], &found) != REFOCUS_OK)
+        return report_failure(EXIT_WRONG, "--focus-rectangle",
+                              "%g,%g,%g,%g does not lie within the %dx%d pixels of %s",
+                              rectangle[0], rectangle[1], rectangle[2], rectangle[3], width,
+                              height, input->photo_name);
+    *focus = found;
+    return EXIT_DONE;
 }
 
 static int focus_at_distance(const struct input *input, double metres, double *focus)
@@ -374,6 +417,8 @@ int input_focus(const struct input *input, const struct lens_settings *settings,
     }
     if (given(settings->focus_distance))
         return focus_at_distance(input, settings->focus_distance, focus);
+    if (given(settings->focus_rectangle[0]))
+        return focus_in_rectangle(input, settings->focus_rectangle, prepared, focus);
     if (given(settings->focus_at[0])) {
         x = settings->focus_at[0];
         y = settings->focus_at[1];
@@ -386,6 +431,6 @@ int input_focus(const struct input *input, const struct lens_settings *settings,
         x = fmin(info->focus_x * width, width - 1);
         y = fmin(info->focus_y * height, height - 1);
     }
-    *focus = input_median_at(prepared, width, height, (int)x, (int)y);
+    *focus = input_surface_at(prepared, width, height, (int)x, (int)y);
     return EXIT_DONE;
 }

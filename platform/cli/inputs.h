@@ -9,6 +9,7 @@
 #include "options.h"
 
 struct network_settings;
+struct stereo_settings;
 
 struct depth_settings {
     const char *file, *unit;
@@ -17,16 +18,20 @@ struct depth_settings {
     const char *invalid;  /* names of codes for "no value", or NULL */
     bool full;            /* bring the depth to the photo's size */
     bool optional;        /* a photo without any will do: its disparities are NULL then */
+    double snap;          /* edges of a map of the photo's size may be off by so much; 0: as
+                             they are */
     int upsample;         /* how; 0: as the core does, else 1 + enum refocus_cv_filter */
 };
 
 struct lens_settings {
-    double focus, focus_at[2], focus_distance;
+    double focus, focus_at[2], focus_distance, focus_rectangle[4];
     double blur, f_number, focal_length, sensor_width;
 };
 
 #define DEPTH_SETTINGS_NONE {.near_m = NAN, .far_m = NAN}
-#define LENS_SETTINGS_NONE {NAN, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN}
+#define LENS_SETTINGS_NONE                                                                  \
+    {.focus = NAN, .focus_at = {NAN, NAN}, .focus_distance = NAN, .focus_rectangle = {NAN}, \
+     .blur = NAN, .f_number = NAN, .focal_length = NAN, .sensor_width = NAN}
 
 /* Rows of tables of options, for settings with a member of the types above. */
 #define DEPTH_FILE_OPTION(type, member)                                                     \
@@ -90,8 +95,16 @@ struct lens_settings {
      .least = -INFINITY,                                                                    \
      .greatest = INFINITY,                                                                  \
      .count = 2,                                                                            \
-     .help = "focus on the surface at that pixel: the median of the 5x5 around it; "        \
-             "without any --focus...: the point that the file names, else the centre"},     \
+     .help = "focus on the surface at that pixel: the nearer one at an edge; without any "  \
+             "--focus...: the point that the file names, else the centre"},                 \
+    {.kind = OPTION_NUMBERS,                                                                \
+     .name = "--focus-rectangle",                                                           \
+     .argument = "X,Y,W,H",                                                                 \
+     .offset = offsetof(type, member.focus_rectangle),                                      \
+     .least = 0,                                                                            \
+     .greatest = REFOCUS_MAX_SIDE,                                                          \
+     .count = 4,                                                                            \
+     .help = "focus on the nearest surface that has a quarter of that rectangle, pixels"},  \
     {.kind = OPTION_NUMBER,                                                                 \
      .name = "--focus-distance",                                                            \
      .argument = "M",                                                                       \
@@ -162,7 +175,7 @@ int input_read_depth(struct input *input, const char *file,
 /* Read a photo, and make depth: of it and the right one of a stereo pair, NULL when they lie
  * side by side in one, or within the file as two pictures; or by a network. */
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      bool within, const struct depth_settings *settings);
+                      const struct stereo_settings *how, const struct depth_settings *settings);
 int input_read_estimate(struct input *input, const char *photo, const char *model,
                         const struct network_settings *network,
                         const struct depth_settings *settings);
@@ -177,8 +190,8 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
 int input_focus(const struct input *input, const struct lens_settings *settings,
                 const uint16_t *prepared, double *focus);
 
-/* Median of the 5x5 disparities around a pixel, of fewer at the border. */
-double input_median_at(const uint16_t *disparity, int width, int height, int x, int y);
+/* Disparity of the surface at a pixel: refocus_focus_at_point(). */
+double input_surface_at(const uint16_t *disparity, int width, int height, int x, int y);
 
 /* Exit code for what a function of the file library returned. */
 int input_exit_code(int status);

@@ -363,6 +363,19 @@ static int open_all(struct live *live)
     return EXIT_DONE;
 }
 
+/* Formats that the method, the network and the sink take without a detour by way of RGB. */
+static uint32_t find_yuv_formats(struct live *live)
+{
+    uint32_t formats = 0;
+
+    if (live->engine->params.method != REFOCUS_METHOD_SWEEP || live->estimator)
+        return 0;
+    for (uint32_t format = 0; format < 32; format++)
+        if (refocus_format_is_yuv(format) && refocus_sink_takes(live->sink, format))
+            formats |= UINT32_C(1) << format;
+    return formats;
+}
+
 /* The threads, and this one renders; then all is over. */
 static void run_threads(struct live *live)
 {
@@ -406,6 +419,7 @@ static int run_live(struct live *live)
     int status = open_all(live);
 
     if (status == EXIT_DONE) {
+        live->yuv_formats = find_yuv_formats(live);
         run_threads(live);
         if (live->exit_code != EXIT_DONE)
             status = report_failure(live->exit_code, live->what, "%s", live->why);

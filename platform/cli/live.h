@@ -36,7 +36,7 @@ enum { POLICY_NEWEST, POLICY_EVERY };
 /* live_queue.c: pictures on their way from one thread to the next -------------------------- */
 
 struct live_picture {
-    struct refocus_image image; /* RGB8; memory owned by the queue */
+    struct refocus_image image; /* RGB8, or the camera's Y, U, V; memory owned by the queue */
     size_t capacity;
     int64_t timestamp_ns; /* of the camera, for pairing */
     int64_t taken_ns;     /* CLOCK_MONOTONIC: when it was taken, as far as is known */
@@ -64,8 +64,8 @@ void live_queue_free(struct live_queue *queue);
 void live_queue_close(struct live_queue *queue);
 /* A slot to fill, of memory for such a picture; NULL when the queue is closed. *memory is
  * false when there is none. */
-struct live_picture *live_queue_fill(struct live_queue *queue, int width, int height,
-                                     bool *memory);
+struct live_picture *live_queue_fill(struct live_queue *queue, uint32_t format, int width,
+                                     int height, bool *memory);
 void live_queue_put(struct live_queue *queue, struct live_picture *picture);
 /* The oldest, or NULL after 100 ms without one, or when it is closed and empty. */
 struct live_picture *live_queue_take(struct live_queue *queue, bool *ended);
@@ -197,6 +197,8 @@ struct live {
     double create_ms;
     struct live_steady steady; /* to the thread that renders */
     struct engine *engine;
+    uint32_t yuv_formats;     /* bit f: pictures of enum refocus_format f stay as they are */
+    uint32_t rendered_format; /* enum refocus_format; of the thread that captures */
     int64_t first_out_ns, last_out_ns;
     double lens_dioptres;
 };

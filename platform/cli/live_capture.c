@@ -174,6 +174,14 @@ static int64_t taken_at(const struct refocus_frame *frame, int64_t now_ns)
                : now_ns;
 }
 
+/* What a frame is rendered in: its own Y, U and V if nobody needs anything else. */
+static uint32_t format_for(const struct live *live, const struct refocus_frame *frame)
+{
+    const uint32_t own = refocus_frame_image_format(frame->format);
+
+    return own && live->yuv_formats >> own & 1 ? own : (uint32_t)REFOCUS_FORMAT_RGB8;
+}
+
 static int deliver_colour(struct lane *lane, const struct refocus_frame *frame, int64_t now_ns,
                           struct refocus_reason *reason)
 {
@@ -182,13 +190,19 @@ static int deliver_colour(struct lane *lane, const struct refocus_frame *frame, 
     bool memory;
     int status;
 
-    picture = live_queue_fill(&live->captured, frame->width, frame->height, &memory);
+    const uint32_t format = format_for(live, frame);
+    picture = live_queue_fill(&live->captured, format, frame->width, frame->height, &memory);
     if (!picture)
         return REFOCUS_OK;
     /* The time of waiting for a free slot is not that of converting. */
     const int64_t begin = live_now_ns();
-    status = memory ? refocus_convert_rgb8(lane->converter, frame, &picture->image, reason)
-                    : REFOCUS_ERR_MEMORY;
+    if (!memory)
+        status = REFOCUS_ERR_MEMORY;
+    else if (format == REFOCUS_FORMAT_RGB8)
+        status = refocus_convert_rgb8(lane->converter, frame, &picture->image, reason);
+    else
+        status = refocus_convert_copy(lane->converter, frame, &picture->image, reason);
+    live->rendered_format = format;
     if (status != REFOCUS_OK) {
         live_queue_return(&live->captured, picture);
         return status;

@@ -234,7 +234,7 @@ void live_estimate_offer(struct live *live, struct live_picture *picture)
     bool memory;
 
     if (live->offered++ % live->settings->estimate.every == 0) {
-        copy = live_queue_fill(&live->to_estimate, from->width, from->height, &memory);
+        copy = live_queue_fill(&live->to_estimate, from->format, from->width, from->height, &memory);
         if (copy && memory) {
             memcpy(copy->image.plane[0], from->plane[0],
                    (size_t)from->stride[0] * (size_t)from->height);

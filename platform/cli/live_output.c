@@ -13,8 +13,8 @@ static bool reopen(struct live *live, const struct refocus_image *image,
     refocus_sink_close(&live->sink, NULL);
     while (!live_is_over(live)) {
         if (refocus_sink_open(&live->sink, live->settings->out, reason) == REFOCUS_OK &&
-            refocus_sink_start(live->sink, image->width, image->height, live->mode.fps,
-                               reason) == REFOCUS_OK) {
+            refocus_sink_start_image(live->sink, image, live->mode.fps, reason) ==
+                REFOCUS_OK) {
             live->output.recoveries++;
             return true;
         }
@@ -32,18 +32,18 @@ static bool is_device(const struct live *live)
 }
 
 /* False when it is over. */
-static bool write_picture(struct live *live, const struct live_picture *picture, int *width,
-                          int *height)
+static bool write_picture(struct live *live, const struct live_picture *picture,
+                          struct refocus_image *last)
 {
     const struct refocus_image *image = &picture->image;
     struct refocus_reason reason = {""};
     int status = REFOCUS_OK;
 
-    if (image->width != *width || image->height != *height)
-        status = refocus_sink_start(live->sink, image->width, image->height, live->mode.fps,
-                                    &reason);
-    *width = image->width;
-    *height = image->height;
+    if (image->width != last->width || image->height != last->height ||
+        image->format != last->format || image->range != last->range ||
+        image->matrix != last->matrix)
+        status = refocus_sink_start_image(live->sink, image, live->mode.fps, &reason);
+    *last = *image;
     if (status == REFOCUS_OK)
         status = refocus_sink_write(live->sink, image, &reason);
     if (status == REFOCUS_ERR_TIMEOUT) {
@@ -75,7 +75,7 @@ void *live_output_thread(void *argument)
 {
     struct live *live = argument;
     const double most = live->settings->frames;
-    int width = 0, height = 0;
+    struct refocus_image last = {.format = REFOCUS_FORMAT_NONE};
     bool ended = false;
 
     while (!ended) {
@@ -85,7 +85,7 @@ void *live_output_thread(void *argument)
 
         if (!picture)
             continue;
-        go_on = write_picture(live, picture, &width, &height);
+        go_on = write_picture(live, picture, &last);
         live_times_add(&live->output.times, (double)(live_now_ns() - begin) / 1e6);
         live_queue_return(&live->rendered, picture);
         if (most > 0 && (double)atomic_load(&live->frames_out) >= most)

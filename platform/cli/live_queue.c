@@ -42,9 +42,9 @@ void live_queue_close(struct live_queue *queue)
     pthread_mutex_unlock(&queue->lock);
 }
 
-static bool reserve(struct live_picture *picture, int width, int height)
+static bool reserve(struct live_picture *picture, uint32_t format, int width, int height)
 {
-    const uint64_t bytes = (uint64_t)width * 3 * (uint64_t)height;
+    const uint64_t bytes = refocus_image_bytes(format, width, height);
     uint8_t *memory = picture->image.plane[0];
 
     if (bytes > picture->capacity) {
@@ -52,13 +52,15 @@ static bool reserve(struct live_picture *picture, int width, int height)
         memory = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
         picture->capacity = memory ? (size_t)bytes : 0;
     }
-    picture->image = refocus_image_packed(REFOCUS_FORMAT_RGB8, memory, width, height,
-                                          (ptrdiff_t)width * 3);
+    if (memory)
+        picture->image = refocus_image_planar(format, memory, width, height);
+    else
+        picture->image.plane[0] = NULL;
     return memory != NULL;
 }
 
-struct live_picture *live_queue_fill(struct live_queue *queue, int width, int height,
-                                     bool *memory)
+struct live_picture *live_queue_fill(struct live_queue *queue, uint32_t format, int width,
+                                     int height, bool *memory)
 {
     struct live_picture *picture = NULL;
 
@@ -70,7 +72,7 @@ struct live_picture *live_queue_fill(struct live_queue *queue, int width, int he
     if (!queue->closed)
         picture = &queue->slot[queue->free[--queue->free_count]];
     pthread_mutex_unlock(&queue->lock);
-    *memory = !picture || reserve(picture, width, height);
+    *memory = !picture || reserve(picture, format, width, height);
     return picture;
 }
 

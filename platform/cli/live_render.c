@@ -45,7 +45,7 @@ static void find_focus(struct live *live, int width, int height)
     disparity = malloc((size_t)width * (size_t)height * 2);
     if (disparity && refocus_get_view(live->engine->renderer, REFOCUS_VIEW_DISPARITY, disparity,
                                       (ptrdiff_t)width * 2) == REFOCUS_OK)
-        live_focus_pull(&live->focus, input_median_at(disparity, width, height, x, y), seconds);
+        live_focus_pull(&live->focus, input_surface_at(disparity, width, height, x, y), seconds);
     free(disparity);
 }
 
@@ -145,9 +145,11 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
         size[0] = width;
         size[1] = height;
     }
-    out = live_queue_fill(&live->rendered, width, height, &memory);
+    out = live_queue_fill(&live->rendered, picture->image.format, width, height, &memory);
     if (!out)
         return false;
+    out->image.matrix = picture->image.matrix;
+    out->image.range = picture->image.range;
     status = memory ? refocus(live, picture, map, &out->image) : REFOCUS_ERR_MEMORY;
     if (status != REFOCUS_OK) {
         live_queue_return(&live->rendered, out);

@@ -17,6 +17,16 @@ static double mean(const struct live_stage *stage)
     return stage->times.count ? stage->times.sum_ms / (double)stage->times.count : 0;
 }
 
+/* What the last frame was rendered in. */
+static const char *rendered_in(uint32_t image_format)
+{
+    for (uint32_t i = 1; i < REFOCUS_FRAME_FORMAT_COUNT; i++)
+        if (i != REFOCUS_FRAME_UYVY && refocus_frame_image_format(i) == image_format &&
+            image_format != REFOCUS_FORMAT_NONE)
+            return refocus_frame_format_name(i);
+    return "RGB24";
+}
+
 /* Of the time that a frame is worked on: that which is not preparing and rendering it.
  */
 static double outside_rendering(const struct live *live)
@@ -63,6 +73,8 @@ int live_report(struct live *live)
         live_times_json(&live->latency), "outside_rendering", outside_rendering(live),
         "create_ms", live->create_ms);
     if (json) {
+        json_object_set_new(json, "rendered_in",
+                            json_string(rendered_in(live->rendered_format)));
         json_object_set_new(json, "colour", stage_json(&live->capture));
         if (live->depth_camera || live->estimator)
             json_object_set_new(json, "depth", stage_json(&live->depth));

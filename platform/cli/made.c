@@ -52,9 +52,9 @@ static void halve(struct refocus_image *left, struct refocus_image *right)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      bool within, const struct depth_settings *settings)
+                      const struct stereo_settings *how, const struct depth_settings *settings)
 {
-    const struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_stereo_report report;
     struct refocus_cv_reason reason = {""};
     struct refocus_image other;
@@ -63,8 +63,9 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
 
     memset(input, 0, sizeof *input);
     input->photo_name = input->depth_name = left;
+    params.method = (uint32_t)how->method;
     status = read_photo(&input->photo, left, false);
-    if (status == EXIT_DONE && (right || within))
+    if (status == EXIT_DONE && (right || how->within))
         status = read_photo(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
         return status;
@@ -162,10 +163,10 @@ static int absent(const char *what)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      bool within, const struct depth_settings *settings)
+                      const struct stereo_settings *how, const struct depth_settings *settings)
 {
     (void)settings;
-    (void)within;
+    (void)how;
     memset(input, 0, sizeof *input);
     return absent(right ? right : left);
 }

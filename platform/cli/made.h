@@ -21,6 +21,12 @@ struct network_settings {
 };
 #define NETWORK_SETTINGS_NONE {0, {NAN, NAN}, {NAN, NAN, NAN}, NAN, false}
 
+/* How a pair is matched. */
+struct stereo_settings {
+    bool within; /* both pictures are in the one file */
+    int method;  /* enum refocus_stereo_method */
+};
+
 /* Presets of --preset; NULL ends them. */
 const char *made_preset(uint32_t index);
 

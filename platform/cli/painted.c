@@ -1,4 +1,3 @@
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,38 +5,8 @@
 #include "painted.h"
 #include "report.h"
 
-/* What refocus_strokes_load() takes at the most, and a byte more that shows a longer file. */
-enum { MAX_BYTES = (64 << 20) + 1 };
-
-static int read_file(const char *name, char **bytes, size_t *size)
-{
-    FILE *const file = fopen(name, "rb");
-    size_t room = 1 << 16;
-    char *more;
-
-    *size = 0;
-    *bytes = file ? malloc(room) : NULL;
-    if (!file)
-        return report_failure(EXIT_FAILED, name, "%s", strerror(errno));
-    while (*bytes) {
-        *size += fread(*bytes + *size, 1, room - *size, file);
-        if (*size < room || *size >= MAX_BYTES)
-            break;
-        room *= 2;
-        more = realloc(*bytes, room);
-        if (!more)
-            free(*bytes);
-        *bytes = more;
-    }
-    if (!*bytes || ferror(file)) {
-        const char *const why = *bytes ? strerror(errno) : "not enough memory";
-
-        fclose(file);
-        return report_failure(EXIT_FAILED, name, "%s", why);
-    }
-    fclose(file);
-    return EXIT_DONE;
-}
+/* What refocus_strokes_load() takes at the most. */
+enum { MAX_BYTES = 64 << 20 };
 
 int painted_read(struct input *input, const char *photo, const struct depth_settings *settings)
 {
@@ -90,17 +59,17 @@ int painted_apply(struct input *input, const char *file)
     struct refocus_strokes_reason reason = {""};
     struct refocus_strokes *strokes = NULL;
     struct refocus_photo_info *const info = &input->made.info;
-    char *bytes;
-    size_t size;
-    int code, status;
+    struct refocus_reason unread = {""};
+    struct refocus_blob blob = {NULL, 0};
+    int code = EXIT_DONE, status;
 
-    code = read_file(file, &bytes, &size);
-    if (code != EXIT_DONE)
-        return code;
+    status = refocus_file_read(file, MAX_BYTES, &blob, &unread);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, file, "%s", unread.text);
     status = refocus_strokes_create(&strokes, &input->photo->image,
                                     input->disparity ? &base : NULL);
     if (status == REFOCUS_OK)
-        status = refocus_strokes_load(strokes, bytes, size, &reason);
+        status = refocus_strokes_load(strokes, blob.data, blob.size, &reason);
     if (status == REFOCUS_OK)
         status = take(input, strokes);
     if (status != REFOCUS_OK)
@@ -110,6 +79,6 @@ int painted_apply(struct input *input, const char *file)
         snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
                  "painted: %d strokes", refocus_strokes_count(strokes));
     refocus_strokes_destroy(&strokes);
-    free(bytes);
+    free(blob.data);
     return code;
 }

@@ -43,7 +43,7 @@ const char *papers_solver_name(uint32_t index);
     PAPER_NUMBER(type, member, OPTION_INTEGER, "--cell", "A", cell, 1, 16,                  \
                  "jittered: a ray of each A x A pixels of the mask; default 2"),            \
     PAPER_NUMBER(type, member, OPTION_INTEGER, "--seed", "N", seed, 0, 999999999,        \
-                 "jittered: which ones; default 0"),                                        \
+                 "jittered: which ones; of --grain: which; default 0"),                                        \
     PAPER_CHOICE(type, member, "--spread", spread, papers_spread_name,                      \
                  "scatter: light in a circle of confusion; default uniform"),               \
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--airy-radius", "R", airy_radius, 0.25, 16,  \
@@ -52,7 +52,7 @@ const char *papers_solver_name(uint32_t index);
                  "scatter: far / near metres, for light that falls with the square of the " \
                  "distance; default 1, not at all"),                                        \
     PAPER_NUMBER(type, member, OPTION_INTEGER, "--star", "N", star, 0, 16,                  \
-                 "scatter: spikes of a star filter, 0 or 2 to 16; default 0"),              \
+                 "sweep, scatter: spikes of a star filter, 0 or 2 to 16; default 0"),              \
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--star-length", "L", star_length, 0, 127,    \
                  "pixels of a spike; default 24"),                                          \
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--star-angle", "DEG", star_angle, -3600,     \
@@ -76,21 +76,21 @@ const char *papers_solver_name(uint32_t index);
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--attention-depth", "D", attention_depth, 0, \
                  1, "foveated: disparity about the focus of the exact part; default 1, all"), \
     PAPER_CHOICE(type, member, "--field", field, papers_field_name,                         \
-                 "diffusion: where it is blurred; default lens"),                           \
+                 "sweep, search, blur, diffusion: where it is blurred; default lens"),                           \
     PAPER_NUMBER(type, member, OPTION_NUMBERS, "--field-at", "X,Y", field_at, 0, 65535,     \
-                 "diffusion: pixel of the field's centre; default the picture's"),          \
+                 "pixel of the field's centre; default the picture's"),          \
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-disparity", "D", field_disparity, 0, \
-                 1, "diffusion: of the field's centre; default that in focus"),             \
+                 1, "of the field's centre; default that in focus"),             \
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-radius", "R", field_radius, 0, 4,    \
-                 "diffusion: distance that stays sharp, of the width or in disparity; "     \
+                 "distance that stays sharp, of the width or in disparity; "     \
                  "default 0.1"),                                                            \
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-falloff", "R", field_falloff, 0.001, \
-                 4, "diffusion: further distance to the full blur; default 0.3"),           \
+                 4, "further distance to the full blur; default 0.3"),           \
     PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-angle", "DEG", field_angle, -3600,   \
-                 3600, "diffusion, plane: 0 = upright and along the view, 90 = facing it"), \
+                 3600, "of a plane: 0 = upright and along the view, 90 = facing it"), \
     {.kind = OPTION_TEXT, .name = "--field-map", .argument = "FILE",                        \
      .offset = offsetof(type, member.field_map),                                            \
-     .help = "diffusion, picture: grey picture of the field, white = the full blur"},       \
+     .help = "for picture: grey picture of the field, white = the full blur"},       \
     PAPER_NUMBER(type, member, OPTION_INTEGER, "--layers", "N", layers, 1, 8,               \
                  "diffusion: that the picture is split into by depth; default 4"),          \
     PAPER_CHOICE(type, member, "--solver", solver, papers_solver_name,                      \

@@ -45,6 +45,8 @@ static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
+    CONTROL_OPTIONS(struct settings, engine.controls),
+    BOKEH_OPTIONS(struct settings, engine.bokeh),
     {.kind = OPTION_HEADING, .help = "Rendering"},
     METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine),
@@ -74,19 +76,26 @@ static int check(const struct settings *settings, const char *photo)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
     const char *const inputs[] = {photo, settings->depth.file, settings->engine.aperture,
-                                  settings->load};
+                                  settings->engine.papers.field_map,
+                                  settings->engine.controls.focus_map,
+                                  settings->engine.controls.sharp_mask, settings->load};
     int status;
 
     status = input_check_depth(&settings->depth);
     if (status == EXIT_DONE)
         status = input_check_lens(&settings->lens);
+    if (status == EXIT_DONE)
+        status = controls_check(&settings->engine.controls, !isnan(settings->lens.focus) ||
+                                    !isnan(settings->lens.focus_at[0]) ||
+                                    !isnan(settings->lens.focus_distance) ||
+                                    !isnan(settings->lens.focus_rectangle[0]));
     if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
                                 "a view is always of the whole; leave --region or --view out");
     if (status == EXIT_DONE)
-        status = output_check(settings->output, endings, inputs, 4);
+        status = output_check(settings->output, endings, inputs, 7);
     if (status == EXIT_DONE && settings->save)
-        status = settings_check(settings->save, inputs, 3);
+        status = settings_check(settings->save, inputs, 6);
     return status;
 }
 
@@ -204,6 +213,7 @@ static int run(int argc, char **argv)
     status = options_parse(&render_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
+    settings.engine.bokeh.f_number = settings.lens.f_number;
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;

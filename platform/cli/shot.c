@@ -3,26 +3,31 @@
 #include "report.h"
 #include "shot.h"
 
-/* Focus needs the prepared disparities only where it is given by a pixel. */
+/* Focus by the prepared disparities, and the plane of focus through it. */
 static int choose_focus(struct shot *shot, const struct lens_settings *lens)
 {
     const struct refocus_image *photo = &shot->input.photo->image;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
-    uint16_t *prepared = NULL;
+    const ptrdiff_t stride = (ptrdiff_t)photo->width * 2;
+    struct refocus_render_params *params = &shot->engine.params;
+    uint16_t *prepared = malloc(pixels * sizeof *prepared);
+    const struct refocus_disparity map =
+        refocus_disparity16(prepared, photo->width, photo->height, stride);
     double focus = 0;
     int status;
 
-    if (isnan(lens->focus) && isnan(lens->focus_distance)) {
-        prepared = malloc(pixels * sizeof *prepared);
-        if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
-                                          prepared, (ptrdiff_t)photo->width * 2) != REFOCUS_OK) {
-            free(prepared);
-            return report_failure(EXIT_FAILED, shot->input.photo_name,
-                                  "not enough memory to find the focus; give --focus");
-        }
+    if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, prepared,
+                                      stride) != REFOCUS_OK) {
+        free(prepared);
+        return report_failure(EXIT_FAILED, shot->input.photo_name,
+                              "not enough memory to find the focus");
     }
     status = input_focus(&shot->input, lens, prepared, &focus);
-    shot->engine.params.focus_disparity = (float)focus;
+    params->focus_disparity = (float)focus;
+    if (!isnan(lens->focus_at[0]))
+        params->tilt_y = (float)((lens->focus_at[1] + 0.5) / photo->height);
+    if (status == EXIT_DONE)
+        status = controls_aim(&shot->engine.controls, params, &map);
     free(prepared);
     return status;
 }

@@ -8,6 +8,7 @@
 #include "interrupt.h"
 #include "outputs.h"
 #include "report.h"
+#include "settings.h"
 #include "view_module.h"
 #include "view_save.h"
 
@@ -15,7 +16,7 @@ struct settings {
     struct depth_settings depth;
     struct lens_settings lens;
     struct engine_settings engine;
-    const char *output;
+    const char *output, *load;
     double size[2], seconds;
     bool fullscreen;
 };
@@ -36,6 +37,13 @@ static const struct option options[] = {
     METHOD_OPTIONS(struct settings, engine),
     RUN_OPTIONS(struct settings, engine),
     {.kind = OPTION_HEADING, .help = "Window"},
+    {.kind = OPTION_TEXT,
+     .name = SETTINGS_NAME,
+     .argument = "FILE",
+     .offset = offsetof(struct settings, load),
+     .help = "JSON object of options to begin with, as 'j' saves it; the command line overrules "
+             "it",
+     .elsewhere = true},
     {.kind = OPTION_NUMBERS,
      .name = "--size",
      .argument = "WxH",
@@ -43,11 +51,13 @@ static const struct option options[] = {
      .least = 64,
      .greatest = 16384,
      .count = 2,
-     .help = "of the window; default: as large as the photo and the screen allow"},
+     .help = "of the window; default: as large as the photo and the screen allow",
+     .elsewhere = true},
     {.kind = OPTION_FLAG,
      .name = "--fullscreen",
      .offset = offsetof(struct settings, fullscreen),
-     .help = "the whole screen"},
+     .help = "the whole screen",
+     .elsewhere = true},
     {.kind = OPTION_NUMBER,
      .name = "--seconds",
      .argument = "S",
@@ -55,7 +65,8 @@ static const struct option options[] = {
      .least = 0,
      .above = true,
      .greatest = 86400,
-     .help = "close it after that time"},
+     .help = "close it after that time",
+     .elsewhere = true},
     {.help = NULL},
 };
 
@@ -83,13 +94,26 @@ static int print_report(const struct input *input, const struct rf_view_report *
     for (int i = 0; i < report->count; i++)
         json_array_append_new(times, time_json(&report->times[i]));
     return report_print_json(json_pack(
-        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:o, s:I}", "file",
+        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}", "file",
         report_text_json(input->photo_name), "width", (int)input->photo->image.width, "height",
         (int)input->photo->image.height, "driver", report->driver, "window_width", report->width,
         "window_height", report->height, "reduction", report->reduction, "method",
         refocus_method_name(report->last.method), "focus", (double)report->last.focus, "blur",
-        (double)report->last.blur, "saved", saving->saved, "times", times, "peak_rss_kib",
+        (double)report->last.blur, "strokes", report->strokes, "saved", saving->saved,
+        "times", times, "peak_rss_kib",
         (json_int_t)report_peak_rss_kib()));
+}
+
+/* The options that make the same picture. */
+static int save_settings(void *of, const struct refocus_render_params *lens, const char *file)
+{
+    struct settings settings = *(const struct settings *)of;
+
+    settings.lens = (struct lens_settings)LENS_SETTINGS_NONE;
+    settings.lens.focus = (double)lens->focus_disparity;
+    settings.lens.blur = (double)lens->max_blur_radius;
+    settings.engine.method = (int)lens->method;
+    return settings_save(&view_command, file, &settings);
 }
 
 static int choose_state(const struct input *input, const struct settings *settings,
@@ -106,10 +130,13 @@ static int choose_state(const struct input *input, const struct settings *settin
     return status;
 }
 
-static int show(const struct settings *settings, struct engine *engine, struct input *input,
+static int show(struct settings *settings, struct engine *engine, struct input *input,
                 view_run_fn *run_window)
 {
-    struct view_saving saving = {.input = input, .quiet = settings->engine.json};
+    struct view_saving saving = {.input = input,
+                                 .settings = save_settings,
+                                 .of = settings,
+                                 .quiet = settings->engine.json};
     struct rf_view_setup setup = {.title = input->photo_name, .stop = interrupted,
                                   .fullscreen = settings->fullscreen};
     struct rf_view_report *const report = calloc(1, sizeof *report);
@@ -161,7 +188,7 @@ static int check_method(const struct settings *settings)
                           refocus_method_name((uint32_t)settings->engine.method));
 }
 
-static int open_photo(const struct settings *settings, const char *photo)
+static int open_photo(struct settings *settings, const char *photo)
 {
     struct input input = {0};
     struct engine engine;

@@ -1,8 +1,6 @@
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include "outputs.h"
 #include "report.h"
 #include "view_save.h"
@@ -27,46 +25,9 @@ bool view_make_names(struct view_names *names, const char *output, const char *p
     return true;
 }
 
-/* Beside its place under another name, then moved there. */
-static int write_text(const char *name, const char *text, size_t size)
-{
-    char beside[1100];
-    FILE *file;
-    int failed;
-
-    snprintf(beside, sizeof beside, "%s.%ld.part", name, (long)getpid());
-    file = fopen(beside, "wb");
-    failed = !file || fwrite(text, 1, size, file) != size;
-    if (file)
-        failed |= fclose(file) != 0;
-    if (!failed)
-        failed = rename(beside, name) != 0;
-    if (!failed)
-        return EXIT_DONE;
-    failed = errno;
-    remove(beside);
-    return report_failure(EXIT_FAILED, name, "%s", strerror(failed));
-}
-
-/* In the words of the options of `render`. */
-static int save_settings(const struct view_saving *saving, const struct refocus_render_params *lens)
-{
-    json_t *const json = json_pack(
-        "{s:o, s:s, s:f, s:f, s:i}", "photo", report_text_json(saving->input->photo_name),
-        "method", refocus_method_name(lens->method), "focus", (double)lens->focus_disparity,
-        "blur", (double)lens->max_blur_radius, "rays", (int)lens->rays);
-    char *const text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
-    const int status = text ? write_text(saving->names.settings, text, strlen(text))
-                            : report_failure(EXIT_FAILED, saving->names.settings,
-                                             "not enough memory");
-
-    free(text);
-    json_decref(json);
-    return status;
-}
-
 static int save_strokes(const struct view_saving *saving, const struct refocus_strokes *strokes)
 {
+    struct refocus_reason reason = {""};
     char *text;
     size_t size;
     int status = refocus_strokes_save(strokes, &text, &size);
@@ -74,9 +35,11 @@ static int save_strokes(const struct view_saving *saving, const struct refocus_s
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, saving->names.strokes, "%s",
                               refocus_strerror(status));
-    status = write_text(saving->names.strokes, text, size);
+    status = refocus_file_write(saving->names.strokes, text, size, &reason);
     free(text);
-    return status;
+    if (status == REFOCUS_OK)
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, saving->names.strokes, "%s", reason.text);
 }
 
 static void count(struct view_saving *saving, int status, const char *name)
@@ -102,7 +65,8 @@ void view_save(void *user, const struct rf_view_result *result)
         count(saving, output_write_image(names->picture, picture, saving->input->photo),
               names->picture);
     if (result->what & RF_SAVE_SETTINGS)
-        count(saving, save_settings(saving, result->params), names->settings);
+        count(saving, saving->settings(saving->of, result->params, names->settings),
+              names->settings);
     if (result->what & RF_SAVE_DEPTH) {
         count(saving, output_write_gray16(names->depth, result->disparity, picture->width,
                                           picture->height), names->depth);

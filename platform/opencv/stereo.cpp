@@ -1,5 +1,6 @@
 /* Depth from two pictures: OpenCV's semi-global matching, both ways. */
 #include "guard.hpp"
+#include "module.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,14 +59,21 @@ float remove_specks(cv::Mat &disparity)
     return (float)left / (float)disparity.total();
 }
 
-/* Both ways; what disagrees by more than a pixel is taken out. Returns the share that is left. */
-float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count, cv::Mat &out)
+/* Disparities of left from left to right and from right to left, each at its own pixels. */
+void match_pair(const cv::Mat &left, const cv::Mat &right, int least, int count, cv::Mat &out,
+                cv::Mat &back)
 {
-    cv::Mat flipped_left, flipped_right, back;
+    cv::Mat flipped_left, flipped_right;
+
     out = match(left, right, least, count);
     cv::flip(left, flipped_left, 1);
     cv::flip(right, flipped_right, 1);
     cv::flip(match(flipped_right, flipped_left, least, count), back, 1);
+}
+
+/* What disagrees by more than a pixel is taken out. Returns the share that is left. */
+float check(cv::Mat &out, const cv::Mat &back)
+{
     for (int y = 0; y < out.rows; y++) {
         float *row = out.ptr<float>(y);
         const float *other = back.ptr<float>(y);
@@ -78,6 +86,14 @@ float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count
         }
     }
     return remove_specks(out);
+}
+
+float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count, cv::Mat &out)
+{
+    cv::Mat back;
+
+    match_pair(left, right, least, count, out, back);
+    return check(out, back);
 }
 
 cv::Mat shifted(const cv::Mat &image, int down)
@@ -168,8 +184,14 @@ int stereo(const refocus_image *left, const refocus_image *right,
 {
     const double scale = std::max(1.0, left->width / (double)params->max_side);
     const cv::Size size(cvRound(left->width / scale), std::max(1, cvRound(left->height / scale)));
+    const rf_ximgproc *const contrib =
+        params->method == REFOCUS_STEREO_WLS ? rf_opencv_ximgproc() : nullptr;
     cv::Mat a, b, disparity, full;
 
+    if (params->method == REFOCUS_STEREO_WLS && !contrib)
+        return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                                "the module refocus-ximgproc.so is not there; build it with "
+                                "-Dximgproc=enabled, or match without it");
     cv::cvtColor(refocus_cv::view(left), a, cv::COLOR_RGB2GRAY);
     cv::cvtColor(refocus_cv::view(right), b, cv::COLOR_RGB2GRAY);
     if (scale > 1) {
@@ -185,11 +207,25 @@ int stereo(const refocus_image *left, const refocus_image *right,
         s.offset = refine(a, b, s, (a.cols + 799) / 800);
     if (s.offset)
         b = shifted(b, s.offset);
-    const float matched = match_both(a, b, s.least, s.count, disparity);
+    cv::Mat back, raw;
+    match_pair(a, b, s.least, s.count, disparity, back);
+    raw = disparity.clone();
+    const float matched = check(disparity, back);
     if (matched < params->least_match)
         return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
                                 "too few pixels of the two pictures match; give a rectified pair, "
                                 "left before right");
+    if (params->method == REFOCUS_STEREO_PLAIN)
+        disparity = raw;
+    if (params->method == REFOCUS_STEREO_WLS) {
+        cv::Mat photo;
+
+        cv::resize(refocus_cv::view(left), photo, a.size(), 0, 0, cv::INTER_AREA);
+        if (contrib->wls(photo.data, raw.ptr<float>(), back.ptr<float>(),
+                         disparity.ptr<float>(), a.cols, a.rows))
+            return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED, "OpenCV gave up");
+        disparity.setTo(none, (disparity < s.least) | (disparity > s.least + s.count));
+    }
     disparity *= scale;
     cv::resize(disparity, full, cv::Size(left->width, left->height), 0, 0, cv::INTER_NEAREST);
     for (int y = 0; y < full.rows; y++)
@@ -212,7 +248,8 @@ int refocus_cv_stereo(const struct refocus_image *left, const struct refocus_ima
                       struct refocus_stereo_report *report, struct refocus_cv_reason *reason)
 {
     if (!refocus_cv::good_photo(left) || !refocus_cv::good_photo(right) || !params ||
-        params->struct_size != sizeof *params || params->max_side < 64 || !disparity)
+        params->struct_size != sizeof *params || params->max_side < 64 ||
+        params->method > REFOCUS_STEREO_WLS || !disparity)
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "not two pictures");
     if (left->width != right->width || left->height != right->height)
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT,

@@ -30,6 +30,21 @@ static int open_output(struct refocus_sink *sink, const char *rest,
     return REFOCUS_OK;
 }
 
+static bool takes(const struct refocus_sink *sink, uint32_t format)
+{
+    const struct output *output = sink->state;
+
+    for (uint32_t i = 0; i < 64; i++) {
+        struct v4l2_fmtdesc desc = {.index = i, .type = output->device.type};
+
+        if (rf_v4l2_ioctl(output->device.fd, VIDIOC_ENUM_FMT, &desc) != 0)
+            return false;
+        if (rf_v4l2_format_of(desc.pixelformat) == rf_frame_format_of(format))
+            return true;
+    }
+    return false;
+}
+
 static bool try_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int height,
                        struct refocus_reason *reason, int *status)
 {
@@ -38,6 +53,25 @@ static bool try_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int h
     *status = rf_v4l2_set_format(device, fourcc, width, height, reason);
     return *status == REFOCUS_OK && rf_can_encode(device->format) && device->width == width &&
            device->height == height;
+}
+
+/* That of the pictures themselves. */
+static int choose_yuv(struct rf_v4l2 *device, uint32_t format, int width, int height,
+                      struct refocus_reason *reason)
+{
+    int status = REFOCUS_OK;
+    uint32_t fourcc;
+
+    for (int n = 0; (fourcc = rf_v4l2_fourcc_of(rf_frame_format_of(format), n)); n++)
+        if (try_format(device, fourcc, width, height, reason, &status) &&
+            device->format == rf_frame_format_of(format))
+            return REFOCUS_OK;
+    if (status != REFOCUS_OK && status != REFOCUS_ERR_UNSUPPORTED)
+        return status;
+    return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                           "%s: it takes no %s frames of %dx%d; set its size or the camera's",
+                           device->path, refocus_frame_format_name(rf_frame_format_of(format)),
+                           width, height);
 }
 
 /* The format that the node is set to, if it is one of ours, else the first that fits. */
@@ -78,7 +112,9 @@ static int start(struct refocus_sink *sink, int width, int height, double fps,
     int status;
 
     rf_v4l2_unmap(&output->device);
-    status = choose_format(&output->device, width, height, reason);
+    status = sink->format == REFOCUS_FORMAT_RGB8
+                 ? choose_format(&output->device, width, height, reason)
+                 : choose_yuv(&output->device, sink->format, width, height, reason);
     if (status != REFOCUS_OK)
         return status;
     memset(&rate, 0, sizeof rate);
@@ -136,7 +172,10 @@ static int write_frame(struct refocus_sink *sink, const struct refocus_image *im
     if (status != REFOCUS_OK)
         return status;
     rf_v4l2_lay_out(device, index, none, &frame);
-    rf_encode(image, &frame);
+    if (image->format == REFOCUS_FORMAT_RGB8)
+        rf_encode(image, &frame);
+    else
+        rf_copy_frame(image, &frame);
     error = rf_v4l2_queue(device, index, rf_now_ns());
     if (error)
         return rf_v4l2_fail(device, reason, error, "queuing a frame");
@@ -162,6 +201,7 @@ static int close_output(struct refocus_sink *sink, struct refocus_reason *reason
 
 const struct rf_sink_ops rf_sink_v4l2 = {.scheme = "v4l2",
                                          .open = open_output,
+                                         .takes = takes,
                                          .start = start,
                                          .write = write_frame,
                                          .close = close_output};

@@ -48,7 +48,6 @@ void rf_window_show(struct rf_window *w, const char *cause)
     w->state.width = w->width;
     w->state.height = w->height;
     rf_window_asked(w, rf_session_show(w->session, &w->state), cause);
-    w->redraw = true;
 }
 
 void rf_window_tap(struct rf_window *w, double x, double y)
@@ -90,6 +89,7 @@ void rf_window_zoom(struct rf_window *w, double factor, double x, double y)
     w->state.x = px - x / w->state.scale;
     w->state.y = py - y / w->state.scale;
     w->fitted = false;
+    w->redraw = true; /* what there is, at its new place, until the frame comes */
     rf_window_show(w, "zoom");
 }
 
@@ -102,6 +102,7 @@ void rf_window_pan(struct rf_window *w, double dx, double dy)
     w->state.y = clamp(w->state.y - dy / w->state.scale, -w->height / w->state.scale,
                        photo->height);
     w->fitted = false;
+    w->redraw = true; /* what there is, at its new place, until the frame comes */
     rf_window_show(w, "zoom");
 }
 

@@ -111,12 +111,20 @@ static void press(struct rf_window *w, double x, double y)
     w->pressed = true;
     w->dragged = false;
     if (w->tool == RF_TOOL_PAINT) {
-        w->painting = true;
+        w->painting = w->state.hold = true;
         rf_window_stroke(w, x, y,
                          held & KMOD_SHIFT  ? (uint32_t)REFOCUS_STROKE_MORE
                          : held & KMOD_CTRL ? (uint32_t)REFOCUS_STROKE_LESS
                                             : w->stroke_kind);
     }
+}
+
+static void drag_blur(struct rf_window *w, double by)
+{
+    const double from = w->press_blur > 0.5 ? w->press_blur : 0.5;
+
+    w->state.hold = true;
+    rf_window_blur(w, from * exp(by / (150 * w->density)));
 }
 
 static void move(struct rf_window *w, double x, double y)
@@ -130,8 +138,7 @@ static void move(struct rf_window *w, double x, double y)
         if (w->painting)
             rf_window_stroke_to(w, x, y);
         else if (w->dragged && w->tool == RF_TOOL_FOCUS)
-            rf_window_blur(w, (w->press_blur > 0.5 ? w->press_blur : 0.5) *
-                                  exp((dx - dy) / (150 * w->density)));
+            drag_blur(w, dx - dy);
     }
     w->last_x = x;
     w->last_y = y;
@@ -149,6 +156,10 @@ static void release(struct rf_window *w, double x, double y)
     w->pressed = w->painting = false;
     w->path_count = 0;
     w->redraw = true;
+    if (w->state.hold) {
+        w->state.hold = false;
+        rf_window_show(w, "release");
+    }
 }
 
 static void turn_wheel(struct rf_window *w, const SDL_MouseWheelEvent *wheel)
@@ -182,13 +193,18 @@ static void key_down(struct rf_window *w, const SDL_KeyboardEvent *event)
     }
 }
 
-/* Two fingers move and enlarge; what the first of them began as a mouse is left alone. */
+/* Two fingers move and enlarge; what the first of them began as a mouse is dropped. */
 static void pinch(struct rf_window *w, const SDL_MultiGestureEvent *gesture)
 {
     const double x = (double)gesture->x * w->width, y = (double)gesture->y * w->height;
 
     if (gesture->numFingers < 2)
         return;
+    if (w->painting) {
+        w->painting = w->state.hold = false;
+        w->path_count = 0;
+        rf_window_act(w, RF_ACT_UNDO);
+    }
     if (w->two_fingers) {
         rf_window_pan(w, x - w->last_x, y - w->last_y);
         rf_window_zoom(w, exp(2 * (double)gesture->dDist), x, y);

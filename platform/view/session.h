@@ -19,6 +19,7 @@ struct rf_view_state {
     float blur;          /* K in pixels of the photo */
     uint32_t method;     /* enum refocus_method */
     uint32_t mode;       /* enum rf_view_mode */
+    bool hold;           /* quick pictures only, as long as something is being dragged */
     bool peaking;        /* mark what is sharp */
     bool selection;      /* mark what the last layer of the painting covers */
     double x, y, scale;  /* photo pixel at the window's corner; window pixels a photo pixel */

@@ -28,6 +28,8 @@ struct columns {
     int32_t *left;    /* the source pixel left of its middle, */
     int32_t *across;  /* and how far right of that one it is, of 256 */
     int32_t *nearest; /* pixel of the photo */
+    uint32_t *wide[2]; /* source rows brought to the window's width, */
+    int wide_of[2];    /* and which ones; even rows first */
 };
 
 /* Pixels of the source before which column or row `pixel` of the window begins. */
@@ -46,6 +48,9 @@ static void find_columns(const struct rf_show *show, const struct rf_view_state 
     columns->left = columns->edge + w + 1;
     columns->across = columns->left + w;
     columns->nearest = columns->across + w;
+    columns->wide[0] = scratch + 7 * w + 1;
+    columns->wide[1] = columns->wide[0] + w;
+    columns->wide_of[0] = columns->wide_of[1] = -1;
     for (int i = 0; i <= w; i++)
         columns->edge[i] = source_edge(show, state->x, state->scale, i, show->width);
     for (int i = 0; i < w; i++) {
@@ -107,26 +112,40 @@ static uint32_t pixel_of(const uint8_t *p)
     return (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2];
 }
 
+/* A source row, between its pixels, at the window's width; kept for the next row. */
+static const uint32_t *widen(const struct rf_show *show, int width, int y,
+                             struct columns *columns)
+{
+    const uint8_t *const from = show->rgb + 3 * (size_t)y * (size_t)show->width;
+    uint32_t *const wide = columns->wide[y & 1];
+
+    if (columns->wide_of[y & 1] == y)
+        return wide;
+    columns->wide_of[y & 1] = y;
+    for (int i = 0; i < width; i++) {
+        const int at = columns->left[i];
+        const int left = 3 * (at > 0 ? at : 0);
+        const int right = 3 * (at + 1 < show->width ? at + 1 : at);
+
+        wide[i] = mix(pixel_of(from + left), pixel_of(from + right),
+                      (uint32_t)columns->across[i]);
+    }
+    return wide;
+}
+
 /* A row between the source's pixels, where the window is as large or larger. */
 static void draw_between(const struct rf_show *show, const struct rf_view_state *state, int row,
-                         uint32_t *out, const struct columns *columns)
+                         uint32_t *out, struct columns *columns)
 {
     const double v = (photo_place(state->y, state->scale, row) + 0.5) / show->reduction - 0.5;
     const int top = clamp(floor(v), 0, show->height - 1);
     const int bottom = clamp(floor(v) + 1, 0, show->height - 1);
     const uint32_t down = (uint32_t)clamp((v - floor(v)) * 256, 0, 255);
-    const uint8_t *const a = show->rgb + 3 * (size_t)top * (size_t)show->width;
-    const uint8_t *const b = show->rgb + 3 * (size_t)bottom * (size_t)show->width;
+    const uint32_t *const a = widen(show, state->width, top, columns);
+    const uint32_t *const b = widen(show, state->width, bottom, columns);
 
-    for (int i = 0; i < state->width; i++) {
-        const int at = columns->left[i];
-        const int left = 3 * (at > 0 ? at : 0);
-        const int right = 3 * (at + 1 < show->width ? at + 1 : at);
-        const uint32_t across = (uint32_t)columns->across[i];
-
-        out[i] = mix(mix(pixel_of(a + left), pixel_of(a + right), across),
-                     mix(pixel_of(b + left), pixel_of(b + right), across), down);
-    }
+    for (int i = 0; i < state->width; i++)
+        out[i] = mix(a[i], b[i], down);
 }
 
 static const uint16_t *depth_row(const struct rf_show *show, const struct rf_view_state *state,

@@ -30,6 +30,7 @@ struct rf_view_report {
     char driver[32];                 /* of SDL: "x11", "wayland", "kmsdrm", ... */
     int width, height;               /* of the window, pixels */
     int reduction;                   /* of the first pictures */
+    int strokes;                     /* of the painting in the end */
     struct rf_view_state last;
 };
 

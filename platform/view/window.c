@@ -46,6 +46,12 @@ static int open_window(struct rf_window *w, char *reason)
     int width, height;
 
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    /* Not those that nobody sees, unless they are asked for by SDL_VIDEODRIVER; and libwayland
+     * complains on its own where it cannot be. */
+    if (!SDL_GetHint(SDL_HINT_VIDEODRIVER))
+        SDL_SetHint(SDL_HINT_VIDEODRIVER, SDL_getenv("XDG_RUNTIME_DIR")
+                                              ? "x11,wayland,KMSDRM,RPI,vivante"
+                                              : "x11,KMSDRM,RPI,vivante");
     if (SDL_Init(SDL_INIT_VIDEO) != 0)
         return fail(reason, "no display can be opened");
     choose_size(w->setup, &width, &height);
@@ -322,8 +328,10 @@ int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report
         if (status != REFOCUS_OK)
             SDL_snprintf(reason, 256, "%s", refocus_strerror(status));
         report->last = w->state;
-        if (w->frame)
+        if (w->frame) {
             report->last.focus = w->frame->of.focus;
+            report->strokes = w->frame->strokes;
+        }
     }
     rf_session_destroy(&w->session);
     close_window(w);

@@ -297,6 +297,8 @@ static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t r
         if (status == REFOCUS_OK)
             publish(s, state, request, false);
     }
+    if (status == REFOCUS_OK && state->hold)
+        return true;
     if (status == REFOCUS_OK) {
         if (!begin_full(s, request))
             return false;

@@ -6,7 +6,7 @@
 #include "session.h"
 
 /* Pixels of the reduced photo: a picture of them in a few hundredths of a second. */
-enum { PREVIEW_PIXELS = 800000, PREVIEW_RAYS = 32 };
+enum { PREVIEW_PIXELS = 600000, PREVIEW_RAYS = 32 };
 
 /* What the painting is asked for, in order. */
 struct order {

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct refocus_aperture rf_disc = {.id = 1, .shape = RF_SHAPE_DISC};
+const struct refocus_aperture rf_disc = {
+    .id = 1, .shape = RF_SHAPE_DISC, .squeeze_x = 1, .squeeze_y = 1};
 
 void rf_sincos_turns(double turns, double *sine, double *cosine)
 {
@@ -48,15 +49,30 @@ static int open_mask(const struct refocus_aperture *a, double x, double y)
     return a->mask[(int)py * REFOCUS_MAX_APERTURE_SIDE + (int)px];
 }
 
-int rf_aperture_open(const struct refocus_aperture *aperture, double x, double y)
+/* The light of a place that is open and rho^2 away from the middle. */
+static int lit(const struct refocus_aperture *a, int open, double square)
 {
-    switch (aperture->shape) {
+    if (rf_profile_is_even(&a->behind))
+        return open;
+    return (int)floor(open * rf_profile_density(&a->behind, square) + 0.5);
+}
+
+int rf_aperture_open(const struct refocus_aperture *a, double x, double y)
+{
+    double square;
+
+    switch (a->shape) {
     case RF_SHAPE_DISC:
         return x * x + y * y <= 1 ? 255 : 0;
     case RF_SHAPE_POLYGON:
-        return open_polygon(aperture, x, y);
+        return open_polygon(a, x, y);
     case RF_SHAPE_MASK:
-        return open_mask(aperture, x, y);
+        x /= a->squeeze_x;
+        y /= a->squeeze_y;
+        return lit(a, open_mask(a, x, y), x * x + y * y);
+    case RF_SHAPE_OUTLINE:
+        square = rf_outline_square(a, x / a->squeeze_x, -y / a->squeeze_y);
+        return square <= 1 ? lit(a, 255, square) : 0;
     }
     return 0;
 }
@@ -76,6 +92,7 @@ static int create(struct refocus_aperture **aperture, enum rf_shape shape)
     if (!*aperture)
         return REFOCUS_ERR_MEMORY;
     (*aperture)->shape = shape;
+    (*aperture)->squeeze_x = (*aperture)->squeeze_y = 1;
     (*aperture)->id = 1;
     return REFOCUS_OK;
 }
@@ -162,6 +179,74 @@ int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8
     a->id = hash(a->id, &width, sizeof width);
     a->id = hash(a->id, &height, sizeof height);
     return REFOCUS_OK;
+}
+
+static bool in(double value, double least, double most)
+{
+    return value >= least && value <= most; /* NaN is in no range */
+}
+
+static bool good_params(const struct refocus_aperture_params *p)
+{
+    const bool iris = p->curvature != 0 || p->opening != 0;
+
+    return p->struct_size == sizeof *p &&
+           (p->blades == 0 || (p->blades >= 3 && p->blades <= 16)) &&
+           in(p->rotation_deg, -3600, 3600) && in(p->curvature, 0, 1) &&
+           in(p->opening, 0, 1) && in(p->squeeze, 0.5, 2) && in(p->hole, 0, 0.9) &&
+           in(p->edge_behind, -1, 1) && in(p->edge_before, -1, 1) &&
+           p->figure <= REFOCUS_FIGURE_STAR && !(p->figure && iris) &&
+           !(p->mask && (p->figure || p->blades || p->rotation_deg != 0 || iris));
+}
+
+/* Whether light is spread evenly over a shape that is not squeezed. */
+static bool is_simple(const struct refocus_aperture_params *p)
+{
+    return p->squeeze == 1 && p->hole == 0 && p->edge_behind == 0 && p->edge_before == 0;
+}
+
+/* Everything that rays depend on, beyond the outline. */
+static void add_profiles(struct refocus_aperture *a, const struct refocus_aperture_params *p)
+{
+    a->squeeze_x = p->squeeze < 1 ? p->squeeze : 1;
+    a->squeeze_y = p->squeeze > 1 ? 1 / p->squeeze : 1;
+    a->behind = (struct rf_profile){p->hole, p->edge_behind};
+    a->before = (struct rf_profile){p->hole, p->edge_before};
+    a->id = hash(a->id, &p->squeeze, sizeof p->squeeze);
+    a->id = hash(a->id, &p->hole, sizeof p->hole);
+    a->id = hash(a->id, &p->edge_behind, sizeof p->edge_behind);
+    a->id = hash(a->id, &p->edge_before, sizeof p->edge_before);
+}
+
+int refocus_aperture_create(struct refocus_aperture **aperture,
+                            const struct refocus_aperture_params *p)
+{
+    int status;
+
+    if (!aperture)
+        return REFOCUS_ERR_ARGUMENT;
+    *aperture = NULL;
+    if (!p || !good_params(p))
+        return REFOCUS_ERR_ARGUMENT;
+    if (p->mask) {
+        status = refocus_aperture_create_mask(aperture, p->mask, p->mask_width,
+                                              p->mask_height, p->mask_stride);
+    } else if (is_simple(p) && !p->figure && (p->blades == 0 || p->opening == 1)) {
+        return refocus_aperture_create_disc(aperture);
+    } else if (is_simple(p) && !p->figure && p->curvature == 0 && p->opening == 0) {
+        return refocus_aperture_create_polygon(aperture, p->blades, p->rotation_deg);
+    } else {
+        status = create(aperture, RF_SHAPE_OUTLINE);
+        if (status == REFOCUS_OK) {
+            rf_outline_make(*aperture, p);
+            (*aperture)->id = hash(4, (*aperture)->vertex_x, sizeof (*aperture)->vertex_x);
+            (*aperture)->id = hash((*aperture)->id, (*aperture)->vertex_y,
+                                   sizeof (*aperture)->vertex_y);
+        }
+    }
+    if (status == REFOCUS_OK && !is_simple(p))
+        add_profiles(*aperture, p);
+    return status;
 }
 
 void refocus_aperture_destroy(struct refocus_aperture **aperture)

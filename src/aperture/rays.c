@@ -2,8 +2,9 @@
  *
  * N rays of equal share. A disc takes Vogel's spiral: ray n at radius sqrt((n + 1/2) / N)
  * and n golden turns. A polygon takes the same spiral, its circles drawn onto the polygon
- * so that equal areas stay equal. Any other mask takes N points at equal steps of light
- * along a Hilbert curve over it, then a few steps of Lloyd's relaxation.
+ * so that equal areas stay equal; so does any other outline, by its triangles, and where light
+ * is not spread evenly the radii are those of equal light. A mask takes N points at equal steps
+ * of light along a Hilbert curve over it, then a few steps of Lloyd's relaxation.
  *
  * In every case (u, v) is minus the place on the mask as it is drawn; see
  * refocus/aperture.h.
@@ -12,12 +13,18 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int16_t to_q15(double x)
 {
     const double q = floor(x * 32768 + 0.5);
 
     return (int16_t)(q > 32767 ? 32767 : q < -32767 ? -32767 : q);
+}
+
+static struct refocus_ray squeezed_ray(const struct refocus_aperture *a, double x, double y)
+{
+    return (struct refocus_ray){to_q15(-x * a->squeeze_x), to_q15(-y * a->squeeze_y), 255};
 }
 
 static struct refocus_ray make_ray(double x, double y, int weight)
@@ -60,6 +67,21 @@ static void polygon_rays(const struct refocus_aperture *a, int count,
         t -= floor(t);
         rays[n] = make_ray(r * (a->corner_x[i] * (1 - t) + a->corner_x[j] * t),
                            r * (a->corner_y[i] * (1 - t) + a->corner_y[j] * t), 255);
+    }
+}
+
+static void outline_rays(const struct refocus_aperture *a, int count, bool before,
+                         struct refocus_ray *rays)
+{
+    const struct rf_profile *profile = before ? &a->before : &a->behind;
+
+    for (int n = 0; n < count; n++) {
+        double r, t, x, y;
+
+        vogel(n, count, &r, &t);
+        r = sqrt(rf_profile_square(profile, (n + 0.5) / count));
+        rf_outline_at(a, t, &x, &y);
+        rays[n] = squeezed_ray(a, r * x, -r * y);
     }
 }
 
@@ -129,50 +151,79 @@ static void relax(const uint8_t *cell, int count, struct place *place, struct rf
     }
 }
 
-static void mask_rays(const struct refocus_aperture *a, int count,
+/* The light of each cell. */
+static void weigh_cells(const struct refocus_aperture *a, bool before,
+                        uint8_t cell[RF_CURVE_SIDE * RF_CURVE_SIDE])
+{
+    const struct rf_profile *profile = before ? &a->before : &a->behind;
+    bool any = false;
+
+    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++) {
+        const double x = (2 * (i % RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
+        const double y = (2 * (i / RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
+        const double density = rf_profile_density(profile, x * x + y * y);
+
+        cell[i] = (uint8_t)floor(a->reduced[i] * density + 0.5);
+        any = any || cell[i];
+    }
+    if (!any) /* all of it lies in the hole: better a shape than none */
+        memcpy(cell, a->reduced, RF_CURVE_SIDE * RF_CURVE_SIDE);
+}
+
+static void mask_rays(const struct refocus_aperture *a, int count, bool before,
                       struct refocus_ray *rays, struct rf_run *run)
 {
     struct place place[REFOCUS_MAX_RAYS];
-    int64_t total = 0, before = 0;
+    uint8_t cell[RF_CURVE_SIDE * RF_CURVE_SIDE];
+    int64_t total = 0, passed = 0;
     int n = 0;
 
+    weigh_cells(a, before, cell);
     for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++)
-        total += a->reduced[i];
+        total += cell[i];
     for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++) {
         int x, y;
 
         hilbert(i, &x, &y);
-        before += a->reduced[y * RF_CURVE_SIDE + x];
-        while (n < count && (2 * n + 1) * total <= 2 * count * before)
+        passed += cell[y * RF_CURVE_SIDE + x];
+        while (n < count && (2 * n + 1) * total <= 2 * count * passed)
             place[n++] = (struct place){256 * x + 128, 256 * y + 128};
     }
     for (int pass = 0; pass < 4; pass++)
-        relax(a->reduced, count, place, run);
+        relax(cell, count, place, run);
     for (n = 0; n < count; n++)
-        rays[n] = make_ray(place[n].x / (128.0 * RF_CURVE_SIDE) - 1,
-                           place[n].y / (128.0 * RF_CURVE_SIDE) - 1, 255);
+        rays[n] = squeezed_ray(a, place[n].x / (128.0 * RF_CURVE_SIDE) - 1,
+                               place[n].y / (128.0 * RF_CURVE_SIDE) - 1);
 }
 
-int rf_aperture_rays(const struct refocus_aperture *aperture, int count,
+int rf_aperture_rays(const struct refocus_aperture *aperture, int count, bool before,
                      struct refocus_ray *rays, struct rf_run *run)
 {
     if (!aperture)
         aperture = &rf_disc;
     if (!rays || count < 1 || count > REFOCUS_MAX_RAYS)
         return REFOCUS_ERR_ARGUMENT;
-    if (aperture->shape == RF_SHAPE_DISC)
+    switch (aperture->shape) {
+    case RF_SHAPE_DISC:
         disc_rays(count, rays);
-    else if (aperture->shape == RF_SHAPE_POLYGON)
+        break;
+    case RF_SHAPE_POLYGON:
         polygon_rays(aperture, count, rays);
-    else
-        mask_rays(aperture, count, rays, run);
+        break;
+    case RF_SHAPE_MASK:
+        mask_rays(aperture, count, before, rays, run);
+        break;
+    case RF_SHAPE_OUTLINE:
+        outline_rays(aperture, count, before, rays);
+        break;
+    }
     return REFOCUS_OK;
 }
 
 int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
                           struct refocus_ray *rays)
 {
-    return rf_aperture_rays(aperture, count, rays, NULL);
+    return rf_aperture_rays(aperture, count, false, rays, NULL);
 }
 
 /* Open share of mask pixel (x, y) at radius K, 0 to 255: 8 x 8 points. */

@@ -87,7 +87,7 @@ static void push_rows(struct refocus_renderer *r, int i, int y0, int y1)
     }
 }
 
-static bool all_known(const int16_t *blur, int n)
+bool rf_all_known(const int16_t *blur, int n)
 {
     int16_t least = 0;
 
@@ -106,7 +106,7 @@ static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int 
         int far_y = y % 2 ? near_y + 1 : near_y - 1;
         const ptrdiff_t at = y * fine.stride;
 
-        if (all_known(fine.blur + at, fine.width))
+        if (rf_all_known(fine.blur + at, fine.width))
             continue;
         if (far_y < 0 || far_y >= coarse.height)
             far_y = near_y;

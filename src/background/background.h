@@ -40,4 +40,15 @@ void rf_background_pull(struct refocus_renderer *r, int from, int to);
 bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect need,
                             struct rf_rect exact);
 
+/* Whether none of n blurs is RF_NO_BLUR. */
+bool rf_all_known(const int16_t *blur, int n);
+
+/*
+ * The same for a photo of Y, U and V. Chroma of 4:2:0 is as large as level 1 of the pyramid and
+ * is filled from there on; a sample is known if any of its pixels is. That of 4:2:2 is made as
+ * small for it: the background has half its rows.
+ */
+void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1);
+void rf_background_yuv_fill(struct refocus_renderer *r);
+
 #endif

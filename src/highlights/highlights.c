@@ -297,6 +297,14 @@ static int last_part(const struct refocus_renderer *r)
     return (r->origin_y + r->height - 1) / RF_LAMP_ROWS;
 }
 
+/* Half a gap of the rays at a blur, in pixels. */
+static int reach_of(int blur, double gap)
+{
+    const int half = (int)(gap * abs(blur) / 512);
+
+    return half < WIDEST ? half : WIDEST;
+}
+
 /*
  * Rays whose gaps are wider than a lamp would show it as a disc of dots. What is around it within
  * half a gap, farther away and blurred itself, takes its blur: then the pre-filter spreads its
@@ -306,7 +314,7 @@ static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_
                   double gap)
 {
     const int16_t own = r->front.blur[lamp_y * r->stride + lamp_x];
-    const int half = (int)(gap * abs(own) / 512), reach = half < WIDEST ? half : WIDEST;
+    const int reach = reach_of(own, gap);
 
     for (int y = lamp_y - reach; y <= lamp_y + reach; y++) {
         for (int x = lamp_x - reach; x <= lamp_x + reach; x++) {
@@ -358,26 +366,34 @@ bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, d
     return any;
 }
 
+/* What a lamp at `at` gets of a share of what it lost, Q8 of what is `added`. */
+static void gain_of(const struct refocus_renderer *r, const struct rf_highlight *lamp,
+                    ptrdiff_t at, int share, int gained[3])
+{
+    /* from half a pixel of blur on, all of it from one pixel and a half on */
+    const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
+
+    for (int c = 0; c < 3; c++)
+        gained[c] = (((lamp->added[c] * share) >> 8) * blurred) >> 8;
+}
+
 static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share, int sign)
 {
     ptrdiff_t at;
-    int x, y, blurred;
+    int x, y, gained[3];
 
     if (!place_of(r, lamp, &x, &y))
         return;
     at = y * r->stride + x;
-    /* from half a pixel of blur on, all of it from one pixel and a half on */
-    blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
-    for (int c = 0; c < 3; c++)
-        r->front.light[c][at] =
-            (uint16_t)(r->front.light[c][at] +
-                       sign * ((((lamp->added[c] * share) >> 8) * blurred) >> 8));
+    gain_of(r, lamp, at, share, gained);
+    for (int c = 0; c < (r->yuv.on ? 1 : 3); c++) /* of Y, U and V all three are one plane */
+        r->front.light[c][at] = (uint16_t)(r->front.light[c][at] + sign * gained[c]);
 }
 
 static void add_part(struct refocus_renderer *r, float gain, int sign, int part)
 {
     const struct rf_highlights *found = &r->photo[r->used].highlights[part];
-    const int share = (int)((gain - 1) * (256 / GAIN) + 0.5f);
+    const int share = rf_highlight_share(gain - 1);
 
     for (uint32_t i = 0; i < found->count; i++)
         add(r, &found->lamp[i], share, sign);
@@ -396,4 +412,57 @@ void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts)
 {
     for (int part = first_part(r); parts > 0; part++, parts--)
         add_part(r, gain, -1, part);
+}
+
+/* Places within `reach` of (cx, cy) that have its blur, at most (2 WIDEST + 1)^2; it itself at
+ * least. */
+static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach,
+                     ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)])
+{
+    const int own = r->front.blur[cy * r->stride + cx];
+    int count = 0;
+
+    for (int y = cy - reach; y <= cy + reach; y++) {
+        for (int x = cx - reach; x <= cx + reach; x++) {
+            const int dx = x - cx, dy = y - cy;
+            const ptrdiff_t at = y * r->stride + x;
+
+            if (x >= 0 && y >= 0 && x < r->width && y < r->height &&
+                dx * dx + dy * dy <= reach * reach + 1 && abs(r->front.blur[at] - own) <= 256)
+                place[count++] = at;
+        }
+    }
+    return count;
+}
+
+static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp, int share,
+                       double gap, int most)
+{
+    ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)], at;
+    int x, y, places, gained[3];
+
+    if (!place_of(r, lamp, &x, &y))
+        return;
+    at = y * r->stride + x;
+    places = places_of(r, x, y, reach_of(r->front.blur[at], gap), place);
+    gain_of(r, lamp, at, share, gained);
+    for (int i = 0; i < places; i++) {
+        for (int c = 0; c < 3; c++) {
+            const int light = r->smooth[c][place[i]] + (gained[c] + places / 2) / places;
+
+            r->smooth[c][place[i]] = (uint16_t)(light < most ? light : most);
+        }
+    }
+}
+
+void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap, int most)
+{
+    const int share = rf_highlight_share(gain - RF_PLAIN_GAIN);
+
+    for (int part = first_part(r); part <= last_part(r); part++) {
+        const struct rf_highlights *found = &r->photo[r->used].highlights[part];
+
+        for (uint32_t i = 0; i < found->count; i++)
+            add_spread(r, &found->lamp[i], share, gap, most);
+    }
 }

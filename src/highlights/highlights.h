@@ -67,6 +67,20 @@ void rf_sort_highlights(struct refocus_renderer *r);
  * False: there are none. */
 bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
 
+/* Up to that gain lamps go through all passes; what is more is added before the rays alone,
+ * because passes sum four pixels in 16 bits. */
+enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
+
+/* Share of rf_highlight.added, Q8, that adds so many times white. */
+static inline int rf_highlight_share(float times)
+{
+    return (int)(times * (256 / 3) + 0.5f);
+}
+
+/* Add what a gain beyond RF_PLAIN_GAIN adds to that, to r->smooth, up to `most` there; spread
+ * over half a gap of the rays, as the pre-filter does with the rest. */
+void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap, int most);
+
 /* Add what those in the window lost, gain 1 to 4, to the light. Returns the number of parts that
  * were done before the run was cancelled, all if it was not: to take it away again from. */
 int rf_add_highlights(struct refocus_renderer *r, float gain);

@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 
+#include "focus/focus.h"
 #include "renderer/bands.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
@@ -131,7 +132,7 @@ void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
     }
 }
 
-void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
+void rf_patch_rims(struct refocus_renderer *r, const struct rf_focus_plan *plan,
                    struct rf_bin_scale scale)
 {
     const struct rf_photo *photo = &r->photo[r->used];
@@ -145,7 +146,7 @@ void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
             return;
         if (x < 0 || y < 0 || x >= r->width || y >= r->height)
             continue;
-        r->kernels.signed_blur(&blur, &rim->disparity, focus, 1);
+        rf_focus_row(plan, &blur, &rim->disparity, rim->x, rim->y, 1);
         *s = blur < *s ? blur : *s;
         rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, blur);
         rf_add_to_cell(r, x, y, blur);

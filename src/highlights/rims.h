@@ -17,7 +17,7 @@
 
 struct refocus_renderer;
 struct rf_rect;
-struct rf_focus;
+struct rf_focus_plan;
 struct rf_bin_scale;
 
 struct rf_rim {
@@ -36,7 +36,7 @@ static inline uint64_t rf_rim_capacity(int width, int height)
 void rf_find_rims(struct refocus_renderer *r, struct rf_rect part);
 
 /* Put those in the window into r->front.blur and r->bins. */
-void rf_patch_rims(struct refocus_renderer *r, struct rf_focus focus,
+void rf_patch_rims(struct refocus_renderer *r, const struct rf_focus_plan *plan,
                    struct rf_bin_scale scale);
 
 #endif

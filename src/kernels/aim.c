@@ -191,6 +191,13 @@ static inline void place_all(struct rf_sorted_rays *restrict sorted,
     }
 }
 
+/* One range of two. */
+static inline uint32_t both(uint32_t a, uint32_t b)
+{
+    return (uint16_t)lesser((int16_t)a, (int16_t)b) |
+           (uint32_t)(uint16_t)greater((int16_t)(a >> 16), (int16_t)(b >> 16)) << 16;
+}
+
 static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_sort_job *job)
 {
     const int rays = job->rays;
@@ -209,6 +216,8 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
             memset(s.need[k / BITS], 0, sizeof s.need[0]);
         for (int n = 0; n < rays; n++)
             seen[n] = job->range[cell[n]];
+        for (int n = 0; job->below && n < rays; n++)
+            seen[n] = both(seen[n], job->below[cell[n]]);
         if (!meet_slab(&s, s.need[k / BITS], seen, &job->slab[k], k, rays))
             break;
     }

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "colour/yuv.h"
 #include "tiles/slab.h"
 
 /*
@@ -58,7 +59,8 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
 enum { RF_SORTED_TESTS = 8 };
 
 struct rf_sort_job {
-    const uint32_t *range; /* at the strip's first pixel */
+    const uint32_t *range; /* at the strip's first pixel, */
+    const uint32_t *below; /* and at that of the strip below, if both are one; else NULL */
     const uint16_t *front, *behind; /* first of three planes of light, there */
     const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
@@ -91,16 +93,20 @@ typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort
  *                 sum += light[q]; next ray
  *         sum += last[n][p]
  *
- * Light is Q12, at most 4095, or 4 * 4095 when `bright`; sums are exact. Pointers are to the
- * strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480 (Q7.8).
+ * Light is Q12, at most 4095, or 4, 8 or 16 times that as `bright` says; sums are exact.
+ * Pointers are to the strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480
+ * (Q7.8).
  */
+/* Light that highlights reach: white, 4, 8 or 16 times that. */
+enum rf_bright { RF_WHITE, RF_BRIGHT, RF_BRIGHTER, RF_BRIGHTEST };
+
 struct rf_sweep_job {
     const int16_t *blur;     /* light is in the three planes after it, pitch apart */
     ptrdiff_t stride, pitch; /* elements */
     int slabs;
     const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
-    bool bright;  /* highlights are in the light */
+    enum rf_bright bright;
 
     /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
     const uint16_t *weight;
@@ -109,7 +115,8 @@ struct rf_sweep_job {
 typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
 
 /* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. Those
- * of the front lie in a plane with a stride of its own, those of the background as its light. */
+ * of the front lie in a plane with a stride of its own, those of the background as its light.
+ * Never RF_BRIGHTEST but for the reference. */
 enum { RF_WEIGHT_MAX = 32767 };
 typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
@@ -323,7 +330,87 @@ struct rf_series_job {
 };
 typedef void rf_series_row_fn(float *row, const struct rf_series_job *job, int n);
 
+/*
+ * sweep1: as sweep, of one plane and of `rows` rows. Light is at most 65535 / steps;
+ * sums are exact. `last` of the rays is in that plane.
+ */
+struct rf_sweep1_job {
+    const int16_t *blur;
+    const uint16_t *light;
+    ptrdiff_t stride; /* elements, of both */
+    int rows;         /* 4, 8 or 16 */
+    int steps;        /* values that a 16-bit sum holds, 4 to 16 */
+    int slabs;
+    const struct rf_slab *slab;
+    const struct rf_sorted_rays *rays;
+};
+typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
+
+/* smooth1: smooth3, of one plane. */
+typedef void rf_smooth1_fn(uint16_t *out, const uint16_t *light, const int16_t *blur,
+                           ptrdiff_t apart, int least, int n);
+
+/*
+ * aim_chroma: aim for samples of chroma that are two pixels apart across and 1 << down of them
+ * down, two elements of a row each: x = round(u s / 2), y = round(v s / 2^down), as an offset
+ * 2 x + y stride, and of cells: floor(2 x / RF_CELL) + floor(2^down y / RF_CELL) cell_stride.
+ */
+typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *cell, const int16_t *u,
+                              const int16_t *v, int blur, int down, int32_t stride,
+                              int32_t cell_stride, int n);
+
+/* sharpest4: of 2 x 2 blurs the first with the least |s|, twice: n pairs out of rows of 2 n.
+ * Blurs are at most 127 pixels. */
+typedef void rf_sharpest4_fn(int16_t *out, const int16_t *upper, const int16_t *lower, int n);
+
+/* push1: push, of one plane. */
+typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper,
+                         const uint16_t *lower, const int16_t *blur0, const int16_t *blur1,
+                         int n);
+
+/* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
+ * join2: pairs of them again. */
+typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
+                          const uint16_t *lower, int n);
+typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *second, int n);
+
+/*
+ * encode: codes of n samples of chroma and of the 2 or 4 pixels that share each to chroma, D_b
+ * and D_r of rf_chroma_of() side by side, and luminance. Rows are 2 n long; where there is one
+ * row, luma[1] is luma[0] and out[1] is out[0].
+ */
+typedef void rf_encode_fn(uint16_t *const out[2], uint16_t *chroma, const uint8_t *const luma[2],
+                          const uint8_t *uv, const struct rf_yuv_curve *curve, int n);
+
+/*
+ * decode: means of a tile of luma and chroma to codes, rf_chroma_code() of each sample and
+ *
+ *     Y = to_code[L - E] of its pixels
+ *
+ * with L' the mean of the luminances of the pixels that share a sample: of 2 x 2 if `down`, of
+ * 2 x 1 else. Means above white are white. Pixels whose luminance and chroma are what they
+ * were, 4 times `own`, keep their codes; samples all of whose pixels do, too.
+ */
+struct rf_decode_job {
+    const struct rf_yuv_curve *curve;
+    int down;
+    uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE]; /* rows of RF_TILE, Q14 */
+    const uint16_t *own_luma, *own_chroma; /* Q12, of the tile's first element */
+    ptrdiff_t stride;                      /* of both */
+    uint8_t y[RF_TILE * RF_TILE], uv[RF_TILE * RF_TILE]; /* in: codes that were; out */
+};
+typedef void rf_decode_fn(struct rf_decode_job *job);
+
 struct rf_kernels {
+    rf_encode_fn *encode;
+    rf_decode_fn *decode;
+    rf_sweep1_fn *sweep1;
+    rf_smooth1_fn *smooth1;
+    rf_aim_chroma_fn *aim_chroma;
+    rf_sharpest4_fn *sharpest4;
+    rf_push1_fn *push1;
+    rf_split2_fn *split2;
+    rf_join2_fn *join2;
     rf_search_fn *search;
     rf_cells_fn *cells;
     rf_windows_fn *windows;
@@ -358,6 +445,8 @@ struct rf_kernels {
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_sweep_fn rf_sweep_c;
+rf_sweep1_fn rf_sweep1_c;
+rf_smooth1_fn rf_smooth1_c;
 rf_smooth3_fn rf_smooth3_c;
 rf_search_fn rf_search_c;
 rf_push_fn rf_push_c;
@@ -375,6 +464,8 @@ rf_kernels_use_fn rf_sweep_weighted_use_neon, rf_sweep_weighted_use_sse41,
 rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_light_use_avx2;
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
+rf_kernels_use_fn rf_yuv_use_c, rf_yuv_use_neon, rf_yuv_use_sse41, rf_yuv_use_avx2;
+rf_kernels_use_fn rf_sweep1_use_neon, rf_sweep1_use_sse41, rf_sweep1_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_neon, rf_search_use_sse41, rf_search_use_avx2;
 rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;

@@ -43,6 +43,8 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         return false;
     kernels->search = rf_search_c;
     kernels->sweep = rf_sweep_c;
+    kernels->sweep1 = rf_sweep1_c;
+    kernels->smooth1 = rf_smooth1_c;
     kernels->smooth3 = rf_smooth3_c;
     kernels->push = rf_push_c;
     kernels->pull = rf_pull_c;
@@ -50,6 +52,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_aim_use_c(kernels);
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
+    rf_yuv_use_c(kernels);
     rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
     rf_series_use_c(kernels);
@@ -59,6 +62,8 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         rf_kernels_use_neon(kernels);
         rf_upsample_use_neon(kernels);
         rf_series_use_neon(kernels);
+        rf_yuv_use_neon(kernels);
+        rf_sweep1_use_neon(kernels);
         rf_surfaces_use_neon(kernels);
     }
 #endif
@@ -67,6 +72,8 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         rf_kernels_use_sse41(kernels);
         rf_upsample_use_sse41(kernels);
         rf_series_use_sse41(kernels);
+        rf_yuv_use_sse41(kernels);
+        rf_sweep1_use_sse41(kernels);
         rf_surfaces_use_sse41(kernels);
     }
 #endif
@@ -75,6 +82,8 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
         rf_kernels_use_avx2(kernels);
         rf_upsample_use_avx2(kernels);
         rf_series_use_avx2(kernels);
+        rf_yuv_use_avx2(kernels);
+        rf_sweep1_use_avx2(kernels);
         rf_surfaces_use_avx2(kernels);
     }
 #endif

@@ -24,3 +24,17 @@ void rf_smooth3_c(uint16_t *const out[3], const uint16_t *const light[3], const 
         }
     }
 }
+
+void rf_smooth1_c(uint16_t *out, const uint16_t *light, const int16_t *blur, ptrdiff_t apart,
+                  int least, int n)
+{
+    for (int x = 0; x < n; x++) {
+        const bool before = is_like(blur[x - apart], blur[x], least);
+        const bool after = is_like(blur[x + apart], blur[x], least);
+        const unsigned count = 1u + before + after;
+        const unsigned sum = light[x] + (before ? light[x - apart] : 0u) +
+                             (after ? light[x + apart] : 0u);
+
+        out[x] = (uint16_t)((sum + count / 2) / count);
+    }
+}

@@ -70,7 +70,22 @@ static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const lig
     }
 }
 
+static void RF_VEC(rf_smooth1)(uint16_t *out, const uint16_t *light, const int16_t *blur,
+                               ptrdiff_t apart, int least, int n)
+{
+    const vec_u16 from = vec_u16_set((uint16_t)least);
+    int x = 0;
+
+    for (; x + (int)VEC_U16 <= n; x += VEC_U16) {
+        const struct use use = use_of(blur + x, apart, from);
+
+        vec_u16_store(out + x, mean(light + x, apart, &use));
+    }
+    rf_smooth1_c(out + x, light + x, blur + x, apart, least, n - x);
+}
+
 void RF_VEC(rf_smooth_use)(struct rf_kernels *kernels)
 {
+    kernels->smooth1 = RF_VEC(rf_smooth1);
     kernels->smooth3 = RF_VEC(rf_smooth3);
 }

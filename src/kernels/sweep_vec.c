@@ -6,12 +6,15 @@
 
 enum {
     STEPS = 16, /* rays that a 16-bit sum of Q12 light holds: 16 * 4095 < 65536 */
-    BRIGHT_STEPS = 4,
     MOST_VECS = 4,  /* together: */
     ALONE_VECS = 4, /* of rays without tests, */
     TEST_VECS = 2,  /* and with them */
     EACH = (int)RF_TILE / (int)VEC_U16, /* vectors of a row */
 };
+
+/* Rays that it holds of light 4, 8 and 16 times as bright. */
+static const uint8_t steps_of[] = {
+    [RF_WHITE] = STEPS, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 2, [RF_BRIGHTEST] = 1};
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
@@ -127,7 +130,7 @@ static void flush(uint32_t *const sum[3], struct state *s)
 static void RF_VEC(rf_sweep)(uint32_t *const sum[3], const struct rf_sweep_job *job)
 {
     const struct rf_sorted_rays *rays = job->rays;
-    const int steps = job->bright ? BRIGHT_STEPS : STEPS;
+    const int steps = steps_of[job->bright];
     int left = steps;
     struct state s;
 

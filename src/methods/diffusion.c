@@ -1,6 +1,6 @@
 /* diffusion.c: generalized depth of field by simulated heat diffusion, Kosloff & Barsky 2007.
  *
- * How much a point is blurred is a field in space, free of any lens: field_radius() below. The
+ * How much a point is blurred is a field in space, free of any lens: |s| as focus/ makes it. The
  * picture is split into layers by depth. Each is cut out with an alpha of 1, its region
  * grown, its blur extrapolated into the region (diffusion_layer.c), and its colours and alpha
  * flow as heat through a medium that conducts where there is blur (diffusion_solver.c): what
@@ -12,6 +12,7 @@
 #include "methods/diffusion.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { CHANNELS = 5 }; /* light times weight, weight, alpha; premultiplied by alpha */
@@ -30,7 +31,6 @@ struct work {
     uint64_t planes_size;    /* floats of a plane */
     float most_radius, weight_per_square; /* W = weight_per_square radius^2 */
     int steps;
-    double normal_x, normal_d; /* of a plane field */
 };
 
 /* Memory when the arena has some; else *counted is filled and the bytes are counted. */
@@ -77,55 +77,14 @@ uint64_t rf_diffusion_work(const struct rf_limits *limits)
     return arena.used;
 }
 
-static double map_value(const struct refocus_disparity *map, double x, double y)
-{
-    const int i = (int)(x * map->width), j = (int)(y * map->height);
-    const uint8_t *row = (const uint8_t *)map->samples + j * map->stride;
-
-    return map->bits == 8 ? row[i] / 255.0 : ((const uint16_t *)(const void *)row)[i] / 65535.0;
-}
-
-/* The blur field: radius at the point seen in pixel (x, y). */
-static double field_radius(const struct work *work, int x, int y)
-{
-    const struct refocus_render_params *p = work->f->params;
-    const struct refocus_renderer *r = work->f->r;
-    const double K = p->max_blur_radius;
-    const double d = r->disparity[y * r->stride + x] / 65535.0;
-    const double fx = (x + 0.5) / r->width - p->field_x;
-    const double fy = ((y + 0.5) / r->height - p->field_y) * r->height / r->width;
-    const double fd = d - p->field_disparity;
-    double distance = 0, beyond;
-
-    switch (p->field) {
-    case REFOCUS_FIELD_CYLINDER:
-        distance = sqrt(fx * fx + fd * fd);
-        break;
-    case REFOCUS_FIELD_PLUS:
-        distance = fabs(fx) < fabs(fd) ? fabs(fx) : fabs(fd);
-        break;
-    case REFOCUS_FIELD_PLANE:
-        distance = fabs(fx * work->normal_x + fd * work->normal_d);
-        break;
-    case REFOCUS_FIELD_SPHERE:
-        distance = sqrt(fx * fx + fy * fy + fd * fd);
-        break;
-    case REFOCUS_FIELD_PICTURE:
-        return K * map_value(p->field_map, (x + 0.5) / r->width, (y + 0.5) / r->height);
-    default:
-        return K * fabs(d - p->focus_disparity);
-    }
-    beyond = (distance - p->field_radius) / p->field_falloff;
-    return K * (beyond < 0 ? 0 : beyond > 1 ? 1 : beyond);
-}
-
 static void radius_row(void *context, int y, int worker)
 {
     const struct work *work = context;
 
     (void)worker;
     for (int x = 0; x < work->f->r->width; x++)
-        work->radius[y * work->stride + x] = (float)field_radius(work, x, y);
+        work->radius[y * work->stride + x] =
+            (float)abs(work->f->r->front.blur[y * work->f->r->stride + x]) / 256;
 }
 
 /* Cut the disparities into layers where the fewest pixels are, a least distance apart. */
@@ -362,7 +321,6 @@ void rf_diffusion_frame(struct rf_frame *f)
     work->layer.stride = work->stride;
     work->layer.tiles_x = (f->r->width + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
     work->layer.tiles_y = (f->r->height + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
-    rf_sincos_turns(f->params->field_angle / 360.0, &work->normal_d, &work->normal_x);
     for (int c = 0; c < CHANNELS; c++)
         clear(work, work->below[c], 0, f->r->height);
     rf_pool_run(&f->r->pool, radius_row, work, f->r->height);

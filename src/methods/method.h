@@ -3,6 +3,7 @@
 #define RF_METHOD_H
 
 #include "aperture/aperture.h"
+#include "focus/focus.h"
 #include "planes/planes.h"
 #include "renderer/renderer.h"
 #include "tiles/tiles.h"
@@ -22,6 +23,7 @@ struct rf_frame {
     const struct refocus_image *out;
     const struct refocus_aperture *aperture;
     struct rf_focus focus;
+    struct rf_focus_plan plan;
     struct rf_bin_scale scale;
     struct rf_rect region;  /* of the window (renderer.h); out covers just this */
     struct rf_reach reach;
@@ -29,7 +31,9 @@ struct rf_frame {
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
     int prefilter_step;     /* the one that is being made */
     bool weighted;          /* eq. 5 weights differ from 1 */
-    bool bright;            /* light was given back to lamps: it exceeds RF_LIGHT_MAX */
+    bool stars, grain;      /* lamps have spikes; blur has grain */
+    bool finish_ready;      /* both are found out */
+    enum rf_bright bright;  /* light was given back to lamps: it exceeds RF_LIGHT_MAX */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
 
@@ -78,12 +82,19 @@ void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_
 /* Pixels that come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 
+/* The same for a photo of Y, U and V, from job->luma and job->chroma. */
+void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                         struct rf_decode_job *job);
+void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect);
+/* Where the output has the codes R, G, B of a pixel. */
+void rf_pixel_codes(const struct rf_frame *f, int x, int y, uint8_t *code[3]);
+
 /* One pixel given as codes; alpha is the photo's. */
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
 
 /* rect: at most RF_TILE x RF_TILE, inside one tile. */
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);
-rf_tile_fn rf_sweep_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
 
 #endif

@@ -11,6 +11,7 @@
  * not matter.
  */
 #include "methods/method.h"
+#include "methods/tile_rays.h"
 #include "renderer/bands.h"
 
 #include <string.h>
@@ -25,25 +26,43 @@ struct sight {
     int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
 };
 
+/* Of one side of the focus, a ray's coordinates apart. */
+struct aims {
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+};
+
+static void set_aims(struct aims *aims, const struct refocus_ray *ray, int rays)
+{
+    for (int n = 0; n < rays; n++) {
+        aims->u[n] = ray[n].u;
+        aims->v[n] = ray[n].v;
+    }
+}
+
 static void set_sight(struct sight *sight, const struct rf_frame *f,
-                      const struct rf_tile_plan *plan, const struct refocus_ray *ray, int behind)
+                      const struct rf_tile_plan *plan, const struct rf_tile_rays *rays,
+                      int first, int behind)
 {
     const struct refocus_renderer *r = f->r;
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    struct rf_ray_sides sides;
+    struct aims own[2];
 
-    for (int n = 0; n < sight->rays; n++) {
-        u[n] = ray[n].u;
-        v[n] = ray[n].v;
-    }
-    for (int k = 0; k <= plan->slabs; k++)
-        r->kernels.aim(sight->offset[k], sight->cell[k], u, v,
-                       k < plan->slabs ? plan->slab[k].centre : behind, (int32_t)r->stride,
-                       (int32_t)r->range_stride, sight->rays);
-    for (int k = 0; f->weighted && k < plan->slabs; k++)
-        for (int n = 0; n < sight->rays; n++)
+    rf_tile_rays_get(rays, first, sight->rays, &sides);
+    set_aims(&own[0], sides.behind, sight->rays);
+    if (sides.before != sides.behind)
+        set_aims(&own[1], sides.before, sight->rays);
+    for (int k = 0; k <= plan->slabs; k++) {
+        const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
+        const int seen = rf_scaled_blur(rays, blur);
+        const struct aims *aims = &own[blur < 0 && sides.before != sides.behind];
+
+        r->kernels.aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen,
+                       (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
+        for (int n = 0; f->weighted && k < plan->slabs && n < sight->rays; n++)
             sight->weight_offset[k][n] =
-                rf_offset(v[n], plan->slab[k].centre) * (int32_t)r->weight_stride +
-                rf_offset(u[n], plan->slab[k].centre);
+                rf_offset(aims->v[n], seen) * (int32_t)r->weight_stride +
+                rf_offset(aims->u[n], seen);
+    }
 }
 
 /* What is summed of a tile: plainly, or light times weight and weights. */
@@ -60,6 +79,9 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     const struct refocus_renderer *r = f->r;
     const int first = i * RF_STRIP_LANES, y = ty * RF_TILE + i * RF_STRIP, x = tx * RF_TILE;
     const ptrdiff_t at = y * r->stride + x, weight_at = y * r->weight_stride + x;
+    /* the vectors of sweep_weighted hold 8 times white at the most */
+    rf_sweep_weighted_fn *const weighted =
+        f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : r->kernels.sweep_weighted;
     struct rf_sorted_rays sorted;
     const struct rf_sort_job sort = {
         .range = r->range + (ty * CELLS + i * STRIP_CELLS) * r->range_stride + tx * CELLS,
@@ -88,10 +110,9 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
 
     r->kernels.sort_rays(&sorted, &sort);
     if (f->weighted)
-        r->kernels.sweep_weighted((uint64_t *const[4]){run->weighted[0] + first,
-                                                       run->weighted[1] + first,
-                                                       run->weighted[2] + first,
-                                                       run->weighted[3] + first}, &job);
+        weighted((uint64_t *const[4]){run->weighted[0] + first, run->weighted[1] + first,
+                                      run->weighted[2] + first, run->weighted[3] + first},
+                 &job);
     else
         r->kernels.sweep((uint32_t *const[3]){run->plain[0] + first, run->plain[1] + first,
                                               run->plain[2] + first}, &job);
@@ -124,10 +145,11 @@ static int chunk_of(const struct rf_ray_set *set, int first)
  * Sums of a run, 65,025 rays of Q12 light at the most, stay below 2^30. That of a set of equal
  * rays is left in `run`; others are added up in `sums`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_ray_set *set, int tx, int ty, union tally *run,
-                       struct rf_sums *sums)
+                       const struct rf_tile_rays *tile_rays, int tx, int ty,
+                       union tally *run, struct rf_sums *sums)
 {
     const struct refocus_renderer *r = f->r;
+    const struct rf_ray_set *set = tile_rays->set;
     /* One blur of the background for the tile, that of its middle, keeps the offsets of a
      * ray constant; looking it up for each pixel measured no better. */
     const int behind = r->bins[(size_t)ty * r->tiles_x + tx].behind;
@@ -143,7 +165,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
             return;
         sight.rays = chunk_of(set, n);
         rays += sight.rays;
-        set_sight(&sight, f, plan, ray, behind);
+        set_sight(&sight, f, plan, tile_rays, n, behind);
         for (int i = 0; i < RF_TILE / RF_STRIP; i++)
             sweep_strip(f, plan, &sight, tx, ty, i, run);
         if (!set->equal &&
@@ -155,13 +177,73 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     }
 }
 
+/* Means are at most 4 times white: it is all white in the end. */
+static void limit(union tally *run, bool weighted, uint32_t rays)
+{
+    const uint32_t times = RF_PLAIN_GAIN * RF_LIGHT_MAX;
+
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < LANES; i++) {
+            const uint64_t most = times * (weighted ? run->weighted[3][i] : rays);
+
+            if (weighted)
+                run->weighted[c][i] = run->weighted[c][i] < most ? run->weighted[c][i] : most;
+            else
+                run->plain[c][i] = run->plain[c][i] < most ? run->plain[c][i] : (uint32_t)most;
+        }
+    }
+}
+
+/* Means of channels `from` to `to` - 1 of a tile through an opening. */
+static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        const struct rf_tile_rays *rays, int tx, int ty,
+                        uint16_t mean[3][LANES], int from, int to)
+{
+    const struct refocus_renderer *r = f->r;
+    const uint32_t count = (uint32_t)rays->set->count;
+    union tally run;
+
+    sweep_rays(f, plan, rays, tx, ty, &run, NULL);
+    if (rf_cancelled(r))
+        return;
+    if (f->bright > RF_BRIGHT)
+        limit(&run, f->weighted, count);
+    for (int c = from; c < to; c++) {
+        if (f->weighted)
+            r->kernels.weighted_means(mean[c], run.weighted[c], run.weighted[3], LANES);
+        else
+            r->kernels.means(mean[c], run.plain[c], rf_mean_scale(count), LANES);
+    }
+}
+
+/* The same from rays that do not weigh the same. */
+static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                       const struct rf_tile_rays *rays, int tx, int ty,
+                       uint16_t mean[3][LANES], int from, int to)
+{
+    const uint64_t most = RF_PLAIN_GAIN * 4 * RF_LIGHT_MAX;
+    struct rf_sums sums;
+    union tally run;
+
+    memset(&sums, 0, sizeof sums);
+    sweep_rays(f, plan, rays, tx, ty, &run, &sums);
+    if (rf_cancelled(f->r)) /* else no weights */
+        return;
+    for (int c = from; c < to; c++) {
+        for (int i = 0; i < LANES; i++) {
+            const uint64_t w = sums.weight[i], v = (4 * sums.light[c][i] + w / 2) / w;
+
+            mean[c][i] = (uint16_t)(v < most ? v : most);
+        }
+    }
+}
+
 void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct refocus_renderer *r = f->r;
-    const struct rf_ray_set *set;
     struct rf_tile_plan plan;
+    struct rf_tile_rays rays;
     uint16_t mean[3][LANES];
-    union tally run;
 
     (void)worker;
     rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
@@ -169,25 +251,17 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_copy_tile(f, rect);
         return;
     }
-    set = rf_rays_for(r, plan.reach, plan.lamp);
-    if (!set->equal) {
-        struct rf_sums sums;
+    rf_tile_rays_make(&rays, f, rf_rays_for(r, plan.reach, plan.lamp), tx, ty);
+    for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
+        const int from = pass, to = pass ? 2 : 3; /* all of them, and green again */
 
-        memset(&sums, 0, sizeof sums);
-        sweep_rays(f, &plan, set, tx, ty, &run, &sums);
-        if (!rf_cancelled(r)) /* else no weights */
-            rf_encode_tile(f, rect, &sums);
-        return;
-    }
-    sweep_rays(f, &plan, set, tx, ty, &run, NULL);
-    if (rf_cancelled(r))
-        return;
-    for (int c = 0; c < 3; c++) {
-        if (f->weighted)
-            r->kernels.weighted_means(mean[c], run.weighted[c], run.weighted[3], LANES);
+        if (pass)
+            rf_use_green_rays(&rays, f->params->fringe);
+        if (rays.set->equal)
+            sweep_means(f, &plan, &rays, tx, ty, mean, from, to);
         else
-            r->kernels.means(mean[c], run.plain[c], rf_mean_scale((uint64_t)set->count),
-                             LANES);
+            sweep_sums(f, &plan, &rays, tx, ty, mean, from, to);
     }
-    rf_encode_means(f, rect, mean);
+    if (!rf_cancelled(r))
+        rf_encode_means(f, rect, mean);
 }

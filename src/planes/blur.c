@@ -11,11 +11,18 @@ struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
     };
 }
 
-void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1)
+void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan *plan, int y0,
+                         int y1)
 {
-    for (int y = y0; y < y1; y++)
-        r->kernels.signed_blur(r->front.blur + y * r->stride,
-                               r->disparity + y * r->stride, focus, r->width);
+    for (int y = y0; y < y1; y++) {
+        int16_t *blur = r->front.blur + y * r->stride;
+        const uint16_t *disparity = r->disparity + y * r->stride;
+
+        if (plan->plain)
+            r->kernels.signed_blur(blur, disparity, plan->focus, r->width);
+        else
+            rf_focus_row(plan, blur, disparity, r->origin_x, r->origin_y + y, r->width);
+    }
     rf_extend_rows(r, r->front.blur, y0, y1);
 }
 

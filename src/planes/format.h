@@ -31,7 +31,7 @@ static inline bool rf_good_stride(ptrdiff_t stride, ptrdiff_t bytes, int rows)
     return rows == 1 || stride >= bytes || stride <= -bytes;
 }
 
-/* Whether a picture is of a known format, a possible size and has pixels. */
+/* Whether a picture is of a known format of R, G, B, a possible size and has pixels. */
 static inline bool rf_good_image(const struct refocus_image *image)
 {
     return image && image->plane[0] && refocus_format_bytes(image->format) &&
@@ -40,6 +40,15 @@ static inline bool rf_good_image(const struct refocus_image *image)
            rf_good_stride(image->stride[0],
                           (ptrdiff_t)image->width * refocus_format_bytes(image->format),
                           image->height);
+}
+
+/* The same for any format. */
+bool rf_good_picture(const struct refocus_image *image);
+
+/* Rows of pixels to a row of chroma: 1 << this. */
+static inline int rf_chroma_down(uint32_t format)
+{
+    return format == REFOCUS_FORMAT_YUYV ? 0 : 1;
 }
 
 #endif

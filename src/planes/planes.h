@@ -5,6 +5,7 @@
 #ifndef RF_PLANES_H
 #define RF_PLANES_H
 
+#include "focus/focus.h"
 #include "renderer/renderer.h"
 
 /* Photo rows to light planes and alpha. */
@@ -20,8 +21,9 @@ void rf_disparity_rows(struct refocus_renderer *r, const struct refocus_disparit
 
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 
-/* Signed blur, eq. 4, and its border. */
-void rf_signed_blur_rows(struct refocus_renderer *r, struct rf_focus focus, int y0, int y1);
+/* Signed blur, eq. 4 or what the plan makes of it, and its border. */
+void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan *plan, int y0,
+                         int y1);
 
 /*
  * Step 0, 1 or 2 of the pre-filter for a row of tiles, whose bins are known: where |s| is above

@@ -75,7 +75,7 @@ static void load(struct refocus_renderer *r, struct rf_rect window)
     map.width = photo.width;
     map.height = photo.height;
     rf_use(r, 0, window);
-    rf_load_light(r, &photo);
+    rf_load_light(r, &photo, NULL);
     rf_load_disparity(r, &map);
 }
 
@@ -109,7 +109,7 @@ static void find_highlights(struct rf_frame *f)
     struct refocus_renderer *r = f->r;
     struct rf_photo *photo = &r->photo[0];
 
-    if (f->params->highlight_gain <= 1 || photo->highlights_blend == r->blend)
+    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
         return;
     photo->highlights_blend = RF_NO_BLEND;
     r->used = 0;
@@ -137,7 +137,7 @@ static void make_window(struct rf_frame *f, struct rf_rect window, enum rf_need 
     rf_pass_blur(f, need == RF_NEED_LAYERS);
     if (need == RF_NEED_BLUR || rf_cancelled(r))
         return;
-    rf_patch_rims(r, f->focus, f->scale);
+    rf_patch_rims(r, &f->plan, f->scale);
     rf_pass_smooth(f);
 }
 
@@ -274,7 +274,7 @@ static void mark_once(struct rf_frame *f)
     m->behind = false;
     mark(f);
     *m = (struct rf_made){
-        .blur = true, .smooth = true, .focus = f->focus, .shift = f->scale.shift};
+        .blur = true, .smooth = true, .plan = f->plan, .shift = f->scale.shift};
     rf_note_light(f);
     m->behind = !rf_cancelled(f->r);
 }
@@ -305,6 +305,8 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         make_window(f, around(r, b, in_place->margin), need);
         if (need == RF_NEED_LAYERS && !rf_cancelled(r))
             make_behind(f);
+        if (need == RF_NEED_LAYERS && !rf_cancelled(r))
+            rf_pass_bright(f);
         if (need == RF_NEED_LAYERS && f->weighted && !rf_cancelled(r) &&
             f->params->method == REFOCUS_METHOD_SWEEP)
             rf_pass_weights(f);

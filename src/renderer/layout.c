@@ -242,7 +242,7 @@ static int block_side(const struct refocus_renderer_params *params)
 static uint64_t few_rays(const struct refocus_renderer_params *params)
 {
     const uint64_t side = 2 * (uint64_t)ceilf(params->max_blur_radius) + 1;
-    const uint64_t sets = 4096;
+    const uint64_t sets = 6144; /* on both sides of the focus */
 
     return side * side > sets ? side * side : sets;
 }
@@ -286,6 +286,8 @@ static void lay_out(struct refocus_renderer *r,
         sizeof *r->range);
     if (r->range)
         r->range += rf_range_border(pad) * (r->range_stride + 1);
+    r->star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->star);
+    r->grain = rf_arena_take(arena, 1, sizeof *r->grain);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->rays = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
                             sizeof *r->rays);

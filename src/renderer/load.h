@@ -4,8 +4,10 @@
 
 #include "renderer/renderer.h"
 
-/* Light in the blend r->blend, and alpha. `photo` is of the window's size. */
-void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo);
+/* Light in the blend r->blend, and alpha. `photo` is of the window's size. `guide`: of a photo of
+ * Y, U and V, NULL or its picture in RGB8 is wanted there. */
+void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo,
+                   const struct refocus_image *guide);
 
 /* Disparities; the map is of the window's size. */
 void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map);

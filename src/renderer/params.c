@@ -2,6 +2,7 @@
 
 #include "aperture/aperture.h"
 #include "planes/format.h"
+#include "planes/planes.h"
 
 static bool in(double value, double least, double most)
 {
@@ -18,7 +19,7 @@ static bool good_rays(const struct refocus_renderer *r, const struct refocus_ren
     return in(p->focus_disparity, 0, 1) && in(p->max_blur_radius, 0, r->max_blur_radius) &&
            (p->rays == REFOCUS_RAYS_FULL || (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
            p->blend < RF_BLEND_COUNT && p->sigma >= 1 && p->iterations >= 1 &&
-           p->iterations <= 64 && in(p->highlight_gain, 1, 4) && p->mirror <= 1 && p->background <= 1 &&
+           p->iterations <= 64 && in(p->highlight_gain, 1, RF_MOST_GAIN) && p->mirror <= 1 && p->background <= 1 &&
            p->prefilter <= 1 && p->reserved == 0 && p->cell >= 1 && p->cell <= 16;
 }
 
@@ -56,8 +57,62 @@ static bool good_field(const struct refocus_render_params *p)
            p->layers >= 1 && p->layers <= 8 && p->solver <= REFOCUS_SOLVER_ITERATED &&
            in(p->conductivity, 0.01, 1) &&
            (!p->field_map || rf_good_map(p->field_map)) &&
-           (p->method != REFOCUS_METHOD_DIFFUSION || p->field != REFOCUS_FIELD_PICTURE ||
-            p->field_map);
+           (p->field != REFOCUS_FIELD_PICTURE || p->field_map);
+}
+
+static bool good_bands(const struct refocus_render_params *p)
+{
+    if (!in(p->focus_half_width, 0, 1) || !in(p->focus_transition, 0, 1) || p->bands < 0 ||
+        p->bands > REFOCUS_MAX_BANDS - 1)
+        return false;
+    for (int i = 0; i < p->bands; i++)
+        if (!in(p->band[i].disparity, 0, 1) || !in(p->band[i].half_width, 0, 1) ||
+            !in(p->band[i].transition, 0, 1))
+            return false;
+    return true;
+}
+
+static bool good_focus(const struct refocus_render_params *p)
+{
+    return in(p->tilt_x, 0, 1) && in(p->tilt_y, 0, 1) &&
+           in(p->tilt_across, -REFOCUS_MAX_TILT, REFOCUS_MAX_TILT) &&
+           in(p->tilt_down, -REFOCUS_MAX_TILT, REFOCUS_MAX_TILT) && in(p->depth_share, 0, 1) &&
+           good_bands(p) && (!p->focus_map || rf_good_map(p->focus_map)) &&
+           (!p->sharp_map || rf_good_map(p->sharp_map)) && in(p->least_disparity, 0, 1) &&
+           in(p->most_disparity, p->least_disparity, 1) &&
+           in(p->blur_limit, 0, REFOCUS_MAX_BLUR_RADIUS);
+}
+
+/* Methods that take the blur of a pixel as they find it. */
+static bool takes_any_focus(uint32_t method)
+{
+    return method == REFOCUS_METHOD_SWEEP || method == REFOCUS_METHOD_SEARCH ||
+           method == REFOCUS_METHOD_BLUR || method == REFOCUS_METHOD_DIFFUSION;
+}
+
+/* What only sweep can render. */
+static bool has_own_look(const struct refocus_render_params *p)
+{
+    return p->cat_eye > 0 || p->fringe != 0 ||
+           (p->aperture && rf_aperture_has_sides(p->aperture));
+}
+
+static bool good_look(const struct refocus_render_params *p)
+{
+    return in(p->grain, 0, 4) && in(p->cat_eye, 0, 0.9f) && in(p->fringe, -0.5, 0.5) &&
+           (!has_own_look(p) || p->method == REFOCUS_METHOD_SWEEP) &&
+           !(p->aperture && rf_aperture_has_sides(p->aperture) &&
+             p->rays == REFOCUS_RAYS_FULL);
+}
+
+static bool is_plain_focus(const struct refocus_renderer *r,
+                           const struct refocus_render_params *p)
+{
+    struct rf_focus_plan plan;
+
+    rf_focus_plan_make(&plan, p, rf_focus_of(p->focus_disparity, p->max_blur_radius),
+                       r->photo[0].width, r->photo[0].height);
+    return plan.plain;
 }
 
 bool rf_good_map(const struct refocus_disparity *map)
@@ -81,5 +136,6 @@ bool rf_good_params(const struct refocus_renderer *r, const struct refocus_rende
            (p->reduce == 1 ||
             (r->previews && (p->reduce == 2 || p->reduce == 4 || p->reduce == 8))) &&
            good_scatter(p) && good_ratios(p) && good_attention(p) && good_field(p) &&
+           good_focus(p) && good_look(p) && (takes_any_focus(p->method) || is_plain_focus(r, p)) &&
            (!(round_only & REFOCUS_METHOD_BIT(p->method)) || has_round_aperture(p));
 }

@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "background/background.h"
+#include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/reduce.h"
+#include "renderer/render_yuv.h"
 #include "tiles/ranges.h"
 
 static void reblend_band(void *context, int band, int worker)
@@ -15,11 +17,14 @@ static void reblend_band(void *context, int band, int worker)
     struct refocus_renderer *r = f->r;
     uint8_t *blend = &r->photo[r->used].band_blend[band];
 
-    (void)worker;
     if (*blend == f->params->blend)
         return;
-    rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
-                    rf_band_end(r, band));
+    if (r->yuv.on)
+        rf_yuv_reblend_rows(r, (uint8_t *)rf_scratch(r, worker), rf_band_start(band),
+                            rf_band_end(r, band));
+    else
+        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
+                        rf_band_end(r, band));
     *blend = (uint8_t)f->params->blend;
 }
 
@@ -45,9 +50,17 @@ static void blur_band(void *context, int band, int worker)
     const struct rf_frame *f = context;
 
     (void)worker;
-    rf_signed_blur_rows(f->r, f->focus, rf_band_start(band), rf_band_end(f->r, band));
+    rf_signed_blur_rows(f->r, &f->plan, rf_band_start(band), rf_band_end(f->r, band));
     rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
+}
+
+static void chroma_blur_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_yuv_blur_rows(f->r, rf_band_start(band), rf_band_end(f->r, band));
 }
 
 static void range_band(void *context, int band, int worker)
@@ -69,8 +82,10 @@ static void smooth_band(void *context, int band, int worker)
                                    : r->behind.light;
     uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
 
-    (void)worker;
-    rf_prefilter_rows(r, out, in, f->prefilter_above, i, band);
+    if (r->yuv.on)
+        rf_smooth_yuv_band(f, band, worker);
+    else
+        rf_prefilter_rows(r, out, in, f->prefilter_above, i, band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
@@ -83,19 +98,36 @@ static void prefilter(struct rf_frame *f)
         rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
 }
 
+/* How far apart rays are at a blur of 1. */
+static double ray_gap(const struct refocus_render_params *p)
+{
+    return sqrt(3.14159265358979 / (p->rays == REFOCUS_RAYS_FULL ? INT_MAX : p->rays));
+}
+
 static void mark_lamps(struct rf_frame *f)
 {
-    const int rays = f->params->rays == REFOCUS_RAYS_FULL ? INT_MAX : f->params->rays;
+    const float gain = f->r->yuv.on ? fminf(f->params->highlight_gain, RF_PLAIN_GAIN)
+                                    : f->params->highlight_gain;
 
-    f->bright = f->params->highlight_gain > 1 &&
-                rf_mark_highlights(f->r, f->scale, sqrt(3.14159265358979 / rays));
+    f->bright = RF_WHITE;
+    if (gain > 1 && rf_mark_highlights(f->r, f->scale, ray_gap(f->params)))
+        f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT
+                    : gain <= 2 * RF_PLAIN_GAIN ? RF_BRIGHTER
+                                                : RF_BRIGHTEST;
+}
+
+void rf_pass_bright(struct rf_frame *f)
+{
+    if (f->bright > RF_BRIGHT)
+        rf_add_bright_highlights(f->r, f->params->highlight_gain, ray_gap(f->params),
+                                 (f->bright == RF_BRIGHTER ? 8 : 16) * RF_LIGHT_MAX);
 }
 
 /* The light is the photo's again afterwards, whatever happens. */
 static void prefilter_with_highlights(struct rf_frame *f)
 {
-    const float gain = f->params->highlight_gain;
-    const int added = f->bright ? rf_add_highlights(f->r, gain) : 0;
+    const float gain = fminf(f->params->highlight_gain, RF_PLAIN_GAIN);
+    const int added = f->bright != RF_WHITE ? rf_add_highlights(f->r, gain) : 0;
 
     prefilter(f);
     rf_remove_highlights(f->r, gain, added);
@@ -113,8 +145,12 @@ static void mark_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
 
-    rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
-                            rf_band_end(f->r, band));
+    if (f->r->yuv.on)
+        rf_background_yuv_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+                                    rf_band_end(f->r, band));
+    else
+        rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+                                rf_band_end(f->r, band));
 }
 
 void rf_pass_blur(struct rf_frame *f, bool layers)
@@ -128,6 +164,8 @@ void rf_pass_smooth(struct rf_frame *f)
 {
     mark_lamps(f);
     rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
+    if (f->r->yuv.on)
+        rf_pool_run(&f->r->pool, chroma_blur_band, f, rf_bands(f->r));
     prefilter_with_highlights(f);
 }
 
@@ -147,7 +185,10 @@ void rf_pass_behind(struct rf_frame *f, int levels)
 {
     struct refocus_renderer *r = f->r;
 
-    rf_background_pull(r, 0, levels);
+    if (r->yuv.on)
+        rf_background_yuv_fill(r);
+    else
+        rf_background_pull(r, 0, levels);
     rf_pool_run(&r->pool, note_band, r, rf_bands(r));
 }
 
@@ -171,8 +212,8 @@ bool rf_same_lens(const struct rf_frame *f, int number)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->blur && m->photo == number && m->focus.disparity == f->focus.disparity &&
-           m->focus.radius == f->focus.radius && m->shift == f->scale.shift;
+    return m->blur && m->photo == number && !memcmp(&m->plan, &f->plan, sizeof m->plan) &&
+           m->shift == f->scale.shift;
 }
 
 bool rf_same_light(const struct rf_frame *f)
@@ -234,14 +275,14 @@ static void make_blur(struct rf_frame *f, bool layers)
         *m = (struct rf_made){.half = m->half && r->used,
                               .photo = r->used,
                               .window = window,
-                              .focus = f->focus,
+                              .plan = f->plan,
                               .shift = f->scale.shift};
         rf_pass_blur(f, layers);
         m->blur = !rf_cancelled(r);
     }
     if (m->blur && layers && !m->rims) {
         m->blur = false; /* until all rims are in */
-        rf_patch_rims(r, f->focus, f->scale);
+        rf_patch_rims(r, &f->plan, f->scale);
         m->blur = m->rims = !rf_cancelled(r);
     }
 }
@@ -261,7 +302,7 @@ static void make_smooth(struct rf_frame *f)
         m->half = false; /* it lies where the background layer does */
     m->lamps = f->params->highlight_gain > 1;
     if (m->ranges) {
-        f->bright = false;
+        f->bright = RF_WHITE;
         prefilter(f);
     } else {
         rf_pass_smooth(f);
@@ -308,7 +349,8 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     if (r->used == 0)
         m->half = false;
     rf_pass_mark(f);
-    rf_background_push(r, 0, r->levels);
+    if (!r->yuv.on)
+        rf_background_push(r, 0, r->levels);
     if (rf_cancelled(r))
         return false;
     if (!contains(m->window, rf_whole(r, r->used)) &&
@@ -419,7 +461,7 @@ static void find_highlights(struct rf_frame *f)
     struct refocus_renderer *r = f->r;
     struct rf_photo *photo = &r->photo[r->used];
 
-    if (f->params->highlight_gain <= 1 || photo->highlights_blend == r->blend)
+    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
         return;
     photo->highlights_blend = RF_NO_BLEND;
     rf_forget_highlights(r);
@@ -438,6 +480,8 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
         rf_reduce_once(r);
     rf_use(r, number, rf_whole(r, number));
     f->region = region;
+    if (r->yuv.on)
+        rf_yuv_set_blend(r, f->params->blend);
     rf_pool_run(&r->pool, reblend_band, f, rf_bands(r));
     if (rf_cancelled(r))
         return;
@@ -453,11 +497,17 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     }
     if (is_there(f, number, &parts, layers)) {
         rf_use(r, number, r->made.window);
-        f->bright = layers && r->made.bright;
+        f->bright = layers ? r->made.bright : RF_WHITE;
     } else {
+        if (r->made.spread) /* the background takes smooth light without it */
+            r->made = (struct rf_made){.half = r->made.half};
         make_in_window(f, number, &parts, layers);
     }
-    if (layers && f->weighted && is_sweep(f))
+    if (layers && !rf_cancelled(r) && !r->made.spread && f->bright > RF_BRIGHT) {
+        rf_pass_bright(f);
+        r->made.spread = true;
+    }
+    if (layers && f->weighted && is_sweep(f) && !r->yuv.on)
         make_weights(f);
     f->region = in_window(r, region);
 }

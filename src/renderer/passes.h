@@ -34,6 +34,7 @@ void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come a
 void rf_pass_smooth(struct rf_frame *f);
 void rf_pass_mark(struct rf_frame *f);
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
+void rf_pass_bright(struct rf_frame *f); /* light of lamps beyond 4 times white, at the end */
 void rf_pass_weights(struct rf_frame *f);
 
 /* Whether what r->made tells of is for this lens, and its light for this frame's; note

@@ -5,6 +5,7 @@
 #include "depth/upsample.h"
 #include "planes/format.h"
 #include "planes/planes.h"
+#include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
 #include "renderer/load.h"
@@ -56,14 +57,17 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
 static void take_in(struct refocus_renderer *r, const struct refocus_image *photo,
                     const struct refocus_disparity *disparity)
 {
-    rf_load_light(r, photo);
-    if (disparity->width == r->width && disparity->height == r->height)
+    const bool same_size = disparity->width == r->width && disparity->height == r->height;
+    const struct refocus_image guide = r->yuv.on ? rf_yuv_guide(r) : *photo;
+
+    rf_load_light(r, photo, same_size ? NULL : &guide);
+    if (same_size)
         rf_load_disparity(r, disparity);
     else
-        upsample(r, photo, disparity);
+        upsample(r, &guide, disparity);
     if (!rf_cancelled(r))
         rf_find_rims(r, rf_whole(r, 0));
-    if (r->previews && !rf_cancelled(r))
+    if (r->previews && !r->yuv.on && !rf_cancelled(r))
         rf_reduce_all(r);
 }
 
@@ -76,12 +80,13 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         return REFOCUS_ERR_ARGUMENT;
     r->prepared = r->blurred = false;
     memset(&r->made, 0, sizeof r->made);
-    if (!rf_good_image(photo) || !rf_good_map(disparity))
+    if (!rf_good_picture(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
     if (r->in_place.on &&
-        (disparity->width != photo->width || disparity->height != photo->height))
+        (disparity->width != photo->width || disparity->height != photo->height ||
+         refocus_format_is_yuv(photo->format)))
         return REFOCUS_ERR_UNSUPPORTED;
     own = &r->photo[0];
     own->width = photo->width;
@@ -89,6 +94,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     own->highlights_blend = RF_NO_BLEND;
     own->rims = 0;
     r->blend = REFOCUS_BLEND_LINEAR; /* that rims are found in, whatever came before */
+    rf_yuv_begin(r, photo);
     rf_run_begin(r);
     if (r->in_place.on) {
         r->in_place.photo = *photo;

@@ -18,6 +18,14 @@ static uint64_t total_weight(const struct rf_ray_set *set)
     return sum;
 }
 
+static bool are_equal(const struct rf_ray_set *set)
+{
+    for (int i = 1; i < set->count; i++)
+        if (set->ray[i].weight != set->ray[0].weight)
+            return false;
+    return true;
+}
+
 void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
                   int rays, bool denser, float max_blur_radius)
 {
@@ -35,7 +43,8 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
         r->set[0].count =
             rf_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, next, &r->run);
         r->set[0].total_weight = total_weight(&r->set[0]);
-        r->set[0].equal = next[0].weight == next[r->set[0].count - 1].weight;
+        r->set[0].before = next;
+        r->set[0].equal = are_equal(&r->set[0]);
         sets = 1;
         r->preset = 0;
     } else {
@@ -55,10 +64,16 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
             }
             set->ray = next;
             set->count = count;
-            rf_aperture_rays(aperture, count, next, &r->run);
+            rf_aperture_rays(aperture, count, false, next, &r->run);
             set->total_weight = total_weight(set);
             set->equal = true;
+            set->before = next;
             next += count;
+            if (rf_aperture_has_sides(aperture)) {
+                rf_aperture_rays(aperture, count, true, next, &r->run);
+                set->before = next;
+                next += count;
+            }
             sets++;
         }
     }

@@ -9,6 +9,7 @@
 #include "renderer/params.h"
 #include "renderer/passes.h"
 #include "renderer/rays.h"
+#include "renderer/render_yuv.h"
 
 struct method {
     const char *name, *summary;
@@ -61,19 +62,6 @@ const char *refocus_method_summary(uint32_t method)
     return method < REFOCUS_METHOD_COUNT ? methods[method].summary : NULL;
 }
 
-int refocus_format_bytes(uint32_t format)
-{
-    switch (format) {
-    case REFOCUS_FORMAT_RGB8:
-    case REFOCUS_FORMAT_BGR8:
-        return 3;
-    case REFOCUS_FORMAT_RGBA8:
-    case REFOCUS_FORMAT_BGRA8:
-        return 4;
-    }
-    return 0;
-}
-
 /* The part of a photo to render; false if it is not inside. */
 static bool region_of(const struct refocus_renderer *r,
                       const struct refocus_render_params *p, int number,
@@ -117,10 +105,28 @@ static void tile_item(void *context, int item, int worker)
         smaller((ty + 1) * RF_TILE, f->region.y1),
     };
 
-    if (f->params->max_blur_radius > 0)
+    if (f->params->max_blur_radius > 0 && f->r->yuv.on)
+        rf_sweep_yuv_tile(f, tx, ty, rect, worker);
+    else if (f->params->max_blur_radius > 0)
         methods[f->params->method].tile(f, tx, ty, rect, worker);
+    else if (f->r->yuv.on)
+        rf_copy_yuv_tile(f, rect);
     else
         rf_copy_tile(f, rect); /* a pinhole */
+    if (!rf_cancelled(f->r))
+        rf_finish_rect(f, rect);
+}
+
+static void finish_item(void *context, int item, int worker)
+{
+    const struct rf_frame *f = context;
+    const int tx = f->first_tx + item % f->count_tx, ty = f->first_ty + item / f->count_tx;
+
+    (void)worker;
+    rf_finish_rect(f, (struct rf_rect){larger(tx * RF_TILE, f->region.x0),
+                                       larger(ty * RF_TILE, f->region.y0),
+                                       smaller((tx + 1) * RF_TILE, f->region.x1),
+                                       smaller((ty + 1) * RF_TILE, f->region.y1)});
 }
 
 /* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. */
@@ -150,6 +156,7 @@ static void set_tiles(struct rf_frame *f)
 static void run_tiles(struct rf_frame *f)
 {
     set_tiles(f);
+    rf_finish_begin(f);
     rf_pool_run(&f->r->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
@@ -167,19 +174,27 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     if (!pinhole)
         rf_make_rays(r, f->aperture, f->params->rays, f->params->highlight_gain > 1,
                      f->params->max_blur_radius);
+    if (f->params->cat_eye > 0)
+        rf_cat_eye_make(&r->cat_eye);
     if (rf_cancelled(r))
         return;
     if (r->in_place.on) {
         rf_run_blocks(f, region, need, run_tiles);
         return;
     }
-    rf_run_passes(f, number, region, need, method->frame != NULL);
+    rf_run_passes(f, number, region, need, method->frame != NULL || r->yuv.on);
     if (rf_cancelled(r))
         return;
-    if (method->frame && !pinhole)
-        method->frame(f);
-    else
+    if (!method->frame || pinhole) {
         run_tiles(f);
+        return;
+    }
+    method->frame(f);
+    if (rf_cancelled(r) || !f->grain)
+        return;
+    set_tiles(f);
+    rf_finish_begin(f);
+    rf_pool_run(&r->pool, finish_item, f, f->count_tx * f->count_ty);
 }
 
 /* Lengths in pixels of the reduced photo. */
@@ -191,6 +206,7 @@ static struct refocus_render_params reduced(const struct refocus_render_params *
     own.airy_radius /= (float)params->reduce;
     own.star_length /= (float)params->reduce;
     own.sharp_radius /= (float)params->reduce;
+    own.blur_limit /= (float)params->reduce;
     return own;
 }
 
@@ -202,7 +218,7 @@ int refocus_render(struct refocus_renderer *r,
     struct refocus_render_params own;
     struct rf_exact exact;
     struct rf_rect region;
-    int number = 0;
+    int number = 0, status;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
@@ -212,14 +228,23 @@ int refocus_render(struct refocus_renderer *r,
         return REFOCUS_ERR_ARGUMENT;
     while (1 << number < params->reduce)
         number++;
-    if (!region_of(r, params, number, &region) || !rf_good_image(out) ||
+    if (!region_of(r, params, number, &region) || !rf_good_picture(out) ||
         out->width != region.x1 - region.x0 || out->height != region.y1 - region.y0)
         return REFOCUS_ERR_ARGUMENT;
     own = reduced(params);
+    f.params = params;
+    if ((status = rf_check_yuv(&f, region)))
+        return status;
     f.params = &own;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.focus = rf_focus_of(own.focus_disparity, own.max_blur_radius);
+    rf_focus_plan_make(&f.plan, &own, f.focus, r->photo[number].width, r->photo[number].height);
+    if (f.plan.surface || f.plan.sharp || f.plan.picture)
+        f.plan.number = ++r->renders;
     f.scale = rf_bin_scale_of(own.max_blur_radius);
+    f.stars = own.star_spikes > 0 && own.star_strength > 0 && own.star_length > 0 &&
+              own.method == REFOCUS_METHOD_SWEEP && own.max_blur_radius > 0;
+    f.grain = own.grain > 0 && own.max_blur_radius > 0;
     if (methods[own.method].exact) {
         rf_exact_init(&exact, own.blend, own.sigma);
         f.exact = &exact;
@@ -228,7 +253,9 @@ int refocus_render(struct refocus_renderer *r,
                   f.aperture->shape == RF_SHAPE_MASK);
     set_prefilter(&f);
     r->blurred = false;
-    r->last_focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
+    rf_focus_plan_make(&r->last_plan, params,
+                       rf_focus_of(params->focus_disparity, params->max_blur_radius),
+                       r->photo[0].width, r->photo[0].height);
     rf_run_begin(r);
     run(&f, number, region);
     if (rf_run_end(r))

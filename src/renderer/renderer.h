@@ -8,7 +8,11 @@
 
 #include <refocus/render.h>
 
+#include "aperture/cat_eye.h"
 #include "colour/transfer.h"
+#include "colour/yuv.h"
+#include "finish/finish.h"
+#include "focus/focus.h"
 #include "highlights/highlights.h"
 #include "highlights/rims.h"
 #include "kernels/kernels.h"
@@ -27,6 +31,7 @@ enum {
 /* Rays and runs of equal weight among them. */
 struct rf_ray_set {
     struct refocus_ray *ray;
+    struct refocus_ray *before; /* those before the focus: the same, or as many others */
     int count;
     uint64_t total_weight;
     bool equal; /* all rays weigh the same */
@@ -64,7 +69,8 @@ struct rf_made {
     bool lamps;  /* and highlights marked and widened in them */
     bool ranges; /* its ranges; before, its cells are where the background's blur will be */
     bool smooth; /* the pre-filtered light */
-    bool bright; /* with light given back to lamps */
+    enum rf_bright bright; /* with light given back to lamps, */
+    bool spread; /* that beyond 4 times white as well */
     bool behind; /* the background layer, */
     bool weighed; /* but with weights of `sigma` in place of its blur */
     float sigma;
@@ -73,7 +79,7 @@ struct rf_made {
     int photo;
     struct rf_rect window; /* of that photo, to which all of it is limited */
     struct rf_rect exact;  /* where it is as if made for the whole photo */
-    struct rf_focus focus;
+    struct rf_focus_plan plan;
     int shift; /* of the bins */
     uint32_t blend;
     float gain;
@@ -122,6 +128,32 @@ struct rf_bins {
     int16_t behind;      /* blur of the background in the middle, once that is filled */
 };
 
+/*
+ * A photo of Y, U and V. Luminance is in light[0] of the layers. Planes of chroma hold two
+ * values for each sample, D_b and D_r of colour/yuv.h, side by side: a tile's are as wide as the
+ * tile, and what is done to luma by rows is done to them in the same way. They take the place of
+ * the layers' light[1], and use their stride; the blur of chroma, given twice, that of
+ * smooth[2]. The codes that came in are kept: Y in place of alpha, U V in that of light[2].
+ * front.light[1] and [2] are luminance, too, for those who ask for the brightest.
+ */
+struct rf_yuv {
+    bool on;            /* else it is of R, G and B, and the rest is not valid */
+    int down;           /* rows of the photo to one of chroma: 1 << down */
+    uint32_t matrix, range, blend; /* that curve is for */
+    bool curve_made;
+    struct rf_yuv_curve curve;
+
+    /* Of the window, by rf_yuv_use(). */
+    int width, height;  /* samples of chroma */
+    uint16_t *light;    /* of the photo, */
+    uint16_t *smooth;   /* pre-filtered */
+    uint16_t *behind;   /* and of the background */
+    int16_t *blur;
+    uint8_t *y;         /* y_stride a row */
+    uint8_t *uv;        /* 2 width a row, rows uv_stride apart */
+    ptrdiff_t y_stride, uv_stride;
+};
+
 struct refocus_renderer {
     struct refocus_allocator allocator;
     struct refocus_log log;
@@ -142,7 +174,7 @@ struct refocus_renderer {
     uint16_t *seen_group, *behind_group;
     struct rf_made made;
     struct rf_in_place in_place;
-    struct rf_focus last_focus; /* of the last render, in pixels of photo[0], */
+    struct rf_focus_plan last_plan; /* of the last render, in pixels of photo[0], */
     bool last_rims;             /* with the rims, */
     bool blurred;               /* if there was one */
 
@@ -163,6 +195,7 @@ struct refocus_renderer {
     uint8_t *alpha;      /* alpha_stride a row */
     ptrdiff_t alpha_stride;
     struct rf_layer front;
+    struct rf_yuv yuv;
     uint16_t *smooth[3];    /* front.light, pre-filtered where rays lie far apart */
     struct rf_layer behind; /* the background layer */
     struct rf_level level[RF_LEVELS];
@@ -183,6 +216,11 @@ struct refocus_renderer {
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 
+    struct rf_star *star; /* of this lens setting */
+    int stars;
+    struct rf_grain *grain; /* of this lens setting */
+    uint32_t renders;       /* so far, that had maps of their own */
+
     uint8_t *work;       /* memory of the methods that work on whole frames, one at a time */
     uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
     uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
@@ -195,6 +233,7 @@ struct refocus_renderer {
     int set_rays;
     bool set_denser;
     float set_blur;
+    struct rf_cat_eye cat_eye; /* made when it is first asked for */
 };
 
 /* Pixels of `size` in photo i. */

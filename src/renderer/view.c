@@ -36,13 +36,14 @@ static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t p
             const int n = photo->width - x < RUN ? photo->width - x : RUN;
 
             memcpy(row, out + y * pitch + x, (size_t)n * 2);
-            r->kernels.signed_blur(blur + y * pitch + x, row, r->last_focus, n);
+            rf_focus_row(&r->last_plan, blur + y * pitch + x, row, x, y, n);
         }
     }
     for (uint64_t i = 0; i < rims; i++) {
         int16_t *at = blur + photo->rim[i].y * pitch + photo->rim[i].x, s;
 
-        r->kernels.signed_blur(&s, &photo->rim[i].disparity, r->last_focus, 1);
+        rf_focus_row(&r->last_plan, &s, &photo->rim[i].disparity, photo->rim[i].x,
+                     photo->rim[i].y, 1);
         *at = s < *at ? s : *at;
     }
     for (int y = 0; y < photo->height; y++)

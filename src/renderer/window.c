@@ -1,4 +1,5 @@
 #include "renderer/layout.h"
+#include "planes/yuv.h"
 #include "renderer/renderer.h"
 
 /* Pixel (0, 0) of the window in a group of planes of a photo; see rf_use(). */
@@ -55,6 +56,7 @@ void rf_use(struct refocus_renderer *r, int number, struct rf_rect window)
         r->alpha_stride = rf_block_side(&r->in_place, pad);
     }
     place_planes(r, photo);
+    rf_yuv_use(r);
     r->tiles_x = (r->width + RF_TILE - 1) / RF_TILE;
     r->tiles_y = (r->height + RF_TILE - 1) / RF_TILE;
     r->levels = rf_pyramid(r->level, r->width, r->height);

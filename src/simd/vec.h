@@ -12,8 +12,6 @@
  *     vec_u16_or(a, b)        a | b
  *     vec_u16_without(a, b)   a & ~b
  *     vec_u16_mul(a, b)       (uint16_t)(a * b)
- *     vec_u16_least(a, b)     a < b ? a : b
- *     vec_u16_most(a, b)      a > b ? a : b
  *     vec_u16_at_most(a, b)   a <= b ? 0xffff : 0
  *     vec_u16_xor(a, b)       a ^ b
  *     vec_u16_mul_high(a, b)  (a * b) >> 16
@@ -32,6 +30,8 @@
  *     vec_u16_zip_low(a, b)   a[0], b[0], a[1], b[1] ... of the lower halves
  *     vec_u16_zip_high(a, b)  and of the upper ones
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
+ *     vec_s16_less(a, b)      (int16_t)a < (int16_t)b ? 0xffff : 0
+ *     vec_u16_select(m, a, b) m ? a : b, for lanes of m that are 0xffff or 0
  *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.
  *

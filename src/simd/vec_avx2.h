@@ -152,19 +152,19 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
                                          _mm256_cvtepu16_epi32(_mm256_extracti128_si256(v, 1))));
 }
 
+static inline vec_u16 vec_s16_less(vec_u16 a, vec_u16 b)
+{
+    return _mm256_cmpgt_epi16(b, a);
+}
+
+static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
+{
+    return _mm256_blendv_epi8(b, a, m);
+}
+
 static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
 {
     return _mm256_mullo_epi16(a, b);
-}
-
-static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
-{
-    return _mm256_min_epu16(a, b);
-}
-
-static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
-{
-    return _mm256_max_epu16(a, b);
 }
 
 enum { VEC_U8 = 32 };

@@ -148,19 +148,19 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
     vst1q_u32(sum + 4, vaddw_u16(vld1q_u32(sum + 4), vget_high_u16(v)));
 }
 
+static inline vec_u16 vec_s16_less(vec_u16 a, vec_u16 b)
+{
+    return vcltq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b));
+}
+
+static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
+{
+    return vbslq_u16(m, a, b);
+}
+
 static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
 {
     return vmulq_u16(a, b);
-}
-
-static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
-{
-    return vminq_u16(a, b);
-}
-
-static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
-{
-    return vmaxq_u16(a, b);
 }
 
 enum { VEC_U8 = 16 };

@@ -145,19 +145,19 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
     _mm_storeu_si128(high, _mm_add_epi32(_mm_loadu_si128(high), _mm_unpackhi_epi16(v, zero)));
 }
 
+static inline vec_u16 vec_s16_less(vec_u16 a, vec_u16 b)
+{
+    return _mm_cmpgt_epi16(b, a);
+}
+
+static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
+{
+    return _mm_blendv_epi8(b, a, m);
+}
+
 static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
 {
     return _mm_mullo_epi16(a, b);
-}
-
-static inline vec_u16 vec_u16_least(vec_u16 a, vec_u16 b)
-{
-    return _mm_min_epu16(a, b);
-}
-
-static inline vec_u16 vec_u16_most(vec_u16 a, vec_u16 b)
-{
-    return _mm_max_epu16(a, b);
 }
 
 enum { VEC_U8 = 16 };

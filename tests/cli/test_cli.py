@@ -28,6 +28,10 @@ class Usage(Case):
               '--attention --attention-angle --picture-angle --attention-depth --field '
               '--field-at --field-disparity --field-radius --field-falloff --field-angle '
               '--field-map --layers --solver --conductivity ')
+    CONTROLS = ('--focus-width --focus-transition --also-focus --focus-plane --tilt-line '
+                '--tilt-angle --tilt-compress --focus-map --sharp-mask --far-clamp --near-clamp '
+                '--blur-limit --bokeh --curvature --open-f-number --squeeze --ring --edge '
+                '--edge-before --cat-eye --fringe --grain --highlight-stops ')
 
     def test_help(self):
         text = self.succeeds('--help')
@@ -41,28 +45,31 @@ class Usage(Case):
 
     def test_help_lists_every_option(self):
         options = {
-            'render': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                      '--focus --focus-at '
+            'render': self.PAPERS + self.CONTROLS +
+                      '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                      '--focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
                       '--highlights --mirror --background --threads --cpu --repeat --json --view --region '
                       '--settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--estimate --preset --input-size --input-scale --input-mean --far-is-large '
-                     '--stereo-file --upsample --strokes --side-by-side --view --focus-at --blur --json -h --help',
+                     '--snap --upsample --estimate --preset --input-size --input-mean --input-scale '
+                     '--far-is-large --match --strokes --stereo-file --side-by-side --view '
+                     '--focus-at --blur --json -h --help',
             'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
                     '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
-                    '--focus --focus-at --focus-distance --blur --f-number --focal-length '
-                    '--sensor-width --method --rays --iterations --quality --aperture --blend '
+                    '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
                     '--sigma --highlights --mirror --background --threads --cpu --repeat --json '
                     '--settings --save-settings -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
-                       '--depth-unit --near --far --focus --focus-at --focus-distance --blur '
-                       '--f-number --focal-length --sensor-width --rays --iterations '
+                       '--depth-unit --near --far --focus --focus-at --focus-rectangle '
+                       '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background '
                        '--threads --cpu --repeat --json -h --help',
-            'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far --focus --focus-at '
+            'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far '
+                     '--focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --method --rays --iterations --quality '
                      '--aperture --blend --sigma --highlights --mirror --background --threads --cpu '
                      '--repeat --json -h --help',
@@ -170,7 +177,8 @@ class Limits(Case):
                    'X,Y,W,H from 0 to 65535')
 
     def test_what_excludes_what(self):
-        twice = 'the focus is given twice; give one of --focus, --focus-at and --focus-distance'
+        twice = ('the focus is given twice; give one of --focus, --focus-at, --focus-distance '
+                 'and --focus-rectangle')
         self.fails(2, '--focus-at: ' + twice,
                    *self.render('--focus', '1', '--focus-at', '1,1'))
         self.fails(2, '--focus-distance: ' + twice,
@@ -205,7 +213,7 @@ class Limits(Case):
                           "polygon:BLADES:DEGREES with 3 to 16 blades" % shape,
                        *self.render('--aperture', shape))
         self.fails(2, "--aperture: 'dics' is not known; give disc, polygon:BLADES, "
-                      "polygon:BLADES:DEGREES or a mask picture",
+                      "polygon:BLADES:DEGREES, heart, star or a mask picture",
                    *self.render('--aperture', 'dics'))
         self.fails(1, 'wide.pgm: 256x1 pixels are too many for an aperture; give at most '
                       '255x255', *self.render('--aperture', 'wide.pgm'))
@@ -316,7 +324,7 @@ class Results(Case):
                    *self.render('--focus-distance', '1', '--near', '1'))
 
     def test_focus_at_is_robust(self):
-        """Wrong single samples do not win: the median of 5x5 is asked."""
+        """Wrong single samples do not win."""
         pictures.pgm('specks.pgm', W, H,
                      lambda x, y: 255 if (x, y) in ((10, 10), (0, 0), (1, 1)) else 51)
         for at in ('10,10', '0,0', '2,1'):
@@ -593,6 +601,15 @@ class DepthAndInfo(Case):
                    '--stereo-file, '
                    '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
                    '--depth', 'depth.pgm')
+        self.fails(1, re.compile(r'^refocus: photo.ppm: (it is no stereo file|this build)'),
+                   'depth', 'photo.ppm', '--stereo-file', '-o', 'd.png')
+        self.fails(2, "--input-size: '8,8' cannot be used; give W,H from 32 to 2048", 'depth',
+                   'photo.ppm', '--estimate', 'no.onnx', '--input-size', '8,8', '-o', 'd.png')
+        self.fails(2, re.compile("^refocus: --upsample: 'magic' cannot be used"), 'depth',
+                   'photo.ppm', '--depth', 'depth.pgm', '--full', '--upsample', 'magic', '-o',
+                   'd.png')
+        self.succeeds('depth', 'photo.ppm', '--depth', 'depth.pgm', '--snap', '2', '-o', 'd.png')
+        os.remove('d.png')
         self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '
                                  r'build has no OpenCV)'),
                    'depth', 'photo.ppm', '-o', 'd.png', '--estimate', 'no.onnx')
@@ -635,12 +652,12 @@ class DepthAndInfo(Case):
         self.strokes('s.json', {'kind': 'all', 'disparity': 2})
         self.fails(1, 's.json: strokes[0].disparity must be a number from 0 to 1', *command,
                    's.json')
-        self.fails(1, 'no.json: No such file or directory', *command, 'no.json')
-        self.fails(1, '.: Is a directory', *command, '.')
+        self.fails(1, 'no.json: cannot open it: No such file or directory', *command, 'no.json')
+        self.fails(1, '.: cannot read it: Is a directory', *command, '.')
         self.fails(1, re.compile(r'^refocus: photo.ppm: line 1 is no JSON: '), *command,
                    'photo.ppm')
         for content, why in ((b'', 'it is empty'), (b' ' * (64 << 20) + b' ',
-                                                    'it has more than 67108864 bytes')):
+                                                    'it is larger than the limit of 67108864 bytes')):
             with open('s.json', 'wb') as file:
                 file.write(content)
             self.fails(1, 's.json: ' + why, *command, 's.json')

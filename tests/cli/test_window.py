@@ -22,7 +22,7 @@ def start_display(folder, screen='800x640x24'):
     read_end, write_end = os.pipe()
     server = subprocess.Popen(
         ['Xvfb', '-displayfd', str(write_end), '-screen', '0', screen, '-fbdir', folder,
-         '-nolisten', 'tcp', '-ac'], pass_fds=[write_end], stderr=subprocess.DEVNULL)
+         '-nolisten', 'tcp', '-ac', '-noreset'], pass_fds=[write_end], stderr=subprocess.DEVNULL)
     os.close(write_end)
     with os.fdopen(read_end) as pipe:
         return server, ':' + pipe.readline().strip()

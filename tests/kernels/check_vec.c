@@ -117,16 +117,6 @@ static uint16_t c_mul(uint16_t a, uint16_t b)
     return (uint16_t)((uint32_t)a * b);
 }
 
-static uint16_t c_least(uint16_t a, uint16_t b)
-{
-    return a < b ? a : b;
-}
-
-static uint16_t c_most(uint16_t a, uint16_t b)
-{
-    return a > b ? a : b;
-}
-
 static const struct {
     const char *name;
     operation *run;
@@ -140,8 +130,7 @@ static const struct {
     {"equal", vec_u16_equal, c_equal},       {"offset", vec_u16_offset, c_offset},
     {"bytes", vec_u16_bytes, c_bytes},
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
-    {"mul", vec_u16_mul, c_mul},             {"least", vec_u16_least, c_least},
-    {"most", vec_u16_most, c_most},
+    {"mul", vec_u16_mul, c_mul},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)

@@ -270,7 +270,122 @@ static void expect_luminance(void *const *row, int parameter, int n)
                                 1024 + 1) / 2;
 }
 
+static void run_smooth1(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    k->smooth1(row[0], row[1], row[2], apart_of(parameter), parameter, n);
+}
+
+static void expect_smooth1(void *const *row, int parameter, int n)
+{
+    const int apart = (int)apart_of(parameter);
+    uint16_t *out = row[0];
+
+    for (int x = 0; x < n; x++) {
+        const int16_t *blur = (const int16_t *)row[2] + x;
+        const uint16_t *light = (const uint16_t *)row[1] + x;
+        int sum = 0, count = 0;
+
+        for (int i = -apart; i <= apart; i += apart) {
+            if (i == 0 || (abs(blur[0]) > parameter && abs(blur[i] - blur[0]) <= 256)) {
+                sum += light[i];
+                count++;
+            }
+        }
+        out[x] = (uint16_t)((2 * sum + count) / (2 * count));
+    }
+}
+
+static void run_sharpest4(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->sharpest4(row[0], row[1], row[2], n);
+}
+
+static void expect_sharpest4(void *const *row, int parameter, int n)
+{
+    int16_t *out = row[0];
+
+    (void)parameter;
+    for (int x = 0; x < n; x++) {
+        int best = 40000;
+
+        for (int i = 0; i < 4; i++) {
+            const int16_t s = ((const int16_t *)row[1 + i / 2])[2 * x + i % 2];
+
+            if (abs(s) < abs(best))
+                best = s;
+        }
+        out[2 * x] = out[2 * x + 1] = (int16_t)best;
+    }
+}
+
+static void run_push1(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->push1(row[0], row[1], row[2], row[3], row[4], row[5], n);
+}
+
+static void expect_push1(void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    for (int x = 0; x < n; x++) {
+        int sum = 0, count = 0, farthest = RF_NO_BLUR;
+
+        for (int i = 0; i < 4; i++) {
+            const int blur = ((const int16_t *)row[4 + i / 2])[2 * x + i % 2];
+
+            if (blur == RF_NO_BLUR)
+                continue;
+            count++;
+            farthest = blur > farthest ? blur : farthest;
+            sum += ((const uint16_t *)row[2 + i / 2])[2 * x + i % 2];
+        }
+        ((uint16_t *)row[0])[x] =
+            count == 0 ? 0 : (uint16_t)((2 * sum + count) / (2 * count));
+        ((int16_t *)row[1])[x] = (int16_t)farthest;
+    }
+}
+
+static void run_split2(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->split2(row[0], row[1], row[2], row[3], n);
+}
+
+static void expect_split2(void *const *row, int parameter, int n)
+{
+    const uint16_t *upper = row[2], *lower = row[3];
+
+    (void)parameter;
+    for (int i = 0; i < 2 * n; i++)
+        ((uint16_t *)row[i % 2])[i / 2] = (uint16_t)((upper[i] + lower[i] + 1) / 2);
+}
+
+static void run_join2(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    k->join2(row[0], row[1], row[2], n);
+}
+
+static void expect_join2(void *const *row, int parameter, int n)
+{
+    (void)parameter;
+    for (int i = 0; i < 2 * n; i++)
+        ((uint16_t *)row[0])[i] = ((const uint16_t *)row[1 + i % 2])[i / 2];
+}
+
 const struct row_kernel row_kernels[] = {
+    {"smooth1", 3, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 4, 0}, {BLUR, 1, 4, 0}}, 0, INT16_MAX,
+     run_smooth1, expect_smooth1},
+    {"sharpest4", 3, {{BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}}, 0, 0,
+     run_sharpest4, expect_sharpest4},
+    {"push1", 6,
+     {{LIGHT, 1, 0, 0}, {BLUR, 1, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0},
+      {BLUR_OR_NONE, 2, 0, 0}, {BLUR_OR_NONE, 2, 0, 0}}, 0, 0, run_push1, expect_push1},
+    {"split2", 4, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0}},
+     0, 0, run_split2, expect_split2},
+    {"join2", 3, {{LIGHT, 2, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}}, 0, 0,
+     run_join2, expect_join2},
     {"signed_blur", 2, {{BLUR, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, 30000,
      run_signed_blur, expect_signed_blur},
     {"smooth3", 7,

@@ -168,6 +168,38 @@ static int cv_joint_full(const struct quality_scene *scene, const struct coarse 
 }
 #endif
 
+/* The exact disparities, three pixels to the right and down. */
+static int moved(const struct quality_scene *scene, const struct coarse *c, uint16_t *out)
+{
+    enum { OFF = 3 };
+
+    (void)c;
+    for (int y = 0; y < scene->height; y++)
+        for (int x = 0; x < scene->width; x++)
+            *out++ = scene->disparity[(size_t)(y < OFF ? 0 : y - OFF) * (size_t)scene->width +
+                                      (size_t)(x < OFF ? 0 : x - OFF)];
+    return 0;
+}
+
+static int snapped(const struct quality_scene *scene, const struct coarse *c, uint16_t *out)
+{
+    const struct refocus_image photo = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, scene->photo, scene->width, scene->height, 3 * scene->width);
+    const ptrdiff_t stride = 2 * (ptrdiff_t)scene->width;
+    const struct refocus_snap_params params = refocus_snap_params_default(3);
+    uint16_t *map = malloc((size_t)stride * (size_t)scene->height);
+    int status = map ? moved(scene, c, map) : -1;
+
+    if (!status) {
+        const struct refocus_disparity d =
+            refocus_disparity16(map, scene->width, scene->height, stride);
+
+        status = refocus_depth_snap(&photo, &d, &params, out, stride);
+    }
+    free(map);
+    return status;
+}
+
 static const struct {
     const char *name;
     upsample_fn *run;
@@ -183,7 +215,9 @@ static const struct {
             {"OpenCV joint bilateral, full size", cv_joint_full},
 #endif
             {"refocus_upsample, holes filled", cluster},
-            {"refocus_upsample, holes as confidence", trusting}};
+            {"refocus_upsample, holes as confidence", trusting},
+            {"exact, 3 px off", moved},
+            {"the same, refocus_depth_snap", snapped}};
 
 /* Pixels on either side of a step. */
 static void find_edges(const uint16_t *d, int w, int h, uint8_t *edge)

@@ -15,6 +15,7 @@
 #include "png_io.h"
 #include "scene.h"
 #include "settings.h"
+#include "yuv.h"
 
 enum { MAX_RUNS = 32 };
 
@@ -45,44 +46,81 @@ static int make_aperture(const struct quality_view *view, struct refocus_apertur
                : REFOCUS_OK;
 }
 
-static int render(const struct quality_scene *scene, const struct quality_view *view,
-                  const struct quality_settings *settings, uint8_t *pixels, double *ms)
+static int render_image(const struct quality_scene *scene, const struct quality_view *view,
+                        const struct quality_settings *settings,
+                        const struct refocus_image *photo, const struct refocus_image *out,
+                        double *ms)
 {
     struct refocus_renderer_params limits = refocus_renderer_params_default(
         scene->width, scene->height, (float)view->blur);
     struct refocus_render_params params = settings->render;
-    const ptrdiff_t stride = 3 * (ptrdiff_t)scene->width;
-    const struct refocus_image photo = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, scene->photo, scene->width, scene->height, stride);
-    const struct refocus_image out = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, pixels, scene->width, scene->height, stride);
     const struct refocus_disparity disparity = refocus_disparity16(
         scene->disparity, scene->width, scene->height, 2 * (ptrdiff_t)scene->width);
     struct refocus_aperture *aperture = NULL;
     struct refocus_renderer *renderer = NULL;
     int status;
 
-    *ms = 0;
-    if (settings->input) {
-        memcpy(pixels, scene->photo, (size_t)stride * (size_t)scene->height);
-        return REFOCUS_OK;
-    }
     limits.threads = settings->threads;
     limits.methods = REFOCUS_METHOD_BIT(settings->render.method);
     limits.cpu = (uint32_t)settings->cpu;
     if ((status = make_aperture(view, &aperture))
         || (status = refocus_renderer_create(&renderer, &limits))
-        || (status = refocus_prepare(renderer, &photo, &disparity)))
+        || (status = refocus_prepare(renderer, photo, &disparity)))
         goto done;
     params.focus_disparity = (float)view->focus;
     params.max_blur_radius = (float)view->blur;
     params.aperture = aperture;
     const double start = seconds();
-    status = refocus_render(renderer, &params, &out);
+    status = refocus_render(renderer, &params, out);
     *ms = 1000 * (seconds() - start);
 done:
     refocus_renderer_destroy(&renderer);
     refocus_aperture_destroy(&aperture);
+    return status;
+}
+
+/* The photo as a camera would give it, and the result as a display would show it. */
+static int render(const struct quality_scene *scene, const struct quality_view *view,
+                  const struct quality_settings *settings, uint8_t *pixels, double *ms)
+{
+    const int w = scene->width, h = scene->height;
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, scene->photo, w, h, 3 * (ptrdiff_t)w);
+    const struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, w, h, 3 * (ptrdiff_t)w);
+    const int format = settings->format ? settings->format : settings->through;
+    struct refocus_image in_yuv, out_yuv;
+    uint8_t *memory;
+    int status = REFOCUS_OK;
+
+    *ms = 0;
+    if (!format && !settings->input)
+        return render_image(scene, view, settings, &photo, &out, ms);
+    if (!format) {
+        memcpy(pixels, scene->photo, 3 * (size_t)w * (size_t)h);
+        return REFOCUS_OK;
+    }
+    memory = malloc(2 * refocus_image_bytes((uint32_t)format, w, h));
+    if (!memory)
+        return REFOCUS_ERR_MEMORY;
+    in_yuv = refocus_image_planar((uint32_t)format, memory, w, h);
+    out_yuv = refocus_image_planar((uint32_t)format,
+                                   memory + refocus_image_bytes((uint32_t)format, w, h), w, h);
+    yuv_from_rgb(&photo, &in_yuv);
+    if (settings->input) {
+        yuv_to_rgb(&in_yuv, &out);
+    } else if (settings->format) {
+        status = render_image(scene, view, settings, &in_yuv, &out_yuv, ms);
+        if (status == REFOCUS_OK)
+            yuv_to_rgb(&out_yuv, &out);
+    } else {
+        /* the photo is not needed any more: out may hold it, converted there and back */
+        yuv_to_rgb(&in_yuv, &out);
+        status = render_image(scene, view, settings, &out, &out, ms);
+        yuv_from_rgb(&out, &out_yuv);
+        yuv_to_rgb(&out_yuv, &out);
+    }
+    free(memory);
     return status;
 }
 

@@ -24,7 +24,7 @@ METHODS = [
     ("standard", "method=sweep,highlight=4",
      "the default: two layers, 64 rays, light given back to clipped lamps"),
     ("sweep", "method=sweep", "the same of what is in the photo"),
-    ("best", "method=sweep,rays=128,highlight=4,sigma=400",
+    ("best", "method=sweep,rays=128,highlight=8,sigma=400",
      "128 rays, light given back to clipped lamps, bright samples count more"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "the paper to the letter: one test, every ray"),
@@ -55,7 +55,9 @@ LIGHTS = [
     ("gain-4", "highlight=4", "four times: standard"),
     ("gain-4-s400", "highlight=4,sigma=400", "four times, σ = 400"),
     ("gain-4-128", "highlight=4,rays=128", "four times, 128 rays"),
-    ("gain-4-128-s400", "highlight=4,rays=128,sigma=400", "four times, 128 rays, σ = 400: best"),
+    ("gain-4-128-s400", "highlight=4,rays=128,sigma=400", "four times, 128 rays, σ = 400"),
+    ("gain-8", "highlight=8", "eight times"),
+    ("gain-8-128-s400", "highlight=8,rays=128,sigma=400", "eight times, 128 rays, σ = 400: best"),
 ]
 BLENDS = [
     ("linear", "blend=linear,sigma=off", "linear light, plain average"),

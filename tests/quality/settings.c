@@ -24,6 +24,13 @@ static const struct name cpu_names[] = {{"auto", REFOCUS_CPU_AUTO},
                                         {"avx2", REFOCUS_CPU_AVX2},
                                         {0}};
 
+static const struct name format_names[] = {{"rgb", 0},
+                                           {"nv12", REFOCUS_FORMAT_NV12},
+                                           {"nv21", REFOCUS_FORMAT_NV21},
+                                           {"i420", REFOCUS_FORMAT_I420},
+                                           {"yuyv", REFOCUS_FORMAT_YUYV},
+                                           {0}};
+
 #define RENDER(field) offsetof(struct quality_settings, render.field)
 
 /* A new setting of the renderer is one line here. */
@@ -51,6 +58,8 @@ static const struct key {
     {"conductivity", FLOAT, RENDER(conductivity), NULL},
     {"threads", INT32, offsetof(struct quality_settings, threads), NULL},
     {"cpu", NAMED, offsetof(struct quality_settings, cpu), cpu_names},
+    {"format", NAMED, offsetof(struct quality_settings, format), format_names},
+    {"through", NAMED, offsetof(struct quality_settings, through), format_names},
     {"against", TEXT, offsetof(struct quality_settings, against), NULL},
 };
 

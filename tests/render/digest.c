@@ -6,7 +6,7 @@
  *        render-digest golden.txt --update   writes it: after a change of the arithmetic
  *
  * Prints them too; tests/run.sh compares what its builds print. */
-#include "pictures.h"
+#include "yuv_pictures.h"
 
 static const char *golden_path;
 static FILE *golden_new; /* being written, else NULL */
@@ -208,6 +208,178 @@ static void pictures(void **state)
     }
 }
 
+/* Photos of Y, U and V: as `views`, in the sweep's styles. */
+static const struct yuv_view {
+    int width, height, coarse;
+    float blur, focus, gain;
+    uint32_t format, matrix, range;
+} yuv_views[] = {
+    {83, 47, 1, 9, 0.6f, 1, REFOCUS_FORMAT_NV12, 0, 0},
+    {64, 33, 1, 14.5f, 0, 1, REFOCUS_FORMAT_I420, 1, 0},
+    {31, 70, 1, 5, 1, 3, REFOCUS_FORMAT_YUYV, 0, 1},
+    {90, 61, 3, 31.5f, 0.8f, 4, REFOCUS_FORMAT_NV21, 1, 1},
+    {97, 54, 1, 100, 0.5f, 1, REFOCUS_FORMAT_YUYV, 0, 0},
+};
+
+static uint64_t hash_samples(const struct refocus_image *image)
+{
+    static uint8_t samples[3 * 100 * 100];
+    size_t n = 0;
+
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            for (int i = 0; i < 3; i++)
+                samples[n++] = *yuv_sample(image, i, x, y);
+    return hash(samples, n);
+}
+
+/* Renders the styles of a view; false: there is no such instruction set here. */
+static bool hash_yuv_view(const struct yuv_view *view, const struct picture *p, uint32_t cpu,
+                          int threads, uint64_t *hashes)
+{
+    const struct view like = {.coarse = view->coarse};
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(p->width, p->height, view->blur);
+    struct yuv_picture photo = yuv_make(view->format, p->width, p->height, 1);
+    struct yuv_picture out = yuv_make(view->format, p->width, p->height, 2);
+    struct picture depth = depth_of(&like, p);
+    const struct refocus_disparity map = picture_disparity(&depth);
+    struct refocus_renderer *renderer;
+    int status;
+
+    photo.image.matrix = view->matrix;
+    photo.image.range = view->range;
+    yuv_from_picture(&photo, p);
+    limits.cpu = cpu;
+    limits.threads = threads;
+    status = refocus_renderer_create(&renderer, &limits);
+    if (status == REFOCUS_OK) {
+        assert_int_equal(refocus_prepare(renderer, &photo.image, &map), REFOCUS_OK);
+        for (int i = 0; i < style_count; i++) {
+            struct refocus_render_params params =
+                style_params(&styles[i], view->focus, view->blur);
+            struct refocus_aperture *aperture = style_aperture(&styles[i]);
+
+            params.aperture = aperture;
+            params.highlight_gain = view->gain;
+            if (styles[i].method == REFOCUS_METHOD_SWEEP) {
+                assert_int_equal(refocus_render(renderer, &params, &out.image), REFOCUS_OK);
+                hashes[i] = hash_samples(&out.image);
+            }
+            refocus_aperture_destroy(&aperture);
+        }
+        refocus_renderer_destroy(&renderer);
+    } else {
+        assert_int_equal(status, REFOCUS_ERR_UNSUPPORTED);
+    }
+    yuv_free(&photo);
+    yuv_free(&out);
+    picture_free(&depth);
+    return status == REFOCUS_OK;
+}
+
+static void yuv_views_same(void **state)
+{
+    static const struct {
+        uint32_t cpu;
+        int threads;
+    } ways[] = {{REFOCUS_CPU_NEON, 1}, {REFOCUS_CPU_SSE41, 2}, {REFOCUS_CPU_AVX2, 1},
+                {REFOCUS_CPU_AUTO, 3}, {REFOCUS_CPU_AUTO, 8}};
+
+    (void)state;
+    for (int v = 0; v < (int)(sizeof yuv_views / sizeof yuv_views[0]); v++) {
+        const struct yuv_view *view = &yuv_views[v];
+        struct picture p = picture_make(view->width, view->height, 177u + (uint32_t)v);
+        uint64_t plain[64] = {0};
+
+        assert_true(hash_yuv_view(view, &p, REFOCUS_CPU_C, 1, plain));
+        for (int w = 0; w < 5; w++) {
+            uint64_t hashes[64] = {0};
+
+            if (hash_yuv_view(view, &p, ways[w].cpu, ways[w].threads, hashes) &&
+                memcmp(hashes, plain, sizeof plain))
+                fail_msg("format %d: %s with %d threads differs from plain C with one",
+                         (int)view->format, refocus_cpu_name(ways[w].cpu), ways[w].threads);
+        }
+        for (int i = 0; i < style_count; i++) {
+            char name[120];
+
+            if (styles[i].method != REFOCUS_METHOD_SWEEP)
+                continue;
+            snprintf(name, sizeof name,
+                     "%d x %d, depth / %d, K = %g, df = %g, gain %g, format %d %d %d, %s",
+                     p.width, p.height, view->coarse, (double)view->blur,
+                     (double)view->focus, (double)view->gain, (int)view->format,
+                     (int)view->matrix, (int)view->range, styles[i].name);
+            check_golden(plain[i], name);
+        }
+        picture_free(&p);
+    }
+}
+
+/* A dark picture with lamps of 4 x 4 pixels. */
+static struct picture night(int width, int height)
+{
+    struct picture p = picture_make(width, height, 123);
+
+    for (int i = 0; i < width * height; i++) {
+        const bool lamp = i % width % 17 < 4 && i / width % 19 < 4;
+
+        for (int c = 0; c < 3; c++)
+            p.rgb[3 * i + c] = lamp ? (c == 2 ? 200 : 255) : p.rgb[3 * i + c] / 5;
+    }
+    return p;
+}
+
+/* Effects: the same on every instruction set and with any number of threads. */
+static void effects(void **state)
+{
+    enum { W = 83, H = 61 };
+    static uint8_t out[3 * W * H];
+    const float focus = 0.4f, blur = 11;
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct picture p = night(W, H);
+    const struct refocus_image photo = picture_image(&p);
+    const struct refocus_disparity disparity = picture_disparity(&p);
+    struct refocus_render_params params;
+    uint64_t plain[64];
+    const char *name;
+
+    (void)state;
+    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++) {
+        struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, blur);
+        struct refocus_renderer *renderer;
+
+        limits.methods = REFOCUS_METHODS_ALL;
+        limits.cpu = cpu;
+        limits.threads = (int32_t)cpu;
+        if (refocus_renderer_create(&renderer, &limits) != REFOCUS_OK)
+            continue;
+        assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+        for (int i = 0; effect_params(i, focus, blur, &params, &name); i++) {
+            struct refocus_aperture *aperture = effect_aperture(i);
+            uint64_t is;
+
+            params.aperture = aperture;
+            assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+            refocus_aperture_destroy(&aperture);
+            is = hash(out, sizeof out);
+            if (cpu == REFOCUS_CPU_C) {
+                char line[80];
+
+                plain[i] = is;
+                snprintf(line, sizeof line, "effect: %s", name);
+                check_golden(is, line);
+            } else if (is != plain[i]) {
+                fail_msg("effect %s: %s differs from plain C", name, refocus_cpu_name(cpu));
+            }
+        }
+        refocus_renderer_destroy(&renderer);
+    }
+    picture_free(&p);
+}
+
 /* A coarse map brought to the photo's size. */
 static void upsampled(void **state)
 {
@@ -260,6 +432,8 @@ static void ray_sets(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures),
+                                       cmocka_unit_test(yuv_views_same),
+                                       cmocka_unit_test(effects),
                                        cmocka_unit_test(upsampled),
                                        cmocka_unit_test(ray_sets)};
     const bool update = argc == 3 && !strcmp(argv[2], "--update");

@@ -163,16 +163,17 @@ static void set_variant(struct refocus_render_params *params, int variant)
     params->spread = variant == 1 ? REFOCUS_SPREAD_LOMMEL : REFOCUS_SPREAD_UNIFORM;
     params->airy_radius = 1.5f;
     params->depth_ratio = variant == 1 ? 3 : 1;
-    params->star_spikes = variant == 2 ? 6 : 0;
+    params->star_spikes = variant == 2 && params->method == REFOCUS_METHOD_SCATTER ? 6 : 0;
     params->star_length = 9;
     params->attention_angle = variant == 1 ? 160 : variant == 2 ? 0 : 20;
     params->attention_depth = variant == 1 ? 1 : 0.3f;
     params->middle_ratio = variant == 1 ? 2 : 0;
     params->last_ratio = variant == 1 ? 4 : 0;
     params->solver = variant == 1 ? REFOCUS_SOLVER_ITERATED : REFOCUS_SOLVER_FAST;
-    params->field = variant == 2   ? REFOCUS_FIELD_SPHERE
-                    : variant == 3 ? REFOCUS_FIELD_PLUS
-                                   : REFOCUS_FIELD_LENS;
+    if (params->method == REFOCUS_METHOD_DIFFUSION)
+        params->field = variant == 2   ? REFOCUS_FIELD_SPHERE
+                        : variant == 3 ? REFOCUS_FIELD_PLUS
+                                       : REFOCUS_FIELD_LENS;
 }
 
 struct refocus_render_params style_params(const struct style *style, float focus, float blur)
@@ -189,6 +190,136 @@ struct refocus_render_params style_params(const struct style *style, float focus
     params.sigma = style->sigma > 0 ? style->sigma : INFINITY;
     set_variant(&params, style->variant);
     return params;
+}
+
+/* A small map with all of 0 to 1 in it. */
+static const struct refocus_disparity *ramp_map(void)
+{
+    static const uint8_t samples[3][5] = {
+        {0, 30, 80, 160, 255}, {10, 255, 90, 0, 220}, {200, 120, 40, 60, 255}};
+    static const struct refocus_disparity map = {8, 5, 3, samples, 5};
+
+    return &map;
+}
+
+enum { METHODS = 4 };
+
+static void set_field(struct refocus_render_params *params, uint32_t field)
+{
+    params->field = field;
+    params->field_map = ramp_map();
+    params->field_x = 0.4f;
+    params->field_y = 0.6f;
+    params->field_disparity = 0.45f;
+    params->field_angle = 30;
+}
+
+static void set_tilt(struct refocus_render_params *params)
+{
+    params->tilt_across = -0.5f;
+    params->tilt_down = 1.2f;
+    params->tilt_y = 0.35f;
+}
+
+static void set_bands(struct refocus_render_params *params)
+{
+    params->focus_half_width = 0.03f;
+    params->focus_transition = 0.05f;
+    params->bands = 2;
+    params->band[0] = (struct refocus_band){0.95f, 0.04f, 0};
+    params->band[1] = (struct refocus_band){0.1f, 0, 0};
+}
+
+/* Effects from here on are of the look of the blur. */
+enum { FIRST_LOOK = 15, IRIS = FIRST_LOOK };
+
+static void set_look(struct refocus_render_params *params, int i)
+{
+    const bool all = i == IRIS + 14;
+
+    params->cat_eye = i == IRIS + 1 || all ? 0.6f : 0;
+    params->rays = i == IRIS + 3 || i == IRIS + 7 ? REFOCUS_RAYS_FULL : 64;
+    params->sigma = i == IRIS + 5 || i == IRIS + 12 || all ? 200 : INFINITY;
+    params->fringe = i == IRIS + 6 || all ? 0.2f : i == IRIS + 7 ? -0.3f : 0;
+    params->star_spikes = i == IRIS + 8 || all ? 5 : 0;
+    params->star_length = 15;
+    params->star_angle = 10;
+    params->star_strength = 0.5f;
+    params->grain = i == IRIS + 9 || all ? 1.5f : 0;
+    params->seed = 99;
+    params->highlight_gain = i == IRIS + 8 || all                ? 4
+                             : i == IRIS + 10                    ? 8
+                             : i == IRIS + 11 || i == IRIS + 12 ? 16
+                                                                 : 1;
+}
+
+bool effect_params(int i, float focus, float blur, struct refocus_render_params *params,
+                   const char **name)
+{
+    static const uint32_t method[METHODS] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
+                                             REFOCUS_METHOD_BLUR, REFOCUS_METHOD_DIFFUSION};
+    static const char *const names[] = {
+        "sweep, tilted",   "search, tilted", "blur, tilted", "diffusion, tilted",
+        "tilt, no depth",  "bands",          "focus map",    "sharp map",
+        "clamps",          "cylinder",       "plus",         "plane",
+        "sphere",          "field picture",  "all of focus", "iris",
+        "cat's eye",       "bubbles",        "rings full",   "squeezed star",
+        "heart weighted",  "fringe",         "fringe full",  "star filter",
+        "grain",           "lamps 8",        "lamps 16",     "lamps 16 weighted",
+        "mask, sides",     "all of bokeh"};
+    const int count = sizeof names / sizeof *names;
+
+    *params = refocus_render_params_default(focus, blur);
+    if (i >= count)
+        return false;
+    *name = names[i];
+    params->method = i < METHODS ? method[i] : REFOCUS_METHOD_SWEEP;
+    if (i < METHODS || i == 4 || i == 14)
+        set_tilt(params);
+    params->depth_share = i == 4 ? 0 : i == 14 ? 0.75f : 1;
+    if (i == 5 || i == 14)
+        set_bands(params);
+    if (i == 6 || i == 14)
+        params->focus_map = ramp_map();
+    if (i == 7 || i == 14)
+        params->sharp_map = ramp_map();
+    if (i == 8 || i == 14) {
+        params->least_disparity = 0.2f;
+        params->most_disparity = 0.8f;
+        params->blur_limit = 0.6f * blur;
+    }
+    if (i >= 9 && i < 14)
+        set_field(params, (uint32_t)(i - 8));
+    set_look(params, i);
+    return true;
+}
+
+struct refocus_aperture *effect_aperture(int i)
+{
+    static const uint8_t mask[3][3] = {{255, 0, 90}, {255, 255, 255}, {0, 255, 0}};
+    struct refocus_aperture_params p = refocus_aperture_params_default();
+    struct refocus_aperture *aperture;
+
+    if (i < FIRST_LOOK)
+        return NULL;
+    p.blades = i == IRIS || i == IRIS + 14 ? 6 : i == IRIS + 4 ? 7 : 0;
+    p.rotation_deg = p.blades ? 20 : 0;
+    p.curvature = i == IRIS ? 0.4 : 0;
+    p.opening = i == IRIS ? 0.8 : 0;
+    p.figure = i == IRIS + 4   ? REFOCUS_FIGURE_STAR
+               : i == IRIS + 5 ? REFOCUS_FIGURE_HEART
+                               : REFOCUS_FIGURE_NONE;
+    p.squeeze = i == IRIS + 4 || i == IRIS + 14 ? 0.6 : 1;
+    p.hole = i == IRIS + 3 || i == IRIS + 14 ? 0.4 : 0;
+    p.edge_behind = i == IRIS + 2 || i == IRIS + 14 ? 0.6 : i == IRIS + 3 ? -0.5 : 0;
+    p.edge_before = i == IRIS + 3 ? -0.5 : -p.edge_behind;
+    if (i == IRIS + 13) {
+        p.mask = mask[0];
+        p.mask_width = p.mask_height = p.mask_stride = 3;
+        p.edge_before = 0.5;
+    }
+    assert_int_equal(refocus_aperture_create(&aperture, &p), REFOCUS_OK);
+    return aperture;
 }
 
 struct refocus_aperture *style_aperture(const struct style *style)

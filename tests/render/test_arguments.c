@@ -87,7 +87,7 @@ static void bad_settings(void **state)
         BAD(refocus_render_params, rays, 1025), BAD(refocus_render_params, rays, INT32_MAX), BAD(refocus_render_params, blend, 3),
         BAD(refocus_render_params, sigma, 0.99f), BAD(refocus_render_params, sigma, -1), BAD(refocus_render_params, sigma, NAN),
         BAD(refocus_render_params, highlight_gain, 0.99f),
-        BAD(refocus_render_params, highlight_gain, 4.01f),
+        BAD(refocus_render_params, highlight_gain, 16.01f),
         BAD(refocus_render_params, highlight_gain, NAN),
         BAD(refocus_render_params, iterations, 0), BAD(refocus_render_params, iterations, 65), BAD(refocus_render_params, iterations, -1),
         BAD(refocus_render_params, mirror, 2), BAD(refocus_render_params, background, 2), BAD(refocus_render_params, prefilter, 2),
@@ -115,7 +115,29 @@ static void bad_settings(void **state)
         BAD(refocus_render_params, field_angle, INFINITY), BAD(refocus_render_params, layers, 0),
         BAD(refocus_render_params, layers, 9), BAD(refocus_render_params, solver, 2),
         BAD(refocus_render_params, conductivity, 0), BAD(refocus_render_params, conductivity, 1.1f),
-        BAD(refocus_render_params, field_map, &(struct refocus_disparity){0})};
+        BAD(refocus_render_params, field_map, &(struct refocus_disparity){0}),
+        BAD(refocus_render_params, field, REFOCUS_FIELD_PICTURE), /* which is missing */
+        BAD(refocus_render_params, tilt_x, -0.1f), BAD(refocus_render_params, tilt_y, 1.1f),
+        BAD(refocus_render_params, tilt_across, 64.1f), BAD(refocus_render_params, tilt_across, NAN),
+        BAD(refocus_render_params, tilt_down, -64.1f), BAD(refocus_render_params, depth_share, 1.01f),
+        BAD(refocus_render_params, depth_share, -0.1f), BAD(refocus_render_params, depth_share, NAN),
+        BAD(refocus_render_params, focus_half_width, -0.1f),
+        BAD(refocus_render_params, focus_half_width, 1.1f),
+        BAD(refocus_render_params, focus_transition, NAN),
+        BAD(refocus_render_params, focus_transition, 2), BAD(refocus_render_params, bands, -1),
+        BAD(refocus_render_params, bands, 16), BAD(refocus_render_params, bands, INT32_MAX),
+        BAD(refocus_render_params, focus_map, &(struct refocus_disparity){0}),
+        BAD(refocus_render_params, sharp_map, &(struct refocus_disparity){0}),
+        BAD(refocus_render_params, least_disparity, -0.1f),
+        BAD(refocus_render_params, least_disparity, 1.1f),
+        BAD(refocus_render_params, most_disparity, -0.1f),
+        BAD(refocus_render_params, most_disparity, NAN),
+        BAD(refocus_render_params, cat_eye, -0.1f), BAD(refocus_render_params, cat_eye, 0.91f),
+        BAD(refocus_render_params, cat_eye, NAN), BAD(refocus_render_params, fringe, 0.51f),
+        BAD(refocus_render_params, fringe, -0.51f), BAD(refocus_render_params, fringe, NAN),
+        BAD(refocus_render_params, grain, -0.1f), BAD(refocus_render_params, grain, 4.1f),
+        BAD(refocus_render_params, grain, NAN),
+        BAD(refocus_render_params, blur_limit, -1), BAD(refocus_render_params, blur_limit, 127.1f)};
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = prepared(&p, 5, 1);
     uint8_t out[3 * W * H];
@@ -144,6 +166,17 @@ static void bad_settings(void **state)
     params.method = REFOCUS_METHOD_DIFFUSION;
     params.field = REFOCUS_FIELD_PICTURE;
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    params = refocus_render_params_default(0.5f, 5);
+    params.least_disparity = 0.5f;
+    params.most_disparity = 0.49f;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    for (int i = 0; i < 3; i++) {
+        params = refocus_render_params_default(0.5f, 5);
+        params.bands = 4;
+        params.band[3] = (struct refocus_band){i == 0 ? 1.1f : 0.5f, i == 1 ? -1 : 0,
+                                               i == 2 ? NAN : 0};
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    }
     assert_int_equal(refocus_aperture_create_polygon(&aperture, 6, 0), REFOCUS_OK);
     for (uint32_t m = REFOCUS_METHOD_SCATTER; m < REFOCUS_METHOD_COUNT; m++) {
         params = refocus_render_params_default(0.5f, 5);

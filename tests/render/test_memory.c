@@ -332,6 +332,18 @@ static void nothing_while_rendering(void **state)
                      wrapped_calls - before, counter.calls - calls);
         refocus_aperture_destroy(&aperture);
     }
+    struct refocus_render_params params;
+    const char *name;
+    for (int i = 0; effect_params(i, 0.3f, 10, &params, &name); i++) {
+        struct refocus_aperture *aperture = effect_aperture(i);
+        const int before = wrapped_calls;
+
+        params.aperture = aperture;
+        assert_int_equal(refocus_render(renderer, &params, &image), 0);
+        if (wrapped_calls != before || counter.calls != calls)
+            fail_msg("%s allocates", name);
+        refocus_aperture_destroy(&aperture);
+    }
     refocus_renderer_destroy(&renderer);
     assert_int_equal(counter.held, 0);
     free(out);

@@ -25,6 +25,26 @@ REFOCUS_API int refocus_converter_create(struct refocus_converter **converter);
 REFOCUS_API void refocus_converter_destroy(struct refocus_converter **converter);
 
 /**
+ * The format that the core takes a frame's pixels in as they are: one with Y, U and V;
+ * REFOCUS_FORMAT_NONE for what has to become RGB8 first. UYVY becomes YUYV. Thread-safe.
+ */
+REFOCUS_API uint32_t refocus_frame_image_format(uint32_t frame_format);
+
+/**
+ * A frame of such a format, copied. Reads each row of each plane once, whole and in order:
+ * camera memory may be uncached.
+ *
+ * @param out  of the frame's size and of refocus_frame_image_format(); its matrix and range
+ *             are set to the frame's
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (no such format),
+ *         REFOCUS_ERR_MEMORY
+ */
+REFOCUS_API int refocus_convert_copy(struct refocus_converter *converter,
+                                     const struct refocus_frame *frame,
+                                     struct refocus_image *out,
+                                     struct refocus_reason *reason);
+
+/**
  * A frame as RGB8. Reads each row of each plane once, from the first to the last, in whole
  * rows: camera memory may be uncached. Y, U and V become R, G and B by BT.601 or BT.709 as
  * the frame says, each within 1 of the real value.

@@ -21,12 +21,22 @@ struct refocus_cv_reason {
     char text[256];
 };
 
+/** How the disparities of a pair are found. */
+enum refocus_stereo_method {
+    REFOCUS_STEREO_CHECKED = 0, /**< both ways; where they disagree by more than a pixel, and in
+                                     specks, there is no value */
+    REFOCUS_STEREO_PLAIN = 1,   /**< OpenCV's semi-global matching as it is: to compare with */
+    REFOCUS_STEREO_WLS = 2,     /**< both ways, and filled by the weighted least squares filter
+                                     of OpenCV contrib, from the module refocus-ximgproc */
+};
+
 /** Stereo matching. Start from refocus_stereo_params_default(). */
 struct refocus_stereo_params {
     uint32_t struct_size; /**< sizeof(struct refocus_stereo_params) */
     int32_t max_side;     /**< pictures are matched at no more than this width; default 1600 */
     float least_match;    /**< share of pixels that has to agree from left and right, else the
                                pair is refused; default 0.3 */
+    uint32_t method;      /**< enum refocus_stereo_method */
 };
 
 static inline struct refocus_stereo_params refocus_stereo_params_default(void)

@@ -5,7 +5,8 @@
  *     null                   nowhere, for timing
  *     window                 a window by SDL2, or the whole screen of a console (KMS)
  *     v4l2:/dev/video9       a V4L2 output node (virtual camera)
- *     y4m:FILE               a YUV4MPEG2 stream, 4:2:0, BT.601 limited range
+ *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0, BT.601 limited range;
+ *                            pictures of Y, U and V keep their codes, 4:2:0 or 4:2:2
  *     raw:FILE               RGB8 frames without a header
  *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0
  *
@@ -49,9 +50,24 @@ REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int hei
                                    double fps, struct refocus_reason *reason);
 
 /**
- * Write a frame of the size that was announced.
+ * Whether pictures of a format can be written without a change of their codes: 0 or 1. RGB8 is
+ * taken by every sink, formats of Y, U and V by `null` and `y4m`, and by `v4l2` where the node has
+ * that format.
+ */
+REFOCUS_API int refocus_sink_takes(struct refocus_sink *sink, uint32_t format);
+
+/**
+ * refocus_sink_start() for pictures like this one: of its size, format, matrix and range.
+ * A format that the sink does not take is REFOCUS_ERR_UNSUPPORTED.
+ */
+REFOCUS_API int refocus_sink_start_image(struct refocus_sink *sink,
+                                         const struct refocus_image *like, double fps,
+                                         struct refocus_reason *reason);
+
+/**
+ * Write a frame of the size and format that was announced.
  *
- * @param image  RGB8; not kept
+ * @param image  RGB8, or as refocus_sink_start_image() was told; not kept
  * @return REFOCUS_OK, REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader closed the pipe, the
  *         device is unplugged), REFOCUS_ERR_TIMEOUT (the device took none for a second: the
  *         frame is dropped), REFOCUS_ERR_END (the user closed the window, or pressed Escape or

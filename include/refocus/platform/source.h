@@ -24,6 +24,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <refocus/image.h>
 #include <refocus/platform/file.h>
 #include <refocus/status.h>
 
@@ -52,9 +53,6 @@ enum { REFOCUS_FRAME_FORMAT_COUNT = 14 };
 
 /** "YUYV", "NV12", ... ; NULL for an unknown one. Thread-safe. */
 REFOCUS_API const char *refocus_frame_format_name(uint32_t format);
-
-/** The coefficients that Y, U and V were made with. */
-enum refocus_matrix { REFOCUS_MATRIX_BT601 = 0, REFOCUS_MATRIX_BT709 = 1 };
 
 enum refocus_frame_flags {
     REFOCUS_FRAME_CORRUPT = 1,    /**< the driver says that pixels are missing or wrong */

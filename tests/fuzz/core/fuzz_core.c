@@ -60,13 +60,31 @@ static void take_pixels(struct input *in, uint8_t *to, size_t size)
         to[i] = in->size > 0 ? in->data[i % in->size] : (uint8_t)(i * 37);
 }
 
+static struct refocus_aperture_params take_opening(struct input *in, int wild)
+{
+    struct refocus_aperture_params p = refocus_aperture_params_default();
+
+    p.figure = (uint32_t)take_in(in, wild, 0, 2);
+    p.blades = take_in(in, wild, 2, 16);
+    if (p.blades == 2)
+        p.blades = 0;
+    p.rotation_deg = (double)take_fraction(in, wild, 360);
+    p.curvature = p.figure ? 0 : (double)take_fraction(in, wild, 1);
+    p.opening = p.figure ? 0 : (double)take_fraction(in, wild, 1);
+    p.squeeze = 0.5 + (double)take_fraction(in, wild, 1.5f);
+    p.hole = (double)take_fraction(in, wild, 0.9f);
+    p.edge_behind = 1 - (double)take_fraction(in, wild, 2);
+    p.edge_before = take(in, 1) & 1 ? p.edge_behind : -p.edge_behind;
+    return p;
+}
+
 static struct refocus_aperture *take_aperture(struct input *in, int wild)
 {
     struct refocus_aperture *aperture = NULL;
     uint8_t mask[16];
     int status = REFOCUS_OK;
 
-    switch (take(in, 1) % 4) {
+    switch (take(in, 1) % 5) {
     case 1:
         status = refocus_aperture_create_disc(&aperture);
         break;
@@ -81,6 +99,11 @@ static struct refocus_aperture *take_aperture(struct input *in, int wild)
             mask[i] = (uint8_t)take(in, 1);
         status = refocus_aperture_create_mask(&aperture, mask, 4, 4, 4);
         break;
+    case 4: {
+        const struct refocus_aperture_params params = take_opening(in, wild);
+        status = refocus_aperture_create(&aperture, &params);
+        break;
+    }
     }
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT);
     check(status == REFOCUS_OK || !aperture);
@@ -113,6 +136,38 @@ static void take_extras(struct input *in, int wild, struct refocus_render_params
     p->conductivity = 0.01f + take_fraction(in, wild, 0.99f);
 }
 
+/* Focus beyond a lens, and the look of the blur; `map` serves for all of its pictures. */
+static void take_controls(struct input *in, int wild, const struct refocus_disparity *map,
+                          struct refocus_render_params *p)
+{
+    const uint32_t maps = take(in, 1);
+
+    p->tilt_across = take_fraction(in, wild, 128) - (wild ? 0 : 64);
+    p->tilt_down = take_fraction(in, wild, 3);
+    p->tilt_x = take_fraction(in, wild, 1);
+    p->depth_share = 1 - take_fraction(in, wild, 1);
+    p->focus_half_width = take_fraction(in, wild, 0.3f);
+    p->focus_transition = take_fraction(in, wild, 1);
+    p->bands = take_in(in, wild, 0, REFOCUS_MAX_BANDS - 1);
+    for (int i = 0; i < p->bands && i < REFOCUS_MAX_BANDS - 1; i++)
+        p->band[i] = (struct refocus_band){take_fraction(in, wild, 1),
+                                           take_fraction(in, wild, 0.2f),
+                                           take_fraction(in, wild, 1)};
+    p->focus_map = maps & 1 ? map : NULL;
+    p->sharp_map = maps & 2 ? map : NULL;
+    p->field_map = maps & 4 ? map : NULL;
+    if (maps & 4)
+        p->field = REFOCUS_FIELD_PICTURE;
+    p->least_disparity = take_fraction(in, wild, 0.5f);
+    p->most_disparity = 1 - take_fraction(in, wild, 0.5f);
+    p->blur_limit = 127 - take_fraction(in, wild, 127);
+    p->cat_eye = take_fraction(in, wild, 0.9f);
+    p->fringe = take_fraction(in, wild, 1) - (wild ? 0 : 0.5f);
+    p->grain = take_fraction(in, wild, 4);
+    if (p->method != REFOCUS_METHOD_SWEEP && !wild)
+        p->cat_eye = p->fringe = 0;
+}
+
 static struct refocus_render_params take_lens(struct input *in, int wild, float most)
 {
     struct refocus_render_params p = refocus_render_params_default(
@@ -124,7 +179,7 @@ static struct refocus_render_params take_lens(struct input *in, int wild, float 
         p.rays = REFOCUS_RAYS_FULL;
     p.blend = (uint32_t)take_in(in, wild, 0, 2);
     p.sigma = 1 + take_fraction(in, wild, 300);
-    p.highlight_gain = 1 + take_fraction(in, wild, 3);
+    p.highlight_gain = 1 + take_fraction(in, wild, 15);
     p.iterations = take_in(in, wild, 1, 8);
     p.mirror = (uint8_t)take_in(in, wild, 0, 1);
     p.background = (uint8_t)take_in(in, wild, 0, 1);
@@ -142,16 +197,19 @@ static int render(struct refocus_renderer *renderer, struct refocus_render_param
 {
     const int whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
     const int w = whole ? width : p->region_width, h = whole ? height : p->region_height;
-    const int bytes = refocus_format_bytes(format);
-    struct refocus_image image = refocus_image_packed(
-        format, out + GUARD, w, h, (ptrdiff_t)(w > 0 && w <= MAX_SIDE ? w : 1) * bytes);
+    const int possible = w > 0 && w <= MAX_SIDE && h > 0 && h <= MAX_SIDE;
+    struct refocus_image image =
+        refocus_image_planar(format, out + GUARD, possible ? w : 1, possible ? h : 1);
     int status;
+
+    image.width = w;
+    image.height = h;
 
     memset(out, 0xa5, capacity);
     status = refocus_render(renderer, p, &image);
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT
-          || status == REFOCUS_ERR_STATE);
-    const size_t written = status == REFOCUS_OK ? (size_t)w * (size_t)h * (size_t)bytes : 0;
+          || status == REFOCUS_ERR_STATE || status == REFOCUS_ERR_UNSUPPORTED);
+    const size_t written = status == REFOCUS_OK ? refocus_image_bytes(format, w, h) : 0;
     for (size_t i = 0; i < capacity; i++)
         check((i >= GUARD && i < GUARD + written) || out[i] == 0xa5);
     return status;
@@ -163,13 +221,12 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     static uint8_t photo[4 * MAX_SIDE * MAX_SIDE], out[2][CAPACITY];
     static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
     const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
-    const uint32_t format = 1 + take(in, 1) % 4, out_format = 1 + take(in, 1) % 4;
+    const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % 8;
+    const uint32_t format = 1 + kind % 8; /* bits 3 and 4: matrix and range */
     const int bits = take(in, 1) & 1 ? 16 : 8;
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
     const int same = (int)take(in, 1) & 1;
-    const ptrdiff_t stride = (ptrdiff_t)width * refocus_format_bytes(format);
-    const struct refocus_image image =
-        refocus_image_packed(format, photo + stride * (height - 1), width, height, -stride);
+    struct refocus_image image = refocus_image_planar(format, photo, width, height);
     const struct refocus_disparity map = {
         (uint32_t)bits, same ? width : dw, same ? height : dh, disparity,
         (ptrdiff_t)(same ? width : dw) * bits / 8};
@@ -177,7 +234,17 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     struct refocus_aperture *aperture = take_aperture(in, wild);
     int status;
 
+    image.matrix = kind >> 3 & 1;
+    image.range = kind >> 4 & 1;
+    for (int i = 0; i < refocus_format_planes(format); i++) { /* bottom-up */
+        image.plane[i] += image.stride[i] * (refocus_plane_rows(format, i, height) - 1);
+        image.stride[i] = -image.stride[i];
+    }
     take_extras(in, wild, &lens);
+    if (in->size > 0 && take(in, 1) & 1)
+        take_controls(in, wild, &map, &lens);
+    else if (!wild && lens.method != REFOCUS_METHOD_DIFFUSION)
+        lens.field = REFOCUS_FIELD_LENS;
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);
     status = refocus_prepare(renderer, &image, &map);

@@ -28,10 +28,12 @@ def picture(width, height, form, out, bits, depth=None):
 def lens(focus, blur, most, method, rays, blend=0, sigma=128, gain=1, iterations=2, flags=(0, 0, 1),
          region=(0, 0, 0, 0)):
     return (share(focus, 1) + share(blur / most, 1) + u16(method) + u16(rays) + u16(blend)
-            + share(sigma - 1, 300) + share(gain - 1, 3) + u16(iterations, 1) + b"".join(map(u16, flags))
+            + share(sigma - 1, 300) + share(gain - 1, 15) + u16(iterations, 1) + b"".join(map(u16, flags))
             + b"".join(map(u16, region)))
 
 
+IRIS = b"\4" + u16(0) + u16(6, 2) + share(15, 360) + share(.4, 1) + share(.8, 1) + share(.3, 1.5) \
+    + share(.3, .9) + share(.4, 2) + b"\0"
 DISC, POLYGON, MASK = b"\1", b"\2" + u16(6, 3) + share(15, 360), b"\3" + bytes(range(0, 256, 16))
 
 
@@ -61,10 +63,24 @@ def main():
         "wild_nan": b"\2" + limits(9, 9, 3, 1)[1:] + picture(9, 9, 1, 1, 16)
         + struct.pack(">ff", float("nan"), 1) + b"\xff" * 40,
     }
+    for form, out, name in ((5, 5, "nv12"), (6, 7, "nv21"), (7, 6, "i420"), (8, 8, "yuyv")):
+        seeds[name] = (limits(48, 40, 9, 2) + picture(47, 39, form, out, 16)
+                       + lens(.3, 9, 9, 0, 64, gain=3) + DISC)
+        seeds[name + "_full"] = (limits(40, 30, 5, 1) + picture(33, 30, form + 24, out, 8, depth=(9, 7))
+                                 + lens(1, 5, 5, 0, 65, blend=1, sigma=300) + MASK)
+        seeds[name + "_region"] = (limits(48, 48, 10, 2) + picture(48, 48, form + 8, out, 16)
+                                   + lens(.8, 7, 10, 0, 32, region=(6, 8, 20, 16)) + POLYGON)
     papers = ["jittered", "lightfield", "blur", "scatter", "foveated", "interpolated", "diffusion"]
     for method, name in enumerate(papers, 3):
         seeds[name] = (limits(40, 30, 8, 2) + picture(40, 27, 1, 1, 16)
                        + lens(.4, 7, 8, method, 40) + DISC + bytes(range(90)))
+    # extras: 46 bytes; then the controls
+    for number, (name, aperture) in enumerate((("controls", DISC), ("iris", IRIS))):
+        for seed in range(3):
+            bits = random.Random(10 * number + seed)
+            extras = bytes(bits.randrange(256) for _ in range(120))
+            seeds["%s%d" % (name, seed)] = (limits(40, 30, 8, 2) + picture(40, 30, 1, 1, 16)
+                                            + lens(.4, 7, 8, 0, 64, gain=8) + aperture + extras)
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name, seed in seeds.items():
         (FOLDER / name).write_bytes(seed + pixels)

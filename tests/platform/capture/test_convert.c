@@ -109,6 +109,69 @@ static void check_frame(struct refocus_converter *converter, uint32_t format, in
         fail_msg("%s %dx%d: off by %g", refocus_frame_format_name(format), width, height, worst);
 }
 
+/* A frame in Y, U and V copied: every sample, the matrix and the range, nothing else. */
+static void check_copy(struct refocus_converter *converter, uint32_t format, int width,
+                       int height)
+{
+    static uint8_t copy[MOST * MOST * 4 + PAD * MOST * 3];
+    const uint32_t kept = refocus_frame_image_format(format);
+    struct refocus_image image = {.format = kept, .width = width, .height = height};
+    struct refocus_frame frame, seen;
+    size_t at = 0;
+
+    make_frame(&frame, format, width, height, memory);
+    frame.matrix = (uint32_t)width % 2;
+    frame.flags = height % 2 ? REFOCUS_FRAME_FULL_RANGE : 0;
+    memset(copy, 0xa5, sizeof copy);
+    seen = frame;
+    seen.format = format == REFOCUS_FRAME_UYVY ? (uint32_t)REFOCUS_FRAME_YUYV : format;
+    for (int i = 0; i < rf_format_planes(format); i++) {
+        image.plane[i] = copy + at;
+        image.stride[i] = (ptrdiff_t)rf_plane_row(format, i, width) + PAD;
+        seen.plane[i] = image.plane[i];
+        seen.stride[i] = image.stride[i];
+        at += (size_t)image.stride[i] * (size_t)rf_plane_rows(format, i, height);
+    }
+    assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_OK);
+    assert_int_equal(image.matrix, frame.matrix);
+    assert_int_equal(image.range, height % 2 ? REFOCUS_RANGE_FULL : REFOCUS_RANGE_LIMITED);
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++) {
+            double is[3], should[3];
+
+            sample(&frame, x, y, should);
+            sample(&seen, x, y, is);
+            for (int c = 0; c < 3; c++)
+                assert_int_equal((int)is[c], (int)should[c]);
+        }
+    }
+    for (int i = 0; i < rf_format_planes(format); i++)
+        for (int y = 0; y < rf_plane_rows(format, i, height); y++)
+            for (int x = 1; x <= PAD; x++)
+                assert_int_equal(image.plane[i][(y + 1) * image.stride[i] - x], 0xa5);
+    image.format = REFOCUS_FORMAT_RGB8;
+    assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_ERR_ARGUMENT);
+    image.format = kept;
+    image.stride[0] = rf_plane_row(format, 0, width) - 1;
+    assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_ERR_ARGUMENT);
+    frame.format = REFOCUS_FRAME_RGB24;
+    assert_status(refocus_convert_copy(converter, &frame, &image, NULL),
+                  REFOCUS_ERR_UNSUPPORTED);
+}
+
+static void copies_are_exact(void **state)
+{
+    struct refocus_converter *converter = NULL;
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (uint32_t format = REFOCUS_FRAME_YUYV; format <= REFOCUS_FRAME_YUV420; format++)
+        for (int size = 1; size < MOST; size += 6)
+            check_copy(converter, format, size, MOST - size);
+    assert_int_equal(refocus_frame_image_format(REFOCUS_FRAME_MJPEG), REFOCUS_FORMAT_NONE);
+    refocus_converter_destroy(&converter);
+}
+
 static void yuv_is_the_formula(void **state)
 {
     struct refocus_converter *converter = NULL;
@@ -347,6 +410,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(yuv_is_the_formula),
+        cmocka_unit_test(copies_are_exact),
         cmocka_unit_test(rgb_is_exact),
         cmocka_unit_test(samples_are_exact),
         cmocka_unit_test(bad_frames_are_refused),

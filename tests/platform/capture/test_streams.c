@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 #include <refocus/platform/convert.h>
+#include <stdbool.h>
 #include <refocus/platform/sink.h>
 
 enum { WIDTH = 37, HEIGHT = 22, FRAMES = 4 };
@@ -177,6 +178,77 @@ static void a_closed_pipe_is_a_status(void **state)
     close(ends[1]);
 }
 
+/* Sample i of pixel (x, y) of a picture of Y, U and V. */
+static uint8_t *sample_of(const struct refocus_image *p, int i, int x, int y)
+{
+    if (p->format == REFOCUS_FORMAT_YUYV)
+        return p->plane[0] + y * p->stride[0] + (i ? x / 2 * 4 + 2 * i - 1 : 2 * x);
+    if (i == 0)
+        return p->plane[0] + y * p->stride[0] + x;
+    if (p->format == REFOCUS_FORMAT_I420)
+        return p->plane[i] + y / 2 * p->stride[i] + x / 2;
+    return p->plane[1] + y / 2 * p->stride[1] + x / 2 * 2 +
+           ((i == 2) ^ (p->format == REFOCUS_FORMAT_NV21));
+}
+
+/* A picture in memory, and what a y4m stream of it is, byte for byte. */
+static void check_y4m_of(uint32_t format, int planes, uint32_t range)
+{
+    enum { W = 7, H = 5, HALF = 4 };
+    static uint8_t memory[3][16 * H], bytes[1000], expected[1000];
+    struct refocus_image image = {.format = format, .width = W, .height = H, .range = range};
+    const bool tall = format == REFOCUS_FORMAT_YUYV;
+    struct refocus_sink *sink = NULL;
+    size_t n, length;
+    FILE *file;
+
+    for (int i = 0; i < planes; i++) {
+        image.plane[i] = memory[i];
+        image.stride[i] = 16;
+        for (size_t k = 0; k < sizeof memory[i]; k++)
+            memory[i][k] = (uint8_t)(37 * k + 91 * (size_t)i);
+    }
+    length = (size_t)sprintf((char *)expected,
+                             "YUV4MPEG2 W7 H5 F25000:1000 Ip A1:1 C%s XCOLORRANGE=%s\nFRAME\n",
+                             tall ? "422" : "420jpeg", range ? "FULL" : "LIMITED");
+    for (int i = 0; i < 3; i++)
+        for (int y = 0; y < (i && !tall ? (H + 1) / 2 : H); y++)
+            for (int x = 0; x < (i ? HALF : W); x++)
+                expected[length++] = *sample_of(&image, i, i ? 2 * x : x, i && !tall ? 2 * y : y);
+    assert_status(refocus_sink_open(&sink, "y4m:yuv.y4m", NULL), REFOCUS_OK);
+    assert_int_equal(refocus_sink_takes(sink, format), 1);
+    assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_OK);
+    image.range = !range; /* a stream of one range has begun */
+    assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    file = fopen("yuv.y4m", "rb");
+    assert_non_null(file);
+    n = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    assert_int_equal(n, length);
+    assert_memory_equal(bytes, expected, length);
+}
+
+static void y4m_keeps_codes(void **state)
+{
+    static const uint32_t formats[] = {REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_NV21,
+                                       REFOCUS_FORMAT_I420, REFOCUS_FORMAT_YUYV};
+    static const int planes[] = {2, 2, 3, 1};
+    struct refocus_sink *sink = NULL;
+    struct refocus_image image = {.format = REFOCUS_FORMAT_NV12, .width = 4, .height = 4};
+
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        for (uint32_t range = 0; range < 2; range++)
+            check_y4m_of(formats[i], planes[i], range);
+    assert_status(refocus_sink_open(&sink, "raw:yuv.raw", NULL), REFOCUS_OK);
+    assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_NV12), 0);
+    assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_RGB8), 1);
+    assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+}
+
 static void sinks_refuse_what_is_wrong(void **state)
 {
     struct refocus_sink *sink = NULL;
@@ -226,7 +298,7 @@ int main(void)
         cmocka_unit_test(damage_is_named),
         cmocka_unit_test(wrong_names_are_refused),
         cmocka_unit_test(a_closed_pipe_is_a_status),
-        cmocka_unit_test(sinks_refuse_what_is_wrong),
+        cmocka_unit_test(y4m_keeps_codes), cmocka_unit_test(sinks_refuse_what_is_wrong),
         cmocka_unit_test(replay_replays),
     };
 

@@ -1,6 +1,9 @@
 /* Apple's depth behind the main picture, and XMP that means harm. */
 #include "check.h"
 
+#include <unistd.h>
+
+
 #include <math.h>
 
 #define APPLE_RANGE                                                                    \
@@ -47,6 +50,44 @@ static void apple_gain_map_is_no_depth(void **state)
     assert_true(has_evidence(photo, "it is no depth"));
     refocus_photo_free(&photo);
     read_depth(file, NULL, REFOCUS_ERR_NO_DEPTH);
+}
+
+/* An MPO: the other view behind the main one. Anything else is refused. */
+static void mpo_second_view(void **state)
+{
+    char path[] = "/tmp/refocus-mpo-XXXXXX";
+    const int file = mkstemp(path);
+    struct refocus_reason reason;
+    struct refocus_photo *photo;
+
+    (void)state;
+    assert_true(file >= 0);
+    for (int big_endian = 0; big_endian < 2; big_endian++) {
+        struct bytes part = make_jpeg(48, 24, true, false);
+        struct bytes mpo = make_mpf(make_jpeg(64, 32, false, false), &part, 1, big_endian);
+
+        assert_int_equal(ftruncate(file, 0), 0);
+        assert_int_equal(pwrite(file, mpo.data, mpo.size, 0), (ssize_t)mpo.size);
+        assert_int_equal(refocus_photo_read_second(&photo, path, NULL, &reason), REFOCUS_OK);
+        assert_int_equal(photo->image.width, 48);
+        assert_int_equal(photo->image.height, 24);
+        refocus_photo_free(&photo);
+        assert_int_equal(refocus_photo_read(&photo, path, NULL, &reason), REFOCUS_OK);
+        assert_int_equal(photo->image.width, 64);
+        refocus_photo_free(&photo);
+        for (size_t size = 0; size < mpo.size; size += 97) { /* cut off anywhere */
+            assert_int_equal(ftruncate(file, (off_t)(mpo.size - size - 1)), 0);
+            const int status = refocus_photo_read_second(&photo, path, NULL, &reason);
+            assert_true((status == REFOCUS_OK) == (photo != NULL));
+            assert_true(status == REFOCUS_OK || reason.text[0]);
+            refocus_photo_free(&photo);
+        }
+        bytes_free(&mpo);
+    }
+    close(file);
+    unlink(path);
+    assert_int_equal(refocus_photo_read_second(&photo, path, NULL, &reason), REFOCUS_ERR_IO);
+    assert_null(photo);
 }
 
 static struct refocus_photo *apple_with(const char *type, const char *extra,
@@ -125,7 +166,7 @@ static void xmp_hostile(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(apple_disparity), cmocka_unit_test(apple_gain_map_is_no_depth),
+        cmocka_unit_test(mpo_second_view), cmocka_unit_test(apple_disparity), cmocka_unit_test(apple_gain_map_is_no_depth),
         cmocka_unit_test(apple_ranges),    cmocka_unit_test(mpf_index_of_another_file),
         cmocka_unit_test(xmp_hostile),
     };

@@ -20,8 +20,9 @@ static struct rf_session_setup setup;
 /* What the session's thread did. */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
-static int frames, saves;
-static struct rf_view_result saved;
+static int frames;
+static uint32_t saved_what;
+static int saved_width;
 static uint16_t saved_depth;
 
 static void on_frame(void *user)
@@ -37,8 +38,8 @@ static void on_save(void *user, const struct rf_view_result *result)
 {
     assert_ptr_equal(user, &setup);
     pthread_mutex_lock(&lock);
-    saves++;
-    saved = *result;
+    saved_what |= result->what;
+    saved_width = result->picture->width;
     saved_depth = result->disparity[H / 2 * W + W / 2];
     pthread_cond_signal(&came);
     pthread_mutex_unlock(&lock);
@@ -210,6 +211,32 @@ static void test_nobody_waits(void **unused)
     assert_true(now_ms() - start < 5000.0 * slow());
 }
 
+/* While something is held no full picture is begun. */
+static void test_hold(void **unused)
+{
+    const struct timespec pause = {0, 100000000};
+    struct rf_session *session = begin();
+    struct rf_view_state state = whole(0.2f, 9);
+    const struct rf_view_frame *frame;
+    uint64_t request;
+
+    (void)unused;
+    wait_for(session, rf_session_show(session, &state), true);
+    state.hold = true;
+    for (int i = 0; i < 5; i++) {
+        state.blur = 10.0f + (float)i;
+        request = rf_session_show(session, &state);
+        frame = wait_for(session, request, false);
+        assert_false(frame->full);
+        nanosleep(&pause, NULL);
+        assert_false(rf_session_frame(session, &frame));
+    }
+    state.hold = false;
+    request = rf_session_show(session, &state);
+    expect_render(wait_for(session, request, true), REFOCUS_METHOD_SWEEP, 0.2f, 14);
+    rf_session_destroy(&session);
+}
+
 static void test_modes(void **unused)
 {
     struct rf_session *session = begin();
@@ -283,15 +310,15 @@ static void test_painting(void **unused)
     frame = wait_for(session, rf_session_undo(session), true);
     assert_int_equal(frame->pixels[W / 2], 0xff000000u + (50000 >> 8) * 0x010101u);
     wait_for(session, rf_session_undo(session), true); /* there is none: no failure */
-    saves = 0;
+    saved_what = 0;
     rf_session_save(session, RF_SAVE_DEPTH);
     rf_session_save(session, RF_SAVE_PICTURE | RF_SAVE_SETTINGS);
     pthread_mutex_lock(&lock);
-    while (!(saves > 1 || (saves == 1 && saved.what == 7)))
+    while (saved_what != (RF_SAVE_PICTURE | RF_SAVE_SETTINGS | RF_SAVE_DEPTH))
         pthread_cond_wait(&came, &lock);
     pthread_mutex_unlock(&lock);
     assert_int_equal(saved_depth, 50000);
-    assert_int_equal(saved.picture->width, W);
+    assert_int_equal(saved_width, W);
     rf_session_destroy(&session);
     rf_session_destroy(&session);
 }
@@ -300,6 +327,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
+        cmocka_unit_test(test_hold),
         cmocka_unit_test(test_modes), cmocka_unit_test(test_painting)};
     int failed;
 

@@ -57,6 +57,8 @@ static void push_key(SDL_Keycode key)
 /* What two fingers do, one after the other, as soon as the window takes events. */
 static int fingers(void *user)
 {
+    SDL_Event lifted;
+
     (void)user;
     SDL_Delay(700);
     push_mouse(SDL_MOUSEBUTTONDOWN, 100, 80); /* a tap on the nearer half */
@@ -69,7 +71,15 @@ static int fingers(void *user)
         push_pinch(0.5f, 0.5f, 0.1f);
     }
     push_mouse(SDL_MOUSEBUTTONUP, 160, 100);
+    memset(&lifted, 0, sizeof lifted);
+    lifted.type = SDL_FINGERUP;
+    SDL_PushEvent(&lifted);
     SDL_Delay(100);
+    push_key(SDLK_p);
+    push_mouse(SDL_MOUSEBUTTONDOWN, 200, 100); /* a stroke that the second finger takes back */
+    push_pinch(0.5f, 0.5f, 0);
+    push_mouse(SDL_MOUSEBUTTONUP, 200, 100);
+    SDL_Delay(300);
     push_key(SDLK_q);
     return 0;
 }
@@ -119,6 +129,8 @@ static void test_two_fingers(void **unused)
     assert_true(report->last.blur >= 6 && report->last.blur <= 6);
     assert_int_equal(report->last.focus_tap, 1);
     assert_true(fabs(report->last.scale - exp(1.0)) < 1e-3); /* five times a tenth, twice over */
+    assert_int_equal(report->strokes, 0);
+    assert_string_equal(report->times[report->count - 1].cause, "undo");
     assert_true(report->count > 3 && report->times[0].first_ms > 0);
     free(report);
 }

@@ -1,0 +1,110 @@
+#include "background/background.h"
+
+#include <string.h>
+
+#include "planes/yuv.h"
+#include "renderer/bands.h"
+
+void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1)
+{
+    const int w = r->width;
+    uint16_t *row = scratch + RF_SPREAD_MARGIN;
+    uint16_t *spare = row + w + 2 * RF_SPREAD_MARGIN;
+    const int reach = 2 * r->pad; /* as in rf_background_mark_rows() */
+
+    for (int y = y0; y < y1; y++) {
+        const ptrdiff_t at = y * r->stride;
+        const uint16_t *down = r->behind.light[0] + at, *up = r->behind.light[1] + at;
+
+        for (int x = 0; x < w; x++)
+            row[x] = down[x] > up[x] ? down[x] : up[x];
+        r->kernels.mark(r->behind.blur + at, r->front.blur + at,
+                        r->kernels.spread_row(row, spare, reach, w), w);
+        r->behind.blur[at + w] = RF_NO_BLUR; /* a column more if the width is odd */
+        memcpy(r->behind.light[0] + at, r->smooth[0] + at, (size_t)w * 2);
+    }
+}
+
+/* A row of tiles of the picture; BAND of its rows are half as many of level 1. */
+static void push_band(void *context, int band, int worker)
+{
+    struct refocus_renderer *r = context;
+    const struct rf_level *level = &r->level[0];
+    const struct rf_yuv *yuv = &r->yuv;
+    const int y0 = rf_band_start(band) / 2, y1 = (rf_band_end(r, band) + 1) / 2;
+
+    (void)worker;
+    for (int y = y0; y < y1; y++) {
+        const ptrdiff_t at = y * level->stride, a = 2 * y * r->stride;
+        const ptrdiff_t b = 2 * y + 1 < r->height ? a + r->stride : a;
+        const uint16_t *upper = yuv->smooth + (yuv->down ? y * r->stride : a);
+
+        r->kernels.push1(level->light[0] + at, level->blur + at, r->behind.light[0] + a,
+                         r->behind.light[0] + b, r->behind.blur + a, r->behind.blur + b,
+                         level->width);
+        r->kernels.split2(level->light[1] + at, level->light[2] + at, upper,
+                          yuv->down ? upper : yuv->smooth + b, level->width);
+        if (level->width % 2)
+            level->blur[at + level->width] = RF_NO_BLUR;
+    }
+}
+
+static void pull_luma_row(struct refocus_renderer *r, uint16_t *scratch, int y)
+{
+    const struct rf_level *level = &r->level[0];
+    const int near_y = y / 2;
+    int far_y = y % 2 ? near_y + 1 : near_y - 1;
+    const ptrdiff_t at = y * r->stride;
+
+    if (rf_all_known(r->behind.blur + at, r->width))
+        return;
+    if (far_y < 0 || far_y >= level->height)
+        far_y = near_y;
+    r->kernels.pull(r->behind.light[0] + at, r->behind.blur + at,
+                    level->light[0] + near_y * level->stride,
+                    level->light[0] + far_y * level->stride, scratch, level->width);
+    r->kernels.pull_blur(r->behind.blur + at, level->blur + near_y * level->stride,
+                         level->width);
+}
+
+static void pull_band(void *context, int band, int worker)
+{
+    struct refocus_renderer *r = context;
+    const struct rf_level *level = &r->level[0];
+    const struct rf_yuv *yuv = &r->yuv;
+    const int y0 = rf_band_start(band), y1 = rf_band_end(r, band);
+    const int c0 = y0 >> yuv->down, c1 = (y1 + yuv->down) >> yuv->down;
+
+    for (int y = y0; y < y1; y++)
+        pull_luma_row(r, rf_scratch(r, worker), y);
+    rf_extend_rows(r, r->behind.light[0], y0, y1);
+    rf_extend_rows(r, r->behind.blur, y0, y1);
+    for (int y = c0; y < c1; y++) {
+        const ptrdiff_t at = (yuv->down ? y : y / 2) * level->stride;
+
+        r->kernels.join2(yuv->behind + y * r->stride, level->light[1] + at,
+                         level->light[2] + at, level->width);
+    }
+    rf_extend_chroma(r, yuv->behind, c0, c1);
+}
+
+/* A picture of one pixel has no pyramid, and nothing is unknown. */
+static void fill_pixel(struct refocus_renderer *r)
+{
+    memcpy(r->yuv.behind, r->yuv.smooth, 2 * sizeof(uint16_t));
+    rf_extend_rows(r, r->behind.light[0], 0, 1);
+    rf_extend_rows(r, r->behind.blur, 0, 1);
+    rf_extend_chroma(r, r->yuv.behind, 0, 1);
+}
+
+void rf_background_yuv_fill(struct refocus_renderer *r)
+{
+    if (r->levels == 0) {
+        fill_pixel(r);
+        return;
+    }
+    rf_pool_run(&r->pool, push_band, r, rf_bands(r));
+    rf_background_push(r, 1, r->levels);
+    rf_background_pull(r, 1, r->levels);
+    rf_pool_run(&r->pool, pull_band, r, rf_bands(r));
+}

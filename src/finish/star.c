@@ -1,0 +1,192 @@
+/* star.c: spikes of a star filter.
+ *
+ * Each lamp has `star_spikes` spikes that together carry `star_strength` of its light, on top of
+ * it. Along a spike of length L light falls by 3 / L (1 - l / L)^2, across it by
+ * 3 / 4b (1 - (w / b)^2), b the lamp's blur radius, at least 3/4 pixel: the spike of a lamp that
+ * is out of focus is as wide as its disc. The filter is before the lens: nothing hides a spike.
+ */
+#include "finish/finish.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "aperture/aperture.h"
+#include "methods/method.h"
+
+enum { LANES = RF_TILE * RF_TILE };
+
+/* A star that a pixel touches, of the last ones: pixels come row by row. */
+static struct rf_star *touched(struct refocus_renderer *r, int x, int y)
+{
+    enum { LOOK_BACK = 512 };
+
+    for (int i = r->stars - 1; i >= 0 && i >= r->stars - LOOK_BACK; i--) {
+        struct rf_star *star = &r->star[i];
+
+        if (x >= star->x0 - 1 && x <= star->x1 + 1 && y <= star->y1 + 1)
+            return star;
+    }
+    return NULL;
+}
+
+static struct rf_star *new_star(struct refocus_renderer *r, int x, int y)
+{
+    struct rf_star *star;
+
+    if (r->stars == RF_MOST_STARS)
+        return NULL;
+    star = &r->star[r->stars++];
+    *star = (struct rf_star){.x0 = x, .x1 = x, .y1 = y};
+    return star;
+}
+
+/* One more pixel of a star, whose place becomes the middle of them all. What a lamp lost, a third
+ * of `added`, is its hue at white. */
+static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp,
+                      struct rf_star *star)
+{
+    const uint32_t times = (uint32_t)floorf(f->params->highlight_gain * 256 + 0.5f);
+    const int blur = abs(rf_blur_at(f, lamp->x, lamp->y));
+
+    star->x0 = lamp->x < star->x0 ? lamp->x : star->x0;
+    star->x1 = lamp->x > star->x1 ? lamp->x : star->x1;
+    star->y1 = lamp->y;
+    for (int c = 0; c < 3; c++)
+        star->light[c] += lamp->added[c] * times / (3 * 256);
+    star->blur = blur > star->blur ? blur : star->blur;
+    star->x += lamp->x;
+    star->y += lamp->y;
+    star->pixels++;
+}
+
+void rf_find_stars(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    const struct rf_photo *photo = &r->photo[r->used];
+
+    r->stars = 0;
+    for (int part = 0; part < rf_lamp_parts(photo->height); part++) {
+        for (uint32_t i = 0; i < photo->highlights[part].count; i++) {
+            const struct rf_highlight *lamp = &photo->highlights[part].lamp[i];
+            struct rf_star *star = touched(r, lamp->x, lamp->y);
+
+            star = star ? star : new_star(r, lamp->x, lamp->y);
+            if (star)
+                add_pixel(f, lamp, star);
+        }
+    }
+    for (int i = 0; i < r->stars; i++) {
+        struct rf_star *star = &r->star[i];
+
+        star->x = (16 * star->x + star->pixels / 2) / star->pixels;
+        star->y = (16 * star->y + star->pixels / 2) / star->pixels;
+    }
+}
+
+/* The spikes of one filter, Q15, and their length, Q8 pixels. */
+struct spikes {
+    int count;
+    int64_t x[RF_MOST_SPIKES], y[RF_MOST_SPIKES], length;
+    int64_t share; /* of the light, in one spike, Q16 */
+};
+
+static struct spikes spikes_of(const struct refocus_render_params *p)
+{
+    struct spikes spikes = {
+        .count = p->star_spikes,
+        .length = (int64_t)floorf(p->star_length * 256 + 0.5f),
+        .share = (int64_t)floorf(p->star_strength / (float)p->star_spikes * 65536 + 0.5f)};
+
+    for (int i = 0; i < spikes.count; i++) {
+        double sine, cosine;
+
+        rf_sincos_turns(p->star_angle / 360.0 + (double)i / spikes.count, &sine, &cosine);
+        spikes.x[i] = (int64_t)floor(cosine * 32768 + 0.5);
+        spikes.y[i] = (int64_t)floor(-sine * 32768 + 0.5); /* y down */
+    }
+    return spikes;
+}
+
+/* Q16 of the light of a spike at a place along and across it, Q8 pixels. */
+static int64_t density(int64_t along, int64_t across, int64_t length, int64_t wide)
+{
+    const int64_t left = ((length - along) << 16) / length; /* Q16 */
+    const int64_t near = 65536 - ((across * across << 16) / (wide * wide));
+    const int64_t a = (3 * 256 * (left * left >> 16)) / length; /* per pixel, Q16 */
+    const int64_t b = (3 * 64 * near) / wide;
+
+    return a * b >> 16;
+}
+
+static void add_star(const struct rf_star *star, const struct spikes *spikes, int x0, int y0,
+                     int64_t sum[3][LANES])
+{
+    const int64_t wide = star->blur > 192 ? star->blur : 192;
+
+    for (int i = 0; i < LANES; i++) {
+        const int64_t dx = 256 * (x0 + i % RF_TILE) - 16 * star->x;
+        const int64_t dy = 256 * (y0 + i / RF_TILE) - 16 * star->y;
+        int64_t share = 0;
+
+        for (int k = 0; k < spikes->count; k++) {
+            const int64_t along = (dx * spikes->x[k] + dy * spikes->y[k]) >> 15;
+            const int64_t across = llabs((dy * spikes->x[k] - dx * spikes->y[k]) >> 15);
+
+            if (along >= 0 && along < spikes->length && across < wide)
+                share += density(along, across, spikes->length, wide);
+        }
+        if (share)
+            for (int c = 0; c < 3; c++) /* 2^28 light, 2^16 share, 2^19 density */
+                sum[c][i] += (star->light[c] * spikes->share >> 16) * share >> 8;
+    }
+}
+
+/* Add Q20 light to encoded pixels. */
+static void add_light(const struct rf_frame *f, struct rf_rect rect, int64_t sum[3][LANES])
+{
+    const struct rf_transfer *transfer = &f->r->transfer[f->r->blend];
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        for (int x = rect.x0; x < rect.x1; x++) {
+            const int i = y % RF_TILE * RF_TILE + x % RF_TILE;
+            uint8_t *code[3];
+
+            rf_pixel_codes(f, x, y, code);
+            for (int c = 0; c < 3; c++) {
+                const int64_t mean = 4 * (int64_t)transfer->to_light[*code[c]] +
+                                     ((sum[c][i] + (1 << 5)) >> 6);
+
+                if (sum[c][i] >= 1 << 5)
+                    *code[c] = transfer->to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
+            }
+        }
+    }
+}
+
+void rf_add_stars(const struct rf_frame *f, struct rf_rect rect)
+{
+    const struct refocus_renderer *r = f->r;
+    const int x0 = r->origin_x + rect.x0 / RF_TILE * RF_TILE; /* of the tile, in the photo */
+    const int y0 = r->origin_y + rect.y0 / RF_TILE * RF_TILE;
+    const struct spikes spikes = spikes_of(f->params);
+    int64_t sum[3][LANES];
+    bool any = false;
+
+    if (spikes.length == 0)
+        return;
+    memset(sum, 0, sizeof sum);
+    for (int i = 0; i < r->stars; i++) {
+        const struct rf_star *star = &r->star[i];
+        const int reach = (int)(spikes.length + star->blur) / 256 + 2;
+        const int x = (int)(star->x / 16), y = (int)(star->y / 16);
+
+        if (x < x0 - reach || x >= x0 + RF_TILE + reach || y < y0 - reach ||
+            y >= y0 + RF_TILE + reach)
+            continue;
+        add_star(star, &spikes, x0, y0, sum);
+        any = true;
+    }
+    if (any)
+        add_light(f, rect, sum);
+}

@@ -1,0 +1,151 @@
+/* pick.c: which surface is meant by a tap or a rectangle. */
+#include <refocus/focus.h>
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "renderer/params.h"
+
+enum {
+    BINS = 2048,
+    WIDTH = 65536 / BINS, /* disparities of a bin */
+    APART = BINS / 64,    /* empty bins that part two surfaces */
+    NOISE = 1024,         /* a bin with less than 1/NOISE of the pixels is as good as empty */
+    SHARE = 4,            /* the nearest surface with 1/SHARE of them is meant */
+};
+
+/* Disparities of a part of a map: a disc when radius > 0, else the whole rectangle. */
+struct part {
+    const struct refocus_disparity *map;
+    int x0, y0, x1, y1;
+    int cx, cy, radius;
+};
+
+static int value_at(const struct part *part, int x, int y)
+{
+    const uint8_t *row = (const uint8_t *)part->map->samples + y * part->map->stride;
+
+    return part->map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
+}
+
+static bool is_inside(const struct part *part, int x, int y)
+{
+    const int dx = x - part->cx, dy = y - part->cy;
+
+    return part->radius == 0 || dx * dx + dy * dy <= part->radius * part->radius;
+}
+
+static uint32_t count_bins(const struct part *part, uint32_t count[BINS])
+{
+    uint32_t sum = 0;
+
+    memset(count, 0, BINS * sizeof *count);
+    for (int y = part->y0; y < part->y1; y++) {
+        for (int x = part->x0; x < part->x1; x++) {
+            if (!is_inside(part, x, y))
+                continue;
+            count[value_at(part, x, y) / WIDTH]++;
+            sum++;
+        }
+    }
+    return sum;
+}
+
+/* The bin of the median of the surface that is meant. */
+static int find_surface(const uint32_t count[BINS], uint32_t sum)
+{
+    uint32_t best = 0, left;
+    int best_from = 0;
+
+    for (int bin = BINS - 1; bin >= 0;) { /* from the near side */
+        uint32_t own = 0;
+        int empty = 0, to = bin;
+
+        for (; bin >= 0 && empty < APART; bin--) {
+            own += count[bin];
+            empty = count[bin] > sum / NOISE ? 0 : empty + 1;
+        }
+        if (own > best) {
+            best = own;
+            best_from = to;
+        }
+        if (own >= (sum + SHARE - 1) / SHARE) {
+            best = own;
+            best_from = to;
+            break;
+        }
+    }
+    left = (best + 1) / 2;
+    while (left > count[best_from])
+        left -= count[best_from--];
+    return best_from;
+}
+
+/* The mean of the disparities in a bin: exact where all are the same. */
+static float mean_of_bin(const struct part *part, int bin)
+{
+    uint64_t sum = 0, count = 0;
+
+    for (int y = part->y0; y < part->y1; y++) {
+        for (int x = part->x0; x < part->x1; x++) {
+            const int v = value_at(part, x, y);
+
+            if (!is_inside(part, x, y) || v / WIDTH != bin)
+                continue;
+            sum += (uint64_t)v;
+            count++;
+        }
+    }
+    return (float)((double)((sum + count / 2) / count) / 65535.0);
+}
+
+static float pick(const struct part *part)
+{
+    uint32_t count[BINS];
+    const uint32_t sum = count_bins(part, count);
+
+    return mean_of_bin(part, find_surface(count, sum));
+}
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y, int radius,
+                           float *focus)
+{
+    struct part part = {.map = map, .cx = x, .cy = y};
+
+    if (!rf_good_map(map) || !focus || x < 0 || y < 0 || x >= map->width ||
+        y >= map->height || radius < 0 || radius > REFOCUS_MAX_TAP_RADIUS)
+        return REFOCUS_ERR_ARGUMENT;
+    if (radius == 0)
+        radius = larger(3, larger(map->width, map->height) / 256);
+    part.radius = radius;
+    part.x0 = larger(x - radius, 0);
+    part.y0 = larger(y - radius, 0);
+    part.x1 = smaller(x + radius + 1, map->width);
+    part.y1 = smaller(y + radius + 1, map->height);
+    *focus = pick(&part);
+    return REFOCUS_OK;
+}
+
+int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y, int width,
+                               int height, float *focus)
+{
+    struct part part = {.map = map, .x0 = x, .y0 = y};
+
+    if (!rf_good_map(map) || !focus || x < 0 || y < 0 || width < 1 || height < 1 ||
+        width > map->width - x || height > map->height - y)
+        return REFOCUS_ERR_ARGUMENT;
+    part.x1 = x + width;
+    part.y1 = y + height;
+    *focus = pick(&part);
+    return REFOCUS_OK;
+}

@@ -1,0 +1,81 @@
+/* row.c: from places and disparities to signed blur. */
+#include "focus/focus.h"
+
+#include <stdlib.h>
+
+static int clamp(int v, int least, int most)
+{
+    return v < least ? least : v > most ? most : v;
+}
+
+/* What a band leaves of a distance from its middle. */
+static int32_t shorten(const struct rf_band *band, int32_t distance)
+{
+    if (distance <= band->sharp)
+        return 0;
+    if (distance >= band->whole)
+        return distance;
+    return (int32_t)((int64_t)(distance - band->sharp) * band->whole /
+                     (band->whole - band->sharp));
+}
+
+/*
+ * The least that any band leaves of e, which is counted from the focus at this place, or for
+ * the further bands of `flat`, counted from the focus disparity. Before the nearest of them a
+ * pixel is a foreground, behind it a background: so what is blurred between two bands stays
+ * behind the near one instead of spreading over it.
+ */
+static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e, int32_t flat)
+{
+    int32_t least = INT32_MAX;
+    bool before = true;
+
+    for (int i = 0; i < plan->bands; i++) {
+        const int64_t own = (int64_t)(i ? flat : e) + plan->band[i].offset;
+        const int32_t left = shorten(&plan->band[i], (int32_t)llabs(own));
+
+        before = before && own < 0;
+        least = left < least ? left : least;
+    }
+    return before ? -least : least;
+}
+
+/* What counts of a difference of disparities. */
+static int32_t depth_of(const struct rf_focus_plan *plan, int difference)
+{
+    return (int32_t)(((int64_t)difference * plan->share + (1 << 15)) >> 16);
+}
+
+static int32_t lens_at(const struct rf_focus_plan *plan, int x, int y, int d)
+{
+    const int64_t tilt = plan->tilt + plan->tilt_x * x + plan->tilt_y * y;
+    const int32_t rise = (int32_t)((tilt + (1 << 23)) >> 24);
+    const int32_t flat = depth_of(plan, plan->focus.disparity - d) + rise;
+    int32_t e = flat;
+
+    if (plan->surface)
+        e = depth_of(plan, rf_map_at(plan->surface, plan->width, plan->height, x, y) - d) +
+            rise;
+    return plan->bands ? shorten_by_bands(plan, e, flat) : e;
+}
+
+void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity,
+                  int x, int y, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const int d = clamp(disparity[i], plan->least, plan->most);
+        const int32_t e = plan->field.shape == REFOCUS_FIELD_LENS
+                              ? lens_at(plan, x + i, y, d)
+                              : rf_field_at(plan, x + i, y, d);
+        const uint32_t distance = (uint32_t)clamp(abs(e), 0, RF_ONE);
+        uint32_t s = (distance * plan->focus.radius + (1 << 15)) >> 16; /* as signed_blur */
+
+        s = s > plan->limit ? plan->limit : s;
+        if (plan->sharp) {
+            const int sharp = rf_map_at(plan->sharp, plan->width, plan->height, x + i, y);
+
+            s = (s * (uint32_t)(RF_ONE - sharp) + RF_ONE / 2) / RF_ONE;
+        }
+        blur[i] = (int16_t)(e < 0 ? -(int)s : (int)s);
+    }
+}

@@ -1,0 +1,134 @@
+/* sweep1_vec.c: the sweep of one plane, four vectors at a time.
+ *
+ * A ray is followed from behind to the front: each slab overwrites what lies behind it where
+ * it is hit, so that one addition a ray is left.
+ */
+#include "kernels/kernels.h"
+#include "simd/vec.h"
+
+#include <string.h>
+
+enum {
+    VECS = 4,
+    EACH = (int)RF_TILE / (int)VEC_U16, /* vectors of a row */
+};
+
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+
+/* 0 <= s - low <= width as one signed comparison, s - from < to, in all lanes. */
+struct limits {
+    vec_u16 from, to;
+};
+
+struct state {
+    const struct rf_sweep1_job *job;
+    uint16_t light[RF_TILE * RF_TILE]; /* sums of the last rays */
+    struct limits limits[RF_BINS];
+};
+
+static ALWAYS_INLINE void load(vec_u16 v[VECS], const uint16_t *at, ptrdiff_t stride)
+{
+    for (int j = 0; j < VECS; j++)
+        v[j] = vec_u16_load(at + j / EACH * stride + j % EACH * (int)VEC_U16);
+}
+
+/* Rays first .. end - 1, at most as many as 16-bit sums hold, all of `tests` tests, which is a
+ * constant where it is small. */
+static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int tests)
+{
+    const struct rf_sorted_rays *rays = s->job->rays;
+    const ptrdiff_t stride = s->job->stride;
+
+    for (int i = 0; i < s->job->rows * RF_TILE; i += VECS * (int)VEC_U16) {
+        const ptrdiff_t p = i / RF_TILE * stride;
+        const uint16_t *const blur = (const uint16_t *)s->job->blur + p;
+        const uint16_t *const light = s->job->light + p;
+        vec_u16 sum[VECS];
+
+        for (int j = 0; j < VECS; j++)
+            sum[j] = vec_u16_load(&s->light[i + j * (int)VEC_U16]);
+        for (int n = first; n < end; n++) {
+            vec_u16 value[VECS];
+
+            load(value, rays->last[n] + p, stride);
+            for (int t = tests - 1; t >= 0; t--) {
+                const struct limits *l = &s->limits[rays->slab[t][n]];
+                const ptrdiff_t q = rays->offset[t][n];
+                vec_u16 seen[VECS], front[VECS];
+
+                load(seen, blur + q, stride);
+                load(front, light + q, stride);
+                for (int j = 0; j < VECS; j++)
+                    value[j] = vec_u16_select(
+                        vec_s16_less(vec_u16_sub(seen[j], l->from), l->to), front[j],
+                        value[j]);
+            }
+            for (int j = 0; j < VECS; j++)
+                sum[j] = vec_u16_add(sum[j], value[j]);
+        }
+        for (int j = 0; j < VECS; j++)
+            vec_u16_store(&s->light[i + j * (int)VEC_U16], sum[j]);
+    }
+}
+
+static void sweep_some(struct state *s, int first, int end, int tests)
+{
+    switch (tests) {
+    case 0:
+        sweep_rays(s, first, end, 0);
+        break;
+    case 1:
+        sweep_rays(s, first, end, 1);
+        break;
+    case 2:
+        sweep_rays(s, first, end, 2);
+        break;
+    case 3:
+        sweep_rays(s, first, end, 3);
+        break;
+    default:
+        sweep_rays(s, first, end, tests);
+    }
+}
+
+static void flush(uint32_t *sum, struct state *s)
+{
+    const int lanes = s->job->rows * RF_TILE;
+
+    for (int i = 0; i < lanes; i += (int)VEC_U16)
+        vec_u16_add_to(sum + i, vec_u16_load(&s->light[i]));
+    memset(s->light, 0, (size_t)lanes * sizeof s->light[0]);
+}
+
+static void RF_VEC(rf_sweep1)(uint32_t *sum, const struct rf_sweep1_job *job)
+{
+    const struct rf_sorted_rays *rays = job->rays;
+    int left = job->steps;
+    struct state s;
+
+    s.job = job;
+    memset(s.light, 0, (size_t)job->rows * RF_TILE * sizeof s.light[0]);
+    for (int k = 0; k < job->slabs; k++) {
+        /* adding 2^15 makes an unsigned comparison of a signed one */
+        s.limits[k].from = vec_u16_set((uint16_t)(job->slab[k].low ^ 0x8000));
+        s.limits[k].to = vec_u16_set((uint16_t)((job->slab[k].width + 1) ^ 0x8000));
+    }
+    for (int n = 0, end; n < rays->rays; n = end) {
+        end = n + 1;
+        while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)
+            end++;
+        sweep_some(&s, n, end, rays->tests[n]);
+        left -= end - n;
+        if (left == 0) {
+            flush(sum, &s);
+            left = job->steps;
+        }
+    }
+    if (left < job->steps)
+        flush(sum, &s);
+}
+
+void RF_VEC(rf_sweep1_use)(struct rf_kernels *kernels)
+{
+    kernels->sweep1 = RF_VEC(rf_sweep1);
+}

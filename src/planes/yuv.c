@@ -1,0 +1,307 @@
+#include "planes/yuv.h"
+
+#include <string.h>
+
+#include "planes/format.h"
+#include "renderer/bands.h"
+
+void rf_yuv_set_blend(struct refocus_renderer *r, uint32_t blend)
+{
+    struct rf_yuv *yuv = &r->yuv;
+
+    if (!yuv->curve_made || yuv->blend != blend)
+        rf_yuv_curve_init(&yuv->curve, yuv->matrix, yuv->range, blend);
+    yuv->curve_made = true;
+    yuv->blend = blend;
+}
+
+void rf_yuv_begin(struct refocus_renderer *r, const struct refocus_image *photo)
+{
+    struct rf_yuv *yuv = &r->yuv;
+
+    yuv->on = refocus_format_is_yuv(photo->format);
+    if (!yuv->on)
+        return;
+    yuv->down = rf_chroma_down(photo->format);
+    yuv->curve_made =
+        yuv->curve_made && yuv->matrix == photo->matrix && yuv->range == photo->range;
+    yuv->matrix = photo->matrix;
+    yuv->range = photo->range;
+    rf_yuv_set_blend(r, r->blend);
+}
+
+/* Pixel (0, 0) of the window is at rows that are a multiple of RF_TILE. */
+static uint16_t *chroma_of(const struct refocus_renderer *r, uint16_t *plane)
+{
+    return plane - (r->origin_y - (r->origin_y >> r->yuv.down)) * r->stride;
+}
+
+void rf_yuv_use(struct refocus_renderer *r)
+{
+    struct rf_yuv *yuv = &r->yuv;
+
+    if (!yuv->on)
+        return;
+    yuv->width = (r->width + 1) / 2;
+    yuv->height = (r->height + yuv->down) >> yuv->down;
+    yuv->light = chroma_of(r, r->front.light[1]);
+    yuv->smooth = chroma_of(r, r->smooth[1]);
+    yuv->behind = chroma_of(r, r->behind.light[1]);
+    yuv->blur = (int16_t *)chroma_of(r, r->smooth[2]);
+    yuv->y = r->alpha;
+    yuv->y_stride = r->alpha_stride;
+    yuv->uv_stride = r->stride * (ptrdiff_t)sizeof(uint16_t);
+    yuv->uv = (uint8_t *)(chroma_of(r, r->front.light[2]) - r->origin_x) + r->origin_x;
+    for (int c = 1; c < 3; c++)
+        r->front.light[c] = r->front.light[0];
+}
+
+struct refocus_image rf_yuv_guide(const struct refocus_renderer *r)
+{
+    const struct rf_yuv *yuv = &r->yuv;
+
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, yuv->uv + 2 * yuv->width, r->width,
+                                r->height, yuv->uv_stride);
+}
+
+void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int c1)
+{
+    const int w = 2 * r->yuv.width, left = r->pad & ~1;
+    const int right = r->tiles_x * RF_TILE + r->pad;
+    /* offsets of half a row round up */
+    const int beyond = r->yuv.down ? r->pad / 2 + 1 : r->pad;
+    const int below = (RF_TILE >> r->yuv.down) + beyond;
+    const size_t bytes = (size_t)(left + right) * 2;
+    uint16_t *const first = (uint16_t *)plane - left;
+
+    for (int y = c0; y < c1; y++) {
+        uint16_t *row = (uint16_t *)plane + y * r->stride;
+
+        for (int x = -left; x < 0; x++)
+            row[x] = row[x & 1];
+        for (int x = w; x < right; x++)
+            row[x] = row[w - 2 + (x & 1)];
+    }
+    if (c0 == 0)
+        for (int y = 1; y <= beyond; y++)
+            memcpy(first - y * r->stride, first, bytes);
+    if (c1 == r->yuv.height)
+        for (int y = 0; y < below; y++)
+            memcpy(first + (r->yuv.height + y) * r->stride,
+                   first + (r->yuv.height - 1) * r->stride, bytes);
+}
+
+/* Row cy of chroma and the rows that share it, from the codes that are kept. The pixel beside
+ * an odd edge, which planes have room for, is made of scratch: rows of codes have none. */
+static void convert_codes(const struct refocus_renderer *r, uint8_t *scratch, int cy)
+{
+    const struct rf_yuv *yuv = &r->yuv;
+    const int w = r->width, y = cy << yuv->down;
+    const bool two = yuv->down && y + 1 < r->height;
+    const uint8_t *luma[2] = {yuv->y + y * yuv->y_stride, yuv->y + (y + two) * yuv->y_stride};
+    uint16_t *const out[2] = {r->front.light[0] + y * r->stride,
+                              r->front.light[0] + (y + two) * r->stride};
+
+    if (w % 2) {
+        for (int i = 0; i < 2; i++) {
+            uint8_t *row = scratch + i * (w + 1);
+
+            memcpy(row, luma[i], (size_t)w);
+            row[w] = row[w - 1];
+            luma[i] = row;
+        }
+    }
+    r->kernels.encode(out, yuv->light + cy * r->stride, luma, yuv->uv + cy * yuv->uv_stride,
+                      &yuv->curve, yuv->width);
+}
+
+static uint8_t code_of(int tone)
+{
+    return (uint8_t)((rf_clip_tone(tone) + 2) / 4);
+}
+
+/* The colours of a row, as far as they tell one thing from another. */
+static void guide_row(const struct refocus_renderer *r, uint8_t *out, int y)
+{
+    const struct rf_yuv *yuv = &r->yuv;
+    const struct rf_yuv_curve *const curve = &yuv->curve;
+    const uint8_t *luma = yuv->y + y * yuv->y_stride;
+    const uint8_t *uv = yuv->uv + (y >> yuv->down) * yuv->uv_stride;
+
+    for (int x = 0; x < r->width; x++, out += 3) {
+        const int tone = curve->luma[luma[x]], at = x & ~1;
+
+        out[0] = code_of(tone + rf_more(curve, 1, uv[at + 1]));
+        out[1] = code_of(tone - rf_less_green(curve, uv[at], uv[at + 1]));
+        out[2] = code_of(tone + rf_more(curve, 0, uv[at]));
+    }
+}
+
+/*
+ * The codes are copied first, whole rows of a plane at a time and in order: camera memory may be
+ * uncached, and slow to read in pieces. Only those that lie in between others take a second
+ * copy, from `scratch`.
+ */
+static void keep_420(const struct refocus_renderer *r, const struct refocus_image *photo,
+                     uint8_t *scratch, int cy)
+{
+    const struct rf_yuv *yuv = &r->yuv;
+    const int w = yuv->width;
+    uint8_t *uv = yuv->uv + cy * yuv->uv_stride;
+
+    if (photo->format == REFOCUS_FORMAT_NV12) {
+        memcpy(uv, photo->plane[1] + cy * photo->stride[1], 2 * (size_t)w);
+        return;
+    }
+    if (photo->format == REFOCUS_FORMAT_NV21) {
+        memcpy(scratch, photo->plane[1] + cy * photo->stride[1], 2 * (size_t)w);
+        for (int x = 0; x < 2 * w; x++)
+            uv[x] = scratch[x ^ 1];
+        return;
+    }
+    memcpy(scratch, photo->plane[1] + cy * photo->stride[1], (size_t)w);
+    memcpy(scratch + w, photo->plane[2] + cy * photo->stride[2], (size_t)w);
+    for (int x = 0; x < w; x++) {
+        uv[2 * x] = scratch[x];
+        uv[2 * x + 1] = scratch[w + x];
+    }
+}
+
+static void keep_422(const struct refocus_renderer *r, const struct refocus_image *photo,
+                     uint8_t *scratch, int row)
+{
+    const int w = r->width;
+    uint8_t *y = r->yuv.y + row * r->yuv.y_stride, *uv = r->yuv.uv + row * r->yuv.uv_stride;
+
+    memcpy(scratch, photo->plane[0] + row * photo->stride[0], 4 * (size_t)r->yuv.width);
+    for (int x = 0; x < w; x++)
+        y[x] = scratch[2 * x];
+    for (int x = 0; x < 2 * r->yuv.width; x++)
+        uv[x] = scratch[2 * x + 1];
+}
+
+static void convert_chroma_rows(struct refocus_renderer *r, uint8_t *scratch, int c0, int c1)
+{
+    const int y0 = c0 << r->yuv.down, end = c1 << r->yuv.down;
+
+    for (int cy = c0; cy < c1; cy++)
+        convert_codes(r, scratch, cy);
+    rf_extend_rows(r, r->front.light[0], y0, end < r->height ? end : r->height);
+    rf_extend_chroma(r, r->yuv.light, c0, c1);
+}
+
+void rf_yuv_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo,
+                         const struct refocus_image *guide, uint8_t *scratch, int y0, int y1)
+{
+    const int c0 = y0 >> r->yuv.down, c1 = rf_chroma_end(r, y1);
+
+    if (r->yuv.down)
+        for (int y = y0; y < y1; y++)
+            memcpy(r->yuv.y + y * r->yuv.y_stride, photo->plane[0] + y * photo->stride[0],
+                   (size_t)r->width);
+    for (int cy = c0; cy < c1; cy++) {
+        if (r->yuv.down)
+            keep_420(r, photo, scratch, cy);
+        else
+            keep_422(r, photo, scratch, cy);
+    }
+    convert_chroma_rows(r, scratch, c0, c1);
+    for (int y = y0; guide && y < y1; y++)
+        guide_row(r, guide->plane[0] + y * guide->stride[0], y);
+}
+
+void rf_yuv_reblend_rows(struct refocus_renderer *r, uint8_t *scratch, int y0, int y1)
+{
+    convert_chroma_rows(r, scratch, y0 >> r->yuv.down, rf_chroma_end(r, y1));
+}
+
+void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)
+{
+    const struct rf_yuv *yuv = &r->yuv;
+    const int c0 = y0 >> yuv->down, c1 = rf_chroma_end(r, y1);
+
+    for (int cy = c0; cy < c1; cy++) {
+        const int y = cy << yuv->down;
+        const int16_t *upper = r->front.blur + y * r->stride;
+        const int16_t *lower = yuv->down && y + 1 < r->height ? upper + r->stride : upper;
+
+        r->kernels.sharpest4(yuv->blur + cy * r->stride, upper, lower, yuv->width);
+    }
+    rf_extend_chroma(r, yuv->blur, c0, c1);
+}
+
+/* Whether a tile holds blurs above `least`. */
+static bool is_wide(const struct refocus_renderer *r, int tx, int ty, int least)
+{
+    const struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+
+    return bins->most > least || -bins->least > least;
+}
+
+/* A plane and its blur, and how far apart neighbours are. */
+struct filter {
+    uint16_t *out;
+    const uint16_t *in;
+    const int16_t *blur;
+    int across, down; /* elements and rows */
+    int least;        /* |s| that it begins at */
+    uint16_t *scratch;
+};
+
+/* n elements of a row, from `at` on. */
+static void smooth_run(const struct refocus_renderer *r, const struct filter *f, ptrdiff_t at,
+                       int n)
+{
+    const int step = f->across;
+    const ptrdiff_t down = f->down * r->stride;
+    const uint16_t *from = f->in + at - step;
+    const int16_t *s = f->blur + at;
+    uint16_t *const row = f->scratch + step;
+
+    r->kernels.smooth1(row - step, from, s - step, down, f->least, n + 2 * step);
+    r->kernels.smooth1(f->out + at, row, s, step, f->least, n);
+}
+
+/* Rows y0 to y1 - 1, as wide as w, of a row of tiles. */
+static void smooth_rows(const struct refocus_renderer *r, const struct filter *f, int ty, int y0,
+                        int y1, int w)
+{
+    for (int tx = 0, end; tx < r->tiles_x; tx = end) {
+        const bool wide = is_wide(r, tx, ty, f->least);
+        const int x0 = tx * RF_TILE;
+        int n;
+
+        for (end = tx + 1; end < r->tiles_x && is_wide(r, end, ty, f->least) == wide;)
+            end++;
+        n = (end * RF_TILE < w ? end * RF_TILE : w) - x0;
+        for (int y = y0; y < y1; y++) {
+            const ptrdiff_t at = y * r->stride + x0;
+
+            if (wide)
+                smooth_run(r, f, at, n);
+            else
+                memcpy(f->out + at, f->in + at, (size_t)n * 2);
+        }
+    }
+}
+
+void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
+                           int step, int least, uint16_t *scratch, int ty)
+{
+    const struct filter filter = {out, in, r->front.blur, step, step, least, scratch};
+
+    smooth_rows(r, &filter, ty, rf_band_start(ty), rf_band_end(r, ty), r->width);
+    rf_extend_rows(r, out, rf_band_start(ty), rf_band_end(r, ty));
+}
+
+void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
+                             int step, int least, uint16_t *scratch, int ty)
+{
+    const struct filter filter = {out,  in,      r->yuv.blur, 2 * step,
+                                  step, least, scratch};
+    const int c0 = rf_band_start(ty) >> r->yuv.down;
+    const int c1 = rf_chroma_end(r, rf_band_end(r, ty));
+
+    smooth_rows(r, &filter, ty, c0, c1, 2 * r->yuv.width);
+    rf_extend_chroma(r, out, c0, c1);
+}

@@ -1,0 +1,53 @@
+/* yuv.h: the passes over the planes of a photo of Y, U and V; see struct rf_yuv.
+ *
+ * Rows y0 to y1 - 1 are of the picture, from an even one on; those of chroma follow from them.
+ */
+#ifndef RF_PLANES_YUV_H
+#define RF_PLANES_YUV_H
+
+#include "planes/planes.h"
+#include "renderer/renderer.h"
+
+/* The renderer's planes are those of such a photo: of Y, U and V, or of R, G and B again. Before
+ * rf_use(). */
+void rf_yuv_begin(struct refocus_renderer *r, const struct refocus_image *photo);
+
+/* For rf_use(): the planes of the window. */
+void rf_yuv_use(struct refocus_renderer *r);
+
+/* A picture in RGB8 in the memory of disparities and what is free beside the codes of U and V. */
+struct refocus_image rf_yuv_guide(const struct refocus_renderer *r);
+
+/*
+ * Photo rows to luma and chroma. Each byte of the photo is read once, each row of a plane in
+ * one go, rows in order. `guide`, if not NULL, receives the picture in RGB8, for those who look
+ * for edges. `scratch` has 4 bytes a pixel of a row and a few more.
+ */
+void rf_yuv_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo,
+                         const struct refocus_image *guide, uint8_t *scratch, int y0, int y1);
+
+/* Change to the curve of another blend, and rows to the curve. */
+void rf_yuv_set_blend(struct refocus_renderer *r, uint32_t blend);
+void rf_yuv_reblend_rows(struct refocus_renderer *r, uint8_t *scratch, int y0, int y1);
+
+/* The blur of chroma: that of its sharpest pixel, so that no colour of what is in focus is
+ * smeared. r->front.blur is final. */
+void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1);
+
+/* A step of the pre-filter, for a row of tiles, as rf_prefilter_rows(): of luma, and of chroma
+ * by its own distances. `step` of chroma is in its samples. */
+void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
+                           int step, int least, uint16_t *scratch, int ty);
+void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
+                             int step, int least, uint16_t *scratch, int ty);
+
+/* rf_extend_rows() of rows c0 to c1 - 1 of a plane of chroma. */
+void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int c1);
+
+/* End of the rows of chroma of rows that end at y1. */
+static inline int rf_chroma_end(const struct refocus_renderer *r, int y1)
+{
+    return (y1 + r->yuv.down) >> r->yuv.down;
+}
+
+#endif

@@ -1,0 +1,52 @@
+#include "renderer/render_yuv.h"
+
+#include "planes/format.h"
+#include "planes/yuv.h"
+
+/* What is made of R, G and B alone. */
+static bool has_look(const struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+
+    return p->cat_eye > 0 || p->fringe != 0 || p->grain > 0 ||
+           (p->star_spikes > 0 && p->star_strength > 0) ||
+           (p->aperture && rf_aperture_has_sides(p->aperture));
+}
+
+int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
+{
+    const struct refocus_renderer *r = f->r;
+    const int odd_rows = r->yuv.down ? 1 : 0;
+
+    if (refocus_format_is_yuv(f->out->format) != r->yuv.on)
+        return REFOCUS_ERR_UNSUPPORTED;
+    if (!r->yuv.on)
+        return REFOCUS_OK;
+    if (rf_chroma_down(f->out->format) != r->yuv.down ||
+        f->params->method != REFOCUS_METHOD_SWEEP || f->params->reduce > 1 || has_look(f))
+        return REFOCUS_ERR_UNSUPPORTED;
+    if (region.x0 % 2 || (region.x1 % 2 && region.x1 < r->photo[0].width) ||
+        (region.y0 & odd_rows) || ((region.y1 & odd_rows) && region.y1 < r->photo[0].height))
+        return REFOCUS_ERR_ARGUMENT;
+    return REFOCUS_OK;
+}
+
+/* From the photo to r->smooth, and from there by way of the background's planes. */
+void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
+{
+    struct refocus_renderer *r = f->r;
+    const struct rf_yuv *yuv = &r->yuv;
+    const int i = f->prefilter_step, step = 1 << i;
+    uint16_t *const luma[] = {r->front.light[0], r->smooth[0], r->behind.light[0]};
+    uint16_t *const chroma[] = {yuv->light, yuv->smooth, yuv->behind};
+    const int to = i == 1 ? 2 : 1;
+    /* half the rays, twice the pixels: sqrt 2 of the blur for the same gap among samples */
+    const int above = f->prefilter_above[i] < INT16_MAX ? f->prefilter_above[i] * 181 / 128
+                                                        : INT16_MAX;
+
+    rf_yuv_prefilter_luma(r, luma[to], luma[i], step, f->prefilter_above[i],
+                          rf_scratch(r, worker), band);
+    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], step,
+                            above < INT16_MAX ? above : INT16_MAX, rf_scratch(r, worker),
+                            band);
+}

@@ -1,0 +1,311 @@
+/* Kernels of luma and chroma: encode and decode against colour/yuv.h a sample at a time, the
+ * sweep of one plane and the aim of chroma against their contracts. */
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "guarded.h"
+
+enum { MOST = 100, LANES = RF_TILE * RF_TILE, PAD = 9, SIDE = RF_TILE + 2 * PAD, STRIDE = SIDE + 7 };
+
+static struct rf_yuv_curve curve;
+
+static int fail(const struct subject *subject, const char *kernel, uint32_t seed, int i, int is,
+                int should)
+{
+    printf("FAIL  %-12s %-6s seed %u: element %d is %d, should be %d\n", kernel, subject->cpu,
+           (unsigned)seed, i, is, should);
+    return 1;
+}
+
+/* Codes: extremes, then noise. */
+static uint8_t code(uint32_t seed, uint32_t *state)
+{
+    static const uint8_t extreme[] = {0, 255, 16, 235, 128, 240};
+
+    return seed % 3 ? (uint8_t)(noise(state) >> 5) : extreme[noise(state) % 6];
+}
+
+static int check_encode(const struct subject *subject, struct guarded g[6])
+{
+    for (uint32_t seed = 1; seed <= 400; seed++) {
+        const int n = seed <= 41 ? (int)seed - 1 : (int)(seed % MOST);
+        const enum place place = (enum place)(seed % PLACES);
+        const bool two = seed % 4 > 0;
+        uint32_t state = seed;
+        uint8_t *in[3];
+        uint16_t *to[3];
+
+        rf_yuv_curve_init(&curve, seed % 2, seed / 2 % 2, seed / 4 % 3);
+        for (int i = 0; i < 3; i++) {
+            in[i] = guarded_place(&g[i], 2 * (size_t)n, 1, place, 3);
+            to[i] = guarded_place(&g[3 + i], 4 * (size_t)n, 2, place, 5);
+            for (int x = 0; x < 2 * n; x++)
+                in[i][x] = code(seed, &state);
+        }
+        subject->kernels.encode((uint16_t *const[2]){to[0], two ? to[1] : to[0]}, to[2],
+                                (const uint8_t *const[2]){in[0], two ? in[1] : in[0]}, in[2],
+                                &curve, n);
+        for (int x = 0; x < n; x++) {
+            int light[4];
+            struct rf_chroma expected;
+
+            for (int k = 0; k < 4; k++)
+                light[k] = curve.light_of_luma[in[two ? k / 2 : 0][2 * x + k % 2]];
+            expected = rf_chroma_of(&curve, (light[0] + light[1] + light[2] + light[3] + 2) / 4,
+                                    in[2][2 * x], in[2][2 * x + 1]);
+            if (to[2][2 * x] != expected.blue || to[2][2 * x + 1] != expected.red)
+                return fail(subject, "encode", seed, x, to[2][2 * x], expected.blue);
+            for (int k = 0; k < (two ? 4 : 2); k++) {
+                const int should = rf_luminance(light[k], expected.excess);
+
+                if (to[k / 2][2 * x + k % 2] != should)
+                    return fail(subject, "encode", seed, 2 * x + k % 2,
+                                to[k / 2][2 * x + k % 2], should);
+            }
+        }
+        for (int i = 0; i < 6; i++)
+            if (!guarded_intact(&g[i]))
+                return fail(subject, "encode", seed, -1, 0, 0);
+    }
+    printf("ok    %-12s %-6s 400 cases\n", "encode", subject->cpu);
+    return 0;
+}
+
+static int clipped(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+/* Sample c of a job, by the contract. */
+static int check_sample(const struct subject *subject, uint32_t seed, const struct rf_decode_job *in,
+                        const struct rf_decode_job *out, int row, int x)
+{
+    const int rows = 1 << in->down, at = row * RF_TILE + 2 * x;
+    const uint16_t *own = in->own_chroma + row * in->stride + 2 * x;
+    const bool same_chroma =
+        in->chroma[at] == 4 * own[0] && in->chroma[at + 1] == 4 * own[1];
+    bool same = same_chroma;
+    struct rf_chroma_code expected;
+    int light = 0;
+
+    for (int k = 0; k < 4; k++)
+        light += clipped(in->luma[(row * rows + k / 2 % rows) * RF_TILE + 2 * x + k % 2],
+                         RF_MEAN_MAX);
+    expected = rf_chroma_code(in->curve, (light + 2) / 4, in->chroma[at], in->chroma[at + 1]);
+    for (int k = 0; k < 2 * rows; k++) {
+        const int y = row * rows + k / 2, p = y * RF_TILE + 2 * x + k % 2;
+        const bool kept =
+            same_chroma && in->luma[p] == 4 * in->own_luma[y * in->stride + 2 * x + k % 2];
+        const int mean = clipped(in->luma[p], RF_MEAN_MAX) - expected.excess;
+        const int should = kept ? in->y[p] : in->curve->to_code[clipped(mean, RF_MEAN_MAX)];
+
+        same = same && kept;
+        if (out->y[p] != should)
+            return fail(subject, "decode", seed, p, out->y[p], should);
+    }
+    if (out->uv[at] != (same ? in->uv[at] : expected.u) ||
+        out->uv[at + 1] != (same ? in->uv[at + 1] : expected.v))
+        return fail(subject, "decode", seed, at, out->uv[at], same ? in->uv[at] : expected.u);
+    return 0;
+}
+
+static int check_decode(const struct subject *subject)
+{
+    static uint16_t own[2][RF_TILE * STRIDE];
+    static struct rf_decode_job in, out;
+
+    for (uint32_t seed = 1; seed <= 600; seed++) {
+        uint32_t state = seed;
+        const int least = seed % 5 ? 0 : 4 * RF_MEAN_MAX / 4, down = (int)(seed / 2 % 2);
+
+        rf_yuv_curve_init(&curve, seed % 2, seed / 4 % 2, seed / 8 % 3);
+        in = (struct rf_decode_job){.curve = &curve, .down = down, .own_luma = own[0],
+                                    .own_chroma = own[1], .stride = STRIDE};
+        for (int i = 0; i < LANES; i++) {
+            const int at = i / RF_TILE * STRIDE + i % RF_TILE;
+
+            own[0][at] = (uint16_t)noise_between(&state, 0, seed % 7 ? RF_LIGHT_MAX : 16380);
+            own[1][at] = (uint16_t)noise_between(&state, 1, RF_CHROMA_MAX);
+            in.luma[i] = (uint16_t)(noise(&state) % 2 ? 4 * own[0][at]
+                                                      : noise_between(&state, least, 65520));
+            if (noise(&state) % 2 && seed % 3)
+                in.luma[i] = (uint16_t)noise_between(&state, 0, RF_MEAN_MAX);
+            in.chroma[i] = (uint16_t)(i % 4 < 2 || noise(&state) % 4 == 0
+                                          ? 4 * own[1][at]
+                                          : noise_between(&state, 4, 4 * RF_CHROMA_MAX));
+            in.y[i] = (uint8_t)noise(&state);
+            in.uv[i] = (uint8_t)noise(&state);
+        }
+        out = in;
+        subject->kernels.decode(&out);
+        for (int row = 0; row < RF_TILE >> down; row++)
+            for (int x = 0; x < RF_TILE / 2; x++)
+                if (check_sample(subject, seed, &in, &out, row, x))
+                    return 1;
+    }
+    printf("ok    %-12s %-6s 600 cases\n", "decode", subject->cpu);
+    return 0;
+}
+
+static int round_down(int v, int by)
+{
+    return v < 0 ? -((-v + by - 1) / by) : v / by;
+}
+
+static int check_aim_chroma(const struct subject *subject)
+{
+    int32_t offset[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
+    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+
+    for (uint32_t seed = 1; seed <= 400; seed++) {
+        uint32_t state = seed;
+        const int n = (int)(seed % (RF_RAY_CHUNK + 1)), down = (int)(seed / 3 % 2);
+        const int blur = seed % 4 ? noise_between(&state, -32512, 32512)
+                                  : (seed % 8 ? 32512 : -32512);
+
+        for (int i = 0; i < n; i++) {
+            u[i] = (int16_t)(i % 3 ? noise_between(&state, -32767, 32767) : i % 2 ? 32767 : -32767);
+            v[i] = (int16_t)noise_between(&state, -32767, 32767);
+        }
+        subject->kernels.aim_chroma(offset, cell, u, v, blur, down, 1000, 77, n);
+        for (int i = 0; i < n; i++) {
+            const int x = round_down(u[i] * blur + (1 << 23), 1 << 24);
+            const int y = round_down(v[i] * blur + (1 << (22 + down)), 1 << (23 + down));
+            const int32_t at = 2 * x + y * 1000;
+            const int32_t in = round_down(2 * x, RF_CELL) +
+                               round_down(y * (1 << down), RF_CELL) * 77;
+
+            if (offset[i] != at || cell[i] != in)
+                return fail(subject, "aim_chroma", seed, i, offset[i], at);
+        }
+    }
+    printf("ok    %-12s %-6s 400 cases\n", "aim_chroma", subject->cpu);
+    return 0;
+}
+
+struct stage {
+    struct guarded blur, light;
+    struct rf_slab slab[RF_BINS];
+    struct rf_sorted_rays rays;
+    struct rf_sweep1_job job;
+    uint32_t sum[LANES], expected[LANES];
+};
+
+static uint16_t *make_plane(struct guarded *g, enum place place, int rows, uint32_t *state,
+                            int least, int most, bool extreme)
+{
+    const int count = (rows + 2 * PAD - 1) * STRIDE + SIDE;
+    uint16_t *all = guarded_place(g, (size_t)count * 2, 2, place, noise(state) % 17);
+
+    for (int i = 0; i < count; i++)
+        all[i] = (uint16_t)(extreme ? most : noise_between(state, least, most));
+    return all + PAD * (STRIDE + 1);
+}
+
+static int offset_in(uint32_t *state)
+{
+    return noise_between(state, -PAD, PAD) * STRIDE + noise_between(state, -PAD, PAD);
+}
+
+static void make_stage(struct stage *s, uint32_t seed, enum place place)
+{
+    static const int steps[] = {4, 8, 16}, row_counts[] = {4, 8, 16};
+    uint32_t state = seed;
+    const int step = steps[seed % 3], rows = row_counts[seed / 3 % 3];
+    const int slabs = 1 + (int)(seed % 7);
+    const uint16_t *light;
+
+    for (int k = 0; k < slabs; k++)
+        s->slab[k] = (struct rf_slab){(int16_t)noise_between(&state, -3000, 3000),
+                                      (uint16_t)noise_between(&state, 0, 479), 0};
+    light = make_plane(&s->light, place, rows, &state, 0, 65535 / step, seed % 4 == 0);
+    s->job = (struct rf_sweep1_job){
+        .blur = (const int16_t *)make_plane(&s->blur, place, rows, &state, 0, 0, false),
+        .light = light,
+        .stride = STRIDE,
+        .rows = rows,
+        .steps = step,
+        .slabs = slabs,
+        .slab = s->slab,
+        .rays = &s->rays,
+    };
+    for (int y = -PAD; y < rows + PAD; y++)
+        for (int x = -PAD; x < RF_TILE + PAD; x++) {
+            const struct rf_slab *slab = &s->slab[noise(&state) % (uint32_t)slabs];
+
+            ((int16_t *)(uintptr_t)s->job.blur)[y * STRIDE + x] =
+                (int16_t)(slab->low + noise_between(&state, -100, slab->width + 100));
+        }
+    s->rays.rays = (int)(seed % (RF_RAY_CHUNK + 1));
+    for (int n = 0; n < s->rays.rays; n++) {
+        s->rays.tests[n] = (uint8_t)(n * (slabs + 1) / (s->rays.rays + 1));
+        for (int t = 0; t < s->rays.tests[n]; t++) {
+            s->rays.slab[t][n] = (uint8_t)t;
+            s->rays.offset[t][n] = offset_in(&state);
+        }
+        s->rays.last[n] = light + offset_in(&state);
+    }
+    for (int i = 0; i < LANES; i++)
+        s->sum[i] = s->expected[i] = noise(&state);
+}
+
+static void follow(struct stage *s, int i, int n)
+{
+    const ptrdiff_t p = i / RF_TILE * STRIDE + i % RF_TILE;
+
+    for (int t = 0; t < s->rays.tests[n]; t++) {
+        const struct rf_slab *slab = &s->slab[s->rays.slab[t][n]];
+        const ptrdiff_t q = p + s->rays.offset[t][n];
+        const int above = s->job.blur[q] - slab->low;
+
+        if (above >= 0 && above <= slab->width) {
+            s->expected[i] += s->job.light[q];
+            return;
+        }
+    }
+    s->expected[i] += s->rays.last[n][p];
+}
+
+static int check_sweep1(const struct subject *subject)
+{
+    static struct stage s;
+    int failures = 0;
+
+    if (!guarded_create(&s.blur, SIDE * STRIDE * 2) ||
+        !guarded_create(&s.light, SIDE * STRIDE * 2)) {
+        printf("FAIL  no memory between pages\n");
+        return 1;
+    }
+    for (uint32_t seed = 1; seed <= 600 && !failures; seed++) {
+        make_stage(&s, seed, (enum place)(seed % PLACES));
+        for (int i = 0; i < s.job.rows * RF_TILE; i++)
+            for (int n = 0; n < s.rays.rays; n++)
+                follow(&s, i, n);
+        subject->kernels.sweep1(s.sum, &s.job);
+        for (int i = 0; i < LANES && !failures; i++)
+            if (s.sum[i] != s.expected[i])
+                failures = fail(subject, "sweep1", seed, i, (int)s.sum[i], (int)s.expected[i]);
+    }
+    guarded_destroy(&s.blur);
+    guarded_destroy(&s.light);
+    if (!failures)
+        printf("ok    %-12s %-6s 600 cases\n", "sweep1", subject->cpu);
+    return failures;
+}
+
+int check_yuv(const struct subject *subject)
+{
+    struct guarded g[6];
+    int failures = check_decode(subject) + check_aim_chroma(subject) + check_sweep1(subject);
+    int made = 0;
+
+    while (made < 6 && guarded_create(&g[made], 4 * MOST + 64))
+        made++;
+    failures += made < 6 ? 1 : check_encode(subject, g);
+    while (made > 0)
+        guarded_destroy(&g[--made]);
+    return failures;
+}

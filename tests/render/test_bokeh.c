@@ -1,0 +1,469 @@
+/* The look of the blur: discs of single lamps, measured in linear light; star filter, grain. */
+#include "pictures.h"
+
+enum { W = 144, H = 112 };
+
+static uint8_t out[3 * W * H];
+static const struct refocus_image image = {
+    .format = REFOCUS_FORMAT_RGB8, .width = W, .height = H, .plane = {out}, .stride = {3 * W}};
+
+static double light_of(uint8_t code)
+{
+    const double v = code / 255.0;
+
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+/* A lamp of 5 x 5 pixels in the dark, in front of nothing, at disparity d. */
+static struct refocus_renderer *lamp_at(int x, int y, uint16_t d)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, d);
+    struct refocus_renderer *renderer;
+
+    for (int j = y - 2; j <= y + 2; j++)
+        memset(p.rgb + 3 * (j * W + x - 2), 255, 15);
+    renderer = prepared(&p, 30, 2);
+    picture_free(&p);
+    return renderer;
+}
+
+/* Behind the focus at 0.5, or as far before it: 12 pixels of blur. */
+enum { BEHIND = 6554, BEFORE = 58982 };
+
+static struct refocus_render_params twelve(void)
+{
+    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+
+    params.rays = 512;
+    params.prefilter = 0;
+    return params;
+}
+
+/* Light about a place: sum, mean place, mean squares. */
+struct disc {
+    double all, x, y, xx, yy, above;
+};
+
+static struct disc disc_at(int x, int y, int channel)
+{
+    struct disc d = {0, 0, 0, 0, 0, 0};
+
+    for (int j = 0; j < H; j++) {
+        for (int i = 0; i < W; i++) {
+            const double l = light_of(out[3 * (j * W + i) + channel]);
+
+            d.all += l;
+            d.x += l * (i - x);
+            d.y += l * (j - y);
+            d.xx += l * (i - x) * (i - x);
+            d.yy += l * (j - y) * (j - y);
+            d.above += j < y ? l : 0;
+        }
+    }
+    d.x /= d.all;
+    d.y /= d.all;
+    d.xx /= d.all;
+    d.yy /= d.all;
+    d.above /= d.all;
+    return d;
+}
+
+static struct disc render_lamp(int x, int y, uint16_t depth,
+                               const struct refocus_render_params *params, int channel)
+{
+    struct refocus_renderer *renderer = lamp_at(x, y, depth);
+
+    assert_int_equal(refocus_render(renderer, params, &image), REFOCUS_OK);
+    refocus_renderer_destroy(&renderer);
+    return disc_at(x, y, channel);
+}
+
+static struct disc lamp_through(const struct refocus_aperture_params *aperture, uint16_t depth)
+{
+    struct refocus_render_params params = twelve();
+    struct refocus_aperture *a;
+    struct disc disc;
+
+    assert_int_equal(refocus_aperture_create(&a, aperture), REFOCUS_OK);
+    params.aperture = a;
+    disc = render_lamp(W / 2, H / 2, depth, &params, 1);
+    refocus_aperture_destroy(&a);
+    return disc;
+}
+
+static void about(const char *what, double is, double wanted, double part)
+{
+    if (!(fabs(is - wanted) <= part * fabs(wanted)))
+        fail_msg("%s is %g, should be %g", what, is, wanted);
+}
+
+/* A heart is upright behind the focus and upside down before it. */
+static void hearts(void **state)
+{
+    struct refocus_aperture_params p = refocus_aperture_params_default();
+    struct disc behind, before;
+
+    (void)state;
+    p.figure = REFOCUS_FIGURE_HEART;
+    behind = lamp_through(&p, BEHIND);
+    before = lamp_through(&p, BEFORE);
+    assert_true(behind.above > 0.55 && before.above < 0.45);
+    about("light of a heart", behind.all, 25, 0.03);
+    about("light of a heart before the focus", before.all, 25, 0.03);
+    about("its place", before.y, -behind.y, 0.1);
+}
+
+/* Bright rims behind the focus, fading discs before it. */
+static void sides(void **state)
+{
+    struct refocus_aperture_params p = refocus_aperture_params_default();
+    const double lamp = 2 * 2.0; /* mean squares of 5 x 5 pixels */
+
+    (void)state;
+    p.edge_behind = 0.6;
+    p.edge_before = -0.6;
+    const struct disc behind = lamp_through(&p, BEHIND), before = lamp_through(&p, BEFORE);
+    about("a disc with a bright rim", behind.xx + behind.yy - lamp, 144 * (0.5 + 0.6 / 3), 0.04);
+    about("a disc that fades", before.xx + before.yy - lamp, 144 * (0.5 - 0.6 / 6), 0.04);
+}
+
+static void squeezed(void **state)
+{
+    struct refocus_aperture_params p = refocus_aperture_params_default();
+
+    (void)state;
+    p.squeeze = 0.55;
+    const struct disc oval = lamp_through(&p, BEHIND);
+    about("width / height of an oval", sqrt((oval.xx - 2) / (oval.yy - 2)), 0.55, 0.03);
+    about("light of an oval", oval.all, 25, 0.02);
+}
+
+/* Discs at the side are narrower across, as the areas common to two circles; whole in the
+ * middle, and no light is lost. */
+static void cat_eye(void **state)
+{
+    struct refocus_render_params params = twelve();
+    const int x = W - 18, y = H / 2;
+    double sum = 0, xx = 0, yy = 0;
+    struct disc disc;
+
+    (void)state;
+    params.cat_eye = 0.8f;
+    disc = render_lamp(W / 2, H / 2, BEHIND, &params, 1);
+    about("the middle's disc", sqrt((disc.xx - 2) / (disc.yy - 2)), 1, 0.03);
+    disc = render_lamp(x, y, BEHIND, &params, 1);
+    const double pushed = 0.8 * pow(x + 0.5 - W / 2.0, 2) / (W * W / 4.0 + H * H / 4.0);
+    for (int i = -500; i < 500; i++) {
+        const double at = (i + 0.5) / 500, h = 1 - pow(fabs(at) + pushed, 2);
+
+        if (h > 0 && fabs(at) < 1 - pushed) {
+            sum += sqrt(h);
+            xx += at * at * sqrt(h);
+            yy += h * sqrt(h) / 3;
+        }
+    }
+    about("how much narrower", sqrt((disc.xx - 2) / (disc.yy - 2)), sqrt(xx / yy), 0.05);
+    about("width squared", disc.xx - 2, 144 * xx / sum, 0.08);
+    about("light of a cat's eye", disc.all, 25, 0.04);
+}
+
+static void fringes(void **state)
+{
+    struct refocus_render_params params = twelve();
+
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        params.fringe = 0.25f * (float)sign;
+        for (int before = 0; before < 2; before++) {
+            const uint16_t depth = before ? BEFORE : BEHIND;
+            const struct disc red = render_lamp(W / 2, H / 2, depth, &params, 0);
+            const struct disc green = disc_at(W / 2, H / 2, 1), blue = disc_at(W / 2, H / 2, 2);
+            const bool green_is_wider = (sign > 0) != (before == 1);
+            const double ratio = sqrt((green.xx - 2) / (red.xx - 2));
+
+            about("green / red", ratio, green_is_wider ? 1 / 0.75 : 0.75, 0.04);
+            about("blue / red", sqrt((blue.xx - 2) / (red.xx - 2)), 1, 0.001);
+            about("light of a fringed disc", green.all, 25, 0.03);
+        }
+    }
+}
+
+/* Discs of lamps are as bright as the gain says. */
+static void stops(void **state)
+{
+    struct refocus_render_params params = twelve();
+
+    (void)state;
+    for (int gain = 1; gain <= 16; gain *= 2) {
+        for (int weighted = 0; weighted < 2; weighted++) {
+            params.highlight_gain = (float)gain;
+            params.sigma = weighted ? 1e5f : INFINITY; /* all weights nearly the same */
+            about("light of a lamp", render_lamp(W / 2, H / 2, BEHIND, &params, 1).all,
+                  25 * gain, 0.03);
+        }
+    }
+}
+
+static void star(void **state)
+{
+    struct refocus_render_params params = refocus_render_params_default(0.1f, 30);
+    const int x = W / 2, y = H / 2;
+    static uint8_t plain[3 * W * H];
+    struct refocus_renderer *renderer = lamp_at(x, y, BEHIND);
+    double added = 0;
+
+    (void)state;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    memcpy(plain, out, sizeof out);
+    params.star_spikes = 4;
+    params.star_length = 30;
+    params.star_strength = 0.5f;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    refocus_renderer_destroy(&renderer);
+    for (int l = 5; l < 25; l++) {
+        const int at[4] = {y * W + x + l, y * W + x - l, (y + l) * W + x, (y - l) * W + x};
+
+        for (int k = 0; k < 4; k++)
+            assert_true(out[3 * at[k]] > 20);
+        assert_int_equal(out[3 * ((y + l) * W + x + l)], 0);
+    }
+    assert_int_equal(out[3 * (y * W + x + 32)], 0);
+    for (int i = 0; i < W * H; i++)
+        added += light_of(out[3 * i]) - light_of(plain[3 * i]);
+    /* half of 25 lights, less what falls on the lamp itself, that is white already */
+    assert_true(added > 12.5 * 0.6 && added < 12.5);
+}
+
+/* Noise of the sharp half in the blurred one. */
+static double noise_of(int x0, int x1)
+{
+    double sum = 0, squares = 0;
+    int n = 0;
+
+    for (int y = 4; y < H - 4; y++) {
+        for (int x = x0; x < x1; x++, n++) {
+            const double v = out[3 * (y * W + x) + 1];
+
+            sum += v;
+            squares += v * v;
+        }
+    }
+    return sqrt(squares / n - sum / n * (sum / n));
+}
+
+static void grain(void **state)
+{
+    static uint8_t first[3 * W * H];
+    struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+    struct refocus_render_params params = refocus_render_params_default(60000 / 65535.0f, 20);
+    struct refocus_renderer *renderer;
+    uint32_t seed = 5;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        int v = 120;
+
+        for (int k = 0; k < 12; k++)
+            v += (int)(noise(&seed) % 5) - 2; /* 12 of variance 2: about 4.9 */
+        memset(p.rgb + 3 * i, v, 3);
+        p.disparity[i] = i % W < W / 2 ? 60000 : 10000;
+    }
+    renderer = prepared(&p, 20, 2);
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_true(noise_of(W / 2 + 20, W) < 1.5);
+    params.seed = 1;
+    for (int amount = 1; amount <= 2; amount++) {
+        params.grain = (float)amount;
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        about("grain", noise_of(W / 2 + 20, W), 4.9 * amount, 0.12);
+        for (int y = 0; y < H; y++) /* what is sharp has its own */
+            assert_memory_equal(out + 3 * y * W, p.rgb + 3 * y * W, 3 * (W / 2 - 16));
+    }
+    memcpy(first, out, sizeof out);
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_memory_equal(first, out, sizeof out);
+    params.seed = 2;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_true(memcmp(first, out, sizeof out) != 0);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* Every effect: a part of the picture is that part of the whole. */
+static void regions(void **state)
+{
+    enum { X = 37, Y = 21, PW = 61, PH = 50 };
+    static uint8_t part[3 * PW * PH];
+    const struct refocus_image small =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, part, PW, PH, 3 * PW);
+    struct picture p = picture_make(W, H, 9);
+    struct refocus_renderer *renderer;
+    struct refocus_render_params params;
+    const char *name;
+
+    (void)state;
+    for (int i = 0; i < 3 * W * H; i++)
+        p.rgb[i] = p.rgb[i] < 250 ? p.rgb[i] / 4 : 255;
+    renderer = prepared(&p, 10, 3);
+    for (int i = 0; effect_params(i, 0.5f, 10, &params, &name); i++) {
+        struct refocus_aperture *aperture = effect_aperture(i);
+
+        params.aperture = aperture;
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        params.region_x = X, params.region_y = Y;
+        params.region_width = PW, params.region_height = PH;
+        assert_int_equal(refocus_render(renderer, &params, &small), REFOCUS_OK);
+        for (int y = 0; y < PH; y++)
+            if (memcmp(part + 3 * y * PW, out + 3 * ((y + Y) * W + X), 3 * PW))
+                fail_msg("%s: row %d of the region differs", name, y);
+        refocus_aperture_destroy(&aperture);
+    }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* A night of 300 x 260 pixels with lamps, larger than a block of strip mode. */
+enum { NIGHT_W = 300, NIGHT_H = 260 };
+
+static struct picture night(void)
+{
+    struct picture p = picture_make(NIGHT_W, NIGHT_H, 9);
+
+    for (int i = 0; i < NIGHT_W * NIGHT_H; i++)
+        for (int c = 0; c < 3; c++)
+            p.rgb[3 * i + c] = i % NIGHT_W % 37 < 4 && i / NIGHT_W % 41 < 4
+                                   ? 255
+                                   : p.rgb[3 * i + c] / 5;
+    return p;
+}
+
+static struct refocus_renderer *of_night(const struct picture *p, uint32_t in_place)
+{
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(NIGHT_W, NIGHT_H, 9);
+    const struct refocus_image photo = picture_image(p);
+    const struct refocus_disparity disparity = picture_disparity(p);
+    struct refocus_renderer *renderer;
+
+    limits.threads = 3;
+    limits.in_place = in_place;
+    limits.methods = in_place ? 0 : REFOCUS_METHODS_ALL;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+    return renderer;
+}
+
+static void render_effect(struct refocus_renderer *renderer, int i, uint8_t *to)
+{
+    const struct refocus_image whole =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, to, NIGHT_W, NIGHT_H, 3 * NIGHT_W);
+    struct refocus_aperture *aperture = effect_aperture(i);
+    struct refocus_render_params params;
+    const char *name;
+
+    assert_true(effect_params(i, 0.5f, 9, &params, &name));
+    params.aperture = aperture;
+    assert_int_equal(refocus_render(renderer, &params, &whole), REFOCUS_OK);
+    refocus_aperture_destroy(&aperture);
+}
+
+/* Every effect: in strips as of the whole, and whatever was rendered before it. */
+static void strips_and_sequences(void **state)
+{
+    static uint8_t is[3 * NIGHT_W * NIGHT_H], wanted[3 * NIGHT_W * NIGHT_H];
+    struct picture p = night();
+    struct refocus_renderer *used = of_night(&p, 0), *strips = of_night(&p, 1);
+    struct refocus_render_params params;
+    const char *name;
+
+    (void)state;
+    for (int i = 0; effect_params(i, 0.5f, 9, &params, &name); i++) {
+        struct refocus_renderer *fresh = of_night(&p, 0);
+
+        render_effect(fresh, i, wanted);
+        render_effect(used, i, is);
+        assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, name);
+        render_effect(used, (i * 7 + 3) % 30, is); /* something else in between */
+        render_effect(used, i, is);
+        assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, name);
+        render_effect(used, i, is);
+        assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, name);
+        if (params.method != REFOCUS_METHOD_DIFFUSION) {
+            render_effect(strips, i, is);
+            assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, name);
+        }
+        refocus_renderer_destroy(&fresh);
+    }
+    refocus_renderer_destroy(&used);
+    refocus_renderer_destroy(&strips);
+    picture_free(&p);
+}
+
+/* A map that is another at the same address. */
+static void changed_map(void **state)
+{
+    static uint8_t is[3 * NIGHT_W * NIGHT_H], wanted[3 * NIGHT_W * NIGHT_H];
+    struct picture p = night();
+    struct refocus_renderer *used = of_night(&p, 0), *fresh = of_night(&p, 0);
+    struct refocus_image whole =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, is, NIGHT_W, NIGHT_H, 3 * NIGHT_W);
+    struct refocus_render_params params = refocus_render_params_default(0.5f, 9);
+    uint8_t level = 200;
+    const struct refocus_disparity map = {8, 1, 1, &level, 1};
+
+    (void)state;
+    params.focus_map = &map;
+    assert_int_equal(refocus_render(used, &params, &whole), REFOCUS_OK);
+    level = 20;
+    assert_int_equal(refocus_render(used, &params, &whole), REFOCUS_OK);
+    whole.plane[0] = wanted;
+    assert_int_equal(refocus_render(fresh, &params, &whole), REFOCUS_OK);
+    assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, "a changed map");
+    refocus_renderer_destroy(&used);
+    refocus_renderer_destroy(&fresh);
+    picture_free(&p);
+}
+
+/* Methods and sets of rays that cannot do it say so. */
+static void refused(void **state)
+{
+    struct refocus_aperture_params p = refocus_aperture_params_default();
+    struct refocus_renderer *renderer = lamp_at(W / 2, H / 2, BEHIND);
+    struct refocus_aperture *a;
+
+    (void)state;
+    p.edge_behind = 0.5;
+    assert_int_equal(refocus_aperture_create(&a, &p), REFOCUS_OK);
+    for (uint32_t method = REFOCUS_METHOD_SWEEP; method < REFOCUS_METHOD_COUNT; method++) {
+        for (int i = 0; i < 3; i++) {
+            struct refocus_render_params params = refocus_render_params_default(0.5f, 2);
+
+            params.method = method;
+            params.rays = 8;
+            params.cat_eye = i == 0 ? 0.1f : 0;
+            params.fringe = i == 1 ? -0.1f : 0;
+            params.aperture = i == 2 ? a : NULL;
+            assert_int_equal(refocus_render(renderer, &params, &image),
+                             method == REFOCUS_METHOD_SWEEP ? REFOCUS_OK
+                                                            : REFOCUS_ERR_ARGUMENT);
+            params.rays = REFOCUS_RAYS_FULL;
+            if (i == 2)
+                assert_int_equal(refocus_render(renderer, &params, &image),
+                                 REFOCUS_ERR_ARGUMENT);
+        }
+    }
+    refocus_aperture_destroy(&a);
+    refocus_renderer_destroy(&renderer);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hearts),  cmocka_unit_test(sides),   cmocka_unit_test(squeezed),
+        cmocka_unit_test(cat_eye), cmocka_unit_test(fringes), cmocka_unit_test(stops),
+        cmocka_unit_test(star),    cmocka_unit_test(grain),   cmocka_unit_test(regions),
+        cmocka_unit_test(strips_and_sequences), cmocka_unit_test(changed_map),
+        cmocka_unit_test(refused)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
