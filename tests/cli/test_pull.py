@@ -153,7 +153,7 @@ class Pull(Case):
                 self.assertEqual(os.path.getsize('a.mp4'), W * H * 3 * 3)
                 os.remove('a.mp4')
             self.assertEqual([n for n in os.listdir('.') if 'tmp' in n], [])
-        result = self.run_it(*self.pull('-o', 'a.mp4'), env={'PATH': '/nonexistent'})
+        result = self.run_it(*self.pull('-o', 'a.mp4'), env={**os.environ, 'PATH': '/nonexistent'})
         self.assertEqual((result.returncode, result.stderr.count('\n')), (1, 1))
         self.assertIn('a.mp4: there is no ffmpeg program', result.stderr)
         shutil.rmtree(folder)
