@@ -9,9 +9,9 @@ static const struct {
     const char *name, *summary;
     int rays;
     float highlight_gain, sigma;
-} qualities[] = {{"preview", "32 rays", 32, 4, 1e30f},
-                 {"standard", "64 rays", 64, 4, 1e30f},
-                 {"best", "128 rays, and bright samples count more (--sigma 400)", 128, 8, 400}};
+} qualities[] = {{"preview", "32 rays, plain averages", 32, 4, 1e30f},
+                 {"standard", "64 rays, bright samples count more (--sigma 400)", 64, 4, 400},
+                 {"best", "128 rays and more light for lamps (--highlights 8)", 128, 8, 400}};
 
 static const struct {
     const char *name, *summary;
@@ -68,8 +68,10 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
                                          : (int32_t)settings->rays;
     if (!isnan(settings->iterations))
         params->iterations = (int32_t)settings->iterations;
-    params->sigma = isnan(settings->sigma) ? qualities[settings->quality].sigma
-                                           : (float)settings->sigma;
+    if (!isnan(settings->sigma))
+        params->sigma = (float)settings->sigma;
+    else if (params->method == REFOCUS_METHOD_SWEEP) /* the only one whose weights are quick */
+        params->sigma = qualities[settings->quality].sigma;
     params->highlight_gain = isnan(settings->highlights)
                                  ? qualities[settings->quality].highlight_gain
                                  : (float)settings->highlights;

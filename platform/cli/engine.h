@@ -99,8 +99,8 @@ const char *engine_blend_summary(uint32_t index);
      .greatest = 1e30,                                                                      \
      .word = "off",                                                                         \
      .word_value = INFINITY,                                                                \
-     .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default by "     \
-             "--quality"},                                                                  \
+     .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default of "     \
+             "sweep by --quality, of the others off"},                                      \
     {.kind = OPTION_NUMBER,                                                                 \
      .name = "--highlights",                                                                \
      .argument = "GAIN",                                                                    \

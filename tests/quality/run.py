@@ -21,8 +21,9 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 # label, settings (see refocus-quality --help), what it is
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
-    ("standard", "method=sweep,highlight=4",
-     "the default: two layers, 64 rays, light given back to clipped lamps"),
+    ("standard", "method=sweep,highlight=4,sigma=400",
+     "the default: two layers, 64 rays, light given back to clipped lamps, bright samples "
+     "count more"),
     ("sweep", "method=sweep", "the same of what is in the photo"),
     ("best", "method=sweep,rays=128,highlight=8,sigma=400",
      "128 rays, light given back to clipped lamps, bright samples count more"),
@@ -52,8 +53,8 @@ LIGHTS = [
     ("gain-1", "highlight=1", "as the photo has them"),
     ("gain-2", "highlight=2", "lamps up to twice as bright as white"),
     ("gain-3", "highlight=3", "three times"),
-    ("gain-4", "highlight=4", "four times: standard"),
-    ("gain-4-s400", "highlight=4,sigma=400", "four times, σ = 400"),
+    ("gain-4", "highlight=4", "four times"),
+    ("gain-4-s400", "highlight=4,sigma=400", "four times, σ = 400: standard"),
     ("gain-4-128", "highlight=4,rays=128", "four times, 128 rays"),
     ("gain-4-128-s400", "highlight=4,rays=128,sigma=400", "four times, 128 rays, σ = 400"),
     ("gain-8", "highlight=8", "eight times"),
