@@ -117,6 +117,7 @@ static int save_settings(void *of, const struct refocus_render_params *lens,
     settings.lens.focus = (double)lens->focus_disparity;
     settings.lens.blur = (double)lens->max_blur_radius;
     settings.engine.method = (int)lens->method;
+    settings.engine.sigma = lens->sigma < 1e30f ? (double)lens->sigma : INFINITY;
     return settings_save(&view_command, file, &settings);
 }
 
@@ -153,6 +154,7 @@ static int show(struct settings *settings, struct engine *engine, struct input *
     setup.session.photo = &input->photo->image;
     setup.session.disparity = input->disparity;
     setup.session.params = engine->params;
+    setup.session.sigma_of_sweep = isnan(settings->engine.sigma);
     setup.session.threads =
         isnan(settings->engine.threads) ? 0 : (int)settings->engine.threads;
     setup.session.cpu = (uint32_t)settings->engine.cpu;

@@ -52,6 +52,7 @@ struct rf_session_setup {
     const struct refocus_image *photo;   /* RGB8; the caller's, until the end */
     const uint16_t *disparity;           /* of its size, packed; NULL: all 0. Copied */
     struct refocus_render_params params; /* what the state does not say */
+    bool sigma_of_sweep; /* params.sigma is of sweep alone, other methods average plainly */
     int threads;
     uint32_t cpu;
     void (*notify)(void *user); /* a frame is there; from the session's thread */
