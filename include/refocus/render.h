@@ -162,9 +162,9 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
  *                   uncached
  * @param disparity  of any size; covers the same view as the photo. Another size than
  *                   the photo's is brought to it by following the photo's edges.
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_CANCELLED, in strip
- *         mode REFOCUS_ERR_UNSUPPORTED for disparities of another size. After an error nothing
- *         is prepared.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED (in_place:
+ *         a map of another size, or a photo of Y, U and V), REFOCUS_ERR_CANCELLED.
+ *         After an error nothing is prepared.
  */
 REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
                                 const struct refocus_image *photo,
