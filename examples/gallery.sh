@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # usage: gallery.sh BUILD
 # Makes the pictures of examples/gallery.md from the two scenes in examples/data: tilt-shift, two
-# focus bands, a field of blur, bokeh on night lights, sigma. Needs ImageMagick to crop and to put
+# focus bands, a field of blur, a focus pull, bokeh on night lights, sigma. Needs ImageMagick to crop and to put
 # pictures side by side.
 set -eu -o pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -43,6 +43,11 @@ save two-bands $portrait 400x300 one.png two.png
 shoot portrait plus --field plus --field-at 400,235 --field-disparity 0.689 --field-radius 0.06 \
     --field-falloff 0.2 --blur 20
 save plus $portrait 400x300 sharp.png plus.png
+
+"$build/platform/cli/refocus" pull "$top/examples/data/portrait/allfocus.png" \
+    --depth "$top/examples/data/portrait/disparity.png" --quality best --blur 20 --from 1 --to 0 \
+    --seconds 1 --fps 4 -o "$work/pull-%d.png"
+save pull $portrait 240x180 pull-0.png pull-1.png pull-2.png pull-3.png pull-4.png
 
 night() {
     shoot nightlights "$@" --focus 0.966 --blur 22

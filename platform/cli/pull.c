@@ -57,6 +57,8 @@ static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
+    CONTROL_OPTIONS(struct settings, engine.controls),
+    BOKEH_OPTIONS(struct settings, engine.bokeh),
     {.kind = OPTION_HEADING, .help = "Rendering"},
     METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine),
@@ -94,6 +96,8 @@ static int check(const struct settings *s, const char *photo)
 
     if (status == EXIT_DONE)
         status = input_check_lens(&s->lens);
+    if (status == EXIT_DONE) /* each frame has a focus of its own */
+        status = controls_check(&s->engine.controls, true);
     if (status == EXIT_DONE && s->keys &&
         !(isnan(s->from) && isnan(s->to) && isnan(s->blur_from) && isnan(s->blur_to) &&
           isnan(s->seconds)))
@@ -229,6 +233,7 @@ static int run(int argc, char **argv)
 
     if (status != OPTIONS_PARSED)
         return status;
+    settings.engine.bokeh.f_number = settings.lens.f_number;
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;
@@ -251,8 +256,8 @@ const struct command pull_command = {
     .summary = "focus pull: an animation between focus settings",
     .notes = "A file of --keys: {\"refocus-pull\": 1, \"keys\": [{\"time\": 0, \"focus\": 1, "
              "\"blur\": 12}, {\"time\": 1.5, \"focus\": 0.2, \"ease\": \"in\"}]}. Keys may name "
-             "focus, blur, highlights, field-x, field-y, field-disparity, field-radius, "
-             "field-falloff and field-angle; \"ease\" is how the way to a key goes: smooth, "
+             "focus, blur, highlights, focus-width, focus-transition, cat-eye, field-x, field-y, "
+             "field-disparity, field-radius, field-falloff and field-angle; \"ease\" is how the way to a key goes: smooth, "
              "linear, in (slowly at first), out (slowly in the end).\n"
              "Ctrl-C ends with status 1 and leaves nothing behind.",
     .options = options,

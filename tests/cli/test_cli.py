@@ -60,7 +60,8 @@ class Usage(Case):
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background '
                      '--threads --cpu --repeat --json --settings --save-settings -h --help',
-            'pull': self.PAPERS + '-o --output --depth --depth-unit --near --far --invalid --speckle '
+            'pull': self.PAPERS + self.CONTROLS +
+                    '-o --output --depth --depth-unit --near --far --invalid --speckle '
                     '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '

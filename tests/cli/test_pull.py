@@ -69,6 +69,19 @@ class Pull(Case):
         with open('k.json', 'w') as file:
             json.dump({'refocus-pull': 1, 'keys': keys, **more}, file)
 
+    def test_controls(self):
+        self.keys([{'time': 0, 'focus': 0.6, 'focus-width': 0}, {'time': 0.2, 'focus-width': 0.4}])
+        self.succeeds(*self.pull('-o', 'f-%02d.ppm', '--keys', 'k.json', '--fps', '10',
+                                 '--aperture', 'heart', '--cat-eye', '0.5'))
+        frames = self.frames(3)
+        for i, width in enumerate(('0', '0.2', '0.4')):
+            self.same(frames[i], self.rendered('--focus', '0.6', '--blur', '6', '--aperture',
+                                               'heart', '--cat-eye', '0.5', '--focus-width',
+                                               width))
+        self.differs(frames[0], frames[2])
+        self.fails(2, re.compile('--focus-plane: '),
+                   *self.pull('-o', 'f-%02d.ppm', '--focus-plane', '1,1,9,9,30,5'))
+
     def test_damaged_keys(self):
         two = {'time': 1}
 
