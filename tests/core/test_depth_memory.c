@@ -1,0 +1,216 @@
+/* Depth with every allocation failing once: a documented error, and nothing is left.
+ *
+ * This program is linked with --wrap=malloc and so on. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include <refocus/refocus.h>
+
+enum { W = 61, H = 43, CW = 17, CH = 11, UNTOUCHED = 0xa5a5 };
+
+void *__real_malloc(size_t size);
+void *__wrap_malloc(size_t size);
+void *__real_calloc(size_t n, size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__real_realloc(void *memory, size_t size);
+void *__wrap_realloc(void *memory, size_t size);
+void __real_free(void *memory);
+void __wrap_free(void *memory);
+
+static int calls, fail_at, live; /* fail_at: 0 = none */
+
+void *__wrap_malloc(size_t size)
+{
+    void *const memory = ++calls == fail_at ? NULL : __real_malloc(size);
+
+    live += memory != NULL;
+    return memory;
+}
+
+void *__wrap_calloc(size_t n, size_t size)
+{
+    void *const memory = ++calls == fail_at ? NULL : __real_calloc(n, size);
+
+    live += memory != NULL;
+    return memory;
+}
+
+void *__wrap_realloc(void *memory, size_t size)
+{
+    void *const moved = ++calls == fail_at ? NULL : __real_realloc(memory, size);
+
+    live += !memory && moved;
+    return moved;
+}
+
+void __wrap_free(void *memory)
+{
+    live -= memory != NULL;
+    __real_free(memory);
+}
+
+static uint8_t rgb[3 * W * H], confidence[W * H];
+static uint16_t fine[W * H], coarse[CW * CH], out[W * H];
+
+/* A near square before a far wall, and a hole. */
+static void draw(void)
+{
+    for (int i = 0; i < W * H; i++) {
+        const int inside = i % W >= 20 && i % W < 40 && i / W >= 12 && i / W < 30;
+
+        memset(rgb + 3 * i, inside ? 200 : 40 + i % 7, 3);
+        fine[i] = i % 97 == 0 ? 0 : inside ? 45000 : 12000;
+    }
+    for (int i = 0; i < CW * CH; i++)
+        coarse[i] = fine[i / CW * H / CH * W + i % CW * W / CW];
+}
+
+static struct refocus_image photo(void)
+{
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, W, H, 3 * W);
+}
+
+static int upsample(int threads, int with_confidence)
+{
+    struct refocus_upsample_params params = refocus_upsample_params_default();
+    const struct refocus_disparity map = refocus_disparity16(coarse, CW, CH, 2 * CW);
+    const struct refocus_image image = photo();
+
+    params.threads = threads;
+    params.confidence = with_confidence ? confidence : NULL;
+    params.confidence_stride = CW;
+    return refocus_upsample(&image, &map, &params, out, 2 * W);
+}
+
+static int upsample_alone(void)
+{
+    return upsample(1, 0);
+}
+
+static int upsample_in_threads(void)
+{
+    return upsample(3, 1);
+}
+
+static int snap(void)
+{
+    struct refocus_snap_params params = refocus_snap_params_default(3);
+    const struct refocus_disparity map = refocus_disparity16(fine, W, H, 2 * W);
+    const struct refocus_image image = photo();
+
+    params.threads = 2;
+    return refocus_depth_snap(&image, &map, &params, out, 2 * W);
+}
+
+static int repair(void)
+{
+    struct refocus_repair_params params = refocus_repair_params_default();
+    const struct refocus_depth_map map = {.samples = fine,
+                                          .width = W,
+                                          .height = H,
+                                          .stride = 2 * W,
+                                          .sample = REFOCUS_SAMPLE_U16,
+                                          .meaning = REFOCUS_DEPTH_DISPARITY,
+                                          .flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN};
+
+    params.speckle = 4;
+    params.confidence = confidence;
+    params.confidence_stride = W;
+    return refocus_depth_repair(&map, &params, out, 2 * W, NULL);
+}
+
+static int filter(void)
+{
+    const struct refocus_temporal_params params = refocus_temporal_params_default(W, H);
+    const struct refocus_disparity map = refocus_disparity16(fine, W, H, 2 * W);
+    struct refocus_temporal *made = (struct refocus_temporal *)out;
+    const struct refocus_image image = photo();
+    int status = refocus_temporal_create(&made, &params);
+
+    assert_int_equal(made == NULL, status != REFOCUS_OK);
+    for (int i = 0; i < 3 && status == REFOCUS_OK; i++) {
+        const int before = calls;
+
+        status = refocus_temporal_run(made, i ? &image : NULL, &map, out, 2 * W);
+        assert_int_equal(calls, before); /* all memory is taken at creation */
+    }
+    refocus_temporal_destroy(&made);
+    assert_null(made);
+    return status;
+}
+
+static int is_untouched(void)
+{
+    for (int i = 0; i < W * H; i++)
+        if (out[i] != UNTOUCHED)
+            return 0;
+    return 1;
+}
+
+/* @p least allocations at the fewest; @p whole: a failed call leaves the output alone. */
+static void fail_each(int (*run)(void), int least, int whole)
+{
+    static uint16_t expected[W * H];
+    int all;
+
+    draw();
+    memset(confidence, 255, sizeof confidence);
+    calls = live = fail_at = 0;
+    assert_int_equal(run(), REFOCUS_OK);
+    assert_int_equal(live, 0);
+    memcpy(expected, out, sizeof out);
+    all = calls;
+    assert_true(all >= least);
+    for (int i = 1; i <= all; i++) {
+        memset(out, UNTOUCHED & 255, sizeof out);
+        memset(confidence, 255, sizeof confidence);
+        calls = 0;
+        fail_at = i;
+        assert_int_equal(run(), REFOCUS_ERR_MEMORY);
+        fail_at = 0;
+        assert_int_equal(live, 0);
+        if (whole)
+            assert_true(is_untouched());
+    }
+    assert_int_equal(run(), REFOCUS_OK); /* and nothing is remembered of it */
+    assert_memory_equal(out, expected, sizeof out);
+    assert_int_equal(live, 0);
+}
+
+static void failing_upsample(void **state)
+{
+    (void)state;
+    fail_each(upsample_alone, 1, 1);
+    fail_each(upsample_in_threads, 1, 1);
+}
+
+static void failing_snap(void **state)
+{
+    (void)state;
+    fail_each(snap, 5, 0); /* four of its own, one of the upsampler */
+}
+
+static void failing_repair(void **state)
+{
+    (void)state;
+    fail_each(repair, 2, 0);
+}
+
+static void failing_filter(void **state)
+{
+    (void)state;
+    fail_each(filter, 2, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(failing_upsample), cmocka_unit_test(failing_snap),
+        cmocka_unit_test(failing_repair), cmocka_unit_test(failing_filter)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
