@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""usage: depth.py BUILD  -- write tests/depth.md: what depth costs, and how good it is.
+"""usage: depth.py BUILD [SECTION...]
+Write tests/depth.md: what depth costs, and how good it is; or only these sections of it anew.
 
 Scenes are those of REFOCUS_SCENES, else ../shared/scenes beside the source; photos with known
 depth those of REFOCUS_PHOTOS, else ../shared/photos. What is missing is left out, and said.
@@ -13,8 +14,44 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+import zlib
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+UPSAMPLING = '''`refocus-depth-quality SCENE...` on `depth_lowres.png` of the reference scenes: 180x135 samples
+for 720x540 pixels, 1 % noise, 3 % holes. An edge is a step of 1/20 of the range. PSNR: sweep, 64
+rays, mean of all views without blades, against the path-traced references; *to exact* is the
+difference to rendering with the exact disparities. The joint bilateral mean is that of Kopf et
+al. 2007 over 5x5 samples, sigma 1 sample and 0.1 of the range of codes. Asked: at most 0.5 dB
+below exact on portrait and tabletop, 1.0 dB on fence.'''
+
+TIME = '''`refocus-depth-quality --time SCENE...`: 320x240 samples to 1920x1080 pixels, memory and threads of
+its own in every call, the least and the median of 21 calls (5 of slow ones), CPU time of the
+whole process. Of a shared machine the wall time is not worth much, the CPU time is. Asked: 5 ms
+on two threads. OpenCV takes the threads that it wants.'''
+
+FLICKER = '''`refocus-depth-flicker --scenes SCENE...`: videos of 20 frames made of the scenes, 150x120 samples
+with new noise of 1 % and new holes of 3 % in each, from the sixth frame on; panning by one sample
+a frame. *Change* is |d - d of the last frame at the same point of the scene|, *flips* are changes
+of more than 1/24 of the range that the scene does not make, errors are against the exact
+disparities. `refocus_temporal_run()` with its defaults.'''
+
+STEREO = '''`refocus depth LEFT RIGHT --match HOW` against ground truth: share of all known pixels that are
+off after filling. *plain* is OpenCV's semi-global matching, holes filled as any; *checked* is the
+default.'''
+
+ONE_PICTURE = '''`refocus depth PHOTO --estimate` with the small TCMonoDepth network: Pearson's correlation with
+the depth that is known of the photo.'''
+
+SNAPPING = '''`refocus-depth-quality --snap SCENE...`: the exact disparities, 3 px to the right and down, and
+what `refocus_depth_snap()` with a reach of 3 makes of them. Columns as above.'''
+
+DECIMATED = '''`refocus-depth-quality --truth NAME PHOTO TRUTH...`: every fourth row and column of the
+disparities of a Middlebury pair's left picture (2014 and 2006), brought back to all pixels; the
+samples lie half a pixel off the middle of the 4x4 pixels that they stand for. No noise is added.
+What is not known is filled before upsampling, or counts for little, and is not judged: no edge lies
+there, nor is an error counted within 4 px of it. An edge is a step of 1/20 of the range; smooth
+parts are more than 4 px from every edge.'''
 
 
 def run(*command):
@@ -39,6 +76,19 @@ def read_npz(path):
     assert about['descr'] == '<f4' and not about['fortran_order']
     values = array.array('f', data[10 + header:])
     return about['shape'][1], about['shape'][0], list(values)
+
+
+def write_png16(path, width, height, values):
+    def chunk(name, data):
+        return (struct.pack('>I', len(data)) + name + data +
+                struct.pack('>I', zlib.crc32(name + data)))
+
+    rows = b''.join(b'\0' + struct.pack('>%dH' % width, *values[y * width:(y + 1) * width])
+                    for y in range(height))
+    with open(path, 'wb') as file:
+        file.write(b'\x89PNG\r\n\x1a\n' +
+                   chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, 16, 0, 0, 0, 0)) +
+                   chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
 
 
 def correlation(a, b):
@@ -89,6 +139,19 @@ class Photos:
         (width, height, d), report = self.depth(self.at('stereo-gt', 'aloeGT.png'))
         return width, height, [v * 255 for v in d]
 
+    def truths(self):
+        """Arguments of --truth: photos, and their disparities as codes of 16 bits, 0 unknown."""
+        width, height, d = read_npz(self.at('stereo-gt', 'motorcycle_disp.npz'))
+        most = max(v for v in d if math.isfinite(v))
+        path = os.path.join(self.work, 'motorcycle.png')
+        write_png16(path, width, height, [round(65535 * v / most) if v > 0 and math.isfinite(v)
+                                          else 0 for v in d])
+        aloe = os.path.join(self.work, 'aloe.png')
+        run(self.refocus, 'render', self.at('stereo-gt', 'aloeL.jpg'), '--depth',
+            self.at('stereo-gt', 'aloeGT.png'), '--blur', '0', '-o', aloe)
+        return ('motorcycle', self.at('stereo-gt', 'motorcycle_left.png'), path,
+                'aloe', aloe, self.at('stereo-gt', 'aloeGT.png'))
+
     def mono_rows(self):
         model = self.at('model', 'tcmonodepth_tcsmallnet_192x320.onnx')
         known = (('dahlia', ('phone', 'gdepth-dahlia.jpg'), ()),
@@ -114,47 +177,63 @@ def section(name, words, table):
     return '\n## %s\n\n%s\n\n%s\n' % (name, words, table.strip())
 
 
+def scene_sections(tools, folders):
+    """(name, function that makes it) of what the scenes say."""
+    def by(tool, *options):
+        return run(os.path.join(tools, tool), *options, *folders)
+
+    yield 'Upsampling', lambda name: section(name, UPSAMPLING, by('refocus-depth-quality'))
+    yield 'Snapping', lambda name: section(name, SNAPPING, by('refocus-depth-quality', '--snap'))
+    yield 'Time of upsampling', lambda name: section(name, TIME, by('refocus-depth-quality',
+                                                                   '--time'))
+    yield 'Flicker', lambda name: section(name, FLICKER, by('refocus-depth-flicker', '--scenes'))
+
+
+def photo_sections(tools, known):
+    """And of what photos with known depth say."""
+    yield 'Decimated ground truth', lambda name: section(
+        name, DECIMATED, run(os.path.join(tools, 'refocus-depth-quality'), '--truth',
+                             *known.truths()))
+    yield 'Stereo', lambda name: section(
+        name, STEREO, '| pair | match | > 1 px, % | > 2 px, % |\n| --- | --- | --: | --: |\n' +
+        '\n'.join(known.stereo_rows()))
+    yield 'One picture', lambda name: section(
+        name, ONE_PICTURE, '| photo | correlation |\n| --- | --: |\n' +
+        '\n'.join(known.mono_rows()))
+
+
+def sections_of(path):
+    """The sections of the page that is there, by name."""
+    with open(path, encoding='utf-8') as file:
+        parts = re.split(r'(?m)^\n(?=## )', file.read())
+    return {part[3:part.index('\n')]: '\n' + part for part in parts[1:]}
+
+
 def main():
-    if len(sys.argv) != 2:
+    if len(sys.argv) < 2:
         sys.exit(__doc__)
-    build = os.path.abspath(sys.argv[1])
+    build, only = os.path.abspath(sys.argv[1]), sys.argv[2:]
+    page = os.path.join(TOP, 'tests', 'depth.md')
     tools = os.path.join(build, 'tests', 'quality')
     scenes = os.environ.get('REFOCUS_SCENES', os.path.join(TOP, '..', 'shared', 'scenes'))
     photos = os.environ.get('REFOCUS_PHOTOS', os.path.join(TOP, '..', 'shared', 'photos'))
     folders = [os.path.join(scenes, name) for name in ('portrait', 'tabletop', 'fence')]
+    there = sections_of(page) if only else {}
     text = '# Depth: what coarse maps cost, and how good made ones are\n\nWritten by ' \
            '`tests/quality/depth.py BUILD`.\n'
-    text += section('Upsampling', '''`refocus-depth-quality SCENE...` on `depth_lowres.png` of the reference scenes: 180x135 samples
-for 720x540 pixels, 1 % noise, 3 % holes. An edge is a step of 1/20 of the range. PSNR: sweep, 64
-rays, mean of all views without blades, against the path-traced references; *to exact* is the
-difference to rendering with the exact disparities. The joint bilateral mean is that of Kopf et
-al. 2007 over 5x5 samples, sigma 1 sample and 0.1 of the range of codes. Asked: at most 0.5 dB
-below exact on portrait and tabletop, 1.0 dB on fence.''',
-                    run(os.path.join(tools, 'refocus-depth-quality'), *folders))
-    text += section('Time of upsampling', '''`refocus-depth-quality --time SCENE...`: 320x240 samples to 1920x1080 pixels, memory and threads of
-its own in every call, the least and the median of 21 calls (5 of slow ones), CPU time of the
-whole process. Of a shared machine the wall time is not worth much, the CPU time is. Asked: 5 ms
-on two threads. OpenCV takes the threads that it wants.''',
-                    run(os.path.join(tools, 'refocus-depth-quality'), '--time', *folders))
-    text += section('Flicker', '''`refocus-depth-flicker --scenes SCENE...`: videos of 20 frames made of the scenes, 150x120 samples
-with new noise of 1 % and new holes of 3 % in each, from the sixth frame on; panning by one sample
-a frame. *Change* is |d - d of the last frame at the same point of the scene|, *flips* are changes
-of more than 1/24 of the range that the scene does not make, errors are against the exact
-disparities. `refocus_temporal_run()` with its defaults.''',
-                    run(os.path.join(tools, 'refocus-depth-flicker'), '--scenes', *folders))
-    if os.path.isdir(photos):
-        with tempfile.TemporaryDirectory() as work:
-            known = Photos(build, photos, work)
-            text += section('Stereo', '''`refocus depth LEFT RIGHT --match HOW` against ground truth: share of all known pixels that are
-off after filling. *plain* is OpenCV's semi-global matching, holes filled as any; *checked* is the
-default.''', '| pair | match | > 1 px, % | > 2 px, % |\n| --- | --- | --: | --: |\n' +
-                            '\n'.join(known.stereo_rows()))
-            text += section('One picture', '''`refocus depth PHOTO --estimate` with the small TCMonoDepth network: Pearson's correlation with
-the depth that is known of the photo.''', '| photo | correlation |\n| --- | --: |\n' +
-                            '\n'.join(known.mono_rows()))
-    else:
-        text += '\nThe photos with known depth were not there: no stereo, no single pictures.\n'
-    with open(os.path.join(TOP, 'tests', 'depth.md'), 'w', encoding='utf-8') as file:
+    with tempfile.TemporaryDirectory() as work:
+        parts = list(scene_sections(tools, folders))
+        if os.path.isdir(photos):
+            parts += photo_sections(tools, Photos(build, photos, work))
+        unknown = set(only) - {name for name, _ in parts}
+        if unknown:
+            sys.exit('depth.py: no such section, or its files are not there: %s' %
+                     ', '.join(sorted(unknown)))
+        for name, make in parts:
+            text += there.get(name, '') if only and name not in only else make(name)
+    if not os.path.isdir(photos):
+        text += '\nThe photos with known depth were not there: only scenes are judged.\n'
+    with open(page, 'w', encoding='utf-8') as file:
         file.write(text)
 
 
