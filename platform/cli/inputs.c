@@ -221,6 +221,12 @@ int input_convert(struct input *input, const struct depth_settings *settings)
                               refocus_strerror(status));
     if (worth_snapping(input, settings))
         return snap(input, settings);
+    if (settings->snap > 0 && !settings->full && input->photo)
+        return report_failure(EXIT_FAILED, input->depth_name,
+                              "its depth has %dx%d samples, the photo %dx%d pixels; --snap "
+                              "takes depth of the photo's size, give --full instead",
+                              input->width, input->height, input->photo->image.width,
+                              input->photo->image.height);
     return worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
 }
 

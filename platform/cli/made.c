@@ -69,6 +69,9 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
         status = read_photo(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
         return status;
+    if (!input->side && input->photo->image.width < 2)
+        return report_failure(EXIT_FAILED, left,
+                              "it is one pixel wide; give two pictures side by side");
     if (input->side)
         other = input->side->image;
     else
