@@ -128,6 +128,7 @@ memory_stage() {
     CC=gcc CXX=g++ build asan --buildtype=debugoptimized -Db_sanitize=address,undefined \
         -Db_lundef=false -Dc_args=-fno-sanitize-recover=all || return
     ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
+        LSAN_OPTIONS=suppressions=$top/tests/lsan.supp:print_suppressions=0 \
         run asan --timeout-multiplier 5
 }
 

@@ -45,10 +45,10 @@ static void same_bytes(void **state)
         int bars; /* their width, of every other picture; else what picture_make() draws
                    */
     } views[] = {
-        {403, 299, 6, 0},  {1, 1, 6, 1},       {1, 700, 6, 0},      {700, 1, 6, 11},
+        {203, 190, 6, 0},  {1, 1, 6, 1},       {1, 700, 6, 0},      {700, 1, 6, 11},
         {160, 160, 6, 0},  {161, 175, 6, 13},  {191, 333, 6, 0},    {193, 17, 6, 9},
         {640, 480, 20, 0}, {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
-        {70, 50, 127, 0},  {700, 90, 127, 99}, {250, 301, 40, 0},   {601, 290, 33, 61}};
+        {70, 50, 127, 0},  {700, 90, 127, 99}, {403, 299, 6, 0},    {601, 290, 33, 61}};
 
     (void)state;
     for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
@@ -68,7 +68,8 @@ static void same_bytes(void **state)
                 continue;
             if (v > 0 && !is_quick(&styles[i]))
                 continue;
-            for (int f = 0; f < 3; f++) {
+            /* the slow ones, that look at every pixel, of one focus */
+            for (int f = is_quick(&styles[i]) ? 0 : 2; f < 3; f++) {
                 render_style(whole, &p, &styles[i], 0.5f * (float)f, views[v].blur,
                              expected);
                 memset(out, 0x5a, size);
