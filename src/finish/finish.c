@@ -25,10 +25,11 @@ int rf_disparity_at(const struct refocus_renderer *r, int x, int y)
 {
     const struct rf_photo *photo = &r->photo[r->used];
     const struct refocus_disparity *map = &r->in_place.map;
-    const uint8_t *row = (const uint8_t *)map->samples + y * map->stride;
+    const uint8_t *row;
 
     if (!r->in_place.on)
         return photo->disparity[y * photo->stride + x];
+    row = (const uint8_t *)map->samples + y * map->stride;
     return map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
 }
 
