@@ -44,7 +44,7 @@ static void sort(int32_t sorted[TAPS], const uint16_t disparity[RF_SAMPLES])
 
 static void part(struct rf_cell *cell, const int32_t sorted[TAPS])
 {
-    struct rf_surface *surface = cell->surface - 1;
+    struct rf_surface *surface = cell->surface;
     int last = 0;
 
     cell->surfaces = 0;
