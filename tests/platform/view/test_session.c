@@ -121,7 +121,7 @@ static const struct rf_view_frame *wait_for(struct rf_session *session,
         assert_int_equal(rf_session_status(session), REFOCUS_OK);
         nanosleep(&pause, NULL);
     }
-    fail_msg("no frame came");
+    fail_msg("%s", "no frame came");
     return NULL;
 }
 
