@@ -134,7 +134,7 @@ memory_stage() {
 
 # The whole suite, most of which has one thread, takes a quarter of an hour of processor time.
 thread_stage() {
-    local which=(--suite threads --timeout-multiplier 5)
+    local which=(--suite threads --timeout-multiplier 10)
 
     [ "$mode" != long ] || which=(--timeout-multiplier 20)
     say "thread sanitizer: $([ "$mode" = long ] && echo all tests || echo the tests with threads)"

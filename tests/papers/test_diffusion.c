@@ -86,11 +86,15 @@ static void solvers(void **state)
     (void)state;
     for (uint32_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const int w = cases[i].width, h = cases[i].height;
-        struct picture p = picture_make(w, h, 60u + i);
-        struct refocus_renderer *renderer = prepared(&p, cases[i].blur, 1);
+        struct refocus_renderer *renderer;
         double seconds[2];
+        struct picture p;
         int worst = 0;
 
+        if (left_out((int)i, 3))
+            continue;
+        p = picture_make(w, h, 60u + i);
+        renderer = prepared(&p, cases[i].blur, 1);
         for (uint32_t solver = 0; solver < 2; solver++) {
             struct refocus_render_params params =
                 refocus_render_params_default(0, cases[i].blur);

@@ -57,6 +57,8 @@ static void lommel(void **state)
     for (int i = 0; i < 8; i++) {
         const double u = us[i];
 
+        if (left_out(i + 1, 3))
+            continue;
         for (int k = 0; k <= 8; k++) {
             const double v = u * k / 8, value = rf_lommel(u, v), expected = by_integral(u, v);
 
@@ -92,7 +94,7 @@ static void energy(void **state)
 
         assert_non_null(share);
         assert_true(tables >= 73);
-        for (int i = 0; i < tables; i += 1 + tables / 90) {
+        for (int i = 0; i < tables; i += left_out(1, 2) ? 17 : 1 + tables / 90) {
             for (uint32_t spread = 0; spread < 2; spread++) {
                 struct rf_spread_table table = {radii[r] * i / (tables - 1),
                                                 rf_spread_reach(radii[r], i), share};

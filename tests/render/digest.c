@@ -188,10 +188,13 @@ static void pictures(void **state)
 
         assert_true(hash_view(view, &p, REFOCUS_CPU_C, 1, REFOCUS_METHOD_COUNT, plain));
         for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++)
-            check_same(view, &p, cpu, 2, REFOCUS_METHOD_RAYTRACE, plain);
-        check_same(view, &p, REFOCUS_CPU_AUTO, 1, REFOCUS_METHOD_RAYTRACE, plain);
+            if (cpu != REFOCUS_CPU_C || !left_out(v + 1, 4))
+                check_same(view, &p, cpu, 2, REFOCUS_METHOD_RAYTRACE, plain);
+        if (!left_out(v + 2, 4))
+            check_same(view, &p, REFOCUS_CPU_AUTO, 1, REFOCUS_METHOD_RAYTRACE, plain);
         check_same(view, &p, REFOCUS_CPU_AUTO, 3, REFOCUS_METHOD_COUNT, plain);
-        check_same(view, &p, REFOCUS_CPU_AUTO, 8, REFOCUS_METHOD_RAYTRACE, plain);
+        if (!left_out(v + 3, 4))
+            check_same(view, &p, REFOCUS_CPU_AUTO, 8, REFOCUS_METHOD_RAYTRACE, plain);
         for (int i = 0; i < style_count; i++) {
             char name[120];
 
@@ -217,8 +220,8 @@ static const struct yuv_view {
     {83, 47, 1, 9, 0.6f, 1, REFOCUS_FORMAT_NV12, 0, 0},
     {64, 33, 1, 14.5f, 0, 1, REFOCUS_FORMAT_I420, 1, 0},
     {31, 70, 1, 5, 1, 3, REFOCUS_FORMAT_YUYV, 0, 1},
-    {90, 61, 3, 31.5f, 0.8f, 4, REFOCUS_FORMAT_NV21, 1, 1},
-    {97, 54, 1, 100, 0.5f, 1, REFOCUS_FORMAT_YUYV, 0, 0},
+    {45, 34, 3, 31.5f, 0.8f, 4, REFOCUS_FORMAT_NV21, 1, 1},
+    {25, 19, 1, 100, 0.5f, 1, REFOCUS_FORMAT_YUYV, 0, 0},
 };
 
 static uint64_t hash_samples(const struct refocus_image *image)

@@ -26,8 +26,16 @@ static struct refocus_renderer *with_cpu(const struct picture *p, float blur, ui
     return renderer;
 }
 
+static bool is_slow(const struct style *style, float blur)
+{
+    return style->method == REFOCUS_METHOD_RAYTRACE ||
+           (style->method >= REFOCUS_METHOD_JITTERED && blur > 20) ||
+           (style->rays == REFOCUS_RAYS_FULL && blur > 20);
+}
+
 static void same_as_c(void **state)
 {
+    enum { SETS = REFOCUS_CPU_AVX2 + 1 };
     static const int sizes[][2] = {{97, 61}, {16, 16}, {1, 40}, {45, 2}, {150, 90}};
     static const float blurs[] = {8, 20, 1.5f, 40, 127};
     int sets = 0;
@@ -35,32 +43,36 @@ static void same_as_c(void **state)
     (void)state;
     for (int s = 0; s < 5; s++) {
         struct picture p = picture_make(sizes[s][0], sizes[s][1], 91u + (uint32_t)s);
-        struct refocus_renderer *plain = with_cpu(&p, blurs[s], REFOCUS_CPU_C);
         uint8_t *expected = malloc(3 * 150 * 90), *out = malloc(3 * 150 * 90);
+        struct refocus_renderer *renderer[SETS];
 
-        assert_true(plain && expected && out);
-        for (uint32_t cpu = 0; cpu <= REFOCUS_CPU_AVX2; cpu++) {
-            struct refocus_renderer *renderer = with_cpu(&p, blurs[s], cpu);
-
-            for (int i = 0; i < style_count && renderer; i++) {
-                char what[100];
-
-                if (styles[i].method == REFOCUS_METHOD_RAYTRACE
-                    || (styles[i].method >= REFOCUS_METHOD_JITTERED && blurs[s] > 20)
-                    || (styles[i].rays == REFOCUS_RAYS_FULL && blurs[s] > 20))
-                    continue; /* slow */
-                snprintf(what, sizeof what, "%s, %s", refocus_cpu_name(cpu), styles[i].name);
-                render_style(plain, &p, &styles[i], 0.45f, blurs[s], expected);
-                render_style(renderer, &p, &styles[i], 0.45f, blurs[s], out);
-                assert_same_pixels(out, expected, p.width, p.height, what);
-            }
-            if (renderer && s == 0) {
+        assert_true(expected && out);
+        for (uint32_t cpu = 0; cpu < SETS; cpu++) {
+            renderer[cpu] = with_cpu(&p, blurs[s], cpu);
+            if (renderer[cpu] && s == 0) {
                 printf("compared: %s\n", refocus_cpu_name(cpu));
                 sets++;
             }
-            refocus_renderer_destroy(&renderer);
         }
-        refocus_renderer_destroy(&plain);
+        assert_non_null(renderer[REFOCUS_CPU_C]);
+        for (int i = 0; i < style_count; i++) {
+            if (is_slow(&styles[i], blurs[s]))
+                continue;
+            render_style(renderer[REFOCUS_CPU_C], &p, &styles[i], 0.45f, blurs[s],
+                         expected);
+            for (uint32_t cpu = 0; cpu < SETS; cpu++) {
+                char what[100];
+
+                if (!renderer[cpu] || cpu == REFOCUS_CPU_C)
+                    continue;
+                snprintf(what, sizeof what, "%s, %s", refocus_cpu_name(cpu),
+                         styles[i].name);
+                render_style(renderer[cpu], &p, &styles[i], 0.45f, blurs[s], out);
+                assert_same_pixels(out, expected, p.width, p.height, what);
+            }
+        }
+        for (uint32_t cpu = 0; cpu < SETS; cpu++)
+            refocus_renderer_destroy(&renderer[cpu]);
         free(expected);
         free(out);
         picture_free(&p);

@@ -20,6 +20,8 @@ static void one_colour(void **state)
         memcpy(flat.disparity, deep.disparity, sizeof(uint16_t) * W * H);
         renderer = prepared(&flat, 11, 2);
         for (int s = 0; s < style_count; s++) {
+            if (left_out(s + i, 4))
+                continue;
             render_style(renderer, &flat, &styles[s], 0.35f, 11, out);
             assert_same_pixels(out, flat.rgb, W, H, styles[s].name);
         }

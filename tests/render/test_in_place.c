@@ -19,7 +19,8 @@ static struct refocus_renderer *create(const struct picture *p, float blur,
 
 static int is_quick(const struct style *style)
 {
-    return style->method == REFOCUS_METHOD_SWEEP && style->rays != REFOCUS_RAYS_FULL;
+    return style->method == REFOCUS_METHOD_SWEEP && style->rays != REFOCUS_RAYS_FULL &&
+           style->rays <= 64;
 }
 
 /* Bars before what is far, with noise in depth and light. */
@@ -70,6 +71,8 @@ static void same_bytes(void **state)
                 continue;
             /* the slow ones, that look at every pixel, of one focus */
             for (int f = is_quick(&styles[i]) ? 0 : 2; f < 3; f++) {
+                if (v > 0 && left_out((int)v + i + f, 3))
+                    continue;
                 render_style(whole, &p, &styles[i], 0.5f * (float)f, views[v].blur,
                              expected);
                 memset(out, 0x5a, size);

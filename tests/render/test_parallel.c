@@ -101,6 +101,7 @@ static void same_bytes(void **state)
         struct refocus_renderer_params limits =
             refocus_renderer_params_default(WIDTH, HEIGHT, 8);
         struct refocus_renderer_info info;
+        int rendered = 0;
 
         limits.threads = callers[c].threads;
         limits.methods = REFOCUS_METHODS_ALL;
@@ -111,15 +112,18 @@ static void same_bytes(void **state)
         assert_int_equal(info.threads, callers[c].threads);
         assert_int_equal(refocus_prepare(renderer, &photo, &coarse), REFOCUS_OK);
         for (int i = 0; i < style_count; i++) {
+            if (left_out(i + (int)c, 3))
+                continue;
             memset(out, 0x55, size);
             render_style(renderer, &p, &styles[i], 0.4f, 8, out);
             assert_same_pixels(out, expected + size * (size_t)i, WIDTH, HEIGHT,
                                callers[c].name);
+            rendered++;
         }
         refocus_renderer_destroy(&renderer);
         assert_int_equal(caller.inside, 0);
         if (callers[c].threads > 1)
-            assert_true(caller.calls > style_count &&
+            assert_true(caller.calls > rendered &&
                         caller.most == callers[c].threads);
     }
     free(expected);

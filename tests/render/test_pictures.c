@@ -178,6 +178,8 @@ static void regions(void **state)
             const struct refocus_image image =
                 refocus_image_packed(REFOCUS_FORMAT_RGB8, part, w, h, 3 * w);
 
+            if (left_out(s + i, 3))
+                continue;
             params.region_x = x, params.region_y = y;
             params.region_width = w, params.region_height = h;
             for (int row = 0; row < h; row++)
@@ -213,6 +215,8 @@ static void sizes(void **state)
 
         assert_int_equal(refocus_prepare(large, &photo, &disparity), 0);
         for (int s = 0; s < style_count; s++) {
+            if (left_out(s + i, 3))
+                continue;
             render_style(own, &p, &styles[s], 0.9f, 6.5f, a);
             render_style(large, &p, &styles[s], 0.9f, 6.5f, b);
             assert_same_pixels(b, a, p.width, p.height, styles[s].name);
@@ -233,8 +237,10 @@ static void longest(void **state)
         uint8_t *out = malloc(3 * 65535);
 
         assert_non_null(out);
-        render_style(renderer, &p, &styles[1], 0, 127, out);
-        render_style(renderer, &p, &styles[11], 1, 127, out);
+        if (!left_out(i, 2))
+            render_style(renderer, &p, &styles[1], 0, 127, out);
+        if (!left_out(i + 1, 2))
+            render_style(renderer, &p, &styles[11], 1, 127, out);
         free(out);
         refocus_renderer_destroy(&renderer);
         picture_free(&p);

@@ -24,6 +24,8 @@ static void same_bytes(void **state)
         for (int t = 0; t < 3; t++) {
             struct refocus_renderer_info info;
 
+            if (left_out(s + t + 2, 3))
+                continue;
             renderer = prepared(&p, 8, threads[t]);
             refocus_renderer_get_info(renderer, &info);
             assert_int_equal(info.threads, threads[t]);

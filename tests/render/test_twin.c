@@ -95,7 +95,8 @@ static void check(const struct picture *p, const char *name, float focus, float 
     int failed = 0;
 
     for (int i = 0; i < WAYS; i++)
-        if (K < 15 || ways[i].rays != REFOCUS_RAYS_FULL) /* slow */
+        if (!left_out(i + (int)K, 3) &&
+            (K < 15 || ways[i].rays != REFOCUS_RAYS_FULL)) /* slow */
             failed += compare(p, name, &ways[i], focus, K) < bound_db;
     if (failed)
         fail_msg("%d below %g dB", failed, bound_db);

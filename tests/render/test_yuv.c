@@ -75,6 +75,8 @@ static void one_colour(void **state)
                     *yuv_sample(&photo.image, k, x, y) = code[k];
         prepare(renderer, &photo, &deep);
         for (int s = 0; (style = sweep_style(&s));) {
+            if (left_out(s + i, 4))
+                continue;
             render_style_yuv(renderer, style, 0.35f, 11, s % 2 ? 1 : 4, &out);
             assert_same_yuv(&out.image, &photo.image, style->name);
         }
