@@ -10,49 +10,9 @@
 #include <cmocka.h>
 #include <refocus/refocus.h>
 
+#include "failing.h"
+
 enum { W = 61, H = 43, CW = 17, CH = 11, UNTOUCHED = 0xa5a5 };
-
-void *__real_malloc(size_t size);
-void *__wrap_malloc(size_t size);
-void *__real_calloc(size_t n, size_t size);
-void *__wrap_calloc(size_t n, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-void __real_free(void *memory);
-void __wrap_free(void *memory);
-
-static int calls, fail_at, live; /* fail_at: 0 = none */
-
-void *__wrap_malloc(size_t size)
-{
-    void *const memory = ++calls == fail_at ? NULL : __real_malloc(size);
-
-    live += memory != NULL;
-    return memory;
-}
-
-void *__wrap_calloc(size_t n, size_t size)
-{
-    void *const memory = ++calls == fail_at ? NULL : __real_calloc(n, size);
-
-    live += memory != NULL;
-    return memory;
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    void *const moved = ++calls == fail_at ? NULL : __real_realloc(memory, size);
-
-    live += !memory && moved;
-    return moved;
-}
-
-void __wrap_free(void *memory)
-{
-    live -= memory != NULL;
-    __real_free(memory);
-}
-
 static uint8_t rgb[3 * W * H], confidence[W * H];
 static uint16_t fine[W * H], coarse[CW * CH], out[W * H];
 
@@ -133,10 +93,10 @@ static int filter(void)
 
     assert_int_equal(made == NULL, status != REFOCUS_OK);
     for (int i = 0; i < 3 && status == REFOCUS_OK; i++) {
-        const int before = calls;
+        const long before = failing.calls;
 
         status = refocus_temporal_run(made, i ? &image : NULL, &map, out, 2 * W);
-        assert_int_equal(calls, before); /* all memory is taken at creation */
+        assert_int_equal(failing.calls, before); /* all memory is taken at creation */
     }
     refocus_temporal_destroy(&made);
     assert_null(made);
@@ -151,34 +111,35 @@ static int is_untouched(void)
     return 1;
 }
 
-/* @p least allocations at the fewest; @p whole: a failed call leaves the output alone. */
+/* @p least: allocations at the fewest; @p whole: a failed call leaves the output as it
+ * was. */
 static void fail_each(int (*run)(void), int least, int whole)
 {
     static uint16_t expected[W * H];
-    int all;
+    long all;
 
     draw();
     memset(confidence, 255, sizeof confidence);
-    calls = live = fail_at = 0;
+    failing.calls = failing.live = failing.fail_at = 0;
     assert_int_equal(run(), REFOCUS_OK);
-    assert_int_equal(live, 0);
+    assert_int_equal(failing.live, 0);
     memcpy(expected, out, sizeof out);
-    all = calls;
+    all = failing.calls;
     assert_true(all >= least);
-    for (int i = 1; i <= all; i++) {
+    for (long i = 1; i <= all; i++) {
         memset(out, UNTOUCHED & 255, sizeof out);
         memset(confidence, 255, sizeof confidence);
-        calls = 0;
-        fail_at = i;
+        failing.calls = 0;
+        failing.fail_at = i;
         assert_int_equal(run(), REFOCUS_ERR_MEMORY);
-        fail_at = 0;
-        assert_int_equal(live, 0);
+        failing.fail_at = 0;
+        assert_int_equal(failing.live, 0);
         if (whole)
             assert_true(is_untouched());
     }
     assert_int_equal(run(), REFOCUS_OK); /* and nothing is remembered of it */
     assert_memory_equal(out, expected, sizeof out);
-    assert_int_equal(live, 0);
+    assert_int_equal(failing.live, 0);
 }
 
 static void failing_upsample(void **state)

@@ -1,7 +1,7 @@
 /* Patterns of file names: what is accepted makes names that differ, and fit. */
 #include <stdlib.h>
 #include <string.h>
-#include "failing.h"
+#include "with_failures.h"
 #include "pictures.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -3,7 +3,7 @@
 #define RF_FUZZ_SOURCE_H
 
 #include "backend.h"
-#include "failing.h"
+#include "with_failures.h"
 
 /* Open, start, take some frames and read every byte of them, restart, close. */
 void fuzz_source(const char *name);

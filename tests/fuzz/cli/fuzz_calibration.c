@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "failing.h"
+#include "with_failures.h"
 #include "live.h"
 
 enum { MOST_SIDE = 64 };

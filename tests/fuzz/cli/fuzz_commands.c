@@ -1,7 +1,7 @@
 /* Bytes as a client of `refocus live` sends them, in pieces. */
 #include <stdlib.h>
 #include <string.h>
-#include "failing.h"
+#include "with_failures.h"
 #include "live.h"
 #include "live_lines.h"
 

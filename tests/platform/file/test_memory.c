@@ -1,82 +1,11 @@
 /* Every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no
  * crash, and nothing kept. The linker sends the library's calls here; libpng and expat
  * take theirs from the library. */
+#include "failing.h"
 #include "photos.h"
 #include "samples.h"
 
-#include <errno.h>
-#include <malloc.h>
 #include <unistd.h>
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void __real_free(void *memory);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-void __wrap_free(void *memory);
-
-static long calls, fail_at, live; /* fail_at: 0 = none */
-static size_t held, peak;         /* bytes */
-
-static void hold(void *memory)
-{
-    held += memory ? malloc_usable_size(memory) : 0;
-    peak = held > peak ? held : peak;
-}
-
-static void let_go(void *memory)
-{
-    held -= memory ? malloc_usable_size(memory) : 0;
-}
-
-static int refuse(void)
-{
-    if (++calls == fail_at) {
-        errno = ENOMEM;
-        return 1;
-    }
-    return 0;
-}
-
-void *__wrap_malloc(size_t size)
-{
-    void *const memory = refuse() ? NULL : __real_malloc(size);
-
-    live += memory != NULL;
-    hold(memory);
-    return memory;
-}
-
-void *__wrap_calloc(size_t count, size_t size)
-{
-    void *const memory = refuse() ? NULL : __real_calloc(count, size);
-
-    live += memory != NULL;
-    hold(memory);
-    return memory;
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    const size_t before = memory ? malloc_usable_size(memory) : 0;
-    void *const grown = refuse() ? NULL : __real_realloc(memory, size);
-
-    live += grown != NULL && memory == NULL;
-    if (grown) {
-        hold(grown); /* both exist for a moment */
-        held -= before;
-    }
-    return grown;
-}
-
-void __wrap_free(void *memory)
-{
-    live -= memory != NULL;
-    let_go(memory);
-    __real_free(memory);
-}
 
 static int read_one(const struct sample *sample, bool depth, bool *photo_made)
 {
@@ -98,20 +27,20 @@ static void fail_each_in(const struct sample *sample, bool depth)
     bool made;
     long total;
 
-    calls = live = fail_at = 0;
+    failing.calls = failing.live = failing.fail_at = 0;
     assert_int_equal(read_one(sample, depth, &made), REFOCUS_OK);
-    assert_int_equal(live, 0);
-    total = calls;
+    assert_int_equal(failing.live, 0);
+    total = failing.calls;
     assert_true(total >= 2);
     for (long k = 1; k <= total; k++) {
         int status;
-        calls = live = 0;
-        fail_at = k;
+        failing.calls = failing.live = 0;
+        failing.fail_at = k;
         status = read_one(sample, depth, &made);
-        fail_at = 0;
-        if (status != REFOCUS_ERR_MEMORY || made || live != 0) {
+        failing.fail_at = 0;
+        if (status != REFOCUS_ERR_MEMORY || made || failing.live != 0) {
             fail_msg("%s: allocation %ld of %ld: status %d, %ld kept", sample->name, k,
-                     total, status, live);
+                     total, status, failing.live);
         }
     }
 }
@@ -156,16 +85,16 @@ static void peak_of(const struct sample *sample)
     struct refocus_photo *photo = NULL;
     size_t bound;
 
-    held = peak = 0;
+    failing.held = failing.peak = 0;
     assert_int_equal(refocus_photo_read_memory(&photo, sample->bytes.data,
                                                sample->bytes.size, NULL, NULL),
                      REFOCUS_OK);
     bound = (128u << 10) + (strstr(sample->name, ".jpg") ? 8 * sample->bytes.size : 0) +
             9 * (size_t)photo->image.width * (size_t)photo->image.height +
             9 * (size_t)photo->depth.width * (size_t)photo->depth.height;
-    if (peak > bound || peak == 0) {
-        fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name, peak,
-                 bound);
+    if (failing.peak > bound || failing.peak == 0) {
+        fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name,
+                 failing.peak, bound);
     }
     refocus_photo_free(&photo);
 }
@@ -188,13 +117,13 @@ static void stated_peak(void **state)
         bytes_number(&large.bytes, 1000, 2, true);
     }
     peak_of(&large);
-    assert_true(peak >= 5 * 700 * 500); /* the photo and its samples */
+    assert_true(failing.peak >= 5 * 700 * 500); /* the photo and its samples */
     bytes_free(&large.bytes);
 #ifdef RF_HAVE_PNG
     large.name = "large.png";
     large.bytes = make_png(400, 300, 2, 16);
     peak_of(&large);
-    assert_true(peak >= 9 * 400 * 300);
+    assert_true(failing.peak >= 9 * 400 * 300);
     bytes_free(&large.bytes);
 #endif
 #if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
@@ -221,13 +150,13 @@ static int write_one(const char *path, long fail)
     struct refocus_reason reason;
     int status;
 
-    calls = live = 0;
-    fail_at = fail;
+    failing.calls = failing.live = 0;
+    failing.fail_at = fail;
     status = strstr(path, ".p") && !strstr(path, ".ppm")
                  ? refocus_gray16_write(path, samples, 4, 3, 8, &reason)
                  : refocus_image_write(path, &image, &options, &reason);
-    fail_at = 0;
-    assert_int_equal(live, 0);
+    failing.fail_at = 0;
+    assert_int_equal(failing.live, 0);
     bytes_free(&exif);
     return status;
 }
@@ -252,7 +181,7 @@ static void writers(void **state)
         snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(),
                  endings[i]);
         assert_int_equal(write_one(path, 0), REFOCUS_OK);
-        total = calls;
+        total = failing.calls;
         assert_int_equal(unlink(path), 0);
         for (long k = 1; k <= total; k++) {
             const int status = write_one(path, k);
@@ -269,14 +198,14 @@ static int read_path(const char *path, bool depth, long fail)
     struct refocus_reason reason;
     int status;
 
-    calls = live = 0;
-    fail_at = fail;
+    failing.calls = failing.live = 0;
+    failing.fail_at = fail;
     status = depth ? refocus_depth_read(&photo, path, NULL, 0, 0, NULL, &reason)
                    : refocus_photo_read(&photo, path, NULL, &reason);
-    fail_at = 0;
+    failing.fail_at = 0;
     assert_true((photo != NULL) == (status == REFOCUS_OK));
     refocus_photo_free(&photo);
-    assert_int_equal(live, 0);
+    assert_int_equal(failing.live, 0);
     return status;
 }
 
@@ -290,7 +219,7 @@ static void files(void **state)
     assert_int_equal(refocus_gray16_write(path, samples, 4, 3, 8, NULL), REFOCUS_OK);
     for (int depth = 0; depth < 2; depth++) {
         assert_int_equal(read_path(path, depth, 0), REFOCUS_OK);
-        for (long k = calls; k >= 1; k--) {
+        for (long k = failing.calls; k >= 1; k--) {
             assert_int_equal(read_path(path, depth, k), REFOCUS_ERR_MEMORY);
         }
     }

@@ -1,57 +1,12 @@
 /* Every allocation fails once: REFOCUS_ERR_MEMORY, what was painted stays as it was,
  * and nothing is kept. The linker sends the library's calls here. */
+#include "failing.h"
 #include "picture.h"
 
 #include <stdio.h>
 #ifdef RF_HAVE_JANSSON
 #include <jansson.h>
 #endif
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void __real_free(void *memory);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-void __wrap_free(void *memory);
-
-static long calls, fail_at, live; /* fail_at: 0 = none */
-
-static int refuse(void)
-{
-    return ++calls == fail_at;
-}
-
-void *__wrap_malloc(size_t size)
-{
-    void *const memory = refuse() ? NULL : __real_malloc(size);
-
-    live += memory != NULL;
-    return memory;
-}
-
-void *__wrap_calloc(size_t count, size_t size)
-{
-    void *const memory = refuse() ? NULL : __real_calloc(count, size);
-
-    live += memory != NULL;
-    return memory;
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    void *const grown = refuse() ? NULL : __real_realloc(memory, size);
-
-    live += grown != NULL && memory == NULL;
-    return grown;
-}
-
-void __wrap_free(void *memory)
-{
-    live -= memory != NULL;
-    __real_free(memory);
-}
 
 enum { W = 160, H = 120 };
 static struct refocus_image photo;
@@ -101,15 +56,15 @@ static int paint_all(struct refocus_strokes *strokes, int *count)
 static void test_every_allocation(void **unused)
 {
     const struct refocus_disparity map = refocus_disparity16(base, W, H, 2 * W);
-    long fails = 0, before_live = live;
+    long fails = 0, before_live = failing.live;
     int status = REFOCUS_ERR_MEMORY;
 
     (void)unused;
-    for (fail_at = 1; status != REFOCUS_OK; fail_at++) {
+    for (failing.fail_at = 1; status != REFOCUS_OK; failing.fail_at++) {
         struct refocus_strokes *strokes;
         int count = 0;
 
-        calls = 0;
+        failing.calls = 0;
         status = refocus_strokes_create(&strokes, &photo, &map);
         if (status == REFOCUS_OK) {
             status = paint_all(strokes, &count);
@@ -122,7 +77,7 @@ static void test_every_allocation(void **unused)
             assert_null(strokes);
         }
         refocus_strokes_destroy(&strokes);
-        assert_int_equal(live, before_live);
+        assert_int_equal(failing.live, before_live);
         fails += status == REFOCUS_ERR_MEMORY;
         assert_true(status == REFOCUS_OK || status == REFOCUS_ERR_MEMORY);
     }
@@ -139,17 +94,17 @@ static void test_save(void **unused)
     size_t size;
 
     (void)unused;
-    fail_at = 0;
+    failing.fail_at = 0;
     assert_int_equal(refocus_strokes_create(&strokes, &photo, NULL), REFOCUS_OK);
     assert_int_equal(paint_all(strokes, &count), REFOCUS_OK);
-    for (fail_at = 1; status == REFOCUS_ERR_MEMORY; fail_at++) {
-        calls = 0;
+    for (failing.fail_at = 1; status == REFOCUS_ERR_MEMORY; failing.fail_at++) {
+        failing.calls = 0;
         status = refocus_strokes_save(strokes, &text, &size);
         assert_true((status == REFOCUS_OK) == (text != NULL));
         __real_free(text);
     }
     assert_true(status == REFOCUS_OK || status == REFOCUS_ERR_UNSUPPORTED);
-    fail_at = 0;
+    failing.fail_at = 0;
     refocus_strokes_destroy(&strokes);
 }
 

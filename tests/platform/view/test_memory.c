@@ -9,56 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include "failing.h"
 #include "session.h"
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void __real_free(void *memory);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-void __wrap_free(void *memory);
-
-/* Two threads allocate. */
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static long calls, fail_at, live;
-
-static int refuse(long added)
-{
-    int refused;
-
-    pthread_mutex_lock(&lock);
-    refused = added > 0 && ++calls == fail_at;
-    if (!refused)
-        live += added;
-    pthread_mutex_unlock(&lock);
-    return refused;
-}
-
-void *__wrap_malloc(size_t size)
-{
-    return refuse(1) ? NULL : __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t count, size_t size)
-{
-    return refuse(1) ? NULL : __real_calloc(count, size);
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    if (refuse(1))
-        return NULL;
-    refuse(memory ? -1 : 0);
-    return __real_realloc(memory, size);
-}
-
-void __wrap_free(void *memory)
-{
-    refuse(memory ? -1 : 0);
-    __real_free(memory);
-}
 
 static void nothing(void *user)
 {
@@ -108,11 +60,11 @@ static void test_every_allocation(void **unused)
     setup.threads = 1;
     setup.notify = nothing;
     setup.save = nothing_saved;
-    for (fail_at = 1; status != REFOCUS_OK; fail_at++) {
-        const long before = live;
+    for (failing.fail_at = 1; status != REFOCUS_OK; failing.fail_at++) {
+        const long before = failing.live;
         struct rf_session *session;
 
-        calls = 0;
+        failing.calls = 0;
         status = rf_session_create(&session, &setup);
         if (status == REFOCUS_OK) {
             struct rf_view_state state;
@@ -130,11 +82,11 @@ static void test_every_allocation(void **unused)
             assert_null(session);
         }
         rf_session_destroy(&session);
-        assert_int_equal(live, before);
+        assert_int_equal(failing.live, before);
         assert_true(status == REFOCUS_OK || status == REFOCUS_ERR_MEMORY);
     }
-    printf("%ld allocations failed\n", fail_at - 2);
-    assert_true(fail_at > 25);
+    printf("%ld allocations failed\n", failing.fail_at - 2);
+    assert_true(failing.fail_at > 25);
 }
 
 int main(void)
