@@ -2,27 +2,19 @@
  * A vivid camera at /dev/videoNODE: every format, and every fault that the driver can be told
  * to have; or only so many times open, start, stop and close. Runs where the driver is, in the
  * virtual machine. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <dirent.h>
 #include <pthread.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 #include <refocus/refocus.h>
 #include <refocus/platform/convert.h>
-#include <refocus/platform/source.h>
+
+#include "check.h"
 
 enum { WIDTH = 320, HEIGHT = 180 };
 static char node[64];
 static uint8_t reference[WIDTH * HEIGHT * 3];
 
-#define assert_status(expression, status)                                                   \
+#define assert_gives(expression, status)                                                   \
     do {                                                                                    \
         const int got_ = (expression);                                                      \
         if (got_ != (status))                                                               \
@@ -50,11 +42,11 @@ static struct refocus_source *opened(void)
 {
     struct refocus_source *source = NULL;
 
-    assert_status(refocus_source_open(&source, node, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_open(&source, node, &reason), REFOCUS_OK);
     return source;
 }
 
-static struct refocus_source *started(uint32_t format, uint32_t flags)
+static struct refocus_source *streaming(uint32_t format, uint32_t flags)
 {
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_source *source = opened();
@@ -65,7 +57,7 @@ static struct refocus_source *started(uint32_t format, uint32_t flags)
     config.height = HEIGHT;
     config.fps = 60;
     config.flags = flags;
-    assert_status(refocus_source_start(source, &config, &mode, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_start(source, &config, &mode, &reason), REFOCUS_OK);
     assert_int_equal(mode.width, WIDTH);
     assert_int_equal(mode.height, HEIGHT);
     return source;
@@ -75,7 +67,7 @@ static const struct refocus_frame *next(struct refocus_source *source)
 {
     const struct refocus_frame *frame = NULL;
 
-    assert_status(refocus_source_wait(source, 3000, &frame, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_wait(source, 3000, &frame, &reason), REFOCUS_OK);
     return frame;
 }
 
@@ -90,7 +82,7 @@ static void inject(const char *control, double value)
 {
     struct refocus_source *second = opened();
 
-    assert_status(refocus_source_set_control(second, control, value, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_set_control(second, control, value, &reason), REFOCUS_OK);
     refocus_source_close(&second);
 }
 
@@ -122,7 +114,7 @@ static void capture(uint32_t format, uint32_t flags, uint8_t *rgb)
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, WIDTH, HEIGHT, WIDTH * 3);
     struct refocus_converter *converter = NULL;
-    struct refocus_source *source = started(format, flags);
+    struct refocus_source *source = streaming(format, flags);
 
     assert_int_equal(refocus_converter_create(&converter), REFOCUS_OK);
     take(source, 2);
@@ -132,7 +124,7 @@ static void capture(uint32_t format, uint32_t flags, uint8_t *rgb)
         assert_int_equal(frame->format, format);
         assert_true(frame->flags & REFOCUS_FRAME_MONOTONIC);
         assert_int_equal(frame->dmabuf[0] >= 0, (flags & REFOCUS_SOURCE_DMABUF) != 0);
-        assert_status(refocus_convert_rgb8(converter, frame, &image, &reason), REFOCUS_OK);
+        assert_gives(refocus_convert_rgb8(converter, frame, &image, &reason), REFOCUS_OK);
         refocus_source_release(source, frame);
     }
     refocus_converter_destroy(&converter);
@@ -233,12 +225,12 @@ static void what_it_has_not_is_refused(void **state)
 
     (void)state;
     config.format = REFOCUS_FRAME_Z16;
-    assert_status(refocus_source_start(source, &config, NULL, &reason),
+    assert_gives(refocus_source_start(source, &config, NULL, &reason),
                   REFOCUS_ERR_UNSUPPORTED);
-    assert_status(refocus_source_set_control(source, "no_such_control", 1, &reason),
+    assert_gives(refocus_source_set_control(source, "no_such_control", 1, &reason),
                   REFOCUS_ERR_ARGUMENT);
-    assert_status(refocus_source_set_control(source, "brightness", 130, &reason), REFOCUS_OK);
-    assert_status(refocus_source_set_control(source, "brightness", 128, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_set_control(source, "brightness", 130, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_set_control(source, "brightness", 128, &reason), REFOCUS_OK);
     refocus_source_close(&source);
 }
 
@@ -249,23 +241,23 @@ static void missing_and_wrong_devices(void **state)
     struct refocus_source *source = NULL;
 
     (void)state;
-    assert_status(refocus_source_open(&source, "v4l2:/dev/video77", &reason),
+    assert_gives(refocus_source_open(&source, "v4l2:/dev/video77", &reason),
                   REFOCUS_ERR_GONE);
-    assert_status(refocus_source_open(&source, "v4l2:/dev/null", &reason),
+    assert_gives(refocus_source_open(&source, "v4l2:/dev/null", &reason),
                   REFOCUS_ERR_UNSUPPORTED);
-    assert_status(refocus_source_open(&source, "v4l2:/etc/passwd", &reason),
+    assert_gives(refocus_source_open(&source, "v4l2:/etc/passwd", &reason),
                   REFOCUS_ERR_UNSUPPORTED);
-    assert_status(refocus_source_open(&source, "v4l2:1", &reason), REFOCUS_ERR_UNSUPPORTED);
+    assert_gives(refocus_source_open(&source, "v4l2:1", &reason), REFOCUS_ERR_UNSUPPORTED);
     assert_null(source);
 }
 
 static void a_busy_device(void **state)
 {
-    struct refocus_source *first = started(REFOCUS_FRAME_NV12, 0), *second = opened();
+    struct refocus_source *first = streaming(REFOCUS_FRAME_NV12, 0), *second = opened();
 
     (void)state;
     take(first, 2);
-    assert_status(refocus_source_start(second, NULL, NULL, &reason), REFOCUS_ERR_BUSY);
+    assert_gives(refocus_source_start(second, NULL, NULL, &reason), REFOCUS_ERR_BUSY);
     assert_non_null(strstr(reason.text, "another program"));
     take(first, 2);
     refocus_source_close(&second);
@@ -274,7 +266,7 @@ static void a_busy_device(void **state)
 
 static void corrupt_buffers_are_flagged(void **state)
 {
-    struct refocus_source *source = started(REFOCUS_FRAME_NV12, 0);
+    struct refocus_source *source = streaming(REFOCUS_FRAME_NV12, 0);
     int corrupt = 0;
 
     (void)state;
@@ -292,7 +284,7 @@ static void corrupt_buffers_are_flagged(void **state)
 
 static void dropped_buffers_are_counted(void **state)
 {
-    struct refocus_source *source = started(REFOCUS_FRAME_NV12, 0);
+    struct refocus_source *source = streaming(REFOCUS_FRAME_NV12, 0);
     const struct refocus_frame *frame;
 
     (void)state;
@@ -302,7 +294,7 @@ static void dropped_buffers_are_counted(void **state)
     inject("percentage_of_dropped_buffers", 100);
     while (refocus_source_wait(source, 300, &frame, &reason) == REFOCUS_OK)
         refocus_source_release(source, frame);
-    assert_status(refocus_source_wait(source, 100, &frame, &reason), REFOCUS_ERR_TIMEOUT);
+    assert_gives(refocus_source_wait(source, 100, &frame, &reason), REFOCUS_ERR_TIMEOUT);
     inject("percentage_of_dropped_buffers", 0);
     take(source, 2);
     finish(source, 0);
@@ -310,7 +302,7 @@ static void dropped_buffers_are_counted(void **state)
 
 static void a_queue_error_loses_nothing(void **state)
 {
-    struct refocus_source *source = started(REFOCUS_FRAME_NV12, 0);
+    struct refocus_source *source = streaming(REFOCUS_FRAME_NV12, 0);
 
     (void)state;
     take(source, 2);
@@ -328,13 +320,13 @@ static void a_stream_on_error_passes(void **state)
 
     (void)state;
     inject("inject_vidioc_streamon_error", 1);
-    assert_status(refocus_source_start(source, &config, NULL, &reason), REFOCUS_ERR_IO);
-    assert_status(refocus_source_restart(source, NULL, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_start(source, &config, NULL, &reason), REFOCUS_ERR_IO);
+    assert_gives(refocus_source_restart(source, NULL, &reason), REFOCUS_OK);
     take(source, 2);
     refocus_source_stop(source);
     inject("inject_vidioc_reqbufs_error", 1);
-    assert_status(refocus_source_restart(source, NULL, &reason), REFOCUS_ERR_IO);
-    assert_status(refocus_source_restart(source, NULL, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_restart(source, NULL, &reason), REFOCUS_ERR_IO);
+    assert_gives(refocus_source_restart(source, NULL, &reason), REFOCUS_OK);
     take(source, 2);
     finish(source, 0);
 }
@@ -370,13 +362,13 @@ static int64_t recover(struct refocus_source *source)
 
 static void a_fatal_error_is_recovered_from(void **state)
 {
-    struct refocus_source *source = started(REFOCUS_FRAME_NV12, 0);
+    struct refocus_source *source = streaming(REFOCUS_FRAME_NV12, 0);
     int64_t ms;
 
     (void)state;
     take(source, 2);
     inject("inject_fatal_streaming_error", 1);
-    assert_status(until_fault(source), REFOCUS_ERR_IO);
+    assert_gives(until_fault(source), REFOCUS_ERR_IO);
     ms = recover(source);
     printf("recovered from a fatal error in %d ms\n", (int)ms);
     assert_true(ms < 1000);
@@ -386,7 +378,7 @@ static void a_fatal_error_is_recovered_from(void **state)
 
 static void an_unplugged_device_returns(void **state)
 {
-    struct refocus_source *source = started(REFOCUS_FRAME_NV12, 0);
+    struct refocus_source *source = streaming(REFOCUS_FRAME_NV12, 0);
     const struct refocus_frame *held;
     int64_t ms;
 
@@ -394,7 +386,7 @@ static void an_unplugged_device_returns(void **state)
     take(source, 2);
     held = next(source);
     inject("disconnect", 1);
-    assert_status(until_fault(source), REFOCUS_ERR_GONE);
+    assert_gives(until_fault(source), REFOCUS_ERR_GONE);
     assert_true(held->plane[0][0] > 0); /* its memory is still there */
     refocus_source_release(source, held);
     ms = recover(source);
@@ -405,7 +397,7 @@ static void an_unplugged_device_returns(void **state)
     /* Unplugged while it does not stream. */
     source = opened();
     inject("disconnect", 1);
-    assert_status(refocus_source_start(source, NULL, NULL, &reason), REFOCUS_ERR_GONE);
+    assert_gives(refocus_source_start(source, NULL, NULL, &reason), REFOCUS_ERR_GONE);
     assert_true(recover(source) < 1000);
     finish(source, 0);
 }
@@ -416,7 +408,7 @@ static void the_sequence_may_wrap(void **state)
 
     (void)state;
     inject("wrap_sequence_number", 1);
-    source = started(REFOCUS_FRAME_NV12, 0);
+    source = streaming(REFOCUS_FRAME_NV12, 0);
     take(source, 140);
     assert_true(counters(source).dropped < 140);
     finish(source, 0);
@@ -433,14 +425,14 @@ static void another_signal_restarts_it(void **state)
     snprintf(command, sizeof command, "v4l2-ctl -d%s -i 1 >/dev/null", node + strlen("v4l2:"));
     assert_int_equal(system(command), 0);
     source = opened();
-    assert_status(refocus_source_start(source, NULL, NULL, &reason), REFOCUS_OK);
+    assert_gives(refocus_source_start(source, NULL, NULL, &reason), REFOCUS_OK);
     take(source, 2);
     inject("dv_timings_signal_mode", 1);
-    assert_status(until_fault(source), REFOCUS_ERR_IO);
+    assert_gives(until_fault(source), REFOCUS_ERR_IO);
     assert_non_null(strstr(reason.text, "signal"));
     assert_true(recover(source) < 1000);
     inject("dv_timings_signal_mode", 0);
-    assert_status(until_fault(source), REFOCUS_ERR_IO);
+    assert_gives(until_fault(source), REFOCUS_ERR_IO);
     assert_true(recover(source) < 1000);
     finish(source, 0);
     command[strlen(command) - strlen("1 >/dev/null")] = '0';
@@ -456,7 +448,7 @@ static void *interrupt(void *source)
 
 static void another_thread_stops_it(void **state)
 {
-    struct refocus_source *source = started(REFOCUS_FRAME_NV12, 0);
+    struct refocus_source *source = streaming(REFOCUS_FRAME_NV12, 0);
     const struct refocus_frame *frame;
     pthread_t thread;
     int64_t begin;
@@ -468,36 +460,11 @@ static void another_thread_stops_it(void **state)
     assert_int_equal(pthread_create(&thread, NULL, interrupt, source), 0);
     while (refocus_source_wait(source, 20000, &frame, &reason) == REFOCUS_OK)
         refocus_source_release(source, frame);
-    assert_status(refocus_source_wait(source, 20000, &frame, &reason), REFOCUS_ERR_CANCELLED);
+    assert_gives(refocus_source_wait(source, 20000, &frame, &reason), REFOCUS_ERR_CANCELLED);
     assert_true(now_ms() - begin < 5000);
     pthread_join(thread, NULL);
     inject("percentage_of_dropped_buffers", 0);
     finish(source, 0);
-}
-
-/* Entries of a folder. */
-static int count(const char *folder)
-{
-    DIR *dir = opendir(folder);
-    int n = 0;
-
-    assert_non_null(dir);
-    while (readdir(dir))
-        n++;
-    closedir(dir);
-    return n;
-}
-
-static int mappings(void)
-{
-    FILE *file = fopen("/proc/self/maps", "r");
-    int n = 0, c;
-
-    assert_non_null(file);
-    while ((c = getc(file)) != EOF)
-        n += c == '\n';
-    fclose(file);
-    return n;
 }
 
 static int cycles = 60;
@@ -511,20 +478,20 @@ static void cycles_leak_nothing(void **state)
     (void)state;
     for (int i = 0; i < cycles; i++) {
         struct refocus_source *source =
-            started(REFOCUS_FRAME_NV12, i & 1 ? REFOCUS_SOURCE_DMABUF : 0);
+            streaming(REFOCUS_FRAME_NV12, i & 1 ? REFOCUS_SOURCE_DMABUF : 0);
 
         if (i % 10 == 0)
             next(source);
         refocus_source_close(&source);
         if (i == 20) {
-            fds = count("/proc/self/fd");
-            threads = count("/proc/self/task");
-            maps = mappings();
+            fds = count_entries("fd");
+            threads = count_entries("task");
+            maps = count_mappings();
         }
     }
-    assert_int_equal(count("/proc/self/fd"), fds);
-    assert_int_equal(count("/proc/self/task"), threads);
-    assert_true(mappings() <= maps + 2);
+    assert_int_equal(count_entries("fd"), fds);
+    assert_int_equal(count_entries("task"), threads);
+    assert_true(count_mappings() <= maps + 2);
     printf("cycles: %d in %d s, nothing left open\n", cycles, (int)((now_ms() - begin) / 1000));
 }
 
