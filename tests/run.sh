@@ -6,8 +6,8 @@
 # anything failed.
 #   --quick  one build with gcc and its tests
 #   --long   also runs all tests under the thread sanitizer, lets each fuzz target search for
-#            a minute, opens and closes a V4L2 camera
-#            10,000 times, and compiles against each release of libcamera
+#            a minute, opens and closes a V4L2 camera 10,000 times, builds the module of
+#            OpenCV's contrib filters, and compiles against each release of libcamera
 # Builds are kept in $REFOCUS_BUILDS (build-tests in the source folder) and reused.
 set -u -o pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -120,6 +120,14 @@ bare_stage() {
     CC=gcc CXX=g++ build bare --buildtype=release -Dv4l2=disabled -Dlibcamera=disabled \
         -Dsdl2=disabled -Dopencv=disabled -Dheic=disabled -Dtools=enabled || return
     run bare --suite cli --suite capture
+}
+
+# The filters of OpenCV's contrib modules: --long alone, as they pull in 144 libraries.
+contrib_stage() {
+    say "the filters of OpenCV's contrib modules"
+    need_packages libopencv-contrib-dev || { skip contrib 'its libraries cannot be had'; return; }
+    CC=gcc CXX=g++ build contrib --buildtype=release -Dximgproc=enabled || return
+    run contrib --suite opencv --suite cli --suite quality
 }
 
 # A finding must end the program, and the reports name lines.
@@ -241,5 +249,5 @@ if [ "$mode" != quick ]; then
     cross_stage armv7 armhf g++-arm-linux-gnueabihf
     fuzz_stage
 fi
-[ "$mode" != long ] || libcamera_stage
+[ "$mode" != long ] || { contrib_stage; libcamera_stage; }
 finish
