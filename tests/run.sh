@@ -152,7 +152,7 @@ thread_stage() {
     if setarch -R true 2>/dev/null; then
         wrap=(setarch -R)
     fi
-    TSAN_OPTIONS=halt_on_error=1 run tsan "${which[@]}"
+    TSAN_OPTIONS=halt_on_error=1:suppressions=$top/tests/tsan.supp run tsan "${which[@]}"
     wrap=()
 }
 
