@@ -53,11 +53,15 @@ static void same_bytes(void **state)
 
     (void)state;
     for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
-        struct picture p = picture_make(views[v].width, views[v].height, 3);
-        const size_t size = 3 * (size_t)p.width * (size_t)p.height;
+        const size_t size = 3 * (size_t)views[v].width * (size_t)views[v].height;
         struct refocus_renderer *whole, *strips;
-        uint8_t *expected = malloc(size), *out = malloc(size);
+        uint8_t *expected, *out;
+        struct picture p;
 
+        if (left_out(size > 3 * 403 * 299, 2)) /* of 3 x 2 blocks or fewer */
+            continue;
+        p = picture_make(views[v].width, views[v].height, 3);
+        expected = malloc(size), out = malloc(size);
         assert_true(expected && out);
         if (views[v].bars)
             draw_bars(&p, views[v].bars);
