@@ -187,7 +187,7 @@ static void pictures(void **state)
         uint64_t plain[64] = {0};
 
         assert_true(hash_view(view, &p, REFOCUS_CPU_C, 1, REFOCUS_METHOD_COUNT, plain));
-        for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++)
+        for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++)
             if (cpu != REFOCUS_CPU_C || !left_out(v + 1, 4))
                 check_same(view, &p, cpu, 2, REFOCUS_METHOD_RAYTRACE, plain);
         if (!left_out(v + 2, 4))
@@ -287,7 +287,7 @@ static void yuv_views_same(void **state)
         uint32_t cpu;
         int threads;
     } ways[] = {{REFOCUS_CPU_NEON, 1}, {REFOCUS_CPU_SSE41, 2}, {REFOCUS_CPU_AVX2, 1},
-                {REFOCUS_CPU_AUTO, 3}, {REFOCUS_CPU_AUTO, 8}};
+                {REFOCUS_CPU_AVX512, 2}, {REFOCUS_CPU_AUTO, 3}, {REFOCUS_CPU_AUTO, 8}};
 
     (void)state;
     for (int v = 0; v < (int)(sizeof yuv_views / sizeof yuv_views[0]); v++) {
@@ -296,7 +296,7 @@ static void yuv_views_same(void **state)
         uint64_t plain[64] = {0};
 
         assert_true(hash_yuv_view(view, &p, REFOCUS_CPU_C, 1, plain));
-        for (int w = 0; w < 5; w++) {
+        for (size_t w = 0; w < sizeof ways / sizeof ways[0]; w++) {
             uint64_t hashes[64] = {0};
 
             if (hash_yuv_view(view, &p, ways[w].cpu, ways[w].threads, hashes) &&
@@ -350,7 +350,7 @@ static void effects(void **state)
     const char *name;
 
     (void)state;
-    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++) {
+    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++) {
         struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, blur);
         struct refocus_renderer *renderer;
 

@@ -35,7 +35,7 @@ static bool is_slow(const struct style *style, float blur)
 
 static void same_as_c(void **state)
 {
-    enum { SETS = REFOCUS_CPU_AVX2 + 1 };
+    enum { SETS = REFOCUS_CPU_AVX512 + 1 };
     static const int sizes[][2] = {{97, 61}, {16, 16}, {1, 40}, {45, 2}, {150, 90}};
     static const float blurs[] = {8, 20, 1.5f, 40, 127};
     int sets = 0;
