@@ -4,9 +4,9 @@
 #include <refocus/refocus.h>
 #include <refocus/platform/file.h>
 #include <refocus/platform/source.h>
-#include "commands.h"
-#include "interrupt.h"
-#include "report.h"
+#include "commands/commands.h"
+#include "line/interrupt.h"
+#include "line/report.h"
 
 static const struct command *const commands[] = {&render_command, &depth_command,
                                                  &sheet_command,

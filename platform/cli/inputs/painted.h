@@ -1,0 +1,15 @@
+/* Depth that is painted: a file of strokes over a photo. */
+#ifndef RF_CLI_PAINTED_H
+#define RF_CLI_PAINTED_H
+
+#include "inputs/inputs.h"
+
+/* Read a photo without any depth, for strokes to be painted over. */
+int painted_read(struct input *input, const char *photo,
+                 const struct depth_settings *settings);
+
+/* Paint the strokes of a file over the disparities, which have the photo's size, or
+ * over nothing when there are none yet. Returns an exit code and prints why. */
+int painted_apply(struct input *input, const char *file);
+
+#endif
