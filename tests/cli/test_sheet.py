@@ -177,8 +177,10 @@ class Sheet(Case):
 
     def test_interrupted(self):
         before = sorted(os.listdir('.'))
-        process = subprocess.Popen([REFOCUS, *self.sheet('--repeat', '10000', '--method',
-                                                         'raytrace')],
+        many = ','.join(str(127 - i) for i in range(16))
+        process = subprocess.Popen([REFOCUS, *self.sheet('--blurs', many, '--focuses',
+                                                         ','.join('1' * 16), '--rays', 'full',
+                                                         '--method', 'raytrace')],
                                    stderr=subprocess.PIPE, text=True)
         time.sleep(0.5)
         self.assertIsNone(process.poll())

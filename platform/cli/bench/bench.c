@@ -49,7 +49,8 @@ static const struct option options[] = {
      .help = "no frames, but the loops that they are made of: nanoseconds for a pixel or a ray "
              "sample, and those of plain C"},
     RUN_OPTIONS(struct settings, engine),
-    PAPER_OPTIONS(struct settings, engine.papers),
+    REPEAT_OPTION(struct settings, engine),
+    PAPER_OPTIONS(struct settings, engine.papers, engine.method),
     {.help = NULL},
 };
 
@@ -96,12 +97,26 @@ static int print_report(const struct settings *settings, const struct engine *en
     return report_end_output();
 }
 
-static int check(const struct settings *settings, const char *photo)
+static int check(const struct settings *settings, const char *photo, int argc, char **argv)
 {
+    static const char *const of_frames[] = {
+        "--focus", "--focus-at", "--focus-distance", "--focus-rectangle",
+        "--blur",  "--quality",  NULL};
+    static const char *const of_kernels[] = {"--kernels", "--cpu", "--json", NULL};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
         status = input_check_lens(&settings->lens);
+    if (status == EXIT_DONE && settings->frames)
+        status = options_refuse(&bench_command, argc, argv, of_frames,
+                                "the table of --frames has its own; leave it out");
+    if (status == EXIT_DONE && settings->kernels)
+        status = options_refuse_beside(&bench_command, argc, argv, of_kernels,
+                                       "it does not go with --kernels; leave it out");
+    if (status == EXIT_DONE && settings->kernels && (photo || settings->statistics))
+        status = report_failure(EXIT_WRONG, "--kernels",
+                                "it takes no %s; leave one of them out",
+                                photo ? "photo" : "--rays");
     if (status != EXIT_DONE)
         return status;
     if (settings->frames && settings->statistics)
@@ -208,7 +223,7 @@ static int run(int argc, char **argv)
     status = options_parse(&bench_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
-    status = check(&settings, files[0]);
+    status = check(&settings, files[0], argc, argv);
     if (status != EXIT_DONE)
         return status;
     if (settings.kernels)

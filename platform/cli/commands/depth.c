@@ -82,7 +82,8 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, depth.upsample),
      .choice = made_upsampler,
      .help = "how --full does it: the library's own way, or one of OpenCV's filters to compare "
-             "with; the last three need the module refocus-ximgproc"},
+             "with; the last three need the module refocus-ximgproc",
+     .needs = "--full,--strokes"},
     {.kind = OPTION_TEXT,
      .name = "--estimate",
      .argument = "MODEL.onnx",
@@ -94,7 +95,8 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, network.preset),
      .choice = made_preset,
      .help = "which network it is: range of its input, and its size where the file leaves "
-             "it open"},
+             "it open",
+     .needs = "--estimate"},
     {.kind = OPTION_NUMBERS,
      .name = "--input-size",
      .argument = "W,H",
@@ -103,7 +105,8 @@ static const struct option options[] = {
      .greatest = 2048,
      .count = 2,
      .help = "of the picture that the network takes; default: what the file says, else the "
-             "preset"},
+             "preset",
+     .needs = "--estimate"},
     {.kind = OPTION_NUMBERS,
      .name = "--input-mean",
      .argument = "R,G,B",
@@ -111,18 +114,21 @@ static const struct option options[] = {
      .least = -1000,
      .greatest = 1000,
      .count = 3,
-     .help = "codes that the network takes as 0; default: the preset's"},
+     .help = "codes that the network takes as 0; default: the preset's",
+     .needs = "--estimate"},
     {.kind = OPTION_NUMBER,
      .name = "--input-scale",
      .argument = "S",
      .offset = offsetof(struct settings, network.scale),
      .least = -1000,
      .greatest = 1000,
-     .help = "and what a code is worth: value = (code - mean) S; default: the preset's"},
+     .help = "and what a code is worth: value = (code - mean) S; default: the preset's",
+     .needs = "--estimate"},
     {.kind = OPTION_FLAG,
      .name = "--far-is-large",
      .offset = offsetof(struct settings, network.inverse),
-     .help = "the network gives distances: larger = farther"},
+     .help = "the network gives distances: larger = farther",
+     .needs = "--estimate"},
     {.kind = OPTION_TEXT,
      .name = "--strokes",
      .argument = "FILE.json",
@@ -320,7 +326,34 @@ static bool is_made(const struct settings *settings, const char *const *files)
     return files[1] || settings->side_by_side || settings->stereo.within || settings->model;
 }
 
-static int check(const struct settings *settings, const char *const *files)
+/* Options of depth that is read or matched, with depth that is not. */
+static int check_ways(const struct settings *settings, const char *const *files, int argc,
+                      char **argv)
+{
+    static const char *const of_read[] = {"--depth-unit", "--invalid", "--speckle", "--snap",
+                                          "--upsample", NULL};
+    const bool pair = is_made(settings, files) && !settings->model;
+    const bool nothing =
+        settings->strokes && !settings->depth.file && !is_made(settings, files);
+
+    if (!pair && options_given(&depth_command, argc, argv, "--match"))
+        return report_failure(EXIT_WRONG, "--match",
+                              "it is of stereo pairs; give RIGHT, --side-by-side or "
+                              "--stereo-file, or leave it out");
+    if (is_made(settings, files) && settings->depth.unit)
+        return report_failure(EXIT_WRONG, "--depth-unit",
+                              "it is of depth that is read from a file; leave it out");
+    if (pair && options_given(&depth_command, argc, argv, "--upsample"))
+        return report_failure(EXIT_WRONG, "--upsample",
+                              "depth of a stereo pair has the photo's size; leave it out");
+    if (!nothing)
+        return EXIT_DONE;
+    return options_refuse(&depth_command, argc, argv, of_read,
+                          "--strokes alone paint over nothing; give --depth, or leave it out");
+}
+
+static int check(const struct settings *settings, const char *const *files, int argc,
+                 char **argv)
 {
     static const char *const endings[] = {".png", ".pgm", ".pfm", ".jpg", ".jpeg", NULL};
     static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
@@ -347,7 +380,11 @@ static int check(const struct settings *settings, const char *const *files)
                               "they are not painted over half a picture; give LEFT and RIGHT");
     if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
         return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
-    return status;
+    if (status == EXIT_DONE && !isnan(settings->focus_at[0]) &&
+        (settings->view != VIEW_NONE || !is_jpeg(settings->output)))
+        return report_failure(EXIT_WRONG, "--focus-at",
+                              "it is kept in a photo alone; give -o a .jpg, or leave it out");
+    return status == EXIT_DONE ? check_ways(settings, files, argc, argv) : status;
 }
 
 static int read_input(const struct settings *settings, const char *const *files,
@@ -379,7 +416,7 @@ static int run(int argc, char **argv)
     status = options_parse(&depth_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
-    status = check(&settings, files);
+    status = check(&settings, files, argc, argv);
     if (status != EXIT_DONE)
         return status;
     settings.depth.full |= settings.strokes != NULL;

@@ -12,10 +12,8 @@
 #include "views/stereo_views.h"
 
 struct settings {
-    struct depth_settings depth;
-    struct lens_settings lens;
-    struct engine_settings engine;
-    const char *output, *keys, *load, *save;
+    struct shot_settings shot;
+    const char *output, *keys;
     double from, to, blur_from, blur_to, seconds, fps, wiggle; /* NAN: not given */
     int ease;
     bool back;
@@ -31,9 +29,7 @@ static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
                   "frames-%03d.png, .jpg or .ppm for a picture each; or a name in .y4m, .apng, "
                   "and by the ffmpeg program .mp4, .webm or .gif"),
-    DEPTH_FILE_OPTION(struct settings, depth),
-    DEPTH_UNIT_OPTIONS(struct settings, depth),
-    REPAIR_OPTIONS(struct settings, depth),
+    SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "The pull"},
     NUMBER("--from", "D", from, 0, 1, "disparity in focus at the beginning; default 1"),
     NUMBER("--to", "D", to, 0, 1, "and at the end; default 0"),
@@ -54,18 +50,13 @@ static const struct option options[] = {
     NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST,
            "in place of a pull: the eye swings sideways, and what is not in focus moves by so "
            "many pixels, at disparity 1 when 0 is in focus"),
-    {.kind = OPTION_HEADING, .help = "Focus and blur"},
-    FOCUS_OPTIONS(struct settings, lens),
-    LENS_OPTIONS(struct settings, lens),
-    CONTROL_OPTIONS(struct settings, engine.controls),
-    BOKEH_OPTIONS(struct settings, engine.bokeh),
-    {.kind = OPTION_HEADING, .help = "Rendering"},
-    METHOD_OPTION(struct settings, engine),
-    METHOD_OPTIONS(struct settings, engine),
+    SHOT_LENS_OPTIONS(struct settings, shot),
+    SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
-    SETTINGS_OPTIONS(struct settings, load, save),
-    RUN_OPTIONS(struct settings, engine),
-    PAPER_OPTIONS(struct settings, engine.papers),
+    SETTINGS_OPTION(struct settings, shot.load),
+    SAVE_SETTINGS_OPTION(struct settings, shot.save),
+    RUN_OPTIONS(struct settings, shot.engine),
+    SHOT_PAPER_OPTIONS(struct settings, shot),
     {.help = NULL},
 };
 
@@ -89,15 +80,41 @@ static int make_keys(struct keys **keys, const struct settings *s, double blur)
     return status;
 }
 
-static int check(const struct settings *s, const char *photo)
+/* The options' focus is that of a wiggle, or where keys name none. A pull's own takes its place,
+ * but for the line that --tilt-angle turns about. */
+static int check_focus(const struct settings *s, int argc, char **argv)
 {
-    const char *const inputs[] = {photo, s->depth.file, s->engine.aperture, s->keys, s->load};
-    int status = input_check_depth(&s->depth);
+    static const char *const names[] = {"--focus", "--focus-distance",
+                                        "--focus-rectangle", NULL};
+    static const char *const point[] = {"--focus-at", NULL};
+    static const char why[] = "--from and --to are in its place; leave it out";
+    const struct control_settings *controls = &s->shot.engine.controls;
+    const bool turns = !isnan(controls->tilt_angle) && isnan(controls->tilt_line[0]);
 
+    int status = EXIT_DONE;
+
+    if (s->keys || !isnan(s->wiggle))
+        return EXIT_DONE;
+    if (!turns)
+        status = options_refuse(&pull_command, argc, argv, point, why);
+    return status == EXIT_DONE ? options_refuse(&pull_command, argc, argv, names, why)
+                               : status;
+}
+
+static int check(struct settings *s, const char *photo, int argc, char **argv)
+{
+    const char *inputs[SHOT_INPUTS + 1];
+    int count = shot_inputs(&s->shot, photo, inputs);
+    int status = shot_check(&s->shot, true); /* each frame has a focus of its own */
+
+    inputs[count++] = s->keys;
     if (status == EXIT_DONE)
-        status = input_check_lens(&s->lens);
-    if (status == EXIT_DONE) /* each frame has a focus of its own */
-        status = controls_check(&s->engine.controls, true);
+        status = check_focus(s, argc, argv);
+    if (status == EXIT_DONE && (s->keys || !isnan(s->wiggle)) &&
+        options_given(&pull_command, argc, argv, "--ease"))
+        status = report_failure(EXIT_WRONG, "--ease",
+                                "is of the way from --from to --to; leave it or %s out",
+                                s->keys ? "--keys" : "--wiggle");
     if (status == EXIT_DONE && s->keys &&
         !(isnan(s->from) && isnan(s->to) && isnan(s->blur_from) && isnan(s->blur_to) &&
           isnan(s->seconds)))
@@ -111,9 +128,9 @@ static int check(const struct settings *s, const char *photo)
                                 "is in place of --keys, --from, --to, --blur-from, --blur-to "
                                 "and --back; leave them out");
     if (status == EXIT_DONE)
-        status = animation_check(s->output, inputs, 5);
-    if (status == EXIT_DONE && s->save)
-        status = settings_check(s->save, inputs, 5);
+        status = animation_check(s->output, inputs, count);
+    if (status == EXIT_DONE && s->shot.save)
+        status = settings_check(s->shot.save, inputs, count);
     return status;
 }
 
@@ -185,18 +202,19 @@ static int wiggle(struct shot *shot, const struct settings *s, int *frames)
 static int pull(struct shot *shot, const char *photo, struct keys **keys,
                 const struct settings *s, int *frames)
 {
-    struct shot_settings wanted = {.depth = &s->depth, .lens = &s->lens, .engine = &s->engine,
-                                   .most_blur = fmax(given(s->blur_from, 0),
-                                                     given(s->blur_to, 0))};
+    struct shot_settings wanted = s->shot;
+    double most_blur = fmax(given(s->blur_from, 0), given(s->blur_to, 0));
     int status = s->keys ? keys_load(keys, s->keys) : EXIT_DONE;
 
     if (status == EXIT_DONE && *keys)
-        wanted.most_blur = keys_most(*keys, "blur", 0);
+        most_blur = keys_most(*keys, "blur", 0);
     if (status != EXIT_DONE) {
         memset(shot, 0, sizeof *shot);
         return status;
     }
-    status = shot_open(shot, photo, &wanted);
+    if (isnan(s->wiggle) && !input_focus_is_given(&wanted.lens))
+        wanted.lens.focus = given(s->from, 1); /* each frame has its own: none is found */
+    status = shot_open(shot, photo, &wanted, most_blur);
     if (status == EXIT_DONE && !isnan(s->wiggle))
         return wiggle(shot, s, frames);
     if (status == EXIT_DONE && !*keys)
@@ -210,7 +228,7 @@ static int print_report(const struct settings *s, const struct shot *shot, int f
 {
     const struct refocus_image *photo = &shot->input.photo->image;
 
-    if (!s->engine.json)
+    if (!s->shot.engine.json)
         return EXIT_DONE;
     return report_print_json(json_pack(
         "{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo", report_text_json(shot->input.photo_name),
@@ -221,9 +239,7 @@ static int print_report(const struct settings *s, const struct shot *shot, int f
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
-                                .lens = LENS_SETTINGS_NONE,
-                                .engine = ENGINE_SETTINGS_NONE(1),
+    struct settings settings = {.shot = SHOT_SETTINGS_NONE,
                                 .from = NAN, .to = NAN, .blur_from = NAN, .blur_to = NAN,
                                 .seconds = NAN, .fps = NAN, .wiggle = NAN};
     struct keys *keys = NULL;
@@ -233,16 +249,13 @@ static int run(int argc, char **argv)
 
     if (status != OPTIONS_PARSED)
         return status;
-    settings.engine.bokeh.f_number = settings.lens.f_number;
-    status = check(&settings, files[0]);
+    status = check(&settings, files[0], argc, argv);
     if (status != EXIT_DONE)
         return status;
-    if (isnan(settings.lens.focus) && isnan(settings.wiggle)) /* each frame has its own: none has to be found */
-        settings.lens.focus = given(settings.from, 1);
     status = pull(&shot, files[0], &keys, &settings, &frames);
     report_progress_end();
-    if (status == EXIT_DONE && settings.save)
-        status = settings_save(&pull_command, settings.save, &settings);
+    if (status == EXIT_DONE && settings.shot.save)
+        status = settings_save(&pull_command, settings.shot.save, &settings);
     if (status == EXIT_DONE)
         status = print_report(&settings, &shot, frames);
     keys_free(keys);

@@ -12,10 +12,8 @@
 #include "views/views.h"
 
 struct settings {
-    struct depth_settings depth;
-    struct lens_settings lens;
-    struct engine_settings engine;
-    const char *output, *load, *save;
+    struct shot_settings shot;
+    const char *output;
     double region[4], parallax;
     int view;
 };
@@ -25,17 +23,9 @@ static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
                   "the picture to write: .jpg, .png or .ppm; keeps the photo's EXIF data and "
                   "colour profile"),
-    DEPTH_FILE_OPTION(struct settings, depth),
-    DEPTH_UNIT_OPTIONS(struct settings, depth),
-    REPAIR_OPTIONS(struct settings, depth),
-    {.kind = OPTION_HEADING, .help = "Focus and blur"},
-    FOCUS_OPTIONS(struct settings, lens),
-    LENS_OPTIONS(struct settings, lens),
-    CONTROL_OPTIONS(struct settings, engine.controls),
-    BOKEH_OPTIONS(struct settings, engine.bokeh),
-    {.kind = OPTION_HEADING, .help = "Rendering"},
-    METHOD_OPTION(struct settings, engine),
-    METHOD_OPTIONS(struct settings, engine),
+    SHOT_DEPTH_OPTIONS(struct settings, shot),
+    SHOT_LENS_OPTIONS(struct settings, shot),
+    SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_NUMBERS,
      .name = "--region",
      .argument = "X,Y,W,H",
@@ -60,29 +50,21 @@ static const struct option options[] = {
      .help = "anaglyph: between the eyes at disparity 1 when 0 is in focus; default 1/50 of "
              "the width"},
     {.kind = OPTION_HEADING, .help = "Running"},
-    SETTINGS_OPTIONS(struct settings, load, save),
-    RUN_OPTIONS(struct settings, engine),
-    PAPER_OPTIONS(struct settings, engine.papers),
+    SETTINGS_OPTION(struct settings, shot.load),
+    SAVE_SETTINGS_OPTION(struct settings, shot.save),
+    RUN_OPTIONS(struct settings, shot.engine),
+    REPEAT_OPTION(struct settings, shot.engine),
+    SHOT_PAPER_OPTIONS(struct settings, shot),
     {.help = NULL},
 };
 
-static int check(const struct settings *settings, const char *photo)
+static int check(struct settings *settings, const char *photo)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
-    const char *const inputs[] = {photo, settings->depth.file, settings->engine.aperture,
-                                  settings->engine.papers.field_map,
-                                  settings->engine.controls.focus_map,
-                                  settings->engine.controls.sharp_mask, settings->load};
-    int status;
+    const char *inputs[SHOT_INPUTS];
+    const int count = shot_inputs(&settings->shot, photo, inputs);
+    int status = shot_check(&settings->shot, false);
 
-    status = input_check_depth(&settings->depth);
-    if (status == EXIT_DONE)
-        status = input_check_lens(&settings->lens);
-    if (status == EXIT_DONE)
-        status = controls_check(&settings->engine.controls, !isnan(settings->lens.focus) ||
-                                    !isnan(settings->lens.focus_at[0]) ||
-                                    !isnan(settings->lens.focus_distance) ||
-                                    !isnan(settings->lens.focus_rectangle[0]));
     if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
                                 "a view is always of the whole; leave --region or --view out");
@@ -90,16 +72,16 @@ static int check(const struct settings *settings, const char *photo)
         status = report_failure(EXIT_WRONG, "--parallax",
                                 "goes with --view anaglyph; give that too");
     if (status == EXIT_DONE)
-        status = output_check(settings->output, endings, inputs, 7);
-    if (status == EXIT_DONE && settings->save)
-        status = settings_check(settings->save, inputs, 6);
+        status = output_check(settings->output, endings, inputs, count);
+    if (status == EXIT_DONE && settings->shot.save)
+        status = settings_check(settings->shot.save, inputs, count);
     return status;
 }
 
 static int print_report(const struct settings *settings, const struct engine *engine,
                         const struct input *input, const struct refocus_image *out)
 {
-    if (settings->engine.json) {
+    if (settings->shot.engine.json) {
         json_t *json = json_pack("{s:o, s:o, s:i, s:i, s:o}", "photo",
                                  report_text_json(input->photo_name), "output",
                                  report_text_json(settings->output), "width",
@@ -114,9 +96,9 @@ static int print_report(const struct settings *settings, const struct engine *en
         json_decref(run);
         return report_print_json(json);
     }
-    if (settings->engine.repeat > 1) {
+    if (settings->shot.engine.repeat > 1) {
         printf("prepare %.2f ms, render %.2f ms (median of %.0f; %.2f to %.2f)\n",
-               engine->prepare_ms, engine->render_ms.median, settings->engine.repeat,
+               engine->prepare_ms, engine->render_ms.median, settings->shot.engine.repeat,
                engine->render_ms.min, engine->render_ms.max);
         return report_end_output();
     }
@@ -126,23 +108,19 @@ static int print_report(const struct settings *settings, const struct engine *en
 static int render(struct shot *shot, struct refocus_image *out,
                   const struct settings *settings, const char *photo)
 {
-    const struct shot_settings wanted = {.depth = &settings->depth, .lens = &settings->lens,
-                                         .engine = &settings->engine};
-    int status = shot_open(shot, photo, &wanted);
+    int status = shot_open(shot, photo, &settings->shot, 0);
 
     if (status == EXIT_DONE)
         status = shot_output(shot, settings->region, out);
     if (status == EXIT_DONE)
         status = views_render(shot, out, settings->view, settings->parallax,
-                              (int)settings->engine.repeat);
+                              (int)settings->shot.engine.repeat);
     return status;
 }
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
-                                .lens = LENS_SETTINGS_NONE,
-                                .engine = ENGINE_SETTINGS_NONE(1),
+    struct settings settings = {.shot = SHOT_SETTINGS_NONE,
                                 .region = {NAN},
                                 .parallax = NAN};
     struct shot shot;
@@ -153,7 +131,6 @@ static int run(int argc, char **argv)
     status = options_parse(&render_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
-    settings.engine.bokeh.f_number = settings.lens.f_number;
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;
@@ -164,8 +141,8 @@ static int run(int argc, char **argv)
                                     settings.view == VIEW_NONE ? shot.input.photo : NULL);
     }
     report_progress_end();
-    if (status == EXIT_DONE && settings.save)
-        status = settings_save(&render_command, settings.save, &settings);
+    if (status == EXIT_DONE && settings.shot.save)
+        status = settings_save(&render_command, settings.shot.save, &settings);
     if (status == EXIT_DONE)
         status = print_report(&settings, &shot.engine, &shot.input, &out);
     free(out.plane[0]);

@@ -10,11 +10,9 @@
 #include "shot/shot.h"
 
 struct settings {
-    struct depth_settings depth;
-    struct lens_settings lens;
-    struct engine_settings engine;
+    struct shot_settings shot;
     struct sheet_settings sheet;
-    const char *output, *load, *save;
+    const char *output;
     double region[4];
 };
 
@@ -27,9 +25,7 @@ struct settings {
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
     OUTPUT_OPTION(struct settings, output, "the picture to write: .jpg, .png or .ppm"),
-    DEPTH_FILE_OPTION(struct settings, depth),
-    DEPTH_UNIT_OPTIONS(struct settings, depth),
-    REPAIR_OPTIONS(struct settings, depth),
+    SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "The sheet"},
     {.kind = OPTION_CHOICE,
      .name = "--kind",
@@ -63,54 +59,67 @@ static const struct option options[] = {
      .greatest = REFOCUS_MAX_SIDE,
      .count = 4,
      .help = "cells show only this part of the picture, pixels"},
-    {.kind = OPTION_HEADING, .help = "Focus and blur"},
-    FOCUS_OPTIONS(struct settings, lens),
-    LENS_OPTIONS(struct settings, lens),
-    CONTROL_OPTIONS(struct settings, engine.controls),
-    BOKEH_OPTIONS(struct settings, engine.bokeh),
-    {.kind = OPTION_HEADING, .help = "Rendering"},
-    METHOD_OPTION(struct settings, engine),
-    METHOD_OPTIONS(struct settings, engine),
+    SHOT_LENS_OPTIONS(struct settings, shot),
+    SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
-    SETTINGS_OPTIONS(struct settings, load, save),
-    RUN_OPTIONS(struct settings, engine),
-    PAPER_OPTIONS(struct settings, engine.papers),
+    SETTINGS_OPTION(struct settings, shot.load),
+    SAVE_SETTINGS_OPTION(struct settings, shot.save),
+    RUN_OPTIONS(struct settings, shot.engine),
+    SHOT_PAPER_OPTIONS(struct settings, shot),
     {.help = NULL},
 };
 
-static bool focus_is_given(const struct lens_settings *lens)
+/* Options in whose place the sheet's own are; those of a file of settings are passed over. */
+static int check_lists(const struct sheet_settings *s, int argc, char **argv)
 {
-    return !isnan(lens->focus) || !isnan(lens->focus_at[0]) ||
-           !isnan(lens->focus_distance) || !isnan(lens->focus_rectangle[0]);
+    const struct {
+        bool holds;
+        const char *options[5], *why;
+    } rules[] = {
+        {s->blurs != NULL,
+         {"--blur", "--f-number"},
+         "--blurs is in its place; leave one of them out"},
+        {s->kind == SHEET_FOCUS,
+         {"--focus", "--focus-at", "--focus-distance", "--focus-rectangle"},
+         "--focuses is in its place; give that, or another --kind"},
+        {s->kind == SHEET_APERTURE,
+         {"--aperture"},
+         "--apertures is in its place; leave it out"},
+        {s->kind == SHEET_SIGMA,
+         {"--sigma", "--blend"},
+         "the sheet has cells for several; leave it out"},
+    };
+    int status = EXIT_DONE;
+
+    for (size_t i = 0; i < sizeof rules / sizeof *rules && status == EXIT_DONE; i++)
+        if (rules[i].holds)
+            status = options_refuse(&sheet_command, argc, argv, rules[i].options,
+                                    rules[i].why);
+    return status;
 }
 
-static int check(const struct settings *settings, const char *photo)
+static int check(struct settings *settings, const char *photo, int argc, char **argv)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
-    const char *const inputs[] = {photo,
-                                  settings->depth.file,
-                                  settings->engine.aperture,
-                                  settings->engine.papers.field_map,
-                                  settings->engine.controls.focus_map,
-                                  settings->engine.controls.sharp_mask,
-                                  settings->load};
-    struct lens_settings lens = settings->lens;
-    int status = input_check_depth(&settings->depth);
+    const char *inputs[SHOT_INPUTS];
+    const int count = shot_inputs(&settings->shot, photo, inputs);
+    struct shot_settings shot = settings->shot;
+    int status = check_lists(&settings->sheet, argc, argv);
 
     if (status == EXIT_DONE && settings->sheet.f_numbers &&
-        !(isnan(lens.blur) && isnan(lens.f_number)))
+        !(isnan(shot.lens.blur) && isnan(shot.lens.f_number)))
         status = report_failure(EXIT_WRONG, "--f-numbers",
                                 "is in place of --blur and --f-number; leave them out");
     if (settings->sheet.f_numbers)
-        lens.f_number = 1; /* it stands for any: --focal-length goes with them too */
+        shot.lens.f_number = 1; /* it stands for any: --focal-length goes with them too */
     if (status == EXIT_DONE)
-        status = input_check_lens(&lens);
+        status = shot_check(&shot, false);
+    if (!settings->sheet.f_numbers)
+        settings->shot = shot;
     if (status == EXIT_DONE)
-        status = controls_check(&settings->engine.controls, focus_is_given(&lens));
-    if (status == EXIT_DONE)
-        status = output_check(settings->output, endings, inputs, 7);
-    if (status == EXIT_DONE && settings->save)
-        status = settings_check(settings->save, inputs, 7);
+        status = output_check(settings->output, endings, inputs, count);
+    if (status == EXIT_DONE && settings->shot.save)
+        status = settings_check(settings->shot.save, inputs, count);
     return status;
 }
 
@@ -127,8 +136,7 @@ static void take_photo(const struct refocus_image *photo,
 }
 
 static int render_cell(struct shot *shot, const struct refocus_render_params *usual,
-                       const struct sheet_cell *cell, const struct refocus_image *out,
-                       int repeat)
+                       const struct sheet_cell *cell, const struct refocus_image *out)
 {
     struct refocus_render_params *params = &shot->engine.params;
 
@@ -147,7 +155,7 @@ static int render_cell(struct shot *shot, const struct refocus_render_params *us
         params->blend = (uint32_t)cell->blend;
     if (cell->aperture)
         params->aperture = cell->aperture;
-    return engine_render(&shot->engine, out, repeat);
+    return engine_render(&shot->engine, out, 1);
 }
 
 /* Size of a cell that shows `full` and is no wider than was asked for. */
@@ -183,8 +191,7 @@ static int make_cells(struct shot *shot, const struct sheet *sheet,
         status = report_failure(EXIT_FAILED, settings->output, "%s", why);
     for (int i = 0; i < sheet->count && status == EXIT_DONE; i++) {
         report_progress("rendering", 0.3 + 0.6 * i / sheet->count);
-        status = render_cell(shot, &placed, &sheet->cell[i], &full,
-                             (int)settings->engine.repeat);
+        status = render_cell(shot, &placed, &sheet->cell[i], &full);
         if (status == EXIT_DONE)
             sheet_picture_put(picture, sheet, i, &full, width, height);
     }
@@ -195,21 +202,17 @@ static int make_cells(struct shot *shot, const struct sheet *sheet,
 static int make(struct shot *shot, struct sheet *sheet, const char *photo,
                 const struct settings *settings, struct refocus_image *picture)
 {
-    struct lens_settings lens = settings->lens;
-    const struct shot_settings wanted = {
-        .depth = &settings->depth,
-        .lens = &lens,
-        .engine = &settings->engine,
-        .most_blur = isnan(sheet->most_blur) ? 0 : sheet->most_blur};
+    struct shot_settings wanted = settings->shot;
     int status;
 
     if (!isnan(sheet->least_f_number))
-        lens.f_number = sheet->least_f_number;
-    if (settings->sheet.kind == SHEET_FOCUS && !focus_is_given(&lens))
-        lens.focus = 1; /* each cell has its own: none has to be found */
-    status = shot_open(shot, photo, &wanted);
+        wanted.lens.f_number = sheet->least_f_number;
+    if (settings->sheet.kind == SHEET_FOCUS && !input_focus_is_given(&wanted.lens))
+        wanted.lens.focus = 1; /* each cell has its own: none has to be found */
+    status = shot_open(shot, photo, &wanted,
+                       isnan(sheet->most_blur) ? 0 : sheet->most_blur);
     if (status == EXIT_DONE)
-        status = sheet_fill(sheet, &settings->sheet, &lens, &shot->input,
+        status = sheet_fill(sheet, &settings->sheet, &wanted.lens, &shot->input,
                             (double)shot->engine.params.max_blur_radius);
     if (status == EXIT_DONE)
         status = make_cells(shot, sheet, settings, picture);
@@ -225,7 +228,7 @@ static int print_report(const struct settings *settings, const struct shot *shot
 {
     json_t *cells;
 
-    if (!settings->engine.json)
+    if (!settings->shot.engine.json)
         return EXIT_DONE;
     cells = json_array();
     for (int i = 0; i < sheet->count && cells; i++)
@@ -245,9 +248,7 @@ static int print_report(const struct settings *settings, const struct shot *shot
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
-                                .lens = LENS_SETTINGS_NONE,
-                                .engine = ENGINE_SETTINGS_NONE(1),
+    struct settings settings = {.shot = SHOT_SETTINGS_NONE,
                                 .sheet = {.cell_width = NAN},
                                 .region = {NAN}};
     struct sheet *sheet = NULL;
@@ -258,20 +259,19 @@ static int run(int argc, char **argv)
 
     if (status != OPTIONS_PARSED)
         return status;
-    settings.engine.bokeh.f_number = settings.lens.f_number;
-    status = check(&settings, files[0]);
+    status = check(&settings, files[0], argc, argv);
     if (status != EXIT_DONE)
         return status;
     sheet = malloc(sizeof *sheet);
     if (!sheet)
         return report_failure(EXIT_FAILED, settings.output, "not enough memory");
     memset(&shot, 0, sizeof shot);
-    status = sheet_begin(sheet, &settings.sheet, &settings.engine);
+    status = sheet_begin(sheet, &settings.sheet, &settings.shot.engine);
     if (status == EXIT_DONE)
         status = make(&shot, sheet, files[0], &settings, &picture);
     report_progress_end();
-    if (status == EXIT_DONE && settings.save)
-        status = settings_save(&sheet_command, settings.save, &settings);
+    if (status == EXIT_DONE && settings.shot.save)
+        status = settings_save(&sheet_command, settings.shot.save, &settings);
     if (status == EXIT_DONE)
         status = print_report(&settings, &shot, sheet, &picture);
     free(picture.plane[0]);

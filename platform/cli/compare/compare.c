@@ -50,7 +50,8 @@ static const struct option options[] = {
     METHOD_OPTIONS(struct settings, engine),
     {.kind = OPTION_HEADING, .help = "Running"},
     RUN_OPTIONS(struct settings, engine),
-    PAPER_OPTIONS(struct settings, engine.papers),
+    REPEAT_OPTION(struct settings, engine),
+    PAPER_OPTIONS(struct settings, engine.papers, engine.method),
     {.help = NULL},
 };
 
@@ -298,7 +299,9 @@ static int run(int argc, char **argv)
     const char *files[2];
     int status;
 
+    settings.engine.method = -1; /* several: options of any may be given */
     status = options_parse(&compare_command, argc, argv, &settings, files);
+    settings.engine.method = REFOCUS_METHOD_SWEEP;
     if (status != OPTIONS_PARSED)
         return status;
     status = check(&settings, files[0]);

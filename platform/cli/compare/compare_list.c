@@ -7,7 +7,7 @@ enum { WORDS_MOST = 32 }; /* of one method */
 
 static const struct option options[] = {
     METHOD_OPTIONS(struct variant, settings),
-    PAPER_OPTIONS(struct variant, settings.papers),
+    PAPER_OPTIONS(struct variant, settings.papers, settings.method),
     {.help = NULL},
 };
 
@@ -99,7 +99,7 @@ static int add_all(struct variants *variants, char *list, char **words,
 int variants_begin(struct variants *variants, const char *list,
                    const struct engine_settings *common)
 {
-    const bool disc = strcmp(common->aperture, "disc") == 0;
+    const bool disc = !common->aperture || strcmp(common->aperture, "disc") == 0;
     char all[16 * REFOCUS_METHOD_COUNT] = "", *words;
     size_t length;
 

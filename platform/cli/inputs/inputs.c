@@ -69,6 +69,12 @@ int input_check_depth(const struct depth_settings *settings)
     return EXIT_DONE;
 }
 
+bool input_focus_is_given(const struct lens_settings *settings)
+{
+    return given(settings->focus) || given(settings->focus_at[0]) ||
+           given(settings->focus_distance) || given(settings->focus_rectangle[0]);
+}
+
 int input_check_lens(const struct lens_settings *settings)
 {
     const int ways = given(settings->focus) + given(settings->focus_at[0]) +
@@ -221,7 +227,7 @@ int input_convert(struct input *input, const struct depth_settings *settings)
                               refocus_strerror(status));
     if (worth_snapping(input, settings))
         return snap(input, settings);
-    if (settings->snap > 0 && !settings->full && input->photo)
+    if (settings->snap > 0 && input->photo)
         return report_failure(EXIT_FAILED, input->depth_name,
                               "its depth has %dx%d samples, the photo %dx%d pixels; --snap "
                               "takes depth of the photo's size, give --full instead",
@@ -247,21 +253,29 @@ static int read_side(struct input *input, const char *file,
     return EXIT_DONE;
 }
 
-int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
+int input_read_photo(struct input *input, const char *photo, const char *instead)
 {
     struct refocus_reason reason = {""};
     int status;
 
     memset(input, 0, sizeof *input);
-    input->photo_name = photo;
+    input->photo_name = input->depth_name = photo;
     status = refocus_photo_read(&input->photo, photo, NULL, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!input->photo->image.plane[0])
-        return report_failure(EXIT_FAILED, photo,
-                              "it is a depth map, not a photo; give the photo, and this "
-                              "file to --depth");
+        return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; give %s",
+                              instead);
+    return EXIT_DONE;
+}
+
+int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
+{
+    int status = input_read_photo(input, photo, "the photo, and this file to --depth");
+
+    if (status != EXIT_DONE)
+        return status;
     if (settings->file) {
         status = read_side(input, settings->file, settings);
     } else {

@@ -166,6 +166,13 @@ struct input {
 int input_check_depth(const struct depth_settings *settings);
 int input_check_lens(const struct lens_settings *settings);
 
+/* Whether the settings say what is in focus. */
+bool input_focus_is_given(const struct lens_settings *settings);
+
+/* Read a photo into a new input, which it names; ended by input_free(), also after an error. What
+ * to give instead of a depth map ends the words of that error. */
+int input_read_photo(struct input *input, const char *photo, const char *instead);
+
 /* Read a photo and its depth; ended by input_free(), also after an error. */
 int input_read(struct input *input, const char *photo, const struct depth_settings *settings);
 

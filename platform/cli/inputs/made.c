@@ -8,7 +8,8 @@
 #ifdef RF_HAVE_OPENCV
 #include <refocus/platform/opencv.h>
 
-static int read_photo(struct refocus_photo **photo, const char *name, bool second)
+/* The other picture of a pair: a file of its own, or the second one of the left one's. */
+static int read_right(struct refocus_photo **photo, const char *name, bool second)
 {
     struct refocus_reason reason = {""};
     const int status = second ? refocus_photo_read_second(photo, name, NULL, &reason)
@@ -59,14 +60,11 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
     struct refocus_cv_reason reason = {""};
     struct refocus_image other;
     float *samples = NULL;
-    int status;
+    int status = input_read_photo(input, left, "a photo");
 
-    memset(input, 0, sizeof *input);
-    input->photo_name = input->depth_name = left;
     params.method = (uint32_t)how->method;
-    status = read_photo(&input->photo, left, false);
     if (status == EXIT_DONE && (right || how->within))
-        status = read_photo(&input->side, right ? right : left, right == NULL);
+        status = read_right(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
         return status;
     if (!input->side && input->photo->image.width < 2)
@@ -118,11 +116,8 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
     struct refocus_estimate estimate;
     struct refocus_network network;
     struct refocus_cv_reason reason = {""};
-    int status;
+    int status = input_read_photo(input, photo, "a photo");
 
-    memset(input, 0, sizeof *input);
-    input->photo_name = input->depth_name = photo;
-    status = read_photo(&input->photo, photo, false);
     if (status != EXIT_DONE)
         return status;
     refocus_cv_network((uint32_t)how->preset, &network);

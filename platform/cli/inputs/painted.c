@@ -12,18 +12,10 @@ int painted_read(struct input *input, const char *photo,
                  const struct depth_settings *settings)
 {
     struct refocus_depth_map *const map = &input->made.depth;
-    struct refocus_reason reason = {""};
-    int status;
+    const int status = input_read_photo(input, photo, "a photo");
 
-    memset(input, 0, sizeof *input);
-    input->photo_name = input->depth_name = photo;
-    status = refocus_photo_read(&input->photo, photo, NULL, &reason);
-    if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, photo, "%s",
-                              reason.text[0] ? reason.text : refocus_strerror(status));
-    if (!input->photo->image.plane[0])
-        return report_failure(EXIT_FAILED, photo,
-                              "it is a depth map, not a photo; give a photo");
+    if (status != EXIT_DONE)
+        return status;
     map->width = input->width = input->photo->image.width;
     map->height = input->height = input->photo->image.height;
     map->meaning = REFOCUS_DEPTH_DISPARITY;

@@ -201,9 +201,8 @@ int options_set(const struct option *option, const char *name, const char *text,
     return OPTIONS_PARSED;
 }
 
-/* The row of an argument such as "--blur=3", "--blur" or "-o"; *value behind the "=". */
-static const struct option *find_option(const struct command *command, const char *argument,
-                                        const char **value)
+const struct option *options_at(const struct command *command, const char *argument,
+                                const char **value)
 {
     const size_t length = strcspn(argument, "=");
 
@@ -277,7 +276,7 @@ static int parse_option(const struct command *command, int argc, char **argv, in
                         void *settings)
 {
     const char *value;
-    const struct option *option = find_option(command, argv[*i], &value);
+    const struct option *option = options_at(command, argv[*i], &value);
 
     if (!option)
         return unknown_option(command, argv[*i]);
@@ -333,7 +332,7 @@ int options_parse(const struct command *command, int argc, char **argv, void *se
         return report_failure(EXIT_WRONG, command->name, "no file; give refocus %s %s",
                               command->name, command->usage);
     files[count] = NULL;
-    return OPTIONS_PARSED;
+    return options_check_needs(command, argc, argv, settings);
 }
 
 /* Print text from the present column on in lines of HELP_WIDTH, indented. */

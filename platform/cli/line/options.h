@@ -33,6 +33,16 @@ struct option {
     const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
     const char *help;
     bool elsewhere; /* of this run, not of the picture: not in files of settings */
+
+    /* Without what it would change nothing, which a command line that gives it is told: another
+     * option that has a value, or one of some words of a choice; where both are named either
+     * will do. */
+    const char *needs;                      /* name of the option, or several with commas of
+                                               which any will do, or NULL */
+    uint32_t of_words;                      /* bit i: word i of the choice; 0: any */
+    const char *of;                         /* name of the choice, */
+    const char *(*of_word)(uint32_t index); /* its words, */
+    size_t of_offset;                       /* and its value, an int; below 0: several */
 };
 
 struct command {
@@ -55,10 +65,30 @@ enum { OPTIONS_PARSED = -1 };
 int options_parse(const struct command *command, int argc, char **argv, void *settings,
                   const char **files);
 
+/* Whether a command line that options_parse() took gives an option, by its name. */
+bool options_given(const struct command *command, int argc, char **argv, const char *name);
+
+/* EXIT_WRONG, saying why, when that command line gives one of these options, or one beside these;
+ * EXIT_DONE when it does not. Names end with NULL. */
+int options_refuse(const struct command *command, int argc, char **argv,
+                   const char *const *names, const char *why);
+int options_refuse_beside(const struct command *command, int argc, char **argv,
+                          const char *const *names, const char *why);
+
 /* Give an option its value as the command line does; `name` is what errors call it. For flags
  * `text` is not used. Returns OPTIONS_PARSED or EXIT_WRONG. */
 int options_set(const struct option *option, const char *name, const char *text,
                 void *settings);
+
+/* The row of an argument such as "--blur=3", "--blur" or "-o", or NULL; *value: what is behind the
+ * "=" or the letter, or NULL. */
+const struct option *options_at(const struct command *command, const char *argument,
+                                const char **value);
+
+/* needs.c: the last step of options_parse(): OPTIONS_PARSED, or EXIT_WRONG when an option is given
+ * without what it would change nothing. */
+int options_check_needs(const struct command *command, int argc, char **argv,
+                        const void *settings);
 
 /* The row of a name with its dashes, or NULL. */
 const struct option *options_find(const struct command *command, const char *name);

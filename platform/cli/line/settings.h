@@ -26,18 +26,19 @@
 enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
 
 /* Rows of a table of options. */
-#define SETTINGS_OPTIONS(type, load, save)                                                  \
-    {.kind = OPTION_TEXT,                                                                   \
-     .name = SETTINGS_NAME,                                                                 \
-     .argument = "FILE",                                                                    \
-     .offset = offsetof(type, load),                                                        \
-     .help = "JSON object of options; the command line overrules it",                       \
-     .elsewhere = true},                                                                    \
-    {.kind = OPTION_TEXT,                                                                   \
-     .name = "--save-settings",                                                             \
-     .argument = "FILE",                                                                    \
-     .offset = offsetof(type, save),                                                        \
-     .help = "write the options that make this picture as JSON for --settings",             \
+#define SETTINGS_OPTION(type, load)                                                    \
+    {.kind = OPTION_TEXT,                                                              \
+     .name = SETTINGS_NAME,                                                            \
+     .argument = "FILE",                                                               \
+     .offset = offsetof(type, load),                                                   \
+     .help = "JSON object of options; the command line overrules it",                  \
+     .elsewhere = true}
+#define SAVE_SETTINGS_OPTION(type, save)                                               \
+    {.kind = OPTION_TEXT,                                                              \
+     .name = "--save-settings",                                                        \
+     .argument = "FILE",                                                               \
+     .offset = offsetof(type, save),                                                   \
+     .help = "write the options that make this picture as JSON for --settings",        \
      .elsewhere = true}
 
 /* Read a file of settings; OPTIONS_PARSED, or the exit code after an error, which is printed.

@@ -276,6 +276,28 @@ static bool is_source(const char *name)
     return false;
 }
 
+static bool is_of_kind(const char *name, const char *kind)
+{
+    return strncmp(name, kind, strlen(kind)) == 0;
+}
+
+/* Options of one kind of source, where neither source is of it. */
+static int check_sources(const struct live_settings *settings)
+{
+    const char *const camera = settings->camera, *const depth = settings->depth.file;
+    const bool files = !(is_of_kind(camera, "v4l2:") || is_of_kind(camera, "libcamera:")) ||
+                       (is_source(depth) && !is_of_kind(depth, "v4l2:") &&
+                        !is_of_kind(depth, "libcamera:"));
+
+    if (!files && (settings->fast || settings->loop))
+        return report_failure(EXIT_WRONG, settings->fast ? "--fast" : "--loop",
+                              "it is of files and scripts, not of cameras; leave it out");
+    if (settings->dmabuf && !is_of_kind(camera, "v4l2:") && !is_of_kind(depth, "v4l2:"))
+        return report_failure(EXIT_WRONG, "--dmabuf",
+                              "it is of V4L2 cameras; leave it out");
+    return EXIT_DONE;
+}
+
 static int check(struct live_settings *settings)
 {
     int status = input_check_depth(&settings->depth);
@@ -295,6 +317,9 @@ static int check(struct live_settings *settings)
     if (!isnan(settings->lens.focus) && !isnan(settings->lens.focus_at[0]))
         return report_failure(EXIT_WRONG, "--focus-at",
                               "the focus is given twice; give --focus or --focus-at");
+    status = check_sources(settings);
+    if (status != EXIT_DONE)
+        return status;
     if (settings->calibration && !is_source(settings->depth.file))
         return report_failure(EXIT_WRONG, "--calibration",
                               "it goes with a depth camera, not with a fixed map");

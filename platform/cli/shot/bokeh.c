@@ -48,7 +48,7 @@ static double or_else(double given, double otherwise)
 
 static const char *shape_of(const struct bokeh_settings *settings, const char *shape)
 {
-    return strcmp(shape, "disc") == 0 ? presets[settings->preset].aperture : shape;
+    return shape ? shape : presets[settings->preset].aperture;
 }
 
 /* "polygon:6" or "polygon:6:15". */
@@ -239,10 +239,12 @@ int bokeh_apply(const struct bokeh_settings *s, bool highlights_given,
 
 int bokeh_check_method(const struct refocus_render_params *p, bool has_sides)
 {
-    const char *what = p->cat_eye > 0  ? "--cat-eye"
+    const bool star = p->star_spikes > 0 && p->method != REFOCUS_METHOD_SCATTER;
+    const char *what = p->cat_eye > 0   ? "--cat-eye"
                        : p->fringe != 0 ? "--fringe"
-                       : has_sides     ? "--edge"
-                                       : NULL;
+                       : has_sides      ? "--edge"
+                       : star           ? "--star"
+                                        : NULL;
 
     if (what && p->method != REFOCUS_METHOD_SWEEP)
         return report_failure(EXIT_WRONG, what,

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <refocus/refocus.h>
 #include "line/options.h"
+#include "shot/methods.h"
 
 struct bokeh_settings {
     int preset;
@@ -26,8 +27,8 @@ const char *bokeh_preset_summary(uint32_t index);
      .offset = offsetof(type, member.field_), .least = least_, .greatest = greatest_,       \
      .help = help_}
 
-/* Rows of a table of options. */
-#define BOKEH_OPTIONS(type, member)                                                         \
+/* Rows of a table of options; `method` is the member with the method. */
+#define BOKEH_OPTIONS(type, member, method)                                                      \
     {.kind = OPTION_HEADING, .help = "Bokeh"},                                              \
     {.kind = OPTION_CHOICE, .name = "--bokeh", .argument = "NAME",                          \
      .offset = offsetof(type, member.preset), .choice = bokeh_preset_name,                  \
@@ -58,8 +59,11 @@ const char *bokeh_preset_summary(uint32_t index);
     BOKEH_NUMBER(type, member, "--grain", "G", grain, 0, 4,                                 \
                  "grain of the sharp parts put back into the blurred ones, 1 = as much as " \
                  "there was; default 0; --seed chooses it"),                                \
-    BOKEH_NUMBER(type, member, "--highlight-stops", "S", highlight_stops, 0, 4,             \
-                 "light given back to small clipped lamps, in stops, for --highlights 2^S")
+    {.kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",                   \
+     .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,           \
+     .help = "sweep: light given back to small clipped lamps, in stops, for "               \
+             "--highlights 2^S",                                                            \
+     OF_METHODS(type, method, OF_SWEEP)}
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 

@@ -85,7 +85,7 @@ int controls_check(const struct control_settings *s, bool focus_given)
         return report_failure(EXIT_WRONG, "--focus-plane",
                               "the plane is given twice; give --focus-plane, or --tilt-angle "
                               "and --tilt-line");
-    if (given(s->tilt_line[0]) && !given(s->tilt_angle) && !given(s->tilt_compress))
+    if (given(s->tilt_line[0]) && !given(s->tilt_angle))
         return report_failure(EXIT_WRONG, "--tilt-line",
                               "it goes with --tilt-angle; give that too");
     if (s->far_clamp > s->near_clamp)

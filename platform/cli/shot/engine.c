@@ -50,8 +50,9 @@ static int check_aperture(uint32_t method, const struct engine_settings *setting
     return report_failure(EXIT_WRONG, "--aperture",
                           "'%s' does not go with --method %s, which knows a disc alone; leave "
                           "one of them out",
-                          strcmp(settings->aperture, "disc") ? settings->aperture
-                                                             : "such a disc",
+                          settings->aperture && strcmp(settings->aperture, "disc")
+                              ? settings->aperture
+                              : "such a disc",
                           refocus_method_name(method));
 }
 

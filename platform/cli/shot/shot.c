@@ -32,7 +32,36 @@ static int choose_focus(struct shot *shot, const struct lens_settings *lens)
     return status;
 }
 
-int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings)
+int shot_check(struct shot_settings *settings, bool own_focus)
+{
+    int status = input_check_depth(&settings->depth);
+
+    settings->engine.bokeh.f_number = settings->lens.f_number;
+    if (status == EXIT_DONE)
+        status = input_check_lens(&settings->lens);
+    if (status == EXIT_DONE)
+        status = controls_check(&settings->engine.controls,
+                                own_focus || input_focus_is_given(&settings->lens));
+    return status;
+}
+
+int shot_inputs(const struct shot_settings *settings, const char *photo,
+                const char *inputs[SHOT_INPUTS])
+{
+    int count = 0;
+
+    inputs[count++] = photo;
+    inputs[count++] = settings->depth.file;
+    inputs[count++] = settings->engine.aperture;
+    inputs[count++] = settings->engine.papers.field_map;
+    inputs[count++] = settings->engine.controls.focus_map;
+    inputs[count++] = settings->engine.controls.sharp_mask;
+    inputs[count++] = settings->load;
+    return count;
+}
+
+int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
+              double most_blur)
 {
     struct refocus_disparity disparity;
     const struct refocus_image *image;
@@ -40,26 +69,26 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     int status;
 
     memset(&shot->input, 0, sizeof shot->input);
-    status = engine_begin(&shot->engine, settings->engine);
+    status = engine_begin(&shot->engine, &settings->engine);
     shot->engine.name = photo;
     if (status == EXIT_DONE) {
         report_progress("reading", 0);
-        status = input_read(&shot->input, photo, settings->depth);
+        status = input_read(&shot->input, photo, &settings->depth);
     }
     if (status == EXIT_DONE)
-        status = input_blur(&shot->input, settings->lens, &blur);
+        status = input_blur(&shot->input, &settings->lens, &blur);
     if (status != EXIT_DONE)
         return status;
     image = &shot->input.photo->image;
     disparity = refocus_disparity16(shot->input.disparity, shot->input.width,
                                     shot->input.height, (ptrdiff_t)shot->input.width * 2);
     report_progress("preparing", 0.15);
-    status = engine_create(&shot->engine, settings->engine, image->width, image->height,
-                           fmax(blur, settings->most_blur));
+    status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
+                           fmax(blur, most_blur));
     shot->engine.params.max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
         status = engine_prepare(&shot->engine, image, &disparity);
-    return status == EXIT_DONE ? choose_focus(shot, settings->lens) : status;
+    return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
 }
 
 void shot_close(struct shot *shot)
