@@ -29,6 +29,7 @@ static const struct {
     {SDLK_s, RF_ACT_SAVE_PICTURE, "s", "save the picture"},
     {SDLK_j, RF_ACT_SAVE_SETTINGS, "j", "save the settings"},
     {SDLK_w, RF_ACT_SAVE_DEPTH, "w", "save the depth, and the strokes"},
+    {SDLK_i, RF_ACT_SETTINGS, "i", "the settings that it began with"},
     {SDLK_h, RF_ACT_HELP, "h", "keys"},
     {SDLK_q, RF_ACT_QUIT, "q", "quit"},
 };

@@ -3,23 +3,23 @@
 #include <stdlib.h>
 #include <string.h>
 #include "commands/commands.h"
-#include "shot/engine.h"
-#include "inputs/inputs.h"
-#include "line/interrupt.h"
-#include "outputs/outputs.h"
-#include "line/report.h"
-#include "line/settings.h"
 #include "commands/view_module.h"
 #include "commands/view_save.h"
+#include "inputs/painted.h"
+#include "line/interrupt.h"
+#include "line/report.h"
+#include "line/settings.h"
+#include "outputs/outputs.h"
+#include "shot/shot.h"
 
 struct settings {
-    struct depth_settings depth;
-    struct lens_settings lens;
-    struct engine_settings engine;
-    const char *output, *load;
+    struct shot_settings shot;
+    const char *output, *strokes;
     double size[2], seconds;
     bool fullscreen;
 };
+
+#define SETTINGS_NONE {.shot = SHOT_SETTINGS_NONE, .size = {NAN, NAN}, .seconds = NAN}
 
 static const struct option options[] = {
     OUTPUT_OPTION(
@@ -27,25 +27,19 @@ static const struct option options[] = {
         "the picture that 's' saves: .jpg, .png or .ppm; settings, depth and strokes "
         "get names of it. Default: the photo's name with -refocused.jpg, here"),
     {.kind = OPTION_HEADING, .help = "Depth; without any it can be painted"},
-    DEPTH_FILE_OPTION(struct settings, depth),
-    DEPTH_UNIT_OPTIONS(struct settings, depth),
-    REPAIR_OPTIONS(struct settings, depth),
-    {.kind = OPTION_HEADING, .help = "Focus and blur to begin with"},
-    FOCUS_OPTIONS(struct settings, lens),
-    LENS_OPTIONS(struct settings, lens),
-    {.kind = OPTION_HEADING, .help = "Rendering"},
-    METHOD_OPTION(struct settings, engine),
-    METHOD_OPTIONS(struct settings, engine),
-    RUN_OPTIONS(struct settings, engine),
-    {.kind = OPTION_HEADING, .help = "Window"},
+    SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_TEXT,
-     .name = SETTINGS_NAME,
-     .argument = "FILE",
-     .offset = offsetof(struct settings, load),
-     .help = "JSON object of options to begin with, as 'j' saves it; the command line "
-             "overrules "
-             "it",
+     .name = "--strokes",
+     .argument = "FILE.json",
+     .offset = offsetof(struct settings, strokes),
+     .help = "paint these strokes to begin with: over the depth, or over nothing",
      .elsewhere = true},
+    SHOT_LENS_OPTIONS(struct settings, shot),
+    SHOT_METHOD_OPTIONS(struct settings, shot),
+    {.kind = OPTION_HEADING, .help = "Running"},
+    SETTINGS_OPTION(struct settings, shot.load),
+    RUN_OPTIONS(struct settings, shot.engine),
+    {.kind = OPTION_HEADING, .help = "Window"},
     {.kind = OPTION_NUMBERS,
      .name = "--size",
      .argument = "WxH",
@@ -69,6 +63,7 @@ static const struct option options[] = {
      .greatest = 86400,
      .help = "close it after that time",
      .elsewhere = true},
+    SHOT_PAPER_OPTIONS(struct settings, shot),
     {.help = NULL},
 };
 
@@ -107,83 +102,167 @@ static int print_report(const struct input *input, const struct rf_view_report *
         (json_int_t)report_peak_rss_kib()));
 }
 
-/* The options that make the same picture. */
-static int save_settings(void *of, const struct refocus_render_params *lens,
-                         const char *file)
-{
-    struct settings settings = *(const struct settings *)of;
+/* What the window is opened with, and what of it the session's thread needs. */
+struct viewing {
+    struct settings settings;
+    struct engine engine;
+    struct input input;
+    struct refocus_strokes *strokes; /* NULL: none to begin with */
+    char *text;                      /* of the settings */
+};
 
-    settings.lens = (struct lens_settings)LENS_SETTINGS_NONE;
-    settings.lens.focus = (double)lens->focus_disparity;
-    settings.lens.blur = (double)lens->max_blur_radius;
-    settings.engine.method = (int)lens->method;
-    settings.engine.sigma = lens->sigma < 1e30f ? (double)lens->sigma : INFINITY;
+/* A tap is a new --focus-at: the plane of focus turns about its line, and one through three
+ * points gives way to it. */
+static void take_tap(struct controls *controls, const struct refocus_image *photo,
+                     const struct rf_view_state *state)
+{
+    controls->focus_plane[0] = NAN;
+    controls_turn_about(controls, photo,
+                        fmin(fmax(floor(state->tap_y + 0.5), 0), photo->height - 1));
+}
+
+static void aim(void *of, const struct rf_view_state *state,
+                struct refocus_render_params *params)
+{
+    const struct viewing *v = of;
+    const struct refocus_image *photo = &v->input.photo->image;
+    const struct refocus_disparity size = {.width = photo->width, .height = photo->height};
+    struct controls controls = v->engine.controls;
+
+    if (!isnan(v->engine.field_disparity))
+        params->field_disparity = (float)v->engine.field_disparity;
+    if (state->focus_tap == 0)
+        return;
+    take_tap(&controls, photo, state);
+    params->tilt_x = params->tilt_y = 0.5f;
+    params->tilt_across = params->tilt_down = 0;
+    controls_aim(&controls, params, &size); /* by a line within the photo: needs no depth */
+}
+
+/* The options that make the same picture. */
+static int save_settings(void *of, const struct rf_view_result *result, const char *file)
+{
+    const struct viewing *v = of;
+    const struct refocus_render_params *lens = result->params;
+    struct settings settings = v->settings;
+    struct control_settings *controls = &settings.shot.engine.controls;
+    struct controls aimed = v->engine.controls;
+
+    if (result->state->focus_tap > 0)
+        take_tap(&aimed, &v->input.photo->image, result->state);
+    else if (!isnan(v->settings.shot.lens.focus_at[0]))
+        controls_turn_about(&aimed, &v->input.photo->image,
+                            v->settings.shot.lens.focus_at[1]);
+    memcpy(controls->focus_plane, aimed.focus_plane, sizeof controls->focus_plane);
+    memcpy(controls->tilt_line, aimed.tilt_line, sizeof controls->tilt_line);
+    settings.shot.lens = (struct lens_settings)LENS_SETTINGS_NONE;
+    if (isnan(controls->focus_plane[0]))
+        settings.shot.lens.focus = (double)result->state->focus;
+    settings.shot.lens.blur = (double)lens->max_blur_radius;
+    settings.shot.engine.method = (int)lens->method;
+    settings.shot.engine.sigma = lens->sigma < 1e30f ? (double)lens->sigma : INFINITY;
     return settings_save(&view_command, file, &settings);
 }
 
-static int choose_state(const struct input *input, const struct settings *settings,
-                        struct rf_view_state *state)
+/* The lens to begin with. */
+static int choose_state(struct viewing *v, struct rf_view_state *state)
 {
-    double blur, focus = 0;
-    int status = input_blur(input, &settings->lens, &blur);
+    const struct shot_settings *shot = &v->settings.shot;
+    struct refocus_render_params *params = &v->engine.params;
+    const uint16_t *disparity =
+        v->strokes ? refocus_strokes_disparity(v->strokes) : v->input.disparity;
+    const struct refocus_image *photo = &v->input.photo->image;
+    double blur = 0;
+    int status = input_blur(&v->input, &shot->lens, &blur);
 
-    if (status == EXIT_DONE && input->disparity)
-        status = input_focus(input, &settings->lens, input->disparity, &focus);
+    params->max_blur_radius = (float)blur;
+    if (status == EXIT_DONE)
+        status = papers_place(&shot->engine.papers, params, photo->width, photo->height);
+    if (status == EXIT_DONE)
+        status = shot_aim(&v->input, &shot->lens, &v->engine.controls, disparity, params);
+    if (status == EXIT_DONE)
+        status = controls_check_method(params);
+    if (status == EXIT_DONE)
+        status = bokeh_check_method(params, v->engine.has_sides);
     state->blur = (float)blur;
-    state->focus = (float)focus;
-    state->method = (uint32_t)settings->engine.method;
+    state->focus = params->focus_disparity;
+    state->method = params->method;
     return status;
 }
 
-static int show(struct settings *settings, struct engine *engine, struct input *input,
-                view_run_fn *run_window)
+/* Those that can do what the settings ask for. */
+static uint32_t suitable_methods(const struct engine *engine)
 {
-    struct view_saving saving = {.input = input,
+    struct refocus_render_params params = engine->params;
+    uint32_t methods = 0;
+
+    for (params.method = 0; params.method < REFOCUS_METHOD_COUNT; params.method++)
+        if (controls_suit_method(&params) && bokeh_suits_method(&params, engine->has_sides))
+            methods |= REFOCUS_METHOD_BIT(params.method);
+    return methods;
+}
+
+static int show(struct viewing *v, view_run_fn *run_window)
+{
+    static const char *const in_sight[] = {
+        "--depth", "--depth-unit", "--focus", "--focus-at", "--focus-distance",
+        "--focus-rectangle", "--blur", "--method", NULL};
+    static const struct settings usual = SETTINGS_NONE;
+    const struct settings *settings = &v->settings;
+    const char *name = v->input.photo_name;
+    struct view_saving saving = {.input = &v->input,
                                  .settings = save_settings,
-                                 .of = settings,
-                                 .quiet = settings->engine.json};
-    struct rf_view_setup setup = {.title = input->photo_name,
+                                 .of = v,
+                                 .quiet = settings->shot.engine.json};
+    struct rf_view_setup setup = {.title = name,
                                   .stop = interrupted,
                                   .fullscreen = settings->fullscreen};
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
     int status;
 
-    if (!report)
-        return report_failure(EXIT_FAILED, input->photo_name, "not enough memory");
-    setup.session.photo = &input->photo->image;
-    setup.session.disparity = input->disparity;
-    setup.session.params = engine->params;
-    setup.session.sigma_of_sweep = isnan(settings->engine.sigma);
+    v->text = settings_text(&view_command, settings, &usual, in_sight);
+    if (!report || !v->text) {
+        free(report);
+        return report_failure(EXIT_FAILED, name, "not enough memory");
+    }
+    status = choose_state(v, &setup.state);
+    setup.settings = v->text;
+    setup.methods = suitable_methods(&v->engine);
+    setup.session.photo = &v->input.photo->image;
+    setup.session.disparity = v->input.disparity;
+    setup.session.strokes = v->strokes;
+    setup.session.params = v->engine.params;
+    setup.session.aim = aim;
+    setup.session.aim_user = v;
+    setup.session.sigma_of_sweep = isnan(settings->shot.engine.sigma);
     setup.session.threads =
-        isnan(settings->engine.threads) ? 0 : (int)settings->engine.threads;
-    setup.session.cpu = (uint32_t)settings->engine.cpu;
+        isnan(settings->shot.engine.threads) ? 0 : (int)settings->shot.engine.threads;
+    setup.session.cpu = (uint32_t)settings->shot.engine.cpu;
     setup.session.save = view_save;
     setup.session.save_user = &saving;
     setup.width = isnan(settings->size[0]) ? 0 : (int)settings->size[0];
     setup.height = isnan(settings->size[1]) ? 0 : (int)settings->size[1];
     setup.quit_after_ms =
         isnan(settings->seconds) ? 0 : (int)(settings->seconds * 1000);
-    status = choose_state(input, settings, &setup.state);
-    if (status == EXIT_DONE &&
-        !view_make_names(&saving.names, settings->output, input->photo_name))
-        status = report_failure(EXIT_FAILED, input->photo_name,
-                                "its name is too long to make "
-                                "others of it; give --output");
+    if (status == EXIT_DONE && !view_make_names(&saving.names, settings->output, name))
+        status = report_failure(EXIT_FAILED, name,
+                                "its name is too long to make others of it; give "
+                                "--output");
     if (status == EXIT_DONE) {
         report_progress_end();
         if (run_window(&setup, report, reason) != REFOCUS_OK)
-            status = report_failure(EXIT_FAILED, input->photo_name, "%s", reason);
+            status = report_failure(EXIT_FAILED, name, "%s", reason);
         else if (saving.failed > 0)
             status = EXIT_FAILED;
-        else if (settings->engine.json)
-            status = print_report(input, report, &saving);
+        else if (settings->shot.engine.json)
+            status = print_report(&v->input, report, &saving);
     }
     free(report);
     return status;
 }
 
-static int check_method(const struct settings *settings)
+static int check_method(const struct engine_settings *settings)
 {
     const uint32_t without_memory = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
                                     REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
@@ -191,64 +270,84 @@ static int check_method(const struct settings *settings)
                                     REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
                                     REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
 
-    if (without_memory & REFOCUS_METHOD_BIT(settings->engine.method))
+    if (without_memory & REFOCUS_METHOD_BIT(settings->method))
         return EXIT_DONE;
     return report_failure(
         EXIT_WRONG, "--method",
         "'%s' is not for the window; give sweep, search, raytrace, jittered "
         "or blur",
-        refocus_method_name((uint32_t)settings->engine.method));
+        refocus_method_name((uint32_t)settings->method));
 }
 
-static int open_photo(struct settings *settings, const char *photo)
+/* The photo, its depth, all 0 where there is none, and the strokes over it. */
+static int read_input(struct viewing *v, const char *photo)
 {
-    struct input input = {0};
-    struct engine engine;
+    const struct depth_settings *depth = &v->settings.shot.depth;
+    struct input *input = &v->input;
+    int status = input_read(input, photo, depth);
+
+    if (status == EXIT_DONE && !input->disparity) {
+        painted_begin(input, depth);
+        input->disparity = calloc((size_t)input->width * (size_t)input->height,
+                                  sizeof *input->disparity);
+        if (!input->disparity)
+            status = report_failure(EXIT_FAILED, photo, "not enough memory");
+    }
+    if (status == EXIT_DONE && v->settings.strokes)
+        status = painted_open(input, v->settings.strokes, &v->strokes);
+    return status;
+}
+
+static int open_photo(struct viewing *v, const char *photo)
+{
     char why[256];
     view_run_fn *const run_window = view_module(why);
     int status;
 
     if (!run_window)
         return report_failure(EXIT_FAILED, photo, "%s", why);
-    status = engine_begin(&engine, &settings->engine);
+    status = engine_begin(&v->engine, &v->settings.shot.engine);
+    v->engine.name = photo;
     if (status == EXIT_DONE) {
         report_progress("reading", 0);
-        status = input_read(&input, photo, &settings->depth);
+        status = read_input(v, photo);
         if (status == EXIT_DONE)
-            status = show(settings, &engine, &input, run_window);
+            status = show(v, run_window);
         report_progress_end();
     }
-    input_free(&input);
-    engine_end(&engine);
+    refocus_strokes_destroy(&v->strokes);
+    input_free(&v->input);
+    engine_end(&v->engine);
+    free(v->text);
     return status;
 }
-static int run(int argc, char **argv)
+
+static int check(struct settings *settings, const char *photo)
 {
     static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
-    struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
-                                .lens = LENS_SETTINGS_NONE,
-                                .engine = ENGINE_SETTINGS_NONE(1),
-                                .size = {NAN, NAN},
-                                .seconds = NAN};
-    const char *files[2] = {NULL};
-    int status;
+    const char *inputs[SHOT_INPUTS + 1];
+    int count = shot_inputs(&settings->shot, photo, inputs);
+    int status = shot_check(&settings->shot, false);
 
-    status = options_parse(&view_command, argc, argv, &settings, files);
+    inputs[count++] = settings->strokes;
+    settings->shot.depth.full = settings->shot.depth.optional = true;
+    if (status == EXIT_DONE)
+        status = check_method(&settings->shot.engine);
+    if (status == EXIT_DONE && settings->output)
+        status = output_check(settings->output, endings, inputs, count);
+    return status;
+}
+
+static int run(int argc, char **argv)
+{
+    struct viewing viewing = {.settings = SETTINGS_NONE};
+    const char *files[2] = {NULL};
+    int status = options_parse(&view_command, argc, argv, &viewing.settings, files);
+
     if (status != OPTIONS_PARSED)
         return status;
-    settings.depth.full = settings.depth.optional = true;
-    status = input_check_depth(&settings.depth);
-    if (status == EXIT_DONE)
-        status = input_check_lens(&settings.lens);
-    if (status == EXIT_DONE)
-        status = check_method(&settings);
-    if (status == EXIT_DONE && settings.output) {
-        const char *const inputs[] = {files[0], settings.depth.file,
-                                      settings.engine.aperture};
-
-        status = output_check(settings.output, endings, inputs, 3);
-    }
-    return status == EXIT_DONE ? open_photo(&settings, files[0]) : status;
+    status = check(&viewing.settings, files[0]);
+    return status == EXIT_DONE ? open_photo(&viewing, files[0]) : status;
 }
 
 const struct command view_command = {
@@ -256,18 +355,16 @@ const struct command view_command = {
     .usage = "PHOTO [options]",
     .summary = "interactive window: tap to focus, change the aperture, paint depth",
     .notes = "Tap or click to focus; drag or turn the wheel for the aperture; ctrl and "
-             "the wheel, "
-             "or two fingers, to enlarge; drag with the right button to move. Keys: t "
-             "focus, m "
-             "method, d depth, k peaking, b before and after, p paint an object, a "
-             "more of it, x "
-             "less of it, o brush, g gradient, l a layer of the whole picture, f fill "
-             "anew, 0 to "
-             "9, page up and page down the disparity to fill with, [ ] brush, u undo, "
-             "home and "
-             "end the size, s save the picture, j the settings, w depth and strokes, h "
-             "keys, q "
-             "quit.",
+             "the wheel, or two fingers, to enlarge; drag with the right button to "
+             "move. Keys: t focus, m method, d depth, k peaking, b before and after, p "
+             "paint an object, a more of it, x less of it, o brush, g gradient, l a "
+             "layer of the whole picture, f fill anew, 0 to 9, page up and page down "
+             "the disparity to fill with, [ ] brush, u undo, home and end the size, s "
+             "save the picture, j the settings, w depth and strokes, i shows the other "
+             "settings, h keys, q quit.\n"
+             "A tap is a new --focus-at: a plane of --tilt-angle then turns about it, "
+             "and one of --focus-plane ends. What 's' saves is what render makes of "
+             "the settings that 'j' saves.",
     .options = options,
     .files_least = 1,
     .files_most = 1,

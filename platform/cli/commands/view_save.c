@@ -67,7 +67,7 @@ void view_save(void *user, const struct rf_view_result *result)
         count(saving, output_write_image(names->picture, picture, saving->input->photo),
               names->picture);
     if (result->what & RF_SAVE_SETTINGS)
-        count(saving, saving->settings(saving->of, result->params, names->settings),
+        count(saving, saving->settings(saving->of, result, names->settings),
               names->settings);
     if (result->what & RF_SAVE_DEPTH) {
         count(saving,

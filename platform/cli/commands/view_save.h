@@ -13,8 +13,7 @@ struct view_saving {
     struct view_names names;
     const struct input *input;
     /* Writes the options that make the picture; an exit code. */
-    int (*settings)(void *of, const struct refocus_render_params *lens,
-                    const char *file);
+    int (*settings)(void *of, const struct rf_view_result *result, const char *file);
     void *of;
     bool quiet; /* say nothing of what was saved */
     int saved;  /* files written, and failures */

@@ -8,14 +8,10 @@
 /* What refocus_strokes_load() takes at the most. */
 enum { MAX_BYTES = 64 << 20 };
 
-int painted_read(struct input *input, const char *photo,
-                 const struct depth_settings *settings)
+void painted_begin(struct input *input, const struct depth_settings *settings)
 {
     struct refocus_depth_map *const map = &input->made.depth;
-    const int status = input_read_photo(input, photo, "a photo");
 
-    if (status != EXIT_DONE)
-        return status;
     map->width = input->width = input->photo->image.width;
     map->height = input->height = input->photo->image.height;
     map->meaning = REFOCUS_DEPTH_DISPARITY;
@@ -23,7 +19,16 @@ int painted_read(struct input *input, const char *photo,
     input->report.near_m = isnan(settings->near_m) ? 0 : settings->near_m;
     input->report.far_m = isnan(settings->far_m) ? 0 : settings->far_m;
     input->depth_from = &input->made;
-    return EXIT_DONE;
+}
+
+int painted_read(struct input *input, const char *photo,
+                 const struct depth_settings *settings)
+{
+    const int status = input_read_photo(input, photo, "a photo");
+
+    if (status == EXIT_DONE)
+        painted_begin(input, settings);
+    return status;
 }
 
 /* The painting's disparities become the input's; all of them are known. */
@@ -45,33 +50,41 @@ static int take(struct input *input, const struct refocus_strokes *strokes)
     return REFOCUS_OK;
 }
 
-int painted_apply(struct input *input, const char *file)
+int painted_open(struct input *input, const char *file, struct refocus_strokes **strokes)
 {
-    struct refocus_disparity base = refocus_disparity16(
+    const struct refocus_disparity base = refocus_disparity16(
         input->disparity, input->width, input->height, 2 * (ptrdiff_t)input->width);
     struct refocus_strokes_reason reason = {""};
-    struct refocus_strokes *strokes = NULL;
-    struct refocus_photo_info *const info = &input->made.info;
     struct refocus_reason unread = {""};
     struct refocus_blob blob = {NULL, 0};
-    int code = EXIT_DONE, status;
+    int status = refocus_file_read(file, MAX_BYTES, &blob, &unread);
 
-    status = refocus_file_read(file, MAX_BYTES, &blob, &unread);
+    *strokes = NULL;
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, file, "%s", unread.text);
-    status = refocus_strokes_create(&strokes, &input->photo->image,
+    status = refocus_strokes_create(strokes, &input->photo->image,
                                     input->disparity ? &base : NULL);
     if (status == REFOCUS_OK)
-        status = refocus_strokes_load(strokes, blob.data, blob.size, &reason);
+        status = refocus_strokes_load(*strokes, blob.data, blob.size, &reason);
+    free(blob.data);
     if (status == REFOCUS_OK)
-        status = take(input, strokes);
-    if (status != REFOCUS_OK)
-        code = report_failure(EXIT_FAILED, file, "%s",
-                              reason.text[0] ? reason.text : refocus_strerror(status));
-    else if (info->evidence_count < REFOCUS_INFO_LINES)
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, file, "%s",
+                          reason.text[0] ? reason.text : refocus_strerror(status));
+}
+
+int painted_apply(struct input *input, const char *file)
+{
+    struct refocus_photo_info *const info = &input->made.info;
+    struct refocus_strokes *strokes = NULL;
+    int status = painted_open(input, file, &strokes);
+
+    if (status == EXIT_DONE && take(input, strokes) != REFOCUS_OK)
+        status = report_failure(EXIT_FAILED, file, "%s",
+                                refocus_strerror(REFOCUS_ERR_MEMORY));
+    if (status == EXIT_DONE && info->evidence_count < REFOCUS_INFO_LINES)
         snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
                  "painted: %d strokes", refocus_strokes_count(strokes));
     refocus_strokes_destroy(&strokes);
-    free(blob.data);
-    return code;
+    return status;
 }

@@ -196,6 +196,8 @@ static json_t *member_of(const struct option *option, const void *settings, int 
     case OPTION_FLAG:
         return *(const bool *)at ? json_true() : NULL;
     case OPTION_CHOICE:
+        if (*(const int *)at == 0 && strcmp(option->choice(0), "none") == 0)
+            return NULL; /* says nothing, and not every command has it */
         json = json_string(option->choice((uint32_t)*(const int *)at));
         break;
     case OPTION_TEXT:
@@ -225,6 +227,64 @@ static json_t *member_of(const struct option *option, const void *settings, int 
     }
     *failed = *failed || !json;
     return json;
+}
+
+static bool is_among(const char *name, const char *const *names)
+{
+    for (int i = 0; names[i]; i++)
+        if (strcmp(names[i], name) == 0)
+            return true;
+    return false;
+}
+
+/* "name 1,2,3" into text with a line's end; what it takes of it. */
+static size_t line_of(const struct option *option, const json_t *json, char *text, size_t size)
+{
+    char value[LONGEST_VALUE];
+    int n;
+
+    if (json_is_string(json))
+        report_clean(value, sizeof value, json_string_value(json));
+    else if (json_is_true(json) ||
+             (!number_text(json, value, sizeof value) &&
+              !numbers_text(json, value, sizeof value)))
+        value[0] = '\0';
+    n = snprintf(text, size, "%s%s%s\n", option->name + 2, *value ? " " : "", value);
+    return n > 0 && (size_t)n < size ? (size_t)n : 0;
+}
+
+char *settings_text(const struct command *command, const void *settings, const void *usual,
+                    const char *const *names)
+{
+    size_t size = 1, used = 0;
+    bool failed = false;
+    char *text;
+
+    for (const struct option *option = command->options; option->help; option++)
+        size += LONGEST_NAME + LONGEST_VALUE;
+    text = malloc(size);
+    if (!text)
+        return NULL;
+    text[0] = '\0';
+    for (const struct option *option = command->options; option->help; option++) {
+        int digits = 15;
+        json_t *json, *other;
+
+        if (option->elsewhere || option->kind == OPTION_HEADING ||
+            is_among(option->name, names))
+            continue;
+        json = member_of(option, settings, &digits, &failed);
+        other = member_of(option, usual, &digits, &failed);
+        if (json && !(other && json_equal(json, other)))
+            used += line_of(option, json, text + used, size - used);
+        json_decref(json);
+        json_decref(other);
+    }
+    if (failed) {
+        free(text);
+        return NULL;
+    }
+    return text;
 }
 
 int settings_save(const struct command *command, const char *file, const void *settings)

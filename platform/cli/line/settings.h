@@ -52,6 +52,11 @@ int settings_read(const struct command *command, const char *file, const char *b
 /* Before the work: can a file of settings be written there, and is it none of the inputs? */
 int settings_check(const char *file, const char *const *inputs, int input_count);
 
+/* "option value" in a line of each that says something else than in `usual`, where it is not of a
+ * run and not among `names`, which end with NULL. To be freed; NULL without memory. */
+char *settings_text(const struct command *command, const void *settings, const void *usual,
+                    const char *const *names);
+
 /* Write what `settings` says, whole or not at all; an exit code. */
 int settings_save(const struct command *command, const char *file, const void *settings);
 

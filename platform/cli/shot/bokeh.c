@@ -237,17 +237,27 @@ int bokeh_apply(const struct bokeh_settings *s, bool highlights_given,
     return EXIT_DONE;
 }
 
+/* The option of something that only sweep can do, or NULL. */
+static const char *of_sweep(const struct refocus_render_params *p, bool has_sides)
+{
+    if (p->cat_eye > 0)
+        return "--cat-eye";
+    if (p->fringe != 0)
+        return "--fringe";
+    if (has_sides)
+        return "--edge";
+    return p->star_spikes > 0 && p->method != REFOCUS_METHOD_SCATTER ? "--star" : NULL;
+}
+
+bool bokeh_suits_method(const struct refocus_render_params *p, bool has_sides)
+{
+    return p->method == REFOCUS_METHOD_SWEEP || !of_sweep(p, has_sides);
+}
+
 int bokeh_check_method(const struct refocus_render_params *p, bool has_sides)
 {
-    const bool star = p->star_spikes > 0 && p->method != REFOCUS_METHOD_SCATTER;
-    const char *what = p->cat_eye > 0   ? "--cat-eye"
-                       : p->fringe != 0 ? "--fringe"
-                       : has_sides      ? "--edge"
-                       : star           ? "--star"
-                                        : NULL;
-
-    if (what && p->method != REFOCUS_METHOD_SWEEP)
-        return report_failure(EXIT_WRONG, what,
+    if (!bokeh_suits_method(p, has_sides))
+        return report_failure(EXIT_WRONG, of_sweep(p, has_sides),
                               "it does not go with --method %s; give sweep, or leave it out",
                               refocus_method_name(p->method));
     if (has_sides && p->rays == REFOCUS_RAYS_FULL)

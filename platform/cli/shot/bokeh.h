@@ -78,7 +78,8 @@ bool bokeh_is_plain_disc(const struct bokeh_settings *settings, const char *shap
 int bokeh_apply(const struct bokeh_settings *settings, bool highlights_given,
                 struct refocus_render_params *params);
 
-/* Whether the method of params can do what they ask for. */
+/* Whether the method of params can do what they ask for; the check says so when it cannot. */
+bool bokeh_suits_method(const struct refocus_render_params *params, bool has_sides);
 int bokeh_check_method(const struct refocus_render_params *params, bool has_sides);
 
 /* Whether light differs before and behind the focus. */

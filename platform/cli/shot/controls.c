@@ -179,7 +179,7 @@ static int aim_by_points(const struct controls *controls,
 static int aim_by_line(const struct controls *controls, struct refocus_render_params *params,
                        const struct refocus_disparity *prepared)
 {
-    const double y = params->tilt_y * prepared->height - 0.5;
+    const double y = (prepared->height - 1) / 2.0;
     const double level[4] = {0, y, prepared->width - 1.0, y};
     const double *line = given(controls->tilt_line[0]) ? controls->tilt_line : level;
     const struct refocus_focus_point from = point_at(line, params->focus_disparity, prepared);
@@ -199,6 +199,15 @@ static int aim_by_line(const struct controls *controls, struct refocus_render_pa
     return EXIT_DONE;
 }
 
+void controls_turn_about(struct controls *controls, const struct refocus_image *photo,
+                         double y)
+{
+    const double line[4] = {0, y, photo->width - 1, y};
+
+    if (given(controls->tilt_angle) && !given(controls->tilt_line[0]))
+        memcpy(controls->tilt_line, line, sizeof line);
+}
+
 int controls_aim(const struct controls *controls, struct refocus_render_params *params,
                  const struct refocus_disparity *prepared)
 {
@@ -209,15 +218,21 @@ int controls_aim(const struct controls *controls, struct refocus_render_params *
     return EXIT_DONE;
 }
 
-int controls_check_method(const struct refocus_render_params *p)
+bool controls_suit_method(const struct refocus_render_params *p)
 {
     const bool any = p->field != REFOCUS_FIELD_LENS || p->focus_half_width > 0 || p->bands > 0 ||
                      p->tilt_across != 0 || p->tilt_down != 0 || p->depth_share != 1 ||
                      p->focus_map || p->sharp_map || p->least_disparity > 0 ||
                      p->most_disparity < 1 || p->blur_limit < p->max_blur_radius;
 
-    if (!any || p->method == REFOCUS_METHOD_SWEEP || p->method == REFOCUS_METHOD_SEARCH ||
-        p->method == REFOCUS_METHOD_BLUR || p->method == REFOCUS_METHOD_DIFFUSION)
+    return !any || p->method == REFOCUS_METHOD_SWEEP ||
+           p->method == REFOCUS_METHOD_SEARCH || p->method == REFOCUS_METHOD_BLUR ||
+           p->method == REFOCUS_METHOD_DIFFUSION;
+}
+
+int controls_check_method(const struct refocus_render_params *p)
+{
+    if (controls_suit_method(p))
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--method",
                           "%s knows the focus of a plain lens only; give sweep, search, blur "

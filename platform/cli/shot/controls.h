@@ -82,12 +82,17 @@ int controls_apply(const struct control_settings *settings,
 /* Whether the plane of focus is given and a focus too. */
 int controls_check(const struct control_settings *settings, bool focus_given);
 
-/* The parts that need the prepared photo, params->focus_disparity and tilt_y, the height that a
- * level line of the tilt has. */
+/* Let the plane of --tilt-angle turn about the level line through a pixel, unless --tilt-line says
+ * about which. */
+void controls_turn_about(struct controls *controls, const struct refocus_image *photo,
+                         double y);
+
+/* The parts that need the prepared photo and params->focus_disparity. */
 int controls_aim(const struct controls *controls, struct refocus_render_params *params,
                  const struct refocus_disparity *prepared);
 
-/* Whether the method of params can do what they ask for. */
+/* Whether the method of params can do what they ask for; the check says so when it cannot. */
+bool controls_suit_method(const struct refocus_render_params *params);
 int controls_check_method(const struct refocus_render_params *params);
 
 void controls_free(struct controls *controls);

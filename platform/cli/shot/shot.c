@@ -3,17 +3,31 @@
 #include "line/report.h"
 #include "shot/shot.h"
 
-/* Focus by the prepared disparities, and the plane of focus through it. */
+int shot_aim(const struct input *input, const struct lens_settings *lens,
+             const struct controls *controls, const uint16_t *disparity,
+             struct refocus_render_params *params)
+{
+    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_disparity map = refocus_disparity16(
+        disparity, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
+    struct controls aimed = *controls;
+    double focus = 0;
+    const int status = input_focus(input, lens, disparity, &focus);
+
+    if (status != EXIT_DONE)
+        return status;
+    params->focus_disparity = (float)focus;
+    if (!isnan(lens->focus_at[0]))
+        controls_turn_about(&aimed, photo, lens->focus_at[1]);
+    return controls_aim(&aimed, params, &map);
+}
+
 static int choose_focus(struct shot *shot, const struct lens_settings *lens)
 {
     const struct refocus_image *photo = &shot->input.photo->image;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     const ptrdiff_t stride = (ptrdiff_t)photo->width * 2;
-    struct refocus_render_params *params = &shot->engine.params;
     uint16_t *prepared = malloc(pixels * sizeof *prepared);
-    const struct refocus_disparity map =
-        refocus_disparity16(prepared, photo->width, photo->height, stride);
-    double focus = 0;
     int status;
 
     if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, prepared,
@@ -22,12 +36,8 @@ static int choose_focus(struct shot *shot, const struct lens_settings *lens)
         return report_failure(EXIT_FAILED, shot->input.photo_name,
                               "not enough memory to find the focus");
     }
-    status = input_focus(&shot->input, lens, prepared, &focus);
-    params->focus_disparity = (float)focus;
-    if (!isnan(lens->focus_at[0]))
-        params->tilt_y = (float)((lens->focus_at[1] + 0.5) / photo->height);
-    if (status == EXIT_DONE)
-        status = controls_aim(&shot->engine.controls, params, &map);
+    status = shot_aim(&shot->input, lens, &shot->engine.controls, prepared,
+                      &shot->engine.params);
     free(prepared);
     return status;
 }

@@ -50,6 +50,12 @@ enum { SHOT_INPUTS = 7 };
 int shot_inputs(const struct shot_settings *settings, const char *photo,
                 const char *inputs[SHOT_INPUTS]);
 
+/* Focus by the settings and packed disparities of the photo's size, and the plane of focus through
+ * it. */
+int shot_aim(const struct input *input, const struct lens_settings *lens,
+             const struct controls *controls, const uint16_t *disparity,
+             struct refocus_render_params *params);
+
 /* most_blur: what the renderer is made for, where that is more than the settings' blur; 0: that.
  * Ended by shot_close(), whatever it returned. */
 int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
