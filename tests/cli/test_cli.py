@@ -68,6 +68,12 @@ class Usage(Case):
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
                     '--sigma --highlights --mirror --background --threads --cpu --json '
                     '--settings --save-settings -h --help',
+            'view': self.PAPERS + self.CONTROLS +
+                    '-o --output --depth --depth-unit --near --far --invalid --speckle --strokes '
+                    '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '--focal-length --sensor-width --method --rays --iterations --quality '
+                    '--aperture --blend --sigma --highlights --mirror --background --threads '
+                    '--cpu --json --settings --size --fullscreen --seconds -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-rectangle '

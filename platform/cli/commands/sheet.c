@@ -85,6 +85,9 @@ static int check_lists(const struct sheet_settings *s, int argc, char **argv)
         {s->kind == SHEET_APERTURE,
          {"--aperture"},
          "--apertures is in its place; leave it out"},
+        {s->kind == SHEET_BOKEH,
+         {"--bokeh"},
+         "the sheet has a cell for each; leave it out"},
         {s->kind == SHEET_SIGMA,
          {"--sigma", "--blend"},
          "the sheet has cells for several; leave it out"},
@@ -153,8 +156,13 @@ static int render_cell(struct shot *shot, const struct refocus_render_params *us
         params->sigma = isinf(cell->sigma) ? 1e30f : (float)cell->sigma;
     if (cell->blend >= 0)
         params->blend = (uint32_t)cell->blend;
-    if (cell->aperture)
-        params->aperture = cell->aperture;
+    if (cell->look) {
+        params->aperture = cell->look->params.aperture;
+        params->cat_eye = cell->look->params.cat_eye;
+        params->fringe = cell->look->params.fringe;
+        params->star_spikes = cell->look->params.star_spikes;
+        shot->engine.has_sides = cell->look->has_sides;
+    }
     return engine_render(&shot->engine, out, 1);
 }
 

@@ -6,7 +6,13 @@
 #include "shot/engine.h"
 #include "inputs/inputs.h"
 
-enum sheet_kind { SHEET_FOCUS, SHEET_APERTURE, SHEET_SIGMA, SHEET_BEFORE_AFTER };
+enum sheet_kind {
+    SHEET_FOCUS,
+    SHEET_APERTURE,
+    SHEET_SIGMA,
+    SHEET_BEFORE_AFTER,
+    SHEET_BOKEH
+};
 enum { SHEET_LIST = 16, SHEET_MOST = SHEET_LIST * SHEET_LIST };
 
 const char *sheet_kind_name(uint32_t index);
@@ -23,21 +29,21 @@ struct sheet_cell {
     char caption[48];
     double focus, blur, sigma; /* NAN: as --focus, --blur and --sigma say */
     int blend;                 /* -1: as --blend says */
-    const struct refocus_aperture *aperture; /* NULL: as --aperture says */
-    bool untouched;                          /* the photo itself */
+    const struct engine *look; /* whose bokeh it has; NULL: as the options say */
+    bool untouched;            /* the photo itself */
 };
 
 struct sheet {
     struct sheet_cell cell[SHEET_MOST];
     int columns, count;
     double most_blur, least_f_number; /* of the lists; NAN: there is none */
-    struct engine aperture[SHEET_LIST];
-    int apertures; /* begun, also those that failed */
+    struct engine look[SHEET_LIST]; /* apertures, or presets of bokeh */
+    int looks;                      /* begun, also those that failed */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Before a photo is read: the lists, and the apertures in them. */
+/* Before a photo is read: the lists, and the apertures or the bokeh of the cells. */
 int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
                 const struct engine_settings *engine);
 

@@ -5,8 +5,9 @@
 
 const char *sheet_kind_name(uint32_t index)
 {
-    static const char *const names[] = {"focus", "aperture", "sigma", "before-after"};
-    return index < 4 ? names[index] : NULL;
+    static const char *const names[] = {"focus", "aperture", "sigma", "before-after",
+                                        "bokeh"};
+    return index < 5 ? names[index] : NULL;
 }
 
 const char *sheet_kind_summary(uint32_t index)
@@ -14,8 +15,8 @@ const char *sheet_kind_summary(uint32_t index)
     static const char *const summaries[] = {
         "columns of --focuses, rows of --blurs or --f-numbers", "--apertures",
         "columns of --sigmas, a row for each --blend",
-        "the photo, and what render makes of it"};
-    return index < 4 ? summaries[index] : NULL;
+        "the photo, and what render makes of it", "the presets of --bokeh"};
+    return index < 5 ? summaries[index] : NULL;
 }
 
 /* The next item of a list into text; where the list goes on, or NULL after an error. */
@@ -108,6 +109,23 @@ static struct sheet_cell *add(struct sheet *sheet)
     return cell;
 }
 
+/* A cell with the bokeh of these settings. */
+static int begin_look(struct sheet *sheet, const struct engine_settings *settings,
+                      const char *caption)
+{
+    struct engine *const look = &sheet->look[sheet->looks++];
+    const int status = engine_begin(look, settings);
+    struct sheet_cell *cell;
+
+    if (status != EXIT_DONE)
+        return status;
+    cell = add(sheet);
+    cell->look = look;
+    snprintf(cell->caption, sizeof cell->caption, "%.47s", caption);
+    sheet->columns = sheet->count < 4 ? sheet->count : 4;
+    return EXIT_DONE;
+}
+
 /* Each aperture as --aperture reads it. */
 static int begin_apertures(struct sheet *sheet, const char *list,
                            const struct engine_settings *engine)
@@ -119,25 +137,33 @@ static int begin_apertures(struct sheet *sheet, const char *list,
     for (list = list ? list : usual; list && status == EXIT_DONE;) {
         struct engine_settings one = *engine;
         char shape[1024];
+        const char *slash;
 
-        if (sheet->apertures == SHEET_LIST)
+        if (sheet->looks == SHEET_LIST)
             return too_many("--apertures");
         list = next(list, shape, sizeof shape, "--apertures");
         if (!list)
             return EXIT_WRONG;
         list = *list ? list + 1 : NULL;
         one.aperture = shape;
-        status = engine_begin(&sheet->aperture[sheet->apertures++], &one);
-        if (status == EXIT_DONE) {
-            const char *slash = strrchr(shape, '/');
-            struct sheet_cell *cell = add(sheet);
-
-            cell->aperture = sheet->aperture[sheet->apertures - 1].params.aperture;
-            snprintf(cell->caption, sizeof cell->caption, "%.47s",
-                     slash ? slash + 1 : shape);
-        }
+        slash = strrchr(shape, '/');
+        status = begin_look(sheet, &one, slash ? slash + 1 : shape);
     }
-    sheet->columns = sheet->count < 4 ? sheet->count : 4;
+    return status;
+}
+
+static int begin_presets(struct sheet *sheet, const struct engine_settings *engine)
+{
+    struct engine_settings one = *engine;
+    int status = EXIT_DONE;
+
+    for (one.bokeh.preset = 0; status == EXIT_DONE; one.bokeh.preset++) {
+        const char *const name = bokeh_preset_name((uint32_t)one.bokeh.preset);
+
+        if (!name)
+            break;
+        status = begin_look(sheet, &one, name);
+    }
     return status;
 }
 
@@ -188,6 +214,8 @@ int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
         sheet->least_f_number = extreme(values, count, -1);
     if (status == EXIT_DONE && settings->kind == SHEET_APERTURE)
         status = begin_apertures(sheet, settings->apertures, engine);
+    if (status == EXIT_DONE && settings->kind == SHEET_BOKEH)
+        status = begin_presets(sheet, engine);
     return status;
 }
 
@@ -290,13 +318,13 @@ int sheet_fill(struct sheet *sheet, const struct sheet_settings *settings,
         fill_before_after(sheet);
         break;
     default:
-        break; /* apertures are there */
+        break; /* looks are there */
     }
     return EXIT_DONE;
 }
 
 void sheet_end(struct sheet *sheet)
 {
-    for (int i = 0; i < sheet->apertures; i++)
-        engine_end(&sheet->aperture[i]);
+    for (int i = 0; i < sheet->looks; i++)
+        engine_end(&sheet->look[i]);
 }
