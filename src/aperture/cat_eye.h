@@ -1,4 +1,5 @@
-/* cat_eye.h: openings that are cut off at two sides, as a lens's is away from its axis.
+/* cat_eye.h: openings that are cut off at two sides, as a lens's is away from its axis: circles, and
+ * masks, which are squeezed like one. Other outlines are cut by cat_shape.h.
  *
  * What is left of the unit circle is the part common to two unit circles, one pushed by +d
  * and one by -d along an axis: |x| <= 1 - d, half as high as sqrt(1 - (|x| + d)^2). Rays of the
