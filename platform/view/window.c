@@ -176,7 +176,8 @@ static void draw_status(struct rf_window *w)
     SDL_snprintf(text, sizeof text, "%s  focus %.3f  blur %.1f%s%s",
                  refocus_method_name(w->state.method),
                  w->frame ? (double)w->frame->of.focus : (double)w->state.focus,
-                 (double)w->state.blur, more, w->frame && w->frame->full ? "" : "  ...");
+                 (double)w->state.blur, more,
+                 w->frame && w->frame->full ? "" : "  ...");
     set_grey(w, 20, 150);
     SDL_RenderFillRect(w->renderer, &bar);
     set_grey(w, 240, 255);

@@ -36,19 +36,21 @@ static int corners(const struct refocus_aperture *a)
     return a->shape == RF_SHAPE_POLYGON ? a->blades : RF_OUTLINE;
 }
 
-/* Corner i of the rim, with the signs of rays: minus the place on the mask as it is seen. */
+/* Corner i of the rim, with the signs of rays: minus the place on the mask as it is
+ * seen. */
 static struct point corner(const struct refocus_aperture *a, int i)
 {
     if (a->shape == RF_SHAPE_POLYGON)
         return (struct point){-a->corner_x[i % a->blades], -a->corner_y[i % a->blades]};
-    return (struct point){-a->vertex_x[i] * a->squeeze_x, a->vertex_y[i] * a->squeeze_y};
+    return (struct point){-a->vertex_x[i] * a->squeeze_x,
+                          a->vertex_y[i] * a->squeeze_y};
 }
 
 static bool is_circle(const struct refocus_aperture *a)
 {
     for (int i = 0; i < RF_OUTLINE; i++)
-        if (fabs(a->vertex_x[i] * a->vertex_x[i] + a->vertex_y[i] * a->vertex_y[i] - 1) >
-            1e-9)
+        if (fabs(a->vertex_x[i] * a->vertex_x[i] + a->vertex_y[i] * a->vertex_y[i] -
+                 1) > 1e-9)
             return false;
     return true;
 }
@@ -164,8 +166,8 @@ static int16_t to_q15(double x)
     return (int16_t)(q > ONE ? ONE : q < -ONE ? -ONE : q);
 }
 
-void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y, int64_t corner,
-                     int amount, struct rf_cat_shape_here *here)
+void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y,
+                     int64_t corner, int amount, struct rf_cat_shape_here *here)
 {
     double u[RF_RIM + 1], v[RF_RIM + 1], area[RF_RIM + 1];
     const int64_t square = x * x + y * y;
@@ -214,8 +216,8 @@ static int32_t place_of(int u, int v, int32_t span)
     return (quarter << 16) + (int32_t)(((int64_t)past << 16) / span);
 }
 
-/* The knot before a place, which is brought between the first and the last. Knots are at most half
- * a step from where equal steps would have them. */
+/* The knot before a place, which is brought between the first and the last. Knots are
+ * at most half a step from where equal steps would have them. */
 static int find_knot(const struct rf_cat_shape *shape, int32_t *place)
 {
     int k;
@@ -257,7 +259,8 @@ struct refocus_ray rf_cat_shape_ray(const struct rf_cat_shape *shape,
     k = find_knot(shape, &place);
     part = (int)((int64_t)(place - shape->place[k]) * (1 << PART_BITS) /
                  (shape->place[k + 1] - shape->place[k]));
-    share = (int32_t)(((int64_t)span << 15) / mix(shape->span[k], shape->span[k + 1], part));
+    share = (int32_t)(((int64_t)span << 15) /
+                      mix(shape->span[k], shape->span[k + 1], part));
     share = share < 1 << 15 ? share : 1 << 15; /* rims between knots are straight */
     return (struct refocus_ray){scaled(mix(here->u[k], here->u[k + 1], part), share),
                                 scaled(mix(here->v[k], here->v[k + 1], part), share),

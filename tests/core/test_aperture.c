@@ -299,7 +299,7 @@ static bool in_lens(const struct refocus_aperture *a, double x, double y, double
 /* The light of the opening that is common to the aperture and the two circles. */
 static struct light of_common(const struct refocus_aperture *a, double d, double ex, double ey)
 {
-    enum { STEPS = 400 };
+    enum { STEPS = 150 };
     struct light l = {0, 0, 0, 0, 0};
 
     for (int j = 0; j < 2 * STEPS; j++) {

@@ -36,18 +36,19 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG,
      .name = "--rays",
      .offset = offsetof(struct settings, statistics),
-     .help = "without a number: no times, but what the rays of the mask meet: how many find a "
-             "true intersection after 1, 2, ... tests of the search"},
+     .help = "without a number: no times, but what the rays of the mask meet: how many "
+             "find a true intersection after 1, 2, ... tests of the search"},
     {.kind = OPTION_FLAG,
      .name = "--frames",
      .offset = offsetof(struct settings, frames),
-     .help = "a table over blur, quality, threads and, without PHOTO or --size, sizes; in turns "
-             "with a memcpy of the frame and a plain box blur of the same radius"},
+     .help = "a table over blur, quality, threads and, without PHOTO or --size, sizes; "
+             "in turns with a memcpy of the frame and a plain box blur of the same "
+             "radius"},
     {.kind = OPTION_FLAG,
      .name = "--kernels",
      .offset = offsetof(struct settings, kernels),
-     .help = "no frames, but the loops that they are made of: nanoseconds for a pixel or a ray "
-             "sample, and those of plain C"},
+     .help = "no frames, but the loops that they are made of: nanoseconds for a pixel "
+             "or a ray sample, and those of plain C"},
     RUN_OPTIONS(struct settings, engine),
     REPEAT_OPTION(struct settings, engine),
     PAPER_OPTIONS(struct settings, engine.papers, engine.method),
@@ -67,11 +68,12 @@ static int print_report(const struct settings *settings, const struct engine *en
     char rays[16] = "full";
 
     if (settings->engine.json) {
-        json_t *json = json_pack(
-            "{s:o, s:i, s:i, s:i, s:f}", "photo", photo ? report_text_json(photo) : json_null(),
-            "width", (int)scene->photo.width, "height", (int)scene->photo.height, "repeat",
-            (int)settings->engine.repeat, "megapixels_per_second",
-            megapixels(scene) * 1e3 / times->median);
+        json_t *json =
+            json_pack("{s:o, s:i, s:i, s:i, s:f}", "photo",
+                      photo ? report_text_json(photo) : json_null(), "width",
+                      (int)scene->photo.width, "height", (int)scene->photo.height,
+                      "repeat", (int)settings->engine.repeat, "megapixels_per_second",
+                      megapixels(scene) * 1e3 / times->median);
         json_t *run = engine_json(engine);
 
         if (json && json_object_update(json, run) != 0) {
@@ -91,13 +93,15 @@ static int print_report(const struct settings *settings, const struct engine *en
     printf("create   %9.2f ms   %.1f MiB\n", engine->create_ms,
            (double)engine->info.memory / (1 << 20));
     printf("prepare  %9.2f ms\n", engine->prepare_ms);
-    printf("render   %9.2f ms   median of %.0f, %.2f to %.2f; %.2f megapixels a second\n",
+    printf("render   %9.2f ms   median of %.0f, %.2f to %.2f; %.2f megapixels a "
+           "second\n",
            times->median, settings->engine.repeat, times->min, times->max,
            megapixels(scene) * 1e3 / times->median);
     return report_end_output();
 }
 
-static int check(const struct settings *settings, const char *photo, int argc, char **argv)
+static int check(const struct settings *settings, const char *photo, int argc,
+                 char **argv)
 {
     static const char *const of_frames[] = {
         "--focus", "--focus-at", "--focus-distance", "--focus-rectangle",
@@ -121,8 +125,8 @@ static int check(const struct settings *settings, const char *photo, int argc, c
         return status;
     if (settings->frames && settings->statistics)
         return report_failure(EXIT_WRONG, "--frames",
-                              "it does not go with --rays without a number; leave one of them "
-                              "out");
+                              "it does not go with --rays without a number; leave one "
+                              "of them out");
     if (photo && !isnan(settings->size[0]))
         return report_failure(EXIT_WRONG, "--size",
                               "the photo has a size of its own; leave one of them out");
@@ -130,8 +134,8 @@ static int check(const struct settings *settings, const char *photo, int argc, c
                    !isnan(settings->depth.near_m) || !isnan(settings->depth.far_m) ||
                    !isnan(settings->lens.focus_distance)))
         return report_failure(EXIT_WRONG, "bench",
-                              "--depth, --depth-unit, --near, --far and --focus-distance go "
-                              "with a photo; give one");
+                              "--depth, --depth-unit, --near, --far and "
+                              "--focus-distance go with a photo; give one");
     return EXIT_DONE;
 }
 
@@ -140,8 +144,9 @@ static int count_rays(const struct engine *engine, const struct settings *settin
 {
     struct ray_statistics statistics;
 
-    if (ray_statistics(&statistics, disparity, width, height, engine->params.focus_disparity,
-                       engine->params.max_blur_radius, engine->aperture) != 0)
+    if (ray_statistics(&statistics, disparity, width, height,
+                       engine->params.focus_disparity, engine->params.max_blur_radius,
+                       engine->aperture) != 0)
         return report_failure(EXIT_FAILED, "--rays", "not enough memory");
     if (settings->engine.json)
         return report_print_json(ray_statistics_json(&statistics));
@@ -157,8 +162,8 @@ static int measure(struct engine *engine, const struct settings *settings,
         scene->disparity, scene->map_width, scene->map_height,
         (ptrdiff_t)scene->map_width * 2);
     const size_t pixels = (size_t)width * (size_t)height;
-    struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
-                                                    (ptrdiff_t)width * 3);
+    struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width,
+                                                    height, (ptrdiff_t)width * 3);
     uint16_t *prepared = malloc(pixels * 2);
     double blur = 0, focus = 0;
     int status;
@@ -188,7 +193,8 @@ static int measure(struct engine *engine, const struct settings *settings,
     return status;
 }
 
-/* --rays has a number everywhere, and here a meaning without one. Takes it out of argv. */
+/* --rays has a number everywhere, and here a meaning without one. Takes it out of
+ * argv. */
 static bool take_bare_rays(int *argc, char **argv)
 {
     for (int i = 1; i < *argc && strcmp(argv[i], "--") != 0; i++) {
@@ -240,15 +246,17 @@ static int run(int argc, char **argv)
         }
     } else if (status == EXIT_DONE) {
         engine.name = input.photo_name = input.depth_name = "made-up scene";
-        status = bench_scene_make(&scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
-                            isnan(settings.size[0]) ? 540 : (int)settings.size[1]);
+        status = bench_scene_make(
+            &scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
+            isnan(settings.size[0]) ? 540 : (int)settings.size[1]);
         made.image = scene.photo;
         made.info.focus_x = made.info.focus_y = -1;
         input.photo = &made;
     }
     if (status == EXIT_DONE && settings.frames)
         status = bench_frames(&settings.engine,
-                              files[0] || !isnan(settings.size[0]) ? &scene : NULL, files[0]);
+                              files[0] || !isnan(settings.size[0]) ? &scene : NULL,
+                              files[0]);
     else if (status == EXIT_DONE)
         status = measure(&engine, &settings, &input, &scene);
     if (status == EXIT_DONE && !settings.statistics && !settings.frames)
@@ -266,8 +274,8 @@ const struct command bench_command = {
     .name = "bench",
     .usage = "[PHOTO] [options]",
     .summary = "time whole frames",
-    .notes = "Without PHOTO a made-up scene is rendered. The times are of preparing and "
-             "rendering alone, without files, and of --repeat frames, default 5.",
+    .notes = "Without PHOTO a made-up scene is rendered. The times are of preparing "
+             "and rendering alone, without files, and of --repeat frames, default 5.",
     .options = options,
     .files_least = 0,
     .files_most = 1,

@@ -11,15 +11,15 @@ struct scene {
     int map_width, map_height;
 };
 
-/* A made-up scene. Returns an exit code and prints why it is not EXIT_DONE; bench_scene_free() in
- * any case. */
+/* A made-up scene. Returns an exit code and prints why it is not EXIT_DONE;
+ * bench_scene_free() in any case. */
 int bench_scene_make(struct scene *scene, int width, int height);
 void bench_scene_free(struct scene *scene);
 
 /*
- * --frames: times of whole frames over blur, quality and threads, each in turns with a memcpy
- * of the frame and a plain box blur; of the scene, or without one of made-up scenes of
- * several sizes. Returns an exit code.
+ * --frames: times of whole frames over blur, quality and threads, each in turns with a
+ * memcpy of the frame and a plain box blur; of the scene, or without one of made-up
+ * scenes of several sizes. Returns an exit code.
  */
 int bench_frames(const struct engine_settings *settings, const struct scene *scene,
                  const char *name);

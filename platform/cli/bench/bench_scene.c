@@ -11,8 +11,8 @@ static uint32_t hash(uint32_t x, uint32_t y)
     return h ^ h >> 13;
 }
 
-/* A tilted floor before a wall, and upright discs in front of it that hide each other: the
- * same for every size but for its scale, with fine texture everywhere. */
+/* A tilted floor before a wall, and upright discs in front of it that hide each other:
+ * the same for every size but for its scale, with fine texture everywhere. */
 static uint16_t surface_at(double x, double y, int *which)
 {
     uint16_t nearest = y > 0.5 ? (uint16_t)(65535 * (0.05 + (y - 0.5) * 1.2)) : 3277;
@@ -46,8 +46,8 @@ int bench_scene_make(struct scene *scene, int width, int height)
         scene->disparity = malloc((size_t)pixels * 2);
     }
     if (!scene->photo.plane[0] || !scene->disparity)
-        return report_failure(EXIT_FAILED, "--size", "not enough memory for %dx%d pixels",
-                              width, height);
+        return report_failure(EXIT_FAILED, "--size",
+                              "not enough memory for %dx%d pixels", width, height);
     for (int y = 0; y < height; y++) {
         uint8_t *row = scene->photo.plane[0] + y * scene->photo.stride[0];
         uint16_t *disparity = scene->disparity + (size_t)y * (size_t)width;

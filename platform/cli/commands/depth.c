@@ -35,7 +35,8 @@ static const char *view_summary(uint32_t index)
 {
     static const char *const words[] = {"the disparities as they are",
                                         "their picture, bright = near",
-                                        "white where it was measured, black where filled"};
+                                        "white where it was measured, black where "
+                                        "filled"};
 
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
@@ -58,9 +59,9 @@ static const char *match_summary(uint32_t index)
 
 static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
-                  "the disparities to write, 1 = nearest: .png or .pgm of 16 bits (65535 = 1) "
-                  "or .pfm of 32-bit floats; or a .jpg: the JPEG photo, every byte of it, with "
-                  "the depth inside as GDepth"),
+                  "the disparities to write, 1 = nearest: .png or .pgm of 16 bits "
+                  "(65535 = 1) or .pfm of 32-bit floats; or a .jpg: the JPEG photo, "
+                  "every byte of it, with the depth inside as GDepth"),
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
     REPAIR_OPTIONS(struct settings, depth),
@@ -74,15 +75,15 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, depth.snap),
      .least = 0,
      .greatest = REFOCUS_MAX_SNAP,
-     .help = "move edges of depth of the photo's size onto the photo's, where they are off by "
-             "up to N pixels; default 0: leave them"},
+     .help = "move edges of depth of the photo's size onto the photo's, where they are "
+             "off by up to N pixels; default 0: leave them"},
     {.kind = OPTION_CHOICE,
      .name = "--upsample",
      .argument = "HOW",
      .offset = offsetof(struct settings, depth.upsample),
      .choice = made_upsampler,
-     .help = "how --full does it: the library's own way, or one of OpenCV's filters to compare "
-             "with; the last three need the module refocus-ximgproc",
+     .help = "how --full does it: the library's own way, or one of OpenCV's filters to "
+             "compare with; the last three need the module refocus-ximgproc",
      .needs = "--full,--strokes"},
     {.kind = OPTION_TEXT,
      .name = "--estimate",
@@ -94,8 +95,8 @@ static const struct option options[] = {
      .argument = "NAME",
      .offset = offsetof(struct settings, network.preset),
      .choice = made_preset,
-     .help = "which network it is: range of its input, and its size where the file leaves "
-             "it open",
+     .help = "which network it is: range of its input, and its size where the file "
+             "leaves it open",
      .needs = "--estimate"},
     {.kind = OPTION_NUMBERS,
      .name = "--input-size",
@@ -104,8 +105,8 @@ static const struct option options[] = {
      .least = 32,
      .greatest = 2048,
      .count = 2,
-     .help = "of the picture that the network takes; default: what the file says, else the "
-             "preset",
+     .help = "of the picture that the network takes; default: what the file says, else "
+             "the preset",
      .needs = "--estimate"},
     {.kind = OPTION_NUMBERS,
      .name = "--input-mean",
@@ -133,8 +134,8 @@ static const struct option options[] = {
      .name = "--strokes",
      .argument = "FILE.json",
      .offset = offsetof(struct settings, strokes),
-     .help = "paint these strokes: over nothing, or over the depth of --depth, --estimate or a "
-             "stereo pair"},
+     .help = "paint these strokes: over nothing, or over the depth of --depth, "
+             "--estimate or a stereo pair"},
     {.kind = OPTION_FLAG,
      .name = "--stereo-file",
      .offset = offsetof(struct settings, stereo.within),
@@ -164,15 +165,16 @@ static const struct option options[] = {
      .least = 0,
      .greatest = REFOCUS_MAX_SIDE,
      .count = 2,
-     .help = "for a .jpg: the pixel in focus when it is opened again; default: what the photo "
-             "says"},
+     .help = "for a .jpg: the pixel in focus when it is opened again; default: what "
+             "the photo says"},
     {.kind = OPTION_NUMBER,
      .name = "--blur",
      .argument = "K",
      .offset = offsetof(struct settings, blur),
      .least = 0,
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
-     .help = "for a .jpg, with --focus-at: the blur radius of disparity 0 when 1 is in focus"},
+     .help = "for a .jpg, with --focus-at: the blur radius of disparity 0 when 1 is in "
+             "focus"},
     {.kind = OPTION_FLAG,
      .name = "--json",
      .offset = offsetof(struct settings, json),
@@ -193,8 +195,8 @@ static int print_report(const struct settings *settings, const struct input *inp
     if (settings->json) {
         json_t *json = json_pack("{s:o, s:o, s:i, s:i, s:o}", "file",
                                  report_text_json(input->photo_name), "output",
-                                 report_text_json(settings->output), "width", input->width,
-                                 "height", input->height, "depth",
+                                 report_text_json(settings->output), "width",
+                                 input->width, "height", input->height, "depth",
                                  report_depth_json(input->depth_from, report));
         return report_print_json(json);
     }
@@ -235,10 +237,11 @@ static int write_view(const struct settings *settings, const struct input *input
     if (!rgb)
         return report_failure(EXIT_FAILED, settings->output, "not enough memory");
     for (size_t i = 0; i < 3 * pixels; i++)
-        rgb[i] = known ? input->confidence[i / 3] : (uint8_t)(input->disparity[i / 3] >> 8);
+        rgb[i] =
+            known ? input->confidence[i / 3] : (uint8_t)(input->disparity[i / 3] >> 8);
 
-    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, width,
-                                                            height, 3 * (ptrdiff_t)width);
+    const struct refocus_image image = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, rgb, width, height, 3 * (ptrdiff_t)width);
     status = output_write_image(settings->output, &image, NULL);
     free(rgb);
     return status;
@@ -269,8 +272,10 @@ static int settle_focus(const struct settings *settings, const struct input *inp
                               input->photo_name, photo->width - 1, photo->height - 1);
     depth->focus_x = (x + 0.5) / photo->width;
     depth->focus_y = (y + 0.5) / photo->height;
-    d = input->disparity[(size_t)(depth->focus_y * input->height) * (size_t)input->width +
-                         (size_t)(depth->focus_x * input->width)] / 65535.0;
+    d = input->disparity[(size_t)(depth->focus_y * input->height) *
+                             (size_t)input->width +
+                         (size_t)(depth->focus_x * input->width)] /
+        65535.0;
     if (depth->near_m > 0 && depth->far_m > depth->near_m) {
         const struct refocus_depth_range range = {depth->near_m, depth->far_m};
         const double z = refocus_depth_of_disparity(&range, d);
@@ -298,9 +303,10 @@ static int write_photo(const struct settings *settings, const struct input *inpu
     if (status != EXIT_DONE)
         return status;
     interrupt_hold(true);
-    status = interrupt_came() ? REFOCUS_ERR_CANCELLED
-                              : refocus_photo_write_depth(settings->output, input->photo_name,
-                                                          &depth, &reason);
+    status = interrupt_came()
+                 ? REFOCUS_ERR_CANCELLED
+                 : refocus_photo_write_depth(settings->output, input->photo_name,
+                                             &depth, &reason);
     interrupt_hold(false);
     if (status == REFOCUS_ERR_CANCELLED)
         return report_failure(EXIT_FAILED, settings->output,
@@ -323,15 +329,16 @@ static int write_output(const struct settings *settings, const struct input *inp
 
 static bool is_made(const struct settings *settings, const char *const *files)
 {
-    return files[1] || settings->side_by_side || settings->stereo.within || settings->model;
+    return files[1] || settings->side_by_side || settings->stereo.within ||
+           settings->model;
 }
 
 /* Options of depth that is read or matched, with depth that is not. */
-static int check_ways(const struct settings *settings, const char *const *files, int argc,
-                      char **argv)
+static int check_ways(const struct settings *settings, const char *const *files,
+                      int argc, char **argv)
 {
-    static const char *const of_read[] = {"--depth-unit", "--invalid", "--speckle", "--snap",
-                                          "--upsample", NULL};
+    static const char *const of_read[] = {"--depth-unit", "--invalid",  "--speckle",
+                                          "--snap",       "--upsample", NULL};
     const bool pair = is_made(settings, files) && !settings->model;
     const bool nothing =
         settings->strokes && !settings->depth.file && !is_made(settings, files);
@@ -345,45 +352,53 @@ static int check_ways(const struct settings *settings, const char *const *files,
                               "it is of depth that is read from a file; leave it out");
     if (pair && options_given(&depth_command, argc, argv, "--upsample"))
         return report_failure(EXIT_WRONG, "--upsample",
-                              "depth of a stereo pair has the photo's size; leave it out");
+                              "depth of a stereo pair has the photo's size; leave it "
+                              "out");
     if (!nothing)
         return EXIT_DONE;
     return options_refuse(&depth_command, argc, argv, of_read,
-                          "--strokes alone paint over nothing; give --depth, or leave it out");
+                          "--strokes alone paint over nothing; give --depth, or leave "
+                          "it out");
 }
 
 static int check(const struct settings *settings, const char *const *files, int argc,
                  char **argv)
 {
-    static const char *const endings[] = {".png", ".pgm", ".pfm", ".jpg", ".jpeg", NULL};
+    static const char *const endings[] = {".png", ".pgm",  ".pfm",
+                                          ".jpg", ".jpeg", NULL};
     static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
-    const char *const inputs[] = {files[0], settings->depth.file, files[1], settings->model,
-                                  settings->strokes};
+    const char *const inputs[] = {files[0], settings->depth.file, files[1],
+                                  settings->model, settings->strokes};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
-        status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
+        status =
+            output_check(settings->output, settings->view ? views : endings, inputs, 5);
     if (status == EXIT_DONE &&
         (files[1] != NULL) + settings->side_by_side + settings->stereo.within +
                 (settings->model != NULL) +
                 (settings->depth.file != NULL) > 1)
         return report_failure(EXIT_WRONG, files[0],
-                              "its depth is given twice; give one of RIGHT, --side-by-side, "
-                              "--stereo-file, "
+                              "its depth is given twice; give one of RIGHT, "
+                              "--side-by-side, --stereo-file, "
                               "--estimate and --depth");
     if (status == EXIT_DONE && is_made(settings, files) && is_jpeg(settings->output) &&
         settings->side_by_side && settings->view == VIEW_NONE)
         return report_failure(EXIT_WRONG, settings->output,
-                              "depth of half a picture does not fit the file; give a .png");
+                              "depth of half a picture does not fit the file; give a "
+                              ".png");
     if (status == EXIT_DONE && settings->strokes && settings->side_by_side)
         return report_failure(EXIT_WRONG, "--strokes",
-                              "they are not painted over half a picture; give LEFT and RIGHT");
+                              "they are not painted over half a picture; give LEFT and "
+                              "RIGHT");
     if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
-        return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
+        return report_failure(EXIT_WRONG, "--blur",
+                              "it goes with --focus-at; give that too");
     if (status == EXIT_DONE && !isnan(settings->focus_at[0]) &&
         (settings->view != VIEW_NONE || !is_jpeg(settings->output)))
         return report_failure(EXIT_WRONG, "--focus-at",
-                              "it is kept in a photo alone; give -o a .jpg, or leave it out");
+                              "it is kept in a photo alone; give -o a .jpg, or leave "
+                              "it out");
     return status == EXIT_DONE ? check_ways(settings, files, argc, argv) : status;
 }
 
@@ -441,10 +456,10 @@ const struct command depth_command = {
     .name = "depth",
     .usage = "FILE [RIGHT] -o OUT [options]",
     .summary = "make, read, repair or upsample the depth of a photo, and write it",
-    .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, the left "
-             "picture of a stereo pair, or any photo with --estimate or --strokes. Samples "
-             "without a value are filled from those around them, from the farther side where "
-             "two surfaces meet, and counted.",
+    .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, "
+             "the left picture of a stereo pair, or any photo with --estimate or "
+             "--strokes. Samples without a value are filled from those around them, "
+             "from the farther side where two surfaces meet, and counted.",
     .options = options,
     .files_least = 1,
     .files_most = 2,

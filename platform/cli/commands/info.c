@@ -19,7 +19,8 @@ static const struct option options[] = {
 };
 
 /* What the samples of a map mean, in words. */
-static void describe_meaning(char *text, size_t size, const struct refocus_depth_map *map)
+static void describe_meaning(char *text, size_t size,
+                             const struct refocus_depth_map *map)
 {
     if (map->meaning == REFOCUS_DEPTH_DISTANCE)
         snprintf(text, size, "distance, %.6g m + %.6g m a unit", map->metres_at_zero,
@@ -34,8 +35,9 @@ static void describe_meaning(char *text, size_t size, const struct refocus_depth
 
 static const char *sample_name(uint32_t sample)
 {
-    return sample == REFOCUS_SAMPLE_U8 ? "8-bit" : sample == REFOCUS_SAMPLE_U16 ? "16-bit"
-                                                                                 : "float";
+    return sample == REFOCUS_SAMPLE_U8    ? "8-bit"
+           : sample == REFOCUS_SAMPLE_U16 ? "16-bit"
+                                          : "float";
 }
 
 static const char *source_text(uint32_t source)
@@ -95,7 +97,8 @@ static void print_text(const char *file, const struct refocus_photo *photo,
                info->original_used ? ", the all-in-focus original in the file" : "");
     if (info->stored_width > 0)
         printf("stored        %dx%d, orientation %d\n", (int)info->stored_width,
-               (int)info->stored_height, info->orientation ? (int)info->orientation : 1);
+               (int)info->stored_height,
+               info->orientation ? (int)info->orientation : 1);
     report_clean(clean, sizeof clean, info->camera);
     if (clean[0])
         printf("camera        %s\n", clean);
@@ -141,13 +144,15 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
     const struct refocus_photo_info *info = &photo->info;
     const bool focus = info->focus_x >= 0 && info->focus_y >= 0 &&
                        (info->focus_x > 0 || info->focus_y > 0);
-    json_t *depth = photo->depth.samples ? report_depth_json(photo, report) : json_null();
+    json_t *depth =
+        photo->depth.samples ? report_depth_json(photo, report) : json_null();
     char text[160];
 
     if (photo->depth.samples && depth) {
         describe_meaning(text, sizeof text, &photo->depth);
         json_object_set_new(depth, "unit", report_text_json(text));
-        json_object_set_new(depth, "sample", json_string(sample_name(photo->depth.sample)));
+        json_object_set_new(depth, "sample",
+                            json_string(sample_name(photo->depth.sample)));
     }
     return json_pack(
         "{s:o, s:s, s:o, s:o, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "file",
@@ -159,15 +164,16 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
                                : json_null(),
         "orientation", info->orientation ? (int)info->orientation : 1, "original_used",
         (int)info->original_used, "camera",
-        info->camera[0] ? report_text_json(info->camera) : json_null(), "focal_length_mm",
-        positive(info->focal_length_mm), "focal_length_35mm",
+        info->camera[0] ? report_text_json(info->camera) : json_null(),
+        "focal_length_mm", positive(info->focal_length_mm), "focal_length_35mm",
         positive(info->focal_length_35mm), "f_number", positive(info->f_number),
         "focus_point",
-        focus ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(), "depth",
-        depth, "evidence", evidence_json(info));
+        focus ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(),
+        "depth", depth, "evidence", evidence_json(info));
 }
 
-/* Read a photo, or a depth file that is none; a grey picture without depth may be both. */
+/* Read a photo, or a depth file that is none; a grey picture without depth may be
+ * both. */
 static int read_any(struct refocus_photo **photo, const char *file)
 {
     struct refocus_reason reason = {""};
@@ -188,14 +194,15 @@ static int read_any(struct refocus_photo **photo, const char *file)
     return EXIT_DONE;
 }
 
-/* The range of the depth map and its holes; a map of nothing but holes is worth telling. */
+/* The range of the depth map and its holes; a map of nothing but holes is worth
+ * telling. */
 static int measure_depth(const char *file, const struct refocus_depth_map *map,
                          struct refocus_depth_report *report)
 {
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
     uint16_t *disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
-    int status = disparity ? refocus_depth_to_disparity(map, disparity,
-                                                        (ptrdiff_t)map->width * 2, report)
+    int status = disparity ? refocus_depth_to_disparity(
+                                 map, disparity, (ptrdiff_t)map->width * 2, report)
                            : REFOCUS_ERR_MEMORY;
 
     free(disparity);
@@ -237,7 +244,8 @@ static int run(int argc, char **argv)
 const struct command info_command = {
     .name = "info",
     .usage = "FILE [--json]",
-    .summary = "what depth, lens and orientation data a file carries, and why it is believed",
+    .summary = "what depth, lens and orientation data a file carries, and why it is "
+               "believed",
     .options = options,
     .files_least = 1,
     .files_most = 1,

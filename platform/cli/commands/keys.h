@@ -9,9 +9,10 @@
  *       ]
  *     }
  *
- * Times are in seconds, each later than the one before. A key names those parameters that have a
- * value there; between two keys that name it a parameter goes from one value to the other as
- * "ease" of the second says, before the first and after the last it stays.
+ * Times are in seconds, each later than the one before. A key names those parameters
+ * that have a value there; between two keys that name it a parameter goes from one
+ * value to the other as "ease" of the second says, before the first and after the last
+ * it stays.
  */
 #ifndef RF_CLI_KEYS_H
 #define RF_CLI_KEYS_H
@@ -33,8 +34,10 @@ int keys_load(struct keys **keys, const char *file);
 int keys_read(struct keys **keys, const char *file, const char *bytes, size_t size);
 void keys_free(struct keys *keys);
 
-/* A key by hand: a parameter by its name, which there has to be, with a value in its range. */
-int keys_add(struct keys **keys, double time, const char *name, double value, enum ease ease);
+/* A key by hand: a parameter by its name, which there has to be, with a value in its
+ * range. */
+int keys_add(struct keys **keys, double time, const char *name, double value,
+             enum ease ease);
 
 double keys_seconds(const struct keys *keys);
 
@@ -42,6 +45,7 @@ double keys_seconds(const struct keys *keys);
 double keys_most(const struct keys *keys, const char *name, double otherwise);
 
 /* Set what keys name to its values at a time. */
-void keys_apply(const struct keys *keys, double time, struct refocus_render_params *params);
+void keys_apply(const struct keys *keys, double time,
+                struct refocus_render_params *params);
 
 #endif

@@ -19,16 +19,17 @@ struct settings {
     bool back;
 };
 
-#define NUMBER(name_, argument_, field_, least_, greatest_, help_)                          \
-    {.kind = OPTION_NUMBER, .name = name_, .argument = argument_,                           \
-     .offset = offsetof(struct settings, field_), .least = least_, .greatest = greatest_,   \
+#define NUMBER(name_, argument_, field_, least_, greatest_, help_)                     \
+    {.kind = OPTION_NUMBER, .name = name_, .argument = argument_,                      \
+     .offset = offsetof(struct settings, field_), .least = least_,                     \
+     .greatest = greatest_,                                                            \
      .help = help_}
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
     OUTPUT_OPTION(struct settings, output,
-                  "frames-%03d.png, .jpg or .ppm for a picture each; or a name in .y4m, .apng, "
-                  "and by the ffmpeg program .mp4, .webm or .gif"),
+                  "frames-%03d.png, .jpg or .ppm for a picture each; or a name in "
+                  ".y4m, .apng, and by the ffmpeg program .mp4, .webm or .gif"),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "The pull"},
     NUMBER("--from", "D", from, 0, 1, "disparity in focus at the beginning; default 1"),
@@ -48,8 +49,8 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG, .name = "--back", .offset = offsetof(struct settings, back),
      .help = "and the same way back, so that it can be repeated"},
     NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST,
-           "in place of a pull: the eye swings sideways, and what is not in focus moves by so "
-           "many pixels, at disparity 1 when 0 is in focus"),
+           "in place of a pull: the eye swings sideways, and what is not in focus "
+           "moves by so many pixels, at disparity 1 when 0 is in focus"),
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
@@ -76,12 +77,13 @@ static int make_keys(struct keys **keys, const struct settings *s, double blur)
     if (status == EXIT_DONE)
         status = keys_add(keys, end, "focus", given(s->to, 0), (enum ease)s->ease);
     if (status == EXIT_DONE)
-        status = keys_add(keys, end, "blur", given(s->blur_to, blur), (enum ease)s->ease);
+        status =
+            keys_add(keys, end, "blur", given(s->blur_to, blur), (enum ease)s->ease);
     return status;
 }
 
-/* The options' focus is that of a wiggle, or where keys name none. A pull's own takes its place,
- * but for the line that --tilt-angle turns about. */
+/* The options' focus is that of a wiggle, or where keys name none. A pull's own takes
+ * its place, but for the line that --tilt-angle turns about. */
 static int check_focus(const struct settings *s, int argc, char **argv)
 {
     static const char *const names[] = {"--focus", "--focus-distance",
@@ -119,14 +121,14 @@ static int check(struct settings *s, const char *photo, int argc, char **argv)
         !(isnan(s->from) && isnan(s->to) && isnan(s->blur_from) && isnan(s->blur_to) &&
           isnan(s->seconds)))
         status = report_failure(EXIT_WRONG, "--keys",
-                                "is in place of --from, --to, --blur-from, --blur-to and "
-                                "--seconds; leave them out");
+                                "is in place of --from, --to, --blur-from, --blur-to "
+                                "and --seconds; leave them out");
     if (status == EXIT_DONE && !isnan(s->wiggle) &&
         (s->keys || s->back ||
          !(isnan(s->from) && isnan(s->to) && isnan(s->blur_from) && isnan(s->blur_to))))
         status = report_failure(EXIT_WRONG, "--wiggle",
-                                "is in place of --keys, --from, --to, --blur-from, --blur-to "
-                                "and --back; leave them out");
+                                "is in place of --keys, --from, --to, --blur-from, "
+                                "--blur-to and --back; leave them out");
     if (status == EXIT_DONE)
         status = animation_check(s->output, inputs, count);
     if (status == EXIT_DONE && s->shot.save)
@@ -148,9 +150,9 @@ static double swing(double parallax, int i, int count)
     return parallax / 2 * sin(turn * i / count);
 }
 
-static int render_frame(struct shot *shot, const struct keys *keys, const struct stereo *stereo,
-                        const struct settings *s, int i, int count, int there,
-                        const struct refocus_image *out)
+static int render_frame(struct shot *shot, const struct keys *keys,
+                        const struct stereo *stereo, const struct settings *s, int i,
+                        int count, int there, const struct refocus_image *out)
 {
     if (stereo)
         return stereo_render(stereo, shot, swing(s->wiggle, i, count), out);
@@ -159,16 +161,18 @@ static int render_frame(struct shot *shot, const struct keys *keys, const struct
 }
 
 /* stereo: NULL in a pull. */
-static int write_frames(struct shot *shot, const struct keys *keys, const struct stereo *stereo,
-                        const struct settings *s, int *frames)
+static int write_frames(struct shot *shot, const struct keys *keys,
+                        const struct stereo *stereo, const struct settings *s,
+                        int *frames)
 {
     const double fps = given(s->fps, 25);
     const double seconds = stereo ? given(s->seconds, 2) - 1 / fps : keys_seconds(keys);
     const int there = (int)(seconds * fps + 0.5) + 1;
     const int count = s->back && there > 2 ? 2 * there - 2 : there;
     const struct refocus_image *photo = &shot->input.photo->image;
-    struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, photo->width,
-                                                    photo->height, (ptrdiff_t)photo->width * 3);
+    struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, photo->width, photo->height,
+                             (ptrdiff_t)photo->width * 3);
     struct animation *animation = NULL;
     int status = EXIT_FAILED, closed;
 
@@ -213,7 +217,8 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys,
         return status;
     }
     if (isnan(s->wiggle) && !input_focus_is_given(&wanted.lens))
-        wanted.lens.focus = given(s->from, 1); /* each frame has its own: none is found */
+        /* each frame has its own: none is found */
+        wanted.lens.focus = given(s->from, 1);
     status = shot_open(shot, photo, &wanted, most_blur);
     if (status == EXIT_DONE && !isnan(s->wiggle))
         return wiggle(shot, s, frames);
@@ -230,18 +235,24 @@ static int print_report(const struct settings *s, const struct shot *shot, int f
 
     if (!s->shot.engine.json)
         return EXIT_DONE;
-    return report_print_json(json_pack(
-        "{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo", report_text_json(shot->input.photo_name),
-        "output", report_text_json(s->output), "width", (int)photo->width, "height",
-        (int)photo->height, "frames", frames, "fps", given(s->fps, 25), "method",
-        refocus_method_name(shot->engine.params.method)));
+    return report_print_json(
+        json_pack("{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo",
+                  report_text_json(shot->input.photo_name), "output",
+                  report_text_json(s->output), "width", (int)photo->width, "height",
+                  (int)photo->height, "frames", frames, "fps", given(s->fps, 25),
+                  "method", refocus_method_name(shot->engine.params.method)));
 }
 
 static int run(int argc, char **argv)
 {
     struct settings settings = {.shot = SHOT_SETTINGS_NONE,
-                                .from = NAN, .to = NAN, .blur_from = NAN, .blur_to = NAN,
-                                .seconds = NAN, .fps = NAN, .wiggle = NAN};
+                                .from = NAN,
+                                .to = NAN,
+                                .blur_from = NAN,
+                                .blur_to = NAN,
+                                .seconds = NAN,
+                                .fps = NAN,
+                                .wiggle = NAN};
     struct keys *keys = NULL;
     struct shot shot;
     const char *files[2];
@@ -267,11 +278,13 @@ const struct command pull_command = {
     .name = "pull",
     .usage = "PHOTO -o OUT [options]",
     .summary = "focus pull: an animation between focus settings",
-    .notes = "A file of --keys: {\"refocus-pull\": 1, \"keys\": [{\"time\": 0, \"focus\": 1, "
-             "\"blur\": 12}, {\"time\": 1.5, \"focus\": 0.2, \"ease\": \"in\"}]}. Keys may name "
-             "focus, blur, highlights, focus-width, focus-transition, cat-eye, field-x, field-y, "
-             "field-disparity, field-radius, field-falloff and field-angle; \"ease\" is how the way to a key goes: smooth, "
-             "linear, in (slowly at first), out (slowly in the end).\n"
+    .notes = "A file of --keys: {\"refocus-pull\": 1, \"keys\": [{\"time\": 0, "
+             "\"focus\": 1, \"blur\": 12}, {\"time\": 1.5, \"focus\": 0.2, \"ease\": "
+             "\"in\"}]}. Keys may name focus, blur, highlights, focus-width, "
+             "focus-transition, cat-eye, field-x, field-y, field-disparity, "
+             "field-radius, field-falloff and field-angle; \"ease\" is how the way to "
+             "a key goes: smooth, linear, in (slowly at first), out (slowly in the "
+             "end).\n"
              "Ctrl-C ends with status 1 and leaves nothing behind.",
     .options = options,
     .files_least = 1,

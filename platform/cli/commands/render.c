@@ -21,8 +21,8 @@ struct settings {
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
     OUTPUT_OPTION(struct settings, output,
-                  "the picture to write: .jpg, .png or .ppm; keeps the photo's EXIF data and "
-                  "colour profile"),
+                  "the picture to write: .jpg, .png or .ppm; keeps the photo's EXIF "
+                  "data and colour profile"),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),
@@ -47,8 +47,8 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, parallax),
      .least = 0,
      .greatest = STEREO_MOST,
-     .help = "anaglyph: between the eyes at disparity 1 when 0 is in focus; default 1/50 of "
-             "the width"},
+     .help = "anaglyph: between the eyes at disparity 1 when 0 is in focus; default "
+             "1/50 of the width"},
     {.kind = OPTION_HEADING, .help = "Running"},
     SETTINGS_OPTION(struct settings, shot.load),
     SAVE_SETTINGS_OPTION(struct settings, shot.save),
@@ -65,10 +65,13 @@ static int check(struct settings *settings, const char *photo)
     const int count = shot_inputs(&settings->shot, photo, inputs);
     int status = shot_check(&settings->shot, false);
 
-    if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
+    if (status == EXIT_DONE && settings->view != VIEW_NONE &&
+        !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
-                                "a view is always of the whole; leave --region or --view out");
-    if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH && !isnan(settings->parallax))
+                                "a view is always of the whole; leave --region or "
+                                "--view out");
+    if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH &&
+        !isnan(settings->parallax))
         status = report_failure(EXIT_WRONG, "--parallax",
                                 "goes with --view anaglyph; give that too");
     if (status == EXIT_DONE)
@@ -98,8 +101,9 @@ static int print_report(const struct settings *settings, const struct engine *en
     }
     if (settings->shot.engine.repeat > 1) {
         printf("prepare %.2f ms, render %.2f ms (median of %.0f; %.2f to %.2f)\n",
-               engine->prepare_ms, engine->render_ms.median, settings->shot.engine.repeat,
-               engine->render_ms.min, engine->render_ms.max);
+               engine->prepare_ms, engine->render_ms.median,
+               settings->shot.engine.repeat, engine->render_ms.min,
+               engine->render_ms.max);
         return report_end_output();
     }
     return EXIT_DONE;
@@ -137,8 +141,9 @@ static int run(int argc, char **argv)
     status = render(&shot, &out, &settings, files[0]);
     if (status == EXIT_DONE) {
         report_progress("writing", 0.9);
-        status = output_write_image(settings.output, &out,
-                                    settings.view == VIEW_NONE ? shot.input.photo : NULL);
+        status =
+            output_write_image(settings.output, &out,
+                               settings.view == VIEW_NONE ? shot.input.photo : NULL);
     }
     report_progress_end();
     if (status == EXIT_DONE && settings.shot.save)
@@ -154,9 +159,9 @@ const struct command render_command = {
     .name = "render",
     .usage = "PHOTO -o OUT [options]",
     .summary = "refocus one photo",
-    .notes = "The blur radius of a pixel of disparity d is K |d - df| pixels: K is --blur, df "
-             "the disparity in focus. The blur of a lens is K = s R (1/near - 1/far), s the "
-             "focal length in pixels and R = focal length / 2N.\n"
+    .notes = "The blur radius of a pixel of disparity d is K |d - df| pixels: K is "
+             "--blur, df the disparity in focus. The blur of a lens is K = s R (1/near "
+             "- 1/far), s the focal length in pixels and R = focal length / 2N.\n"
              "Ctrl-C ends with status 1 and leaves what was at OUT as it was.",
     .options = options,
     .files_least = 1,

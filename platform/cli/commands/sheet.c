@@ -69,7 +69,8 @@ static const struct option options[] = {
     {.help = NULL},
 };
 
-/* Options in whose place the sheet's own are; those of a file of settings are passed over. */
+/* Options in whose place the sheet's own are; those of a file of settings are passed
+ * over. */
 static int check_lists(const struct sheet_settings *s, int argc, char **argv)
 {
     const struct {
@@ -114,7 +115,8 @@ static int check(struct settings *settings, const char *photo, int argc, char **
         status = report_failure(EXIT_WRONG, "--f-numbers",
                                 "is in place of --blur and --f-number; leave them out");
     if (settings->sheet.f_numbers)
-        shot.lens.f_number = 1; /* it stands for any: --focal-length goes with them too */
+        shot.lens.f_number = 1; /* it stands for any: --focal-length goes with them
+                                   too */
     if (status == EXIT_DONE)
         status = shot_check(&shot, false);
     if (!settings->sheet.f_numbers)

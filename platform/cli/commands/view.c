@@ -111,8 +111,8 @@ struct viewing {
     char *text;                      /* of the settings */
 };
 
-/* A tap is a new --focus-at: the plane of focus turns about its line, and one through three
- * points gives way to it. */
+/* A tap is a new --focus-at: the plane of focus turns about its line, and one through
+ * three points gives way to it. */
 static void take_tap(struct controls *controls, const struct refocus_image *photo,
                      const struct rf_view_state *state)
 {
@@ -126,7 +126,8 @@ static void aim(void *of, const struct rf_view_state *state,
 {
     const struct viewing *v = of;
     const struct refocus_image *photo = &v->input.photo->image;
-    const struct refocus_disparity size = {.width = photo->width, .height = photo->height};
+    const struct refocus_disparity size = {.width = photo->width,
+                                           .height = photo->height};
     struct controls controls = v->engine.controls;
 
     if (!isnan(v->engine.field_disparity))
@@ -136,11 +137,13 @@ static void aim(void *of, const struct rf_view_state *state,
     take_tap(&controls, photo, state);
     params->tilt_x = params->tilt_y = 0.5f;
     params->tilt_across = params->tilt_down = 0;
-    controls_aim(&controls, params, &size); /* by a line within the photo: needs no depth */
+    controls_aim(&controls, params, &size); /* by a line within the photo: needs no
+                                               depth */
 }
 
 /* The options that make the same picture. */
-static int save_settings(void *of, const struct rf_view_result *result, const char *file)
+static int save_settings(void *of, const struct rf_view_result *result,
+                         const char *file)
 {
     const struct viewing *v = of;
     const struct refocus_render_params *lens = result->params;
@@ -177,9 +180,11 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
 
     params->max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
-        status = papers_place(&shot->engine.papers, params, photo->width, photo->height);
+        status =
+            papers_place(&shot->engine.papers, params, photo->width, photo->height);
     if (status == EXIT_DONE)
-        status = shot_aim(&v->input, &shot->lens, &v->engine.controls, disparity, params);
+        status =
+            shot_aim(&v->input, &shot->lens, &v->engine.controls, disparity, params);
     if (status == EXIT_DONE)
         status = controls_check_method(params);
     if (status == EXIT_DONE)
@@ -197,7 +202,8 @@ static uint32_t suitable_methods(const struct engine *engine)
     uint32_t methods = 0;
 
     for (params.method = 0; params.method < REFOCUS_METHOD_COUNT; params.method++)
-        if (controls_suit_method(&params) && bokeh_suits_method(&params, engine->has_sides))
+        if (controls_suit_method(&params) &&
+            bokeh_suits_method(&params, engine->has_sides))
             methods |= REFOCUS_METHOD_BIT(params.method);
     return methods;
 }

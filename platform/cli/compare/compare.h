@@ -23,8 +23,8 @@ struct comparison {
     struct compared item[COMPARE_MOST];
 };
 
-/* Labelled crops where depth jumps, a column for each picture; plane[0] is to be freed, NULL
- * without memory. disparity: packed, of the photo's size. */
+/* Labelled crops where depth jumps, a column for each picture; plane[0] is to be freed,
+ * NULL without memory. disparity: packed, of the photo's size. */
 struct refocus_image compare_picture(const struct comparison *comparison,
                                      const uint16_t *disparity);
 

@@ -19,9 +19,9 @@ struct variants {
 };
 
 /*
- * The list NAME[:OPTION[=VALUE]...],...; NULL: every method that knows the aperture. Options are
- * those of methods without their dashes, and the others are `common`. Returns an exit code and
- * prints why it is not EXIT_DONE; variants_end() in any case.
+ * The list NAME[:OPTION[=VALUE]...],...; NULL: every method that knows the aperture.
+ * Options are those of methods without their dashes, and the others are `common`.
+ * Returns an exit code and prints why it is not EXIT_DONE; variants_end() in any case.
  */
 int variants_begin(struct variants *variants, const char *list,
                    const struct engine_settings *common);

@@ -31,7 +31,8 @@ static bool find_codes(const char *names, uint32_t *flags)
         bool found = false;
 
         for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
-            if (strlen(codes[i].name) == length && !strncmp(names, codes[i].name, length)) {
+            if (strlen(codes[i].name) == length &&
+                !strncmp(names, codes[i].name, length)) {
                 *flags |= codes[i].flag;
                 found = true;
             }
@@ -50,21 +51,21 @@ int input_check_depth(const struct depth_settings *settings)
 
     if (!find_codes(settings->invalid, &flags))
         return report_failure(EXIT_WRONG, "--invalid",
-                              "'%s' is not known; give zero, max or 2047, or several with "
-                              "commas",
+                              "'%s' is not known; give zero, max or 2047, or several "
+                              "with commas",
                               settings->invalid);
 
     memset(&map, 0, sizeof map);
     map.sample = REFOCUS_SAMPLE_U16;
     if (settings->unit && refocus_depth_set_unit(&map, settings->unit) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--depth-unit",
-                              "'%s' is not known; give disparity, inverse, mm, m or a number "
-                              "per metre such as 5000/m",
+                              "'%s' is not known; give disparity, inverse, mm, m or a "
+                              "number per metre such as 5000/m",
                               settings->unit);
     if (settings->near_m >= settings->far_m)
         return report_failure(EXIT_WRONG, "--near",
-                              "%g m is not nearer than --far %g m; give the smaller number "
-                              "to --near",
+                              "%g m is not nearer than --far %g m; give the smaller "
+                              "number to --near",
                               settings->near_m, settings->far_m);
     return EXIT_DONE;
 }
@@ -78,15 +79,16 @@ bool input_focus_is_given(const struct lens_settings *settings)
 int input_check_lens(const struct lens_settings *settings)
 {
     const int ways = given(settings->focus) + given(settings->focus_at[0]) +
-                     given(settings->focus_distance) + given(settings->focus_rectangle[0]);
+                     given(settings->focus_distance) +
+                     given(settings->focus_rectangle[0]);
 
     if (ways > 1)
         return report_failure(EXIT_WRONG,
                               given(settings->focus_rectangle[0]) ? "--focus-rectangle"
                               : given(settings->focus_distance)   ? "--focus-distance"
                                                                   : "--focus-at",
-                              "the focus is given twice; give one of --focus, --focus-at, "
-                              "--focus-distance and --focus-rectangle");
+                              "the focus is given twice; give one of --focus, "
+                              "--focus-at, --focus-distance and --focus-rectangle");
     if (given(settings->blur) && given(settings->f_number))
         return report_failure(EXIT_WRONG, "--f-number",
                               "the blur is given twice; give --blur or --f-number");
@@ -107,9 +109,9 @@ static int settle_embedded(struct input *input, const struct depth_settings *set
     if (settings->unit) {
         const int status = refocus_depth_set_unit(map, settings->unit);
         if (status != REFOCUS_OK)
-            return report_failure(EXIT_WRONG, "--depth-unit",
-                                  "'%s' does not suit the depth of %s: %s", settings->unit,
-                                  input->depth_name, refocus_strerror(status));
+            return report_failure(
+                EXIT_WRONG, "--depth-unit", "'%s' does not suit the depth of %s: %s",
+                settings->unit, input->depth_name, refocus_strerror(status));
     }
     if (given(settings->near_m))
         map->near_m = settings->near_m;
@@ -140,7 +142,8 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
             return status;
         }
     } else if (full)
-        status = refocus_upsample(photo, &map, &params, full, (ptrdiff_t)photo->width * 2);
+        status =
+            refocus_upsample(photo, &map, &params, full, (ptrdiff_t)photo->width * 2);
     if (status != REFOCUS_OK) {
         free(full);
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
@@ -176,14 +179,16 @@ static int snap(struct input *input, const struct depth_settings *settings)
     return EXIT_DONE;
 }
 
-static bool worth_snapping(const struct input *input, const struct depth_settings *settings)
+static bool worth_snapping(const struct input *input,
+                           const struct depth_settings *settings)
 {
     return settings->snap > 0 && input->photo && input->photo->image.plane[0] &&
            input->photo->image.width == input->width &&
            input->photo->image.height == input->height;
 }
 
-static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
+static bool worth_enlarging(const struct input *input,
+                            const struct depth_settings *settings)
 {
     return input->photo && input->photo->image.plane[0] &&
            (input->photo->image.width != input->width ||
@@ -195,7 +200,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
 {
     struct refocus_depth_map settled = input->depth_from->depth, *map = &settled;
     struct refocus_repair_params params = refocus_repair_params_default();
-    const uint64_t bytes = (uint64_t)map->width * (uint64_t)map->height * sizeof(uint16_t);
+    const uint64_t bytes =
+        (uint64_t)map->width * (uint64_t)map->height * sizeof(uint16_t);
     int status = REFOCUS_ERR_MEMORY;
     uint32_t flags;
 
@@ -204,7 +210,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
 
     if (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m)
         return report_failure(EXIT_WRONG, input->depth_name,
-                              "near %g m is not nearer than far %g m; give --near and --far",
+                              "near %g m is not nearer than far %g m; give --near and "
+                              "--far",
                               map->near_m, map->far_m);
     if (bytes <= SIZE_MAX) {
         input->disparity = malloc((size_t)bytes);
@@ -229,8 +236,9 @@ int input_convert(struct input *input, const struct depth_settings *settings)
         return snap(input, settings);
     if (settings->snap > 0 && input->photo)
         return report_failure(EXIT_FAILED, input->depth_name,
-                              "its depth has %dx%d samples, the photo %dx%d pixels; --snap "
-                              "takes depth of the photo's size, give --full instead",
+                              "its depth has %dx%d samples, the photo %dx%d pixels; "
+                              "--snap takes depth of the photo's size, give --full "
+                              "instead",
                               input->width, input->height, input->photo->image.width,
                               input->photo->image.height);
     return worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
@@ -243,9 +251,10 @@ static int read_side(struct input *input, const char *file,
     int status;
 
     input->depth_name = file;
-    status = refocus_depth_read(&input->side, file, settings->unit,
-                                given(settings->near_m) ? settings->near_m : 0,
-                                given(settings->far_m) ? settings->far_m : 0, NULL, &reason);
+    status =
+        refocus_depth_read(&input->side, file, settings->unit,
+                           given(settings->near_m) ? settings->near_m : 0,
+                           given(settings->far_m) ? settings->far_m : 0, NULL, &reason);
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -265,12 +274,14 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!input->photo->image.plane[0])
-        return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; give %s",
+        return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; "
+                                                  "give %s",
                               instead);
     return EXIT_DONE;
 }
 
-int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
+int input_read(struct input *input, const char *photo,
+               const struct depth_settings *settings)
 {
     int status = input_read_photo(input, photo, "the photo, and this file to --depth");
 
@@ -342,10 +353,12 @@ static bool choose_lens(const struct input *input, const struct lens_settings *s
     return lens->focal_length_mm > 0;
 }
 
-int input_blur(const struct input *input, const struct lens_settings *settings, double *blur)
+int input_blur(const struct input *input, const struct lens_settings *settings,
+               double *blur)
 {
     const struct refocus_image *image = &input->photo->image;
-    const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
+    const struct refocus_depth_range range = {input->report.near_m,
+                                              input->report.far_m};
     struct refocus_lens lens;
 
     if (given(settings->blur)) {
@@ -365,15 +378,16 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
                               "--near and --far in metres, or --blur");
     if (!choose_lens(input, settings, &lens))
         return report_failure(EXIT_FAILED, input->photo_name,
-                              "--f-number needs a focal length, which it does not say; give "
-                              "--focal-length and --sensor-width, or --blur");
+                              "--f-number needs a focal length, which it does not say; "
+                              "give --focal-length and --sensor-width, or --blur");
     *blur = refocus_max_blur_radius(&lens, &range, image->width);
     if (!(*blur <= REFOCUS_MAX_BLUR_RADIUS)) {
         const double least = refocus_f_number_of_blur(&lens, &range, image->width,
                                                       REFOCUS_MAX_BLUR_RADIUS);
 
         return report_failure(EXIT_WRONG, "--f-number",
-                              "f/%g blurs by %.0f pixels, %d is the most; give f/%g or more",
+                              "f/%g blurs by %.0f pixels, %d is the most; give f/%g or "
+                              "more",
                               lens.f_number, *blur, (int)REFOCUS_MAX_BLUR_RADIUS,
                               ceil(least * 100 + 1e-6) / 100);
     }
@@ -399,28 +413,30 @@ static int focus_in_rectangle(const struct input *input, const double rectangle[
     float found = 0;
 
     if (refocus_focus_in_rectangle(&map, (int)rectangle[0], (int)rectangle[1],
-                                   (int)rectangle[2], (int)rectangle[3], &found) != REFOCUS_OK)
+                                   (int)rectangle[2], (int)rectangle[3],
+                                   &found) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--focus-rectangle",
                               "%g,%g,%g,%g does not lie within the %dx%d pixels of %s",
-                              rectangle[0], rectangle[1], rectangle[2], rectangle[3], width,
-                              height, input->photo_name);
+                              rectangle[0], rectangle[1], rectangle[2], rectangle[3],
+                              width, height, input->photo_name);
     *focus = found;
     return EXIT_DONE;
 }
 
 static int focus_at_distance(const struct input *input, double metres, double *focus)
 {
-    const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
+    const struct refocus_depth_range range = {input->report.near_m,
+                                              input->report.far_m};
 
     if (!range_is_known(input))
         return report_failure(EXIT_FAILED, input->depth_name,
-                              "--focus-distance needs distances, which it does not say; "
-                              "give --near and --far in metres, or --focus");
+                              "--focus-distance needs distances, which it does not "
+                              "say; give --near and --far in metres, or --focus");
     *focus = refocus_disparity_of_depth(&range, metres);
     if (!(*focus >= 0 && *focus <= 1))
         return report_failure(EXIT_WRONG, "--focus-distance",
-                              "%g m lies outside of the depth of %s; give %g to %g m", metres,
-                              input->depth_name, range.near_m, range.far_m);
+                              "%g m lies outside of the depth of %s; give %g to %g m",
+                              metres, input->depth_name, range.near_m, range.far_m);
     return EXIT_DONE;
 }
 

@@ -8,7 +8,8 @@
 #ifdef RF_HAVE_OPENCV
 #include <refocus/platform/opencv.h>
 
-/* The other picture of a pair: a file of its own, or the second one of the left one's. */
+/* The other picture of a pair: a file of its own, or the second one of the left
+ * one's. */
 static int read_right(struct refocus_photo **photo, const char *name, bool second)
 {
     struct refocus_reason reason = {""};
@@ -19,7 +20,8 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
         return report_failure(EXIT_FAILED, name, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!(*photo)->image.plane[0])
-        return report_failure(EXIT_FAILED, name, "it is a depth map, not a photo; give a photo");
+        return report_failure(EXIT_FAILED, name, "it is a depth map, not a photo; give "
+                                                 "a photo");
     return EXIT_DONE;
 }
 
@@ -53,7 +55,8 @@ static void halve(struct refocus_image *left, struct refocus_image *right)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct stereo_settings *how, const struct depth_settings *settings)
+                      const struct stereo_settings *how,
+                      const struct depth_settings *settings)
 {
     struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_stereo_report report;
@@ -74,24 +77,26 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
         other = input->side->image;
     else
         halve(&input->photo->image, &other);
-    samples = malloc((size_t)input->photo->image.width * (size_t)input->photo->image.height *
-                     sizeof *samples);
+    samples = malloc((size_t)input->photo->image.width *
+                     (size_t)input->photo->image.height * sizeof *samples);
     if (!samples)
         return report_failure(EXIT_FAILED, left, "not enough memory");
     report_progress("matching", 0.2);
-    status = refocus_cv_stereo(&input->photo->image, &other, &params, samples, &report, &reason);
+    status = refocus_cv_stereo(&input->photo->image, &other, &params, samples, &report,
+                               &reason);
     if (status != REFOCUS_OK) {
         free(samples);
         return report_failure(EXIT_FAILED, right ? right : left, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     }
     snprintf(input->made.info.evidence[0], REFOCUS_INFO_LENGTH,
-             "stereo: disparities %.1f to %.1f pixels, right picture %.0f pixels lower, %.0f %% "
-             "of the pixels agree from both sides",
-             (double)report.least, (double)report.greatest, (double)report.vertical_offset,
-             100.0 * (double)report.matched);
+             "stereo: disparities %.1f to %.1f pixels, right picture %.0f pixels "
+             "lower, %.0f %% of the pixels agree from both sides",
+             (double)report.least, (double)report.greatest,
+             (double)report.vertical_offset, 100.0 * (double)report.matched);
     input->made.info.evidence_count = 1;
-    return take(input, samples, input->photo->image.width, input->photo->image.height, settings);
+    return take(input, samples, input->photo->image.width, input->photo->image.height,
+                settings);
 }
 
 static void adjust(struct refocus_network *network, const struct network_settings *how)
@@ -157,11 +162,13 @@ int made_upsample(uint32_t filter, const struct refocus_image *photo,
 #else
 static int absent(const char *what)
 {
-    return report_failure(EXIT_FAILED, what, "this build has no OpenCV; build it with OpenCV");
+    return report_failure(EXIT_FAILED, what, "this build has no OpenCV; build it with "
+                                             "OpenCV");
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct stereo_settings *how, const struct depth_settings *settings)
+                      const struct stereo_settings *how,
+                      const struct depth_settings *settings)
 {
     (void)settings;
     (void)how;

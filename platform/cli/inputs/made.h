@@ -9,7 +9,8 @@
 
 /* Ways of --upsample: "core" and those of OpenCV; NULL ends them. */
 const char *made_upsampler(uint32_t index);
-/* One of those of OpenCV, to width x height of the photo; an exit code, and prints why. */
+/* One of those of OpenCV, to width x height of the photo; an exit code, and prints
+ * why. */
 int made_upsample(uint32_t filter, const struct refocus_image *photo,
                   const struct refocus_disparity *map, uint16_t *out, const char *name);
 

@@ -50,7 +50,8 @@ static int take(struct input *input, const struct refocus_strokes *strokes)
     return REFOCUS_OK;
 }
 
-int painted_open(struct input *input, const char *file, struct refocus_strokes **strokes)
+int painted_open(struct input *input, const char *file,
+                 struct refocus_strokes **strokes)
 {
     const struct refocus_disparity base = refocus_disparity16(
         input->disparity, input->width, input->height, 2 * (ptrdiff_t)input->width);

@@ -1,5 +1,5 @@
-/* refocus_cancel() may be called from any thread, but not from a signal handler: signals are
- * blocked everywhere and a thread of their own waits for them. */
+/* refocus_cancel() may be called from any thread, but not from a signal handler:
+ * signals are blocked everywhere and a thread of their own waits for them. */
 #include <pthread.h>
 #include <signal.h>
 #include <stddef.h>
@@ -12,8 +12,8 @@ static bool came, held;
 static pthread_t thread;
 static bool started;
 
-/* SIGINT and SIGTERM, but for those that the caller has the process ignore, as nohup and
- * shells do for work in the background. */
+/* SIGINT and SIGTERM, but for those that the caller has the process ignore, as nohup
+ * and shells do for work in the background. */
 static void choose_signals(sigset_t *set)
 {
     static const int numbers[] = {SIGINT, SIGTERM};
@@ -58,8 +58,8 @@ static void *wait_for_signals(void *argument)
     choose_signals(&set);
     if (sigwait(&set, &number) != 0)
         return argument;
-    /* A cancel has no effect on calls that have not begun: repeat it until the renderer is
-     * given up. A second signal ends the process when nothing is being written. */
+    /* A cancel has no effect on calls that have not begun: repeat it until the renderer
+     * is given up. A second signal ends the process when nothing is being written. */
     for (;;) {
         cancel();
         number = sigtimedwait(&set, NULL, &pause);

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <refocus/render.h>
 
-/* Before any other thread is started. When no thread can be had a signal ends the process as
- * it would without this. */
+/* Before any other thread is started. When no thread can be had a signal ends the
+ * process as it would without this. */
 void interrupt_start(void);
 void interrupt_stop(void);
 

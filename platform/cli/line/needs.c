@@ -7,15 +7,16 @@
 
 enum { TEXT_LENGTH = 256 };
 
-/* The row of the next option in argv from *i on, which moves behind it and its value; NULL: there
- * is none. */
-static const struct option *next_given(const struct command *command, int argc, char **argv,
-                                       int *i)
+/* The row of the next option in argv from *i on, which moves behind it and its value;
+ * NULL: there is none. */
+static const struct option *next_given(const struct command *command, int argc,
+                                       char **argv, int *i)
 {
     while (*i < argc && strcmp(argv[*i], "--") != 0) {
         const char *argument = argv[(*i)++], *value;
-        const struct option *option =
-            argument[0] == '-' && argument[1] ? options_at(command, argument, &value) : NULL;
+        const struct option *option = argument[0] == '-' && argument[1]
+                                          ? options_at(command, argument, &value)
+                                          : NULL;
 
         if (!option)
             continue;
@@ -25,7 +26,8 @@ static const struct option *next_given(const struct command *command, int argc, 
     return NULL;
 }
 
-bool options_given(const struct command *command, int argc, char **argv, const char *name)
+bool options_given(const struct command *command, int argc, char **argv,
+                   const char *name)
 {
     const struct option *option;
     int i = 1;
@@ -103,8 +105,8 @@ static void list_words(const struct option *option, char text[TEXT_LENGTH])
     text[0] = '\0';
     for (uint32_t i = 0; option->of_word(i) && n < TEXT_LENGTH; i++)
         if (option->of_words >> i & 1)
-            n += snprintf(text + n, (size_t)(TEXT_LENGTH - n), "%s%s", n > 0 ? ", " : "",
-                          option->of_word(i));
+            n += snprintf(text + n, (size_t)(TEXT_LENGTH - n), "%s%s",
+                          n > 0 ? ", " : "", option->of_word(i));
 }
 
 static int not_of(const struct option *option, int word)
@@ -115,11 +117,13 @@ static int not_of(const struct option *option, int word)
     return report_failure(EXIT_WRONG, option->name,
                           "it changes nothing with %s %s; give %s%s%s, or leave it out",
                           option->of, option->of_word((uint32_t)word), words,
-                          option->needs ? ", or " : "", option->needs ? option->needs : "");
+                          option->needs ? ", or " : "",
+                          option->needs ? option->needs : "");
 }
 
 /* Whether one of what an option needs has a value; false when it needs none. */
-static bool is_met(const struct command *command, const char *needs, const void *settings)
+static bool is_met(const struct command *command, const char *needs,
+                   const void *settings)
 {
     char name[TEXT_LENGTH];
 
@@ -140,8 +144,9 @@ static int check(const struct command *command, const struct option *option,
                  const void *settings)
 {
     const bool met = is_met(command, option->needs, settings);
-    const int word =
-        option->of_words ? *(const int *)((const char *)settings + option->of_offset) : -1;
+    const int word = option->of_words
+                         ? *(const int *)((const char *)settings + option->of_offset)
+                         : -1;
 
     if (option->of_words)
         return is_of(option, word) || met ? OPTIONS_PARSED : not_of(option, word);

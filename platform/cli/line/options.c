@@ -37,7 +37,8 @@ static int edits(const char *a, const char *b)
     return rows[m % 3][n];
 }
 
-const char *options_nearest(const char *text, const char *(*word)(const void *list, int i),
+const char *options_nearest(const char *text,
+                            const char *(*word)(const void *list, int i),
                             const void *list)
 {
     const int letters = (int)strlen(text) - (int)strspn(text, "-");
@@ -82,7 +83,8 @@ static const char *range_text(const struct option *option, char text[RANGE_LENGT
     if (option->kind == OPTION_NUMBERS && option->least == -INFINITY)
         return text;
     if (option->above)
-        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " above %.9g", option->least);
+        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " above %.9g",
+                      option->least);
     if (option->above && isfinite(option->greatest))
         n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), ", at most %.9g",
                       option->greatest);
@@ -129,8 +131,8 @@ static int wrong_number(const struct option *option, const char *name, const cha
                           range_text(option, range));
 }
 
-static int parse_numbers(const struct option *option, const char *name, const char *text,
-                         double *values)
+static int parse_numbers(const struct option *option, const char *name,
+                         const char *text, double *values)
 {
     const int count = option->kind == OPTION_NUMBERS ? option->count : 1;
     const char *at = text;
@@ -190,7 +192,8 @@ int options_set(const struct option *option, const char *name, const char *text,
         return parse_choice(option, name, text, value);
     case OPTION_TEXT:
         if (*text == '\0')
-            return report_failure(EXIT_WRONG, name, "is empty; give %s", option->argument);
+            return report_failure(EXIT_WRONG, name, "is empty; give %s",
+                                  option->argument);
         *(const char **)value = text;
         return OPTIONS_PARSED;
     case OPTION_FLAG:
@@ -214,7 +217,8 @@ const struct option *options_at(const struct command *command, const char *argum
             *value = argument[2] ? argument + 2 : NULL;
             return option;
         }
-        if (strlen(option->name) == length && strncmp(argument, option->name, length) == 0) {
+        if (strlen(option->name) == length &&
+            strncmp(argument, option->name, length) == 0) {
             *value = argument[length] ? argument + length + 1 : NULL;
             return option;
         }
@@ -236,7 +240,8 @@ const char *options_nearest_name(const struct command *command, const char *name
 }
 
 /* Files of settings come before all else on the command line, which overrules them. */
-static int load_settings(const struct command *command, int argc, char **argv, void *settings)
+static int load_settings(const struct command *command, int argc, char **argv,
+                         void *settings)
 {
     const struct option *row = options_find(command, SETTINGS_NAME);
     const size_t length = strlen(SETTINGS_NAME);
@@ -266,8 +271,10 @@ static int unknown_option(const struct command *command, const char *argument)
     snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
     nearest = options_nearest_name(command, name);
     if (nearest)
-        return report_failure(EXIT_WRONG, name, "unknown option; did you mean %s?", nearest);
-    return report_failure(EXIT_WRONG, name, "unknown option; 'refocus %s --help' lists them",
+        return report_failure(EXIT_WRONG, name, "unknown option; did you mean %s?",
+                              nearest);
+    return report_failure(EXIT_WRONG, name, "unknown option; 'refocus %s --help' lists "
+                                            "them",
                           command->name);
 }
 
@@ -282,7 +289,8 @@ static int parse_option(const struct command *command, int argc, char **argv, in
         return unknown_option(command, argv[*i]);
     if (option->kind == OPTION_FLAG) {
         if (value)
-            return report_failure(EXIT_WRONG, option->name, "takes no value; leave '=%s' out",
+            return report_failure(EXIT_WRONG, option->name, "takes no value; leave "
+                                                            "'=%s' out",
                                   value);
         return options_set(option, option->name, "", settings);
     }
@@ -320,12 +328,12 @@ int options_parse(const struct command *command, int argc, char **argv, void *se
         }
         if (count == command->files_most)
             return report_failure(EXIT_WRONG, argv[i],
-                                  "one file too many; give refocus %s %s", command->name,
-                                  command->usage);
+                                  "one file too many; give refocus %s %s",
+                                  command->name, command->usage);
         if (argv[i][0] == '\0')
             return report_failure(EXIT_WRONG, command->name,
-                                  "a file name is empty; give refocus %s %s", command->name,
-                                  command->usage);
+                                  "a file name is empty; give refocus %s %s",
+                                  command->name, command->usage);
         files[count++] = argv[i];
     }
     if (count < command->files_least)
@@ -405,5 +413,6 @@ void options_print_help(const struct command *command)
         putchar('\n');
         print_wrapped(command->notes, 0, 0);
     }
-    printf("\nexit status: 0 done, 1 it could not be done, 2 the command line is wrong\n");
+    printf("\nexit status: 0 done, 1 it could not be done, 2 the command line is "
+           "wrong\n");
 }

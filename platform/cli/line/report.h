@@ -16,11 +16,12 @@ __attribute__((format(printf, 3, 4)))
 #endif
 int report_failure(int exit_code, const char *what, const char *why, ...);
 
-/* After the last output on standard output: EXIT_DONE, or EXIT_FAILED when it was lost. */
+/* After the last output on standard output: EXIT_DONE, or EXIT_FAILED when it was
+ * lost. */
 int report_end_output(void);
 
-/* A bar on standard error, when that is a terminal: what is being done, and how much of the
- * whole, 0 to 1, is behind. report_failure() and report_progress_end() wipe it. */
+/* A bar on standard error, when that is a terminal: what is being done, and how much of
+ * the whole, 0 to 1, is behind. report_failure() and report_progress_end() wipe it. */
 void report_progress(const char *doing, double done);
 void report_progress_end(void);
 bool report_is_watched(void); /* whether there is such a terminal */
@@ -44,8 +45,8 @@ struct spread {
 struct spread report_spread(double *values, int count);
 json_t *report_spread_json(struct spread spread);
 
-/* JSON of values that JSON has no words for: NAN and 0 metres are null, infinity is the text
- * "infinity"; bytes that are not printable ASCII or UTF-8 become '?'. */
+/* JSON of values that JSON has no words for: NAN and 0 metres are null, infinity is the
+ * text "infinity"; bytes that are not printable ASCII or UTF-8 become '?'. */
 json_t *report_number_json(double value);
 json_t *report_metres_json(double metres);
 json_t *report_text_json(const char *text);
@@ -58,7 +59,8 @@ json_t *report_depth_json(const struct refocus_photo *from,
                           const struct refocus_depth_report *report);
 const char *report_depth_source(uint32_t source);
 
-/* Print an object, or say that there was no memory for it; frees it. Returns an exit code. */
+/* Print an object, or say that there was no memory for it; frees it. Returns an exit
+ * code. */
 int report_print_json(json_t *object);
 
 #endif

@@ -31,12 +31,14 @@ static bool keep(json_t *root)
 }
 
 /* What errors call a member of a file. */
-static const char *member_name(char what[LONGEST_VALUE], const char *file, const char *key)
+static const char *member_name(char what[LONGEST_VALUE], const char *file,
+                               const char *key)
 {
     char name[LONGEST_NAME];
 
     report_clean(name, sizeof name, key);
-    snprintf(what, LONGEST_VALUE, "%.*s: %s", LONGEST_VALUE - LONGEST_NAME - 3, file, name);
+    snprintf(what, LONGEST_VALUE, "%.*s: %s", LONGEST_VALUE - LONGEST_NAME - 3, file,
+             name);
     return what;
 }
 
@@ -52,7 +54,8 @@ static int damaged(const char *file, const char *key, const char *why)
 static bool number_text(const json_t *value, char *text, size_t size)
 {
     if (json_is_integer(value))
-        return snprintf(text, size, "%" JSON_INTEGER_FORMAT, json_integer_value(value)) > 0;
+        return snprintf(text, size, "%" JSON_INTEGER_FORMAT,
+                        json_integer_value(value)) > 0;
     if (!json_is_real(value))
         return false;
     return snprintf(text, size, "%.17g", json_real_value(value)) > 0;
@@ -91,8 +94,10 @@ static int set_member(const struct command *command, const char *file, const cha
         char why[LONGEST_VALUE];
 
         if (option)
-            return damaged(file, key, "is not of the picture; give it on the command line");
-        snprintf(why, sizeof why, "unknown setting%s%s%s", nearest ? "; did you mean '" : "",
+            return damaged(file, key, "is not of the picture; give it on the command "
+                                      "line");
+        snprintf(why, sizeof why, "unknown setting%s%s%s",
+                 nearest ? "; did you mean '" : "",
                  nearest ? nearest + strspn(nearest, "-") : "", nearest ? "'?" : "");
         return damaged(file, key, why);
     }
@@ -104,9 +109,12 @@ static int set_member(const struct command *command, const char *file, const cha
     }
     if (json_is_string(value))
         given = json_string_value(value);
-    else if (!number_text(value, text, sizeof text) && !numbers_text(value, text, sizeof text))
-        return damaged(file, key, option->kind == OPTION_NUMBERS ? "give numbers, as [1, 2]"
-                                                                 : "give a number or a text");
+    else if (!number_text(value, text, sizeof text) &&
+             !numbers_text(value, text, sizeof text))
+        return damaged(file, key, option->kind == OPTION_NUMBERS ? "give numbers, as "
+                                                                   "[1, 2]"
+                                                                 : "give a number or a "
+                                                                   "text");
     status = options_set(option, member_name(what, file, key), given, settings);
     return status == EXIT_WRONG ? EXIT_FAILED : status;
 }
@@ -126,7 +134,8 @@ int settings_read(const struct command *command, const char *file, const char *b
     value = json_object_get(root, "refocus");
     if (!json_is_integer(value) || json_integer_value(value) != SETTINGS_VERSION)
         status = report_failure(EXIT_FAILED, file,
-                                "holds no settings: its member \"refocus\" should be %d",
+                                "holds no settings: its member \"refocus\" should be "
+                                "%d",
                                 SETTINGS_VERSION);
     else if (!keep(root))
         status = report_failure(EXIT_FAILED, file, "not enough memory");
@@ -238,7 +247,8 @@ static bool is_among(const char *name, const char *const *names)
 }
 
 /* "name 1,2,3" into text with a line's end; what it takes of it. */
-static size_t line_of(const struct option *option, const json_t *json, char *text, size_t size)
+static size_t line_of(const struct option *option, const json_t *json, char *text,
+                      size_t size)
 {
     char value[LONGEST_VALUE];
     int n;
@@ -253,8 +263,8 @@ static size_t line_of(const struct option *option, const json_t *json, char *tex
     return n > 0 && (size_t)n < size ? (size_t)n : 0;
 }
 
-char *settings_text(const struct command *command, const void *settings, const void *usual,
-                    const char *const *names)
+char *settings_text(const struct command *command, const void *settings,
+                    const void *usual, const char *const *names)
 {
     size_t size = 1, used = 0;
     bool failed = false;
@@ -295,8 +305,10 @@ int settings_save(const struct command *command, const char *file, const void *s
     char *text = NULL;
     int status = EXIT_DONE, digits = 15;
 
-    for (const struct option *option = command->options; option->help && !failed; option++) {
-        json_t *json = option->elsewhere ? NULL : member_of(option, settings, &digits, &failed);
+    for (const struct option *option = command->options; option->help && !failed;
+         option++) {
+        json_t *json =
+            option->elsewhere ? NULL : member_of(option, settings, &digits, &failed);
 
         if (json && json_object_set_new(root, option->name + 2, json) != 0)
             failed = true;

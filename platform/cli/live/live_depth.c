@@ -35,8 +35,8 @@ void live_depths_end(struct live_depths *depths)
     pthread_mutex_unlock(&depths->lock);
 }
 
-/* The oldest map that may be overwritten, or NULL. When every frame counts, only those from
- * before the present frame may. */
+/* The oldest map that may be overwritten, or NULL. When every frame counts, only those
+ * from before the present frame may. */
 static struct live_depth_map *oldest(struct live_depths *depths)
 {
     struct live_depth_map *found = NULL;
@@ -54,7 +54,8 @@ static struct live_depth_map *oldest(struct live_depths *depths)
     return found;
 }
 
-struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, int height)
+struct live_depth_map *live_depths_fill(struct live_depths *depths, int width,
+                                        int height)
 {
     const uint64_t bytes = (uint64_t)width * (uint64_t)height * 2;
     struct live_depth_map *map = NULL;
@@ -89,7 +90,8 @@ void live_depths_put(struct live_depths *depths, struct live_depth_map *map,
 }
 
 /* The map nearest in time, and the newest. */
-static const struct live_depth_map *nearest(const struct live_depths *depths, int64_t time,
+static const struct live_depth_map *nearest(const struct live_depths *depths,
+                                            int64_t time,
                                             const struct live_depth_map **newest)
 {
     const struct live_depth_map *found = NULL;
@@ -109,8 +111,9 @@ static const struct live_depth_map *nearest(const struct live_depths *depths, in
     return found;
 }
 
-const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
-                                              int64_t half_ns, bool *paired)
+const struct live_depth_map *live_depths_pair(struct live_depths *depths,
+                                              int64_t timestamp_ns, int64_t half_ns,
+                                              bool *paired)
 {
     const struct live_depth_map *map, *newest;
     struct timespec until;
@@ -128,13 +131,15 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
     pthread_cond_broadcast(&depths->changed);
     for (;;) {
         map = nearest(depths, timestamp_ns, &newest);
-        *paired = map && (depths->still || llabs(map->timestamp_ns - timestamp_ns) <= half_ns);
+        *paired = map &&
+                  (depths->still || llabs(map->timestamp_ns - timestamp_ns) <= half_ns);
         /* A newer map that does not fit says that none will. */
         if (*paired || depths->ended || error == ETIMEDOUT ||
             (newest && newest->timestamp_ns > timestamp_ns + half_ns))
             break;
-        error = depths->every ? pthread_cond_wait(&depths->changed, &depths->lock)
-                              : pthread_cond_timedwait(&depths->changed, &depths->lock, &until);
+        error = depths->every
+                    ? pthread_cond_wait(&depths->changed, &depths->lock)
+                    : pthread_cond_timedwait(&depths->changed, &depths->lock, &until);
     }
     if (!*paired)
         map = newest;

@@ -9,7 +9,8 @@ void live_focus_init(struct live_focus *focus, const struct live_settings *setti
     pthread_mutex_init(&focus->lock, NULL);
     focus->from = focus->to = isnan(settings->lens.focus) ? 0.5 : settings->lens.focus;
     focus->at_given = isnan(settings->lens.focus);
-    focus->follow_lens = isnan(settings->lens.focus) && isnan(settings->lens.focus_at[0]);
+    focus->follow_lens =
+        isnan(settings->lens.focus) && isnan(settings->lens.focus_at[0]);
     focus->at[0] = settings->lens.focus_at[0]; /* NAN: the centre */
     focus->at[1] = settings->lens.focus_at[1];
 }
@@ -17,9 +18,9 @@ void live_focus_init(struct live_focus *focus, const struct live_settings *setti
 /* Eased, so that a pull neither starts nor ends with a jerk. */
 static double focus_at_time(const struct live_focus *focus, int64_t now_ns)
 {
-    const double t = focus->duration_ns > 0
-                         ? (double)(now_ns - focus->begin_ns) / (double)focus->duration_ns
-                         : 1;
+    const double t = focus->duration_ns > 0 ? (double)(now_ns - focus->begin_ns) /
+                                                  (double)focus->duration_ns
+                                            : 1;
 
     if (t >= 1)
         return focus->to;
@@ -58,7 +59,8 @@ bool live_focus_point(struct live_focus *focus, double point[2], double *seconds
     return given;
 }
 
-void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity, double *blur)
+void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity,
+                    double *blur)
 {
     pthread_mutex_lock(&focus->lock);
     *disparity = focus_at_time(focus, now_ns);
@@ -66,7 +68,8 @@ void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity,
     pthread_mutex_unlock(&focus->lock);
 }
 
-/* "0.5", "0.5 2", "320,240" or "320,240 2": up to two values and, behind a blank, seconds. */
+/* "0.5", "0.5 2", "320,240" or "320,240 2": up to two values and, behind a blank,
+ * seconds. */
 static bool parse_values(const char *text, int count, double values[2], double *seconds)
 {
     char *end;
@@ -88,16 +91,16 @@ static bool parse_values(const char *text, int count, double values[2], double *
     return *text == '\0';
 }
 
-static bool apply(struct live_focus *focus, const char *word, const char *rest, char *why,
-                  size_t size)
+static bool apply(struct live_focus *focus, const char *word, const char *rest,
+                  char *why, size_t size)
 {
     const bool point = strcmp(word, "focus-at") == 0 || strcmp(word, "pull-at") == 0;
     double values[2] = {0, 0}, seconds = strncmp(word, "pull", 4) == 0 ? 1 : 0;
 
     if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 &&
         strcmp(word, "pull") != 0 && !point) {
-        snprintf(why, size, "unknown; give focus D, focus-at X,Y, pull D SECONDS, pull-at X,Y "
-                            "SECONDS, blur K or quit");
+        snprintf(why, size, "unknown; give focus D, focus-at X,Y, pull D SECONDS, "
+                            "pull-at X,Y SECONDS, blur K or quit");
         return false;
     }
     if (!parse_values(rest, point ? 2 : 1, values, &seconds)) {
@@ -107,8 +110,8 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
     }
     if (strcmp(word, "blur") == 0) {
         if (!(values[0] >= 0 && values[0] <= focus->blur_most)) {
-            snprintf(why, size, "%g is out of 0 to %g; give --blur-most for more", values[0],
-                     focus->blur_most);
+            snprintf(why, size, "%g is out of 0 to %g; give --blur-most for more",
+                     values[0], focus->blur_most);
             return false;
         }
         focus->blur = values[0];
@@ -128,8 +131,8 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
     return true;
 }
 
-bool live_focus_command(struct live_focus *focus, const char *line, bool *quit, char *why,
-                        size_t size)
+bool live_focus_command(struct live_focus *focus, const char *line, bool *quit,
+                        char *why, size_t size)
 {
     char word[16];
     size_t n;

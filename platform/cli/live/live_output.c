@@ -61,8 +61,10 @@ static bool write_picture(struct live *live, const struct live_picture *picture,
     }
     if (status == REFOCUS_OK) {
         live->last_out_ns = live_now_ns();
-        live->first_out_ns = live->first_out_ns ? live->first_out_ns : live->last_out_ns;
-        live_times_add(&live->latency, (double)(live->last_out_ns - picture->taken_ns) / 1e6);
+        live->first_out_ns =
+            live->first_out_ns ? live->first_out_ns : live->last_out_ns;
+        live_times_add(&live->latency,
+                       (double)(live->last_out_ns - picture->taken_ns) / 1e6);
         atomic_fetch_add(&live->frames_out, 1);
         return true;
     }

@@ -42,7 +42,8 @@ void live_queue_close(struct live_queue *queue)
     pthread_mutex_unlock(&queue->lock);
 }
 
-static bool reserve(struct live_picture *picture, uint32_t format, int width, int height)
+static bool reserve(struct live_picture *picture, uint32_t format, int width,
+                    int height)
 {
     const uint64_t bytes = refocus_image_bytes(format, width, height);
     uint8_t *memory = picture->image.plane[0];
@@ -59,8 +60,8 @@ static bool reserve(struct live_picture *picture, uint32_t format, int width, in
     return memory != NULL;
 }
 
-struct live_picture *live_queue_fill(struct live_queue *queue, uint32_t format, int width,
-                                     int height, bool *memory)
+struct live_picture *live_queue_fill(struct live_queue *queue, uint32_t format,
+                                     int width, int height, bool *memory)
 {
     struct live_picture *picture = NULL;
 

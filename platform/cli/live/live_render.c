@@ -43,9 +43,10 @@ static void find_focus(struct live *live, int width, int height)
     x = isnan(point[0]) ? width / 2 : (int)fmin(fmax(point[0], 0), width - 1);
     y = isnan(point[1]) ? height / 2 : (int)fmin(fmax(point[1], 0), height - 1);
     disparity = malloc((size_t)width * (size_t)height * 2);
-    if (disparity && refocus_get_view(live->engine->renderer, REFOCUS_VIEW_DISPARITY, disparity,
-                                      (ptrdiff_t)width * 2) == REFOCUS_OK)
-        live_focus_pull(&live->focus, input_surface_at(disparity, width, height, x, y), seconds);
+    if (disparity && refocus_get_view(live->engine->renderer, REFOCUS_VIEW_DISPARITY,
+                                      disparity, (ptrdiff_t)width * 2) == REFOCUS_OK)
+        live_focus_pull(&live->focus, input_surface_at(disparity, width, height, x, y),
+                        seconds);
     free(disparity);
 }
 
@@ -99,7 +100,8 @@ static int refocus(struct live *live, const struct live_picture *picture,
 }
 
 /* The depth of a picture, or NULL; counts which it was. */
-static const struct live_depth_map *pair(struct live *live, const struct live_picture *picture)
+static const struct live_depth_map *pair(struct live *live,
+                                         const struct live_picture *picture)
 {
     const double fps = live->mode.fps > 0 ? live->mode.fps : 30;
     const int64_t begin = live_now_ns();
@@ -133,7 +135,8 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     if (!map)
         return true;
     if (live->settings->steady > 0) {
-        map = live_steady_run(&live->steady, live->settings->steady, map, &picture->image);
+        map = live_steady_run(&live->steady, live->settings->steady, map,
+                              &picture->image);
         if (!map) {
             live_fail(live, EXIT_FAILED, "--steady", "not enough memory");
             return false;
@@ -145,7 +148,8 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
         size[0] = width;
         size[1] = height;
     }
-    out = live_queue_fill(&live->rendered, picture->image.format, width, height, &memory);
+    out =
+        live_queue_fill(&live->rendered, picture->image.format, width, height, &memory);
     if (!out)
         return false;
     out->image.matrix = picture->image.matrix;
@@ -154,7 +158,8 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     if (status != REFOCUS_OK) {
         live_queue_return(&live->rendered, out);
         if (status != REFOCUS_ERR_CANCELLED)
-            live_fail(live, EXIT_FAILED, live->settings->camera, refocus_strerror(status));
+            live_fail(live, EXIT_FAILED, live->settings->camera,
+                      refocus_strerror(status));
         return false;
     }
     out->timestamp_ns = picture->timestamp_ns;

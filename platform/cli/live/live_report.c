@@ -44,8 +44,8 @@ int live_report(struct live *live)
     const double seconds = (double)(live->last_out_ns - live->first_out_ns) / 1e9;
     const double fps = seconds > 0 ? (double)(out - 1) / seconds : 0;
     const uint64_t dropped_rendered = live_queue_dropped(&live->rendered);
-    const uint64_t dropped = live->capture.skipped + live_queue_dropped(&live->captured) +
-                             dropped_rendered;
+    const uint64_t dropped =
+        live->capture.skipped + live_queue_dropped(&live->captured) + dropped_rendered;
     struct refocus_source_counters counters;
     json_t *json;
 

@@ -2,12 +2,14 @@
 #include <stdlib.h>
 #include "live/live.h"
 
-static bool fit(struct live_steady *steady, double strength, const struct live_depth_map *map)
+static bool fit(struct live_steady *steady, double strength,
+                const struct live_depth_map *map)
 {
     struct refocus_temporal_params params =
         refocus_temporal_params_default(map->width, map->height);
 
-    if (steady->filter && steady->map.width == map->width && steady->map.height == map->height)
+    if (steady->filter && steady->map.width == map->width &&
+        steady->map.height == map->height)
         return true;
     live_steady_end(steady);
     params.strength = (float)strength;
@@ -19,7 +21,8 @@ static bool fit(struct live_steady *steady, double strength, const struct live_d
     return steady->map.disparity != NULL;
 }
 
-const struct live_depth_map *live_steady_run(struct live_steady *steady, double strength,
+const struct live_depth_map *live_steady_run(struct live_steady *steady,
+                                             double strength,
                                              const struct live_depth_map *map,
                                              const struct refocus_image *photo)
 {
@@ -32,8 +35,8 @@ const struct live_depth_map *live_steady_run(struct live_steady *steady, double 
         return NULL;
     if (steady->map.number == map->number)
         return &steady->map; /* one map for several frames */
-    if (refocus_temporal_run(steady->filter, photo, &in, steady->map.disparity, stride) !=
-        REFOCUS_OK)
+    if (refocus_temporal_run(steady->filter, photo, &in, steady->map.disparity,
+                             stride) != REFOCUS_OK)
         return NULL;
     steady->map.number = map->number;
     steady->map.timestamp_ns = map->timestamp_ns;

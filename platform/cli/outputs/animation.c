@@ -77,15 +77,17 @@ int animation_check(const char *path, const char *const *inputs, int input_count
     const enum kind kind = path ? kind_of(path) : KIND_NONE;
 
     if (path && strlen(path) + 64 > PATH_MAX)
-        return report_failure(EXIT_FAILED, path, "the name is too long; give a shorter one");
+        return report_failure(EXIT_FAILED, path, "the name is too long; give a shorter "
+                                                 "one");
     if (path && kind == KIND_NONE)
         return report_failure(EXIT_WRONG, path,
-                              "no such animation is written; give frames-%%03d.png, .jpg or "
-                              ".ppm, or end the name in .y4m, .apng, .mp4, .gif or .webm");
+                              "no such animation is written; give frames-%%03d.png, "
+                              ".jpg or .ppm, or end the name in .y4m, .apng, .mp4, "
+                              ".gif or .webm");
     if (kind == KIND_ENCODER && !encoder_is_there())
         return report_failure(EXIT_FAILED, path,
-                              "there is no ffmpeg program to write it; install ffmpeg, or give "
-                              "a name in .apng or .y4m");
+                              "there is no ffmpeg program to write it; install ffmpeg, "
+                              "or give a name in .apng or .y4m");
     return output_check(path, endings, inputs, input_count);
 }
 
@@ -95,8 +97,8 @@ static void name_temporary(struct animation *a)
     const char *slash = strrchr(a->path, '/'), *dot = strrchr(a->path, '.');
     const int folder = slash ? (int)(slash + 1 - a->path) : 0;
 
-    snprintf(a->temporary, sizeof a->temporary, "%.*s.refocus-%ld.tmp%.8s", folder, a->path,
-             (long)getpid(), dot);
+    snprintf(a->temporary, sizeof a->temporary, "%.*s.refocus-%ld.tmp%.8s", folder,
+             a->path, (long)getpid(), dot);
 }
 
 static int lost(const struct animation *a, const struct refocus_reason *reason)
@@ -104,8 +106,8 @@ static int lost(const struct animation *a, const struct refocus_reason *reason)
     return report_failure(EXIT_FAILED, a->path, "%s", reason->text);
 }
 
-int animation_open(struct animation **animation, const char *path, int width, int height,
-                   double fps, int frames)
+int animation_open(struct animation **animation, const char *path, int width,
+                   int height, double fps, int frames)
 {
     struct animation *a = calloc(1, sizeof *a);
     struct refocus_reason reason = {{0}};
@@ -138,7 +140,8 @@ static int write_picture(struct animation *a, const struct refocus_image *image,
     char name[PATH_MAX];
 
     if (!frame_name(a, a->frames, name)) {
-        snprintf(reason->text, sizeof reason->text, "the name is too long; give a shorter one");
+        snprintf(reason->text, sizeof reason->text, "the name is too long; give a "
+                                                    "shorter one");
         return REFOCUS_ERR_ARGUMENT;
     }
     return refocus_image_write(name, image, NULL, reason);
@@ -202,7 +205,8 @@ int animation_close(struct animation *a, bool keep)
     if (!keep || status != REFOCUS_OK) {
         take_away(a);
     } else if (a->kind != KIND_PICTURES && rename(a->temporary, a->path) != 0) {
-        result = report_failure(EXIT_FAILED, a->path, "cannot write it: %s", strerror(errno));
+        result = report_failure(EXIT_FAILED, a->path, "cannot write it: %s",
+                                strerror(errno));
         take_away(a);
     }
     free(a);

@@ -26,7 +26,8 @@ static void put32(uint8_t *to, uint32_t v)
 
 static uint32_t get32(const uint8_t *from)
 {
-    return (uint32_t)from[0] << 24 | (uint32_t)from[1] << 16 | (uint32_t)from[2] << 8 | from[3];
+    return (uint32_t)from[0] << 24 | (uint32_t)from[1] << 16 | (uint32_t)from[2] << 8 |
+           from[3];
 }
 
 /* CRC-32 of PNG, a bit at a time. */
@@ -46,8 +47,8 @@ static bool put(struct apng *a, const void *bytes, size_t size)
 }
 
 /* A chunk whose data are two runs of bytes. */
-static bool put_chunk(struct apng *a, const char *type, const uint8_t *first, size_t first_size,
-                      const uint8_t *second, size_t second_size)
+static bool put_chunk(struct apng *a, const char *type, const uint8_t *first,
+                      size_t first_size, const uint8_t *second, size_t second_size)
 {
     uint8_t head[8], tail[4];
     uint32_t crc;
@@ -58,8 +59,8 @@ static bool put_chunk(struct apng *a, const char *type, const uint8_t *first, si
     crc = crc_of(crc, first, first_size);
     crc = crc_of(crc, second, second_size);
     put32(tail, ~crc);
-    return put(a, head, 8) && put(a, first, first_size) && put(a, second, second_size) &&
-           put(a, tail, 4);
+    return put(a, head, 8) && put(a, first, first_size) &&
+           put(a, second, second_size) && put(a, tail, 4);
 }
 
 static int cannot_write(struct refocus_reason *reason)
@@ -84,7 +85,8 @@ int apng_open(struct apng **apng, const char *path, int width, int height, doubl
     a->height = height;
     a->frames = frames;
     a->milliseconds = (uint16_t)(ms < 1 ? 1 : ms > 65535 ? 65535 : ms);
-    if (snprintf(a->picture, sizeof a->picture, "%s.png", path) >= (int)sizeof a->picture) {
+    if (snprintf(a->picture, sizeof a->picture, "%s.png", path) >=
+        (int)sizeof a->picture) {
         snprintf(reason->text, sizeof reason->text, "the name is too long");
         return REFOCUS_ERR_ARGUMENT;
     }
@@ -118,7 +120,8 @@ static bool put_control(struct apng *a)
     return put_chunk(a, "fcTL", control, sizeof control, NULL, 0);
 }
 
-/* The pixels of a whole PNG: IDAT of the first frame, fdAT with a number of the others. */
+/* The pixels of a whole PNG: IDAT of the first frame, fdAT with a number of the
+ * others. */
 static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
 {
     for (size_t at = SIGNATURE; at + CHUNK_REST <= size;) {
@@ -131,8 +134,8 @@ static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
             put32(number, a->sequence);
             if (a->written > 0)
                 a->sequence++;
-            if (!put_chunk(a, a->written > 0 ? "fdAT" : "IDAT", number, a->written > 0 ? 4 : 0,
-                           png + at + 8, length))
+            if (!put_chunk(a, a->written > 0 ? "fdAT" : "IDAT", number,
+                           a->written > 0 ? 4 : 0, png + at + 8, length))
                 return false;
         }
         at += length + CHUNK_REST;
@@ -140,7 +143,8 @@ static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
     return true;
 }
 
-int apng_write(struct apng *a, const struct refocus_image *image, struct refocus_reason *reason)
+int apng_write(struct apng *a, const struct refocus_image *image,
+               struct refocus_reason *reason)
 {
     struct refocus_blob png = {NULL, 0};
     int status = refocus_image_write(a->picture, image, NULL, reason);

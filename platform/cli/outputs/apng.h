@@ -1,4 +1,5 @@
-/* Animated PNG: the pictures of the PNG writer in one file, after the APNG specification. */
+/* Animated PNG: the pictures of the PNG writer in one file, after the APNG
+ * specification. */
 #ifndef RF_CLI_APNG_H
 #define RF_CLI_APNG_H
 

@@ -56,15 +56,16 @@ static int start(struct encoder *e, int read_end, char *const *arguments)
         posix_spawn_file_actions_adddup2(&files, read_end, STDIN_FILENO);
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
         posix_spawnattr_setpgroup(&attributes, 0);
-        error = posix_spawnp(&e->process, "ffmpeg", &files, &attributes, arguments, environ);
+        error = posix_spawnp(&e->process, "ffmpeg", &files, &attributes, arguments,
+                             environ);
         posix_spawnattr_destroy(&attributes);
     }
     posix_spawn_file_actions_destroy(&files);
     return error;
 }
 
-int encoder_open(struct encoder **encoder, const char *path, int width, int height, double fps,
-                 struct refocus_reason *reason)
+int encoder_open(struct encoder **encoder, const char *path, int width, int height,
+                 double fps, struct refocus_reason *reason)
 {
     /* Sides of 4:2:0 are even; the one more row or column repeats the last. */
     static char even[] = "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p";
@@ -72,9 +73,24 @@ int encoder_open(struct encoder **encoder, const char *path, int width, int heig
     const size_t length = strlen(path);
     const bool gif = length > 4 && strcasecmp(path + length - 4, ".gif") == 0;
     char size[32], rate[32], file[PATH_MAX + 8];
-    char *const arguments[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-f", "rawvideo",
-                               "-pixel_format", "rgb24", "-video_size", size, "-framerate",
-                               rate, "-i", "pipe:0", "-vf", gif ? palette : even, "-y", file,
+    char *const arguments[] = {"ffmpeg",
+                               "-nostdin",
+                               "-loglevel",
+                               "error",
+                               "-f",
+                               "rawvideo",
+                               "-pixel_format",
+                               "rgb24",
+                               "-video_size",
+                               size,
+                               "-framerate",
+                               rate,
+                               "-i",
+                               "pipe:0",
+                               "-vf",
+                               gif ? palette : even,
+                               "-y",
+                               file,
                                NULL};
     struct encoder *e = malloc(sizeof *e);
     int ends[2], error;

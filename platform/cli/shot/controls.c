@@ -20,8 +20,9 @@ static void take(float *to, double from)
 static int wrong_bands(const char *text)
 {
     return report_failure(EXIT_WRONG, "--also-focus",
-                          "'%s' cannot be used; give up to %d bands D, D:W or D:W:T with "
-                          "commas, each number from 0 to 1", text, REFOCUS_MAX_BANDS - 1);
+                          "'%s' cannot be used; give up to %d bands D, D:W or D:W:T "
+                          "with commas, each number from 0 to 1",
+                          text, REFOCUS_MAX_BANDS - 1);
 }
 
 /* "0.2,0.7:0.05,0.9:0.02:0.1" */
@@ -51,7 +52,8 @@ static int parse_bands(const char *text, struct refocus_render_params *params)
             if (i == 2)
                 return wrong_bands(text);
         }
-        params->band[params->bands++] = (struct refocus_band){value[0], value[1], value[2]};
+        params->band[params->bands++] =
+            (struct refocus_band){value[0], value[1], value[2]};
         if (*at == '\0')
             return EXIT_DONE;
         if (*at++ != ',')
@@ -79,24 +81,25 @@ int controls_check(const struct control_settings *s, bool focus_given)
 {
     if (given(s->focus_plane[0]) && focus_given)
         return report_failure(EXIT_WRONG, "--focus-plane",
-                              "the focus is given twice; leave --focus-plane or the other "
-                              "--focus... out");
+                              "the focus is given twice; leave --focus-plane or the "
+                              "other --focus... out");
     if (given(s->focus_plane[0]) && (given(s->tilt_line[0]) || given(s->tilt_angle)))
         return report_failure(EXIT_WRONG, "--focus-plane",
-                              "the plane is given twice; give --focus-plane, or --tilt-angle "
-                              "and --tilt-line");
+                              "the plane is given twice; give --focus-plane, or "
+                              "--tilt-angle and --tilt-line");
     if (given(s->tilt_line[0]) && !given(s->tilt_angle))
         return report_failure(EXIT_WRONG, "--tilt-line",
                               "it goes with --tilt-angle; give that too");
     if (s->far_clamp > s->near_clamp)
         return report_failure(EXIT_WRONG, "--far-clamp",
-                              "%g is nearer than --near-clamp %g; give a number from 0 to %g",
+                              "%g is nearer than --near-clamp %g; give a number from 0 "
+                              "to %g",
                               s->far_clamp, s->near_clamp, s->near_clamp);
     return EXIT_DONE;
 }
 
-int controls_apply(const struct control_settings *s, struct refocus_render_params *params,
-                   struct controls *controls)
+int controls_apply(const struct control_settings *s,
+                   struct refocus_render_params *params, struct controls *controls)
 {
     int status = EXIT_DONE;
 
@@ -142,7 +145,8 @@ static struct refocus_focus_point point_at(const double at[2], float disparity,
                                         disparity};
 }
 
-static void tilt(struct refocus_render_params *params, const struct refocus_focus_plane *plane)
+static void tilt(struct refocus_render_params *params,
+                 const struct refocus_focus_plane *plane)
 {
     params->tilt_x = plane->x;
     params->tilt_y = plane->y;
@@ -171,18 +175,21 @@ static int aim_by_points(const struct controls *controls,
     }
     if (refocus_focus_plane_of_points(&plane, point) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--focus-plane",
-                              "the three pixels lie on one line, or nearly; give others");
+                              "the three pixels lie on one line, or nearly; give "
+                              "others");
     tilt(params, &plane);
     return EXIT_DONE;
 }
 
-static int aim_by_line(const struct controls *controls, struct refocus_render_params *params,
+static int aim_by_line(const struct controls *controls,
+                       struct refocus_render_params *params,
                        const struct refocus_disparity *prepared)
 {
     const double y = (prepared->height - 1) / 2.0;
     const double level[4] = {0, y, prepared->width - 1.0, y};
     const double *line = given(controls->tilt_line[0]) ? controls->tilt_line : level;
-    const struct refocus_focus_point from = point_at(line, params->focus_disparity, prepared);
+    const struct refocus_focus_point from =
+        point_at(line, params->focus_disparity, prepared);
     const struct refocus_focus_point to =
         point_at(line + 2, params->focus_disparity, prepared);
     struct refocus_focus_plane plane;
@@ -220,10 +227,11 @@ int controls_aim(const struct controls *controls, struct refocus_render_params *
 
 bool controls_suit_method(const struct refocus_render_params *p)
 {
-    const bool any = p->field != REFOCUS_FIELD_LENS || p->focus_half_width > 0 || p->bands > 0 ||
-                     p->tilt_across != 0 || p->tilt_down != 0 || p->depth_share != 1 ||
-                     p->focus_map || p->sharp_map || p->least_disparity > 0 ||
-                     p->most_disparity < 1 || p->blur_limit < p->max_blur_radius;
+    const bool any = p->field != REFOCUS_FIELD_LENS || p->focus_half_width > 0 ||
+                     p->bands > 0 || p->tilt_across != 0 || p->tilt_down != 0 ||
+                     p->depth_share != 1 || p->focus_map || p->sharp_map ||
+                     p->least_disparity > 0 || p->most_disparity < 1 ||
+                     p->blur_limit < p->max_blur_radius;
 
     return !any || p->method == REFOCUS_METHOD_SWEEP ||
            p->method == REFOCUS_METHOD_SEARCH || p->method == REFOCUS_METHOD_BLUR ||
@@ -235,8 +243,8 @@ int controls_check_method(const struct refocus_render_params *p)
     if (controls_suit_method(p))
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--method",
-                          "%s knows the focus of a plain lens only; give sweep, search, blur "
-                          "or diffusion", refocus_method_name(p->method));
+                          "%s knows the focus of a plain lens only; give sweep, "
+                          "search, blur or diffusion", refocus_method_name(p->method));
 }
 
 void controls_free(struct controls *controls)

@@ -9,9 +9,10 @@ static const struct {
     const char *name, *summary;
     int rays;
     float highlight_gain, sigma;
-} qualities[] = {{"preview", "32 rays, plain averages", 32, 4, 1e30f},
-                 {"standard", "64 rays, bright samples count more (--sigma 400)", 64, 4, 400},
-                 {"best", "128 rays and more light for lamps (--highlights 8)", 128, 8, 400}};
+} qualities[] = {
+    {"preview", "32 rays, plain averages", 32, 4, 1e30f},
+    {"standard", "64 rays, bright samples count more (--sigma 400)", 64, 4, 400},
+    {"best", "128 rays and more light for lamps (--highlights 8)", 128, 8, 400}};
 
 static const struct {
     const char *name, *summary;
@@ -28,7 +29,8 @@ const char *engine_quality_name(uint32_t index)
 
 const char *engine_quality_summary(uint32_t index)
 {
-    return index < sizeof qualities / sizeof *qualities ? qualities[index].summary : NULL;
+    return index < sizeof qualities / sizeof *qualities ? qualities[index].summary
+                                                        : NULL;
 }
 
 const char *engine_blend_name(uint32_t index)
@@ -48,8 +50,8 @@ static int check_aperture(uint32_t method, const struct engine_settings *setting
         bokeh_is_plain_disc(&settings->bokeh, settings->aperture))
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--aperture",
-                          "'%s' does not go with --method %s, which knows a disc alone; leave "
-                          "one of them out",
+                          "'%s' does not go with --method %s, which knows a disc "
+                          "alone; leave one of them out",
                           settings->aperture && strcmp(settings->aperture, "disc")
                               ? settings->aperture
                               : "such a disc",
@@ -71,7 +73,8 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
         params->iterations = (int32_t)settings->iterations;
     if (!isnan(settings->sigma))
         params->sigma = (float)settings->sigma;
-    else if (params->method == REFOCUS_METHOD_SWEEP) /* the only one whose weights are quick */
+    else if (params->method == REFOCUS_METHOD_SWEEP) /* the only one whose weights are
+                                                        quick */
         params->sigma = qualities[settings->quality].sigma;
     params->highlight_gain = isnan(settings->highlights)
                                  ? qualities[settings->quality].highlight_gain
@@ -96,11 +99,12 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
 
 static int interrupted(const struct engine *engine)
 {
-    return report_failure(EXIT_FAILED, engine->name, "interrupted; nothing was written");
+    return report_failure(EXIT_FAILED, engine->name, "interrupted; nothing was "
+                                                     "written");
 }
 
-int engine_create(struct engine *engine, const struct engine_settings *settings, int width,
-                  int height, double blur)
+int engine_create(struct engine *engine, const struct engine_settings *settings,
+                  int width, int height, double blur)
 {
     struct refocus_renderer_params params =
         refocus_renderer_params_default(width, height, (float)blur);
@@ -122,8 +126,8 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
                               refocus_strerror(status));
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name,
-                              "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a smaller "
-                              "picture or less blur",
+                              "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a "
+                              "smaller picture or less blur",
                               refocus_strerror(status), width, height, blur,
                               (double)refocus_renderer_memory(&params) / (1 << 20));
     interrupt_watch(engine->renderer);
@@ -148,10 +152,10 @@ int engine_prepare(struct engine *engine, const struct refocus_image *photo,
     return EXIT_DONE;
 }
 
-/* Render whole, or, where that is slow and somebody watches, in strips of rows. The progress
- * goes from begin by share. */
-static int render_once(struct engine *engine, const struct refocus_image *out, double begin,
-                       double share)
+/* Render whole, or, where that is slow and somebody watches, in strips of rows. The
+ * progress goes from begin by share. */
+static int render_once(struct engine *engine, const struct refocus_image *out,
+                       double begin, double share)
 {
     enum { STRIPS = 20 };
     const bool strips = report_is_watched() && out->height >= STRIPS &&
@@ -234,16 +238,18 @@ json_t *engine_json(const struct engine *engine)
                                                      : json_integer(params->rays);
 
     return json_pack(
-        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, s:I}", "method",
-        refocus_method_name(params->method), "rays", rays, "blend",
+        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
+        "s:I}",
+        "method", refocus_method_name(params->method), "rays", rays, "blend",
         engine_blend_name(params->blend), "sigma",
-        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "highlights",
-        (double)params->highlight_gain, "iterations",
+        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"),
+        "highlights", (double)params->highlight_gain, "iterations",
         (int)params->iterations, "blur", (double)params->max_blur_radius, "focus",
         (double)params->focus_disparity, "threads", (int)engine->info.threads, "cpu",
-        refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms, "prepare_ms",
-        engine->prepare_ms, "render_ms", report_spread_json(engine->render_ms),
-        "cpu_ms", report_spread_json(engine->cpu_ms),
-        "renderer_bytes", (json_int_t)engine->info.memory, "peak_rss_kib",
+        refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms,
+        "prepare_ms", engine->prepare_ms, "render_ms",
+        report_spread_json(engine->render_ms), "cpu_ms",
+        report_spread_json(engine->cpu_ms), "renderer_bytes",
+        (json_int_t)engine->info.memory, "peak_rss_kib",
         (json_int_t)report_peak_rss_kib());
 }

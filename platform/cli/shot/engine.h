@@ -169,8 +169,8 @@ struct engine {
 int engine_begin(struct engine *engine, const struct engine_settings *settings);
 
 /* Renderer for photos of this size and blur; prepare; render settings->repeat times. */
-int engine_create(struct engine *engine, const struct engine_settings *settings, int width,
-                  int height, double blur);
+int engine_create(struct engine *engine, const struct engine_settings *settings,
+                  int width, int height, double blur);
 int engine_prepare(struct engine *engine, const struct refocus_image *photo,
                    const struct refocus_disparity *disparity);
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat);

@@ -40,30 +40,31 @@ struct shot {
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Before a photo is read: settle what options take from each other, and refuse what does not go
- * together. own_focus: each picture has a focus of its own, whatever the lens settings say. */
+/* Before a photo is read: settle what options take from each other, and refuse what
+ * does not go together. own_focus: each picture has a focus of its own, whatever the
+ * lens settings say. */
 int shot_check(struct shot_settings *settings, bool own_focus);
 
-/* The files that a picture is made of, some of which may be NULL, and their number: for checks
- * that none of them is written over. */
+/* The files that a picture is made of, some of which may be NULL, and their number: for
+ * checks that none of them is written over. */
 enum { SHOT_INPUTS = 7 };
 int shot_inputs(const struct shot_settings *settings, const char *photo,
                 const char *inputs[SHOT_INPUTS]);
 
-/* Focus by the settings and packed disparities of the photo's size, and the plane of focus through
- * it. */
+/* Focus by the settings and packed disparities of the photo's size, and the plane of
+ * focus through it. */
 int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,
              struct refocus_render_params *params);
 
-/* most_blur: what the renderer is made for, where that is more than the settings' blur; 0: that.
- * Ended by shot_close(), whatever it returned. */
-int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
-              double most_blur);
+/* most_blur: what the renderer is made for, where that is more than the settings' blur;
+ * 0: that. Ended by shot_close(), whatever it returned. */
+int shot_open(struct shot *shot, const char *photo,
+              const struct shot_settings *settings, double most_blur);
 void shot_close(struct shot *shot);
 
-/* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y, width
- * and height in it; plane[0] is to be freed. */
+/* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y,
+ * width and height in it; plane[0] is to be freed. */
 int shot_output(struct shot *shot, const double region[4], struct refocus_image *out);
 
 #endif

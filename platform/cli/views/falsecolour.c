@@ -19,8 +19,9 @@ struct colour {
     uint8_t r, g, b;
 };
 
-static const struct colour paper = {16, 16, 16}, ink = {240, 240, 240}, sharp = {0, 255, 120},
-                           near_line = {255, 0, 200}, far_line = {255, 255, 255};
+static const struct colour paper = {16, 16, 16}, ink = {240, 240, 240},
+                           sharp = {0, 255, 120}, near_line = {255, 0, 200},
+                           far_line = {255, 255, 255};
 
 /* Equal steps from 0 to 1, dark to light so that it reads in grey too. */
 static const struct colour ramp[] = {{24, 16, 64},   {38, 80, 180},  {28, 150, 160},
@@ -54,8 +55,8 @@ static void fill(const struct refocus_image *image, int top, int scale, int x, i
 }
 
 /* Text centred about x, but within the picture. */
-static void write_text(const struct refocus_image *image, int top, int scale, int x, int y,
-                       const char *text)
+static void write_text(const struct refocus_image *image, int top, int scale, int x,
+                       int y, const char *text)
 {
     const int width = (int)strlen(text) * (GLYPH_WIDTH + 1) - 1;
     const int room = image->width / scale - 1;
@@ -80,7 +81,8 @@ static struct refocus_image make_picture(int width, int height, int *scale)
     if (height > REFOCUS_MAX_SIDE - LEGEND_HEIGHT * *scale)
         *scale = 0;
     rows = height + LEGEND_HEIGHT * *scale;
-    image = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, rows, (ptrdiff_t)width * 3);
+    image = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, rows,
+                                 (ptrdiff_t)width * 3);
     if ((uint64_t)width * 3 * (uint64_t)rows <= SIZE_MAX)
         image.plane[0] = malloc((size_t)width * 3 * (size_t)rows);
     return image;
@@ -106,8 +108,8 @@ static void draw_bar(const struct refocus_image *image, int top, int scale)
         fill(image, top, scale, x, BAR_TOP, 1, BAR_HEIGHT,
              colour_at((x - 4 + 0.5) / (width - 8)));
     for (int i = 0; i < TICKS; i++)
-        fill(image, top, scale, 4 + i * (width - 9) / (TICKS - 1), BAR_TOP + BAR_HEIGHT, 1, 2,
-             ink);
+        fill(image, top, scale, 4 + i * (width - 9) / (TICKS - 1), BAR_TOP + BAR_HEIGHT,
+             1, 2, ink);
 }
 
 static int tick_x(const struct refocus_image *image, int scale, int i)
@@ -124,7 +126,10 @@ static void draw_depth_legend(const struct refocus_image *image, int top, int sc
     for (int i = 0; i < TICKS; i++) {
         const double d = (double)i / (TICKS - 1);
 
-        snprintf(text, sizeof text, "%s%.4g", i == 0 ? "far d " : i == TICKS - 1 ? "near d " : "",
+        snprintf(text, sizeof text, "%s%.4g",
+                 i == 0           ? "far d "
+                 : i == TICKS - 1 ? "near d "
+                                  : "",
                  d);
         write_text(image, top, scale, tick_x(image, scale, i), 16, text);
         if (range) {
@@ -139,7 +144,8 @@ static void write_key(const struct refocus_image *image, int top, int scale, int
                       struct colour colour, const char *text)
 {
     fill(image, top, scale, x, 25, GLYPH_HEIGHT, GLYPH_HEIGHT, colour);
-    write_text(image, top, scale, x + 10 + (int)strlen(text) * (GLYPH_WIDTH + 1) / 2, 25, text);
+    write_text(image, top, scale, x + 10 + (int)strlen(text) * (GLYPH_WIDTH + 1) / 2,
+               25, text);
 }
 
 /* "near 0.552 1.23 m" */
@@ -149,7 +155,8 @@ static void write_limit(char text[32], const char *name, double d,
     if (d < 0 || d > 1)
         snprintf(text, 32, "%s all", name);
     else if (range)
-        snprintf(text, 32, "%s %.3f %.3g m", name, d, refocus_depth_of_disparity(range, d));
+        snprintf(text, 32, "%s %.3f %.3g m", name, d,
+                 refocus_depth_of_disparity(range, d));
     else
         snprintf(text, 32, "%s %.3f", name, d);
 }
@@ -174,7 +181,8 @@ static void draw_blur_legend(const struct refocus_image *image, int top, int sca
     write_key(image, top, scale, 184, far_line, text);
 }
 
-/* Over the sharp pixels that have one of the others within `reach` in a row or column. */
+/* Over the sharp pixels that have one of the others within `reach` in a row or
+ * column. */
 static void draw_limits(const struct refocus_image *image, const uint16_t *blur,
                         const uint16_t *disparity, int height, int reach)
 {
@@ -194,16 +202,19 @@ static void draw_limits(const struct refocus_image *image, const uint16_t *blur,
                 const int j = y + (k % 4 == 2 ? far : k % 4 == 3 ? -far : 0);
                 const size_t there = (size_t)j * (size_t)width + (size_t)i;
 
-                found = i >= 0 && i < width && j >= 0 && j < height && blur[there] >= HALF_PIXEL;
+                found = i >= 0 && i < width && j >= 0 && j < height &&
+                        blur[there] >= HALF_PIXEL;
                 if (found)
                     memcpy(row + 3 * x,
-                           disparity[there] > disparity[here] ? &near_line : &far_line, 3);
+                           disparity[there] > disparity[here] ? &near_line : &far_line,
+                           3);
             }
         }
     }
 }
 
-static void lay_over(const struct refocus_image *image, const struct refocus_image *photo)
+static void lay_over(const struct refocus_image *image,
+                     const struct refocus_image *photo)
 {
     for (int y = 0; y < photo->height; y++) {
         const uint8_t *from = photo->plane[0] + y * photo->stride[0];
