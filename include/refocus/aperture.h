@@ -63,29 +63,31 @@ enum refocus_figure {
 /**
  * What an opening can be. Start from refocus_aperture_params_default(), a disc.
  *
- * The outline is a mask's, a figure's, or an iris's. An iris of n blades with curvature c has
- * corners on the circle of radius K, and arcs between them that bulge c times as far as that
- * circle. With opening o > 0 it is an iris in a round barrel that it just clears when wide open
- * (o = 1, a disc) and that has been closed to o times that: o = N0 / N of a lens of f/N0 at f/N;
- * the result is enlarged to reach K again.
+ * The outline is a mask's, a figure's, or an iris's. An iris of n blades with curvature
+ * c has corners on the circle of radius K, and arcs between them that bulge c times as
+ * far as that circle. With opening o > 0 it is an iris in a round barrel that it just
+ * clears when wide open (o = 1, a disc) and that has been closed to o times that: o =
+ * N0 / N of a lens of f/N0 at f/N; the result is enlarged to reach K again.
  *
- * Over the outline light is spread by v = (rho^2 - hole^2) / (1 - hole^2), rho = 0 in the middle
- * and 1 at the rim: evenly, or with edge e > 0 by 1 - e + 5 e v^4, a disc with a bright rim as
- * of an over-corrected lens, or with e < 0 by 1 + e - 2 e (1 - v), a disc that fades out.
- * Lenses do the one before and the other behind the focus.
+ * Over the outline light is spread by v = (rho^2 - hole^2) / (1 - hole^2), rho = 0 in
+ * the middle and 1 at the rim: evenly, or with edge e > 0 by 1 - e + 5 e v^4, a disc
+ * with a bright rim as of an over-corrected lens, or with e < 0 by 1 + e - 2 e (1 - v),
+ * a disc that fades out. Lenses do the one before and the other behind the focus.
  */
 struct refocus_aperture_params {
     uint32_t struct_size;  /**< sizeof(struct refocus_aperture_params) */
     int32_t blades;        /**< 3 to 16; 0 = round */
-    double rotation_deg;   /**< angle of one corner, counter-clockwise from the right, as seen;
-                                of the whole figure; -3600 to 3600; not of masks */
+    double rotation_deg;   /**< angle of one corner, counter-clockwise from the right,
+                                as seen; of the whole figure; -3600 to 3600; not of
+                                masks */
     double curvature;      /**< 0 straight blades, to 1 */
     double opening;        /**< 0 = no barrel, else above it to 1 */
-    double squeeze;        /**< width / height of what is drawn, 0.5 to 2; below 1 as of an
-                                anamorphic lens */
+    double squeeze;        /**< width / height of what is drawn, 0.5 to 2; below 1 as of
+                                an anamorphic lens */
     double hole;           /**< radius of a stop in the middle, 0 to 0.9: rings */
     double edge_behind;    /**< e of what is behind the focus, -1 to 1 */
-    double edge_before;    /**< e of what is before it, -1 to 1; only `sweep` tells them apart */
+    double edge_before;    /**< e of what is before it, -1 to 1; only `sweep` tells them
+                                apart */
     uint32_t figure;       /**< enum refocus_figure */
     int32_t mask_width, mask_height; /**< as of refocus_aperture_create_mask() */
     const uint8_t *mask;   /**< NULL = none; in place of blades and figure */
@@ -106,9 +108,9 @@ static inline struct refocus_aperture_params refocus_aperture_params_default(voi
  * Any of these. Params that say no more than one of the functions above make the same
  * aperture, whose rays are the same.
  *
- * @return as refocus_aperture_create_mask(); REFOCUS_ERR_ARGUMENT also for a figure together
- *         with curvature or an opening, and a mask together with any of figure, blades,
- *         rotation, curvature and opening
+ * @return as refocus_aperture_create_mask(); REFOCUS_ERR_ARGUMENT also for a figure
+ *         together with curvature or an opening, and a mask together with any of
+ *         figure, blades, rotation, curvature and opening
  */
 REFOCUS_API int refocus_aperture_create(struct refocus_aperture **aperture,
                                         const struct refocus_aperture_params *params);
@@ -123,21 +125,21 @@ struct refocus_ray {
 };
 
 /**
- * A well-distributed set of @p count rays of equal share, the same on every machine; those
- * behind the focus where the sides differ.
+ * A well-distributed set of @p count rays of equal share, the same on every machine;
+ * those behind the focus where the sides differ.
  *
  * @param count  1 to REFOCUS_MAX_RAYS
  * @param rays   receives @p count rays
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT. Thread-safe.
  */
-REFOCUS_API int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
-                                      struct refocus_ray *rays);
+REFOCUS_API int refocus_aperture_rays(const struct refocus_aperture *aperture,
+                                      int count, struct refocus_ray *rays);
 
 /**
  * Every pixel of the aperture mask at blur radius K: pixel (x, y) is the ray
- * (-x / K, -y / K), weighted by how much of the pixel is open, and where the light is not
- * spread evenly by how much of it there is behind the focus. K = 20 gives the 41x41 mask of
- * Yang et al. 2016.
+ * (-x / K, -y / K), weighted by how much of the pixel is open, and where the light is
+ * not spread evenly by how much of it there is behind the focus. K = 20 gives the 41x41
+ * mask of Yang et al. 2016.
  *
  * @param max_blur_radius  K in pixels, > 0, at most 127
  * @param capacity  number of rays that @p rays can hold; 0 only counts

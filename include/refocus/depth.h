@@ -21,8 +21,10 @@ enum refocus_sample {
 
 /** What the samples are proportional to. */
 enum refocus_depth_meaning {
-    REFOCUS_DEPTH_DISPARITY = 1, /**< linear in 1/z: value_far is d = 0, value_near is d = 1 */
-    REFOCUS_DEPTH_DISTANCE = 2,  /**< linear in z: z = metres_at_zero + v * metres_per_unit */
+    REFOCUS_DEPTH_DISPARITY = 1, /**< linear in 1/z: value_far is d = 0, value_near is d
+                                      = 1 */
+    REFOCUS_DEPTH_DISTANCE = 2,  /**< linear in z: z = metres_at_zero + v *
+                                      metres_per_unit */
 };
 
 enum refocus_depth_flags {
@@ -100,10 +102,11 @@ enum { REFOCUS_MAX_SPECKLE = 255 };
 struct refocus_repair_params {
     uint32_t struct_size; /**< sizeof(struct refocus_repair_params) */
     int32_t speckle;      /**< patches of fewer samples are filled like holes, 0 to
-                               REFOCUS_MAX_SPECKLE; 0 and 1 = none. A patch is what touches,
-                               across corners too, in steps of 1/24 of the range */
-    uint8_t *confidence;  /**< receives a byte a sample: 255 = as measured, 0 = filled; may
-                               be NULL. For refocus_upsample() */
+                               REFOCUS_MAX_SPECKLE; 0 and 1 = none. A patch is what
+                               touches, across corners too, in steps of 1/24 of the
+                               range */
+    uint8_t *confidence;  /**< receives a byte a sample: 255 = as measured, 0 = filled;
+                               may be NULL. For refocus_upsample() */
     ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
 };
 
@@ -117,8 +120,8 @@ static inline struct refocus_repair_params refocus_repair_params_default(void)
 }
 
 /**
- * refocus_depth_to_disparity() that also removes specks and says what was filled. Time and
- * memory are linear in the number of samples: 5 bytes each at most.
+ * refocus_depth_to_disparity() that also removes specks and says what was filled. Time
+ * and memory are linear in the number of samples: 5 bytes each at most.
  *
  * @return as refocus_depth_to_disparity(). Thread-safe.
  */
@@ -131,11 +134,12 @@ REFOCUS_API int refocus_depth_repair(const struct refocus_depth_map *map,
 struct refocus_upsample_params {
     uint32_t struct_size;      /**< sizeof(struct refocus_upsample_params) */
     int32_t threads;           /**< 1 to 64; 0 = one for each processor */
-    uint32_t cpu;              /**< enum refocus_cpu of render.h; 0 = the best there is */
+    uint32_t cpu;              /**< enum refocus_cpu of render.h; 0 = the best there
+                                    is */
     uint32_t reserved;         /**< 0 */
     const uint8_t *confidence; /**< a byte for each sample of the map, 255 = sure, 0 = a
-                                    guess that counts where there is nothing else; NULL =
-                                    all sure */
+                                    guess that counts where there is nothing else; NULL
+                                    = all sure */
     ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
 };
 
@@ -149,31 +153,32 @@ static inline struct refocus_upsample_params refocus_upsample_params_default(voi
 }
 
 /**
- * Bring a map of disparities to the size of the photo that it belongs to, with its edges
- * on the photo's: refocus_prepare() does the same with maps of another size.
+ * Bring a map of disparities to the size of the photo that it belongs to, with its
+ * edges on the photo's: refocus_prepare() does the same with maps of another size.
  *
- * Joint bilateral upsampling (Kopf et al. 2007) averages the samples around a pixel by nearness
- * and likeness, and so makes up disparities between surfaces. Here the samples are parted into
- * surfaces first; the pixel goes to the one with the most of nearness times mean likeness, and
- * takes the plane through its samples. The result does not depend on threads or processor. A map of the
- * photo's size is copied, one with more columns or rows is sampled.
+ * Joint bilateral upsampling (Kopf et al. 2007) averages the samples around a pixel by
+ * nearness and likeness, and so makes up disparities between surfaces. Here the samples
+ * are parted into surfaces first; the pixel goes to the one with the most of nearness
+ * times mean likeness, and takes the plane through its samples. The result does not
+ * depend on threads or processor. A map of the photo's size is copied, one with more
+ * columns or rows is sampled.
  *
  * @param photo   any packed format
  * @param map     covers the same view as the photo; see struct refocus_disparity
  * @param params  see struct refocus_upsample_params
- * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may not
- *                overlap the map
+ * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may
+ *                not overlap the map
  * @param stride  bytes from a row of @p out to the next; even; may be negative
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 7 bytes a pixel are
- *         needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD. On an
- *         error @p out is untouched.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 7 bytes a pixel
+ *         are needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD.
+ *         On an error @p out is untouched.
  *
  * Thread-safe.
  */
 REFOCUS_API int refocus_upsample(const struct refocus_image *photo,
                                  const struct refocus_disparity *map,
-                                 const struct refocus_upsample_params *params, uint16_t *out,
-                                 ptrdiff_t stride);
+                                 const struct refocus_upsample_params *params,
+                                 uint16_t *out, ptrdiff_t stride);
 
 /** Farthest that an edge is looked for, in pixels. */
 enum { REFOCUS_MAX_SNAP = 16 };
@@ -197,22 +202,23 @@ static inline struct refocus_snap_params refocus_snap_params_default(int32_t rea
 }
 
 /**
- * Move the edges of a map of the photo's own size onto the photo's, where they are off by a few
- * pixels: what lies within reach of a step of 1/24 of the range is worked out anew, as
- * refocus_upsample() does it, from what lies farther away. Surfaces that are nowhere wider than
- * twice the reach stay as they are.
+ * Move the edges of a map of the photo's own size onto the photo's, where they are off
+ * by a few pixels: what lies within reach of a step of 1/24 of the range is worked out
+ * anew, as refocus_upsample() does it, from what lies farther away. Surfaces that are
+ * nowhere wider than twice the reach stay as they are.
  *
  * @param photo  any packed format
  * @param map    of the photo's size
  * @param out    as for refocus_upsample()
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 11 bytes a pixel are
- *         needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD; on an error
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 11 bytes a pixel
+ *         are needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD;
+ *         on an error
  *         @p out holds nothing of use. Thread-safe.
  */
 REFOCUS_API int refocus_depth_snap(const struct refocus_image *photo,
                                    const struct refocus_disparity *map,
-                                   const struct refocus_snap_params *params, uint16_t *out,
-                                   ptrdiff_t stride);
+                                   const struct refocus_snap_params *params,
+                                   uint16_t *out, ptrdiff_t stride);
 
 #ifdef __cplusplus
 }

@@ -20,7 +20,8 @@ enum refocus_format {
     REFOCUS_FORMAT_BGRA8 = 4, /**< 4 bytes a pixel, alpha not premultiplied */
     REFOCUS_FORMAT_NV12 = 5,  /**< 4:2:0: plane 0 of Y, plane 1 of U V */
     REFOCUS_FORMAT_NV21 = 6,  /**< 4:2:0: plane 0 of Y, plane 1 of V U */
-    REFOCUS_FORMAT_I420 = 7,  /**< 4:2:0: planes of Y, U and V; also called YUV420, YU12 */
+    REFOCUS_FORMAT_I420 = 7,  /**< 4:2:0: planes of Y, U and V; also called YUV420,
+                                   YU12 */
     REFOCUS_FORMAT_YUYV = 8,  /**< 4:2:2 in plane 0: Y U Y V for two pixels */
 };
 
@@ -72,7 +73,8 @@ static inline struct refocus_image refocus_image_packed(uint32_t format, void *p
     return image;
 }
 
-/** Bytes of one pixel of a packed format of R, G and B; 0 for any other. Thread-safe. */
+/** Bytes of one pixel of a packed format of R, G and B; 0 for any other.
+ *  Thread-safe. */
 REFOCUS_API int refocus_format_bytes(uint32_t format);
 
 /** Whether a format is one of Y, U and V. Thread-safe. */
@@ -81,14 +83,15 @@ REFOCUS_API int refocus_format_is_yuv(uint32_t format);
 /** Planes of a format; 0 for an unknown one. Thread-safe. */
 REFOCUS_API int refocus_format_planes(uint32_t format);
 
-/** Bytes of a row of plane @p plane of a picture of @p width pixels, and the rows of that plane
- *  of one of @p height; 0 for a plane or format that is not. Thread-safe. */
-REFOCUS_API ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane, int32_t width);
+/** Bytes of a row of plane @p plane of a picture of @p width pixels, and the rows of
+ *  that plane of one of @p height; 0 for a plane or format that is not. Thread-safe. */
+REFOCUS_API ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane,
+                                              int32_t width);
 REFOCUS_API int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height);
 
 /**
- * A picture whose planes follow each other in one block of memory, rows without gaps, BT.601
- * in limited range; refocus_image_bytes() long.
+ * A picture whose planes follow each other in one block of memory, rows without gaps,
+ * BT.601 in limited range; refocus_image_bytes() long.
  */
 static inline struct refocus_image refocus_image_planar(uint32_t format, void *memory,
                                                         int32_t width, int32_t height)
@@ -105,8 +108,10 @@ static inline struct refocus_image refocus_image_planar(uint32_t format, void *m
     return image;
 }
 
-/** Bytes of a picture's planes, rows without gaps; 0 for an unknown format. Thread-safe. */
-static inline uint64_t refocus_image_bytes(uint32_t format, int32_t width, int32_t height)
+/** Bytes of a picture's planes, rows without gaps; 0 for an unknown format.
+ *  Thread-safe. */
+static inline uint64_t refocus_image_bytes(uint32_t format, int32_t width,
+                                           int32_t height)
 {
     uint64_t bytes = 0;
     int plane;
@@ -133,7 +138,8 @@ struct refocus_disparity {
 
 /** A map of 16-bit disparities; see struct refocus_disparity. */
 static inline struct refocus_disparity refocus_disparity16(const uint16_t *samples,
-                                                           int32_t width, int32_t height,
+                                                           int32_t width,
+                                                           int32_t height,
                                                            ptrdiff_t stride)
 {
     struct refocus_disparity map;

@@ -35,11 +35,13 @@ REFOCUS_API double refocus_aperture_radius_m(const struct refocus_lens *lens);
 REFOCUS_API double refocus_focal_length_px(const struct refocus_lens *lens,
                                            double picture_width_px);
 
-/** d = (1/z - 1/z1) / (1/z0 - 1/z1), not clamped. @param depth_m > 0, may be INFINITY */
+/** d = (1/z - 1/z1) / (1/z0 - 1/z1), not clamped. @param depth_m > 0, may be
+ *  INFINITY */
 REFOCUS_API double refocus_disparity_of_depth(const struct refocus_depth_range *range,
                                               double depth_m);
 
-/** z of a disparity: the inverse of refocus_disparity_of_depth(); INFINITY where 1/z = 0. */
+/** z of a disparity: the inverse of refocus_disparity_of_depth(); INFINITY where 1/z =
+ *  0. */
 REFOCUS_API double refocus_depth_of_disparity(const struct refocus_depth_range *range,
                                               double disparity);
 
@@ -51,7 +53,8 @@ REFOCUS_API double refocus_max_blur_radius(const struct refocus_lens *lens,
                                            const struct refocus_depth_range *range,
                                            double picture_width_px);
 
-/** The f-number whose largest blur radius is @p max_blur_radius_px (> 0): the inverse. */
+/** The f-number whose largest blur radius is @p max_blur_radius_px (> 0): the
+ *  inverse. */
 REFOCUS_API double refocus_f_number_of_blur(const struct refocus_lens *lens,
                                             const struct refocus_depth_range *range,
                                             double picture_width_px,
@@ -75,7 +78,8 @@ REFOCUS_API double refocus_circle_of_confusion_m(const struct refocus_lens *lens
 /** Depths that still look sharp. */
 struct refocus_depth_of_field {
     double near_m; /**< U- */
-    double far_m;  /**< U+; INFINITY when focused at the hyperfocal distance or beyond */
+    double far_m;  /**< U+; INFINITY when focused at the hyperfocal distance or
+                        beyond */
 };
 
 /**

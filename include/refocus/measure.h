@@ -14,19 +14,20 @@ extern "C" {
 struct refocus_kernel_time {
     const char *name; /**< static; the words of src/kernels/kernels.h */
     const char *unit; /**< static; "pixel", or "ray sample": one ray of one pixel */
-    double ns;        /**< nanoseconds for one, by the instruction set that was asked for */
+    double ns;        /**< nanoseconds for one, by the instruction set that was asked
+                           for */
     double ns_c;      /**< and by plain C */
 };
 
 /**
- * Time one kernel on the calling thread: the best of runs that last about a twentieth of a
- * second, on made-up rows that fit in the first cache.
+ * Time one kernel on the calling thread: the best of runs that last about a twentieth
+ * of a second, on made-up rows that fit in the first cache.
  *
  * @param index  0 and on; the first that gives REFOCUS_ERR_ARGUMENT ends the list
  * @param cpu    enum refocus_cpu
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (index, cpu or a NULL), REFOCUS_ERR_UNSUPPORTED (the
- *         processor lacks the instruction set), REFOCUS_ERR_MEMORY. On an error *time is
- *         untouched. Thread-safe.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (index, cpu or a NULL),
+ *         REFOCUS_ERR_UNSUPPORTED (the processor lacks the instruction set),
+ *         REFOCUS_ERR_MEMORY. On an error *time is untouched. Thread-safe.
  */
 REFOCUS_API int refocus_measure_kernel(uint32_t index, uint32_t cpu,
                                        struct refocus_kernel_time *time);

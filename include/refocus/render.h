@@ -359,8 +359,9 @@ struct refocus_render_params {
     float cat_eye;              /**< 0 to 0.9: how much of its width the opening has lost in the
                                  corners, where it is the part common to two circles, one pushed
                                  out and one pushed in; it grows with the square of the distance
-                                 from the middle of the picture. What is drawn on a mask is
-                                 squeezed into it. 0 = nothing, the default */
+                                 from the middle of the picture. Of blades and figures that part
+                                 is taken, and a ring or an edge follows its rim; what is drawn
+                                 on a mask is squeezed into it. 0 = nothing, the default */
     float fringe;               /**< -0.5 to 0.5: longitudinal colour: by how much the blur of red
                                  and blue behind the focus, and of green before it, is smaller
                                  than the other; below 0 the other way round. Takes twice the

@@ -21,13 +21,14 @@ struct refocus_temporal_params {
     int32_t width;        /**< of the maps, samples, 1 to REFOCUS_MAX_SIDE */
     int32_t height;       /**< of the maps, samples, 1 to REFOCUS_MAX_SIDE */
     uint32_t reserved;    /**< 0 */
-    float strength;       /**< share of the past where nothing changes, 0 (off) to 0.95 */
-    float noise;          /**< largest difference between frames that is noise, share of the
-                               range of disparities, 0 to 0.25 */
+    float strength;       /**< share of the past where nothing changes, 0 (off) to
+                               0.95 */
+    float noise;          /**< largest difference between frames that is noise, share of
+                               the range of disparities, 0 to 0.25 */
 };
 
-static inline struct refocus_temporal_params refocus_temporal_params_default(int32_t width,
-                                                                             int32_t height)
+static inline struct refocus_temporal_params
+refocus_temporal_params_default(int32_t width, int32_t height)
 {
     struct refocus_temporal_params params;
 
@@ -56,23 +57,25 @@ REFOCUS_API void refocus_temporal_destroy(struct refocus_temporal **filter);
 REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
 
 /**
- * Filter the next map. Blocks of 8 x 8 samples are followed from the last frame, by the photo
- * where there is one; with p the filtered disparity of the last frame at the place that a sample
- * d came from, and n the frames that it has been seen in,
+ * Filter the next map. Blocks of 8 x 8 samples are followed from the last frame, by the
+ * photo where there is one; with p the filtered disparity of the last frame at the
+ * place that a sample d came from, and n the frames that it has been seen in,
  *
  *     out = d + k (1 - (d - p)^2 / noise^2) (p - d),    k = min(strength, n / (n + 1))
  *
- * while |d - p| < noise and the photo is alike in both places. Else out = d at once, so that
- * nothing trails behind what moves; but where the photo stands still and d jumps, the
- * last value stays until the next frame agrees with the new one.
+ * while |d - p| < noise and the photo is alike in both places. Else out = d at once, so
+ * that nothing trails behind what moves; but where the photo stands still and d jumps,
+ * the last value stays until the next frame agrees with the new one.
  *
- * The scale of disparities has to be the same for all frames: give refocus_depth_to_disparity()
- * the near_m and far_m (value_near and value_far) that it reported for the first one. Integer
- * arithmetic: the same bytes on every processor.
+ * The scale of disparities has to be the same for all frames: give
+ * refocus_depth_to_disparity() the near_m and far_m (value_near and value_far) that it
+ * reported for the first one. Integer arithmetic: the same bytes on every processor.
  *
- * @param photo   the photo of this frame, any packed format and size; NULL = by depth alone
+ * @param photo   the photo of this frame, any packed format and size; NULL = by depth
+ *                alone
  * @param map     width x height samples
- * @param out     receives width x height samples of 16 bits; may be the map's own memory
+ * @param out     receives width x height samples of 16 bits; may be the map's own
+ *                memory
  * @param stride  bytes from a row of @p out to the next; even; may be negative
  * @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT with @p out untouched
  */

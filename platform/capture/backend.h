@@ -27,8 +27,8 @@ struct refocus_source {
     uint32_t sequence; /* of the frame before */
 };
 
-/* Reasons are never NULL here. After an error of start, reopen or open nothing streams; state
- * of a failed open is freed by the backend itself. */
+/* Reasons are never NULL here. After an error of start, reopen or open nothing streams;
+ * state of a failed open is freed by the backend itself. */
 struct rf_source_ops {
     const char *scheme; /* before the colon */
     int (*open)(struct refocus_source *source, const char *rest,
@@ -53,13 +53,14 @@ struct rf_source_ops {
 extern const struct rf_source_ops rf_source_file, rf_source_y4m, rf_source_raw,
     rf_source_replay, rf_source_v4l2, rf_source_libcamera;
 
-/* clock.c -------------------------------------------------------------------------------- */
+/* clock.c -------------------------------------------------------------------------- */
 
 int64_t rf_now_ns(void);
 
 /*
  * Wait until fd (or -1) has one of the events, or a moment of CLOCK_MONOTONIC. Returns
- * REFOCUS_OK, REFOCUS_ERR_TIMEOUT or REFOCUS_ERR_CANCELLED; *revents is what poll() says.
+ * REFOCUS_OK, REFOCUS_ERR_TIMEOUT or REFOCUS_ERR_CANCELLED; *revents is what poll()
+ * says.
  */
 int rf_source_poll(const struct refocus_source *source, int fd, short events,
                    int64_t deadline_ns, short *revents);
@@ -72,7 +73,7 @@ struct rf_pace {
 void rf_pace_start(struct rf_pace *pace, double fps, bool fast);
 int64_t rf_pace_due(const struct rf_pace *pace, int64_t frame);
 
-/* clock.c, too ------------------------------------------------------------------------------- */
+/* clock.c, too --------------------------------------------------------------------- */
 
 #if defined(__GNUC__) || defined(__clang__)
 __attribute__((format(printf, 3, 4)))
@@ -82,7 +83,7 @@ int rf_capture_fail_memory(struct refocus_reason *reason);
 /* Status of errno's value for a file or device, and words: "what: why; what to do". */
 int rf_capture_fail_errno(struct refocus_reason *reason, int error, const char *what);
 
-/* layout.c ------------------------------------------------------------------------------- */
+/* layout.c ------------------------------------------------------------------------- */
 
 /* Planes of a format; 0 for an unknown one. */
 int rf_format_planes(uint32_t format);
@@ -91,10 +92,12 @@ int64_t rf_plane_row(uint32_t format, int plane, int width);
 int rf_plane_rows(uint32_t format, int plane, int height);
 /* Stride of plane > 0 that goes with the stride of plane 0. */
 int64_t rf_plane_stride(uint32_t format, int plane, int64_t stride);
-/* Bytes of a frame whose planes follow each other; 0 when a side is out of its range. */
+/* Bytes of a frame whose planes follow each other; 0 when a side is out of its
+ * range. */
 uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height);
 /* Point a frame's planes into such memory. */
-void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_t stride);
+void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory,
+                      int64_t stride);
 /* By name, not minding case; REFOCUS_FRAME_ANY for none. */
 uint32_t rf_format_by_name(const char *name);
 /* Zero the frame and put "not known" where that is not 0. */

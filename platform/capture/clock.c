@@ -86,20 +86,22 @@ int rf_capture_fail_errno(struct refocus_reason *reason, int error, const char *
     case ENXIO:
     case ENODEV:
         return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "%s: it is not there; plug it in or give another name", what);
+                               "%s: it is not there; plug it in or give another name",
+                               what);
     case EBUSY:
         return rf_capture_fail(reason, REFOCUS_ERR_BUSY,
                                "%s: used by another program; end that one first", what);
     case EACCES:
     case EPERM:
         return rf_capture_fail(reason, REFOCUS_ERR_PERMISSION,
-                               "%s: access is refused; for a camera become a member of the "
-                               "group 'video'", what);
+                               "%s: access is refused; for a camera become a member of "
+                               "the group 'video'", what);
     case ENOMEM:
         return rf_capture_fail_memory(reason);
     case EPIPE:
         return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "%s: the reader closed it; keep it open as long as wanted",
+                               "%s: the reader closed it; keep it open as long as "
+                               "wanted",
                                what);
     default:
         return rf_capture_fail(reason, REFOCUS_ERR_IO, "%s: %s", what,

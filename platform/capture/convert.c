@@ -1,5 +1,6 @@
-/* Frames as RGB8 and as 16-bit samples. Each row of the camera's memory is copied once, in
- * order, before it is looked at: uncached memory is slow to read, and slowest in pieces. */
+/* Frames as RGB8 and as 16-bit samples. Each row of the camera's memory is copied once,
+ * in order, before it is looked at: uncached memory is slow to read, and slowest in
+ * pieces. */
 #include <stdlib.h>
 #include <string.h>
 #include <refocus/platform/convert.h>
@@ -54,9 +55,10 @@ static void put_pixel(uint8_t *rgb, int luma, int red, int green, int blue)
 }
 
 /* A row of Y and one of U and V, which lie step apart; two pixels share a U and a V. */
-static void convert_yuv_row(uint8_t *restrict rgb, const uint8_t *restrict y, int y_step,
-                            const uint8_t *restrict u, const uint8_t *restrict v,
-                            int uv_step, int width, const struct coefficients *coefficients)
+static void convert_yuv_row(uint8_t *restrict rgb, const uint8_t *restrict y,
+                            int y_step, const uint8_t *restrict u,
+                            const uint8_t *restrict v, int uv_step, int width,
+                            const struct coefficients *coefficients)
 {
     const struct coefficients c = *coefficients;
     const int half = (1 << (SHIFT - 1)) - c.cy * c.y0;
@@ -67,12 +69,13 @@ static void convert_yuv_row(uint8_t *restrict rgb, const uint8_t *restrict y, in
 
         put_pixel(rgb + 3 * x, c.cy * y[x * y_step] + half, red, green, blue);
         if (x + 1 < width)
-            put_pixel(rgb + 3 * x + 3, c.cy * y[(x + 1) * y_step] + half, red, green, blue);
+            put_pixel(rgb + 3 * x + 3, c.cy * y[(x + 1) * y_step] + half, red, green,
+                      blue);
     }
 }
 
-static void convert_rgb_row(uint8_t *restrict rgb, const uint8_t *restrict from, int bytes,
-                            bool blue_first, int width)
+static void convert_rgb_row(uint8_t *restrict rgb, const uint8_t *restrict from,
+                            int bytes, bool blue_first, int width)
 {
     const int red = blue_first ? 2 : 0;
 
@@ -83,8 +86,8 @@ static void convert_rgb_row(uint8_t *restrict rgb, const uint8_t *restrict from,
     }
 }
 
-static void convert_grey_row(uint8_t *restrict rgb, const uint8_t *restrict from, int step,
-                             int width)
+static void convert_grey_row(uint8_t *restrict rgb, const uint8_t *restrict from,
+                             int step, int width)
 {
     for (int x = 0; x < width; x++)
         rgb[3 * x] = rgb[3 * x + 1] = rgb[3 * x + 2] = from[x * step];
@@ -152,20 +155,23 @@ static int check(const struct refocus_frame *frame, struct refocus_reason *reaso
 {
     if (rf_format_planes(frame->format) == 0 || frame->width < 1 || frame->height < 1 ||
         frame->width > REFOCUS_MAX_SIDE || frame->height > REFOCUS_MAX_SIDE)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the frame has no size or format");
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the frame has no size or "
+                                                             "format");
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
-        const ptrdiff_t stride = frame->stride[i] < 0 ? -frame->stride[i] : frame->stride[i];
+        const ptrdiff_t stride =
+            frame->stride[i] < 0 ? -frame->stride[i] : frame->stride[i];
 
         if (!frame->plane[i] || stride < rf_plane_row(frame->format, i, frame->width))
             return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                                   "plane %d of the frame: its stride of %lld bytes is less "
-                                   "than a row", i, (long long)frame->stride[i]);
+                                   "plane %d of the frame: its stride of %lld bytes is "
+                                   "less than a row", i, (long long)frame->stride[i]);
     }
     return REFOCUS_OK;
 }
 
 /* Room for a row of each plane. */
-static int reserve_rows(struct refocus_converter *converter, const struct refocus_frame *frame,
+static int reserve_rows(struct refocus_converter *converter,
+                        const struct refocus_frame *frame,
                         struct refocus_reason *reason)
 {
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
@@ -182,15 +188,16 @@ static int reserve_rows(struct refocus_converter *converter, const struct refocu
     return REFOCUS_OK;
 }
 
-static void copy_row(struct refocus_converter *converter, const struct refocus_frame *frame,
-                     int plane, int y)
+static void copy_row(struct refocus_converter *converter,
+                     const struct refocus_frame *frame, int plane, int y)
 {
     memcpy(converter->row[plane], frame->plane[plane] + y * frame->stride[plane],
            (size_t)rf_plane_row(frame->format, plane, frame->width));
 }
 
 #ifdef RF_HAVE_JPEG
-static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
+static int convert_jpeg(struct refocus_converter *converter,
+                        const struct refocus_frame *frame,
                         const struct refocus_image *out, struct refocus_reason *reason)
 {
     int width, height, subsampling, space;
@@ -199,33 +206,39 @@ static int convert_jpeg(struct refocus_converter *converter, const struct refocu
         converter->jpeg = tjInitDecompress();
     if (!converter->jpeg)
         return rf_capture_fail_memory(reason);
-    if (tjDecompressHeader3(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes,
-                            &width, &height, &subsampling, &space) != 0 ||
+    if (tjDecompressHeader3(converter->jpeg, frame->plane[0],
+                            (unsigned long)frame->bytes, &width, &height, &subsampling,
+                            &space) != 0 ||
         width != out->width || height != out->height)
         return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
                                "the JPEG of the frame is damaged or of another size");
     if (out->stride[0] < 0 || out->stride[0] > 1 << 30)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "this stride is not possible");
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "this stride is not "
+                                                             "possible");
     if (tjDecompress2(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes,
                       out->plane[0], width, (int)out->stride[0], height, TJPF_RGB,
                       TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "the JPEG of the frame: %.180s",
+        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "the JPEG of the frame: "
+                                                           "%.180s",
                                tjGetErrorStr2(converter->jpeg));
     return REFOCUS_OK;
 }
 #else
-static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
+static int convert_jpeg(struct refocus_converter *converter,
+                        const struct refocus_frame *frame,
                         const struct refocus_image *out, struct refocus_reason *reason)
 {
     (void)converter;
     (void)frame;
     (void)out;
     return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                           "this build has no JPEG; choose another format of the camera");
+                           "this build has no JPEG; choose another format of the "
+                           "camera");
 }
 #endif
 
-int refocus_convert_rgb8(struct refocus_converter *converter, const struct refocus_frame *frame,
+int refocus_convert_rgb8(struct refocus_converter *converter,
+                         const struct refocus_frame *frame,
                          const struct refocus_image *out, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
@@ -237,9 +250,11 @@ int refocus_convert_rgb8(struct refocus_converter *converter, const struct refoc
     if (!converter || !frame || !out || !out->plane[0] ||
         out->format != REFOCUS_FORMAT_RGB8 || out->width != frame->width ||
         out->height != frame->height ||
-        (out->stride[0] < 0 ? -out->stride[0] : out->stride[0]) < (ptrdiff_t)out->width * 3)
+        (out->stride[0] < 0 ? -out->stride[0] : out->stride[0]) <
+            (ptrdiff_t)out->width * 3)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "the picture to convert into must be RGB8 of the frame's size");
+                               "the picture to convert into must be RGB8 of the "
+                               "frame's size");
     if (frame->format == REFOCUS_FRAME_MJPEG && frame->plane[0])
         return convert_jpeg(converter, frame, out, reason);
     status = check(frame, reason);
@@ -283,16 +298,19 @@ static bool fits(const struct refocus_frame *frame, const struct refocus_image *
         out->width != frame->width || out->height != frame->height)
         return false;
     for (int i = 0; i < rf_format_planes(rf_frame_format_of(out->format)); i++) {
-        const ptrdiff_t row = (ptrdiff_t)rf_plane_row(rf_frame_format_of(out->format), i, out->width);
+        const ptrdiff_t row =
+            (ptrdiff_t)rf_plane_row(rf_frame_format_of(out->format), i, out->width);
 
-        if (!out->plane[i] || (out->stride[i] < 0 ? -out->stride[i] : out->stride[i]) < row)
+        if (!out->plane[i] ||
+            (out->stride[i] < 0 ? -out->stride[i] : out->stride[i]) < row)
             return false;
     }
     return true;
 }
 
-int refocus_convert_copy(struct refocus_converter *converter, const struct refocus_frame *frame,
-                         struct refocus_image *out, struct refocus_reason *reason)
+int refocus_convert_copy(struct refocus_converter *converter,
+                         const struct refocus_frame *frame, struct refocus_image *out,
+                         struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     int status;
@@ -318,7 +336,8 @@ int refocus_convert_copy(struct refocus_converter *converter, const struct refoc
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
         const size_t bytes = (size_t)rf_plane_row(frame->format, i, frame->width);
 
-        for (int y = 0; y < rf_plane_rows(rf_frame_format_of(out->format), i, out->height); y++) {
+        for (int y = 0;
+             y < rf_plane_rows(rf_frame_format_of(out->format), i, out->height); y++) {
             uint8_t *row = out->plane[i] + y * out->stride[i];
 
             if (frame->format == REFOCUS_FRAME_UYVY) {
@@ -347,7 +366,8 @@ int refocus_convert_samples(struct refocus_converter *converter,
     if (frame->format != REFOCUS_FRAME_GREY && frame->format != REFOCUS_FRAME_Y16 &&
         frame->format != REFOCUS_FRAME_Z16)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "it is a colour format; depth comes as GREY, Y16 or Z16");
+                               "it is a colour format; depth comes as GREY, Y16 or "
+                               "Z16");
     status = check(frame, reason);
     if (status == REFOCUS_OK)
         status = reserve_rows(converter, frame, reason);

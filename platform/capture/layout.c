@@ -73,8 +73,9 @@ uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height)
 {
     uint64_t bytes = 0;
 
-    if (width < 1 || height < 1 || width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE ||
-        stride < rf_plane_row(format, 0, width) || stride > (int64_t)1 << 24)
+    if (width < 1 || height < 1 || width > REFOCUS_MAX_SIDE ||
+        height > REFOCUS_MAX_SIDE || stride < rf_plane_row(format, 0, width) ||
+        stride > (int64_t)1 << 24)
         return 0;
     for (int i = 0; i < rf_format_planes(format); i++)
         bytes += (uint64_t)rf_plane_stride(format, i, stride) *
@@ -82,7 +83,8 @@ uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height)
     return bytes;
 }
 
-void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_t stride)
+void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory,
+                      int64_t stride)
 {
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
         frame->plane[i] = memory;

@@ -129,7 +129,8 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
 }
 
 /* Read the picture that comes next into a buffer. */
-static int read_next(struct refocus_source *source, int buffer, struct refocus_reason *reason)
+static int read_next(struct refocus_source *source, int buffer,
+                     struct refocus_reason *reason)
 {
     struct pictures *pictures = source->state;
     char name[PATH_MAX];
@@ -138,7 +139,8 @@ static int read_next(struct refocus_source *source, int buffer, struct refocus_r
     if (access(name, F_OK) != 0) {
         if (!(source->config.flags & REFOCUS_SOURCE_LOOP) ||
             pictures->next == pictures->first)
-            return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more pictures");
+            return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more "
+                                                            "pictures");
         pictures->next = pictures->first;
         rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
     }
@@ -155,13 +157,15 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     int buffer, status;
 
     if (!pictures->pace.fast && due > rf_now_ns()) {
-        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
+        status =
+            rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
         if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
             return status;
     }
     buffer = rf_ring_take(&pictures->ring);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; "
+                                                          "release one");
     frame = &pictures->ring.frame[buffer];
     rf_frame_clear(frame);
     status = pictures->many ? read_next(source, buffer, reason) : REFOCUS_OK;

@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Conversions in the pattern: 0 or 1; -1 when there are others than one %d, %Nd or %0Nd. */
+/* Conversions in the pattern: 0 or 1; -1 when there are others than one %d, %Nd or
+ * %0Nd. */
 int rf_pattern_check(const char *pattern);
 /* The name of picture number n; false when it does not fit. */
 bool rf_pattern_name(char *name, size_t size, const char *pattern, int n);

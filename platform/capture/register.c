@@ -43,7 +43,8 @@ static void splat(const struct refocus_calibration *c, double x, double y, doubl
         return;
 
     /* Pixels whose centre lies in [left, right) and [top, bottom), at least one. */
-    int x0 = (int)ceil(left), x1 = (int)ceil(right), y0 = (int)ceil(top), y1 = (int)ceil(bottom);
+    int x0 = (int)ceil(left), x1 = (int)ceil(right), y0 = (int)ceil(top),
+        y1 = (int)ceil(bottom);
     if (x1 == x0)
         x1 = (x0 = (int)floor((left + right) / 2 + 0.5)) + 1;
     if (y1 == y0)
@@ -58,7 +59,8 @@ static void splat(const struct refocus_calibration *c, double x, double y, doubl
 }
 
 int refocus_register_depth(const struct refocus_calibration *calibration,
-                           const uint16_t *samples, double metres_per_unit, uint16_t *out)
+                           const uint16_t *samples, double metres_per_unit,
+                           uint16_t *out)
 {
     if (!calibration || !samples || !out || !(metres_per_unit > 0) ||
         !isfinite(metres_per_unit) || !is_sound(&calibration->depth) ||
@@ -73,6 +75,7 @@ int refocus_register_depth(const struct refocus_calibration *calibration,
     for (int y = 0; y < calibration->depth.height; y++)
         for (int x = 0; x < calibration->depth.width; x++, samples++)
             if (*samples)
-                splat(calibration, x, y, *samples * metres_per_unit, metres_per_unit, out);
+                splat(calibration, x, y, *samples * metres_per_unit, metres_per_unit,
+                      out);
     return REFOCUS_OK;
 }

@@ -1,4 +1,5 @@
-/* A camera by script: buffers of its own, a clock, and every fault that cameras have. */
+/* A camera by script: buffers of its own, a clock, and every fault that cameras
+ * have. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +13,8 @@ struct replay {
     uint32_t format; /* as they are now, after changes */
     int width, height;
     int64_t stride;
-    uint8_t *scene; /* the frame at rest, in the present format, or the bytes of the JPEG */
+    uint8_t *scene; /* the frame at rest, in the present format, or the bytes of the
+                       JPEG */
     size_t scene_bytes;
     struct refocus_source *inner; /* of "from" */
     int64_t next;                 /* the frame to come */
@@ -149,10 +151,12 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     const double fps = source->config.fps > 0 ? source->config.fps : replay->script.fps;
 
     if (replay->gone)
-        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by "
+                                                         "script)");
     if (replay->script.start_errors > 0) {
         replay->script.start_errors--;
-        return rf_capture_fail(reason, REFOCUS_ERR_IO, "the stream cannot start (by script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_IO, "the stream cannot start (by "
+                                                       "script)");
     }
     if (replay->inner) {
         struct refocus_source_config config = source->config;
@@ -213,7 +217,8 @@ static int apply_to_stream(struct replay *replay, const struct rf_event *event,
     case RF_FAULT_STRIDE:
         replay->stride = event->value;
         replay->changed = true;
-        return replay->inner || replay->script.jpeg ? REFOCUS_OK : draw_scene(replay, reason);
+        return replay->inner || replay->script.jpeg ? REFOCUS_OK
+                                                    : draw_scene(replay, reason);
     case RF_FAULT_FORMAT:
         if (replay->inner || replay->script.jpeg)
             break;
@@ -245,8 +250,10 @@ static void apply_to_frame(struct fate *fate, const struct rf_event *event)
     fate->memory |= event->fault == RF_FAULT_MEMORY;
 }
 
-/* The events of the frame to come; streams' events of frames that are passed over count. */
-static int decide(struct replay *replay, struct fate *fate, struct refocus_reason *reason)
+/* The events of the frame to come; streams' events of frames that are passed over
+ * count. */
+static int decide(struct replay *replay, struct fate *fate,
+                  struct refocus_reason *reason)
 {
     const struct rf_event chance = random_event(replay, replay->next);
     int status = apply_to_stream(replay, &chance, reason);
@@ -346,13 +353,15 @@ static int64_t due_at(const struct replay *replay, int64_t frame)
     return rf_pace_due(&replay->pace, frame - replay->first);
 }
 
-/* A camera fills the buffers that it has; what comes then is dropped, but for the last frame. */
-static int pass_over(struct replay *replay, struct fate *fate, struct refocus_reason *reason)
+/* A camera fills the buffers that it has; what comes then is dropped, but for the last
+ * frame. */
+static int pass_over(struct replay *replay, struct fate *fate,
+                     struct refocus_reason *reason)
 {
     int status = decide(replay, fate, reason);
 
-    while (status == REFOCUS_OK && !replay->pace.fast && !replay->failed && !replay->gone &&
-           !is_over(replay, replay->next + 1) &&
+    while (status == REFOCUS_OK && !replay->pace.fast && !replay->failed &&
+           !replay->gone && !is_over(replay, replay->next + 1) &&
            due_at(replay, replay->next + replay->ring.count) < rf_now_ns()) {
         replay->next++;
         status = decide(replay, fate, reason);
@@ -368,7 +377,8 @@ static int pass_over(struct replay *replay, struct fate *fate, struct refocus_re
     return status;
 }
 
-static int sleep_until(const struct refocus_source *source, int64_t due, int64_t deadline_ns)
+static int sleep_until(const struct refocus_source *source, int64_t due,
+                       int64_t deadline_ns)
 {
     int status;
 
@@ -407,7 +417,8 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
         return status;
     buffer = rf_ring_take(&replay->ring);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; "
+                                                          "release one");
     frame = &replay->ring.frame[buffer];
     rf_frame_clear(frame);
     status = pass_over(replay, &fate, reason);
@@ -422,8 +433,8 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
         status = check_stream(replay, reason); /* the last ones may not come */
     }
     if (status == REFOCUS_OK && fate.late_ms > 0)
-        status = rf_source_poll(source, -1, 0, rf_now_ns() + fate.late_ms * 1000000, NULL) ==
-                         REFOCUS_ERR_CANCELLED
+        status = rf_source_poll(source, -1, 0, rf_now_ns() + fate.late_ms * 1000000,
+                                NULL) == REFOCUS_ERR_CANCELLED
                      ? REFOCUS_ERR_CANCELLED
                      : REFOCUS_OK;
     if (status == REFOCUS_OK)
@@ -476,7 +487,8 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
     struct replay *replay = source->state;
 
     if (replay->gone && rf_now_ns() < replay->gone_until_ns)
-        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by "
+                                                         "script)");
     replay->gone = false;
     return REFOCUS_OK;
 }

@@ -25,7 +25,8 @@ static struct sample scene_at(int x, int y, int width, int height)
             sample.r = 60 + i * 40 + texture;
             sample.g = 200 - i * 30 - texture;
             sample.b = 40 + i * 17 + texture;
-            sample.mm = dx * 8 < -radius * 7 ? 0 : mm; /* a rim that the sensor misses */
+            /* a rim that the sensor misses */
+            sample.mm = dx * 8 < -radius * 7 ? 0 : mm;
         }
     }
     return sample;
@@ -86,7 +87,8 @@ static void draw_packed(uint8_t *row, uint32_t format, int x, struct sample s)
     }
 }
 
-void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width, int height)
+void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width,
+                   int height)
 {
     struct refocus_frame frame;
     uint8_t *plane[3] = {memory, memory, memory};

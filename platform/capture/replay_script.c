@@ -63,7 +63,8 @@ static bool parse_event(struct rf_script *script, const char *word[4])
                 return false;
             snprintf(name, sizeof name, "%.*s", (int)(size - word[3]), word[3]);
             event->format = rf_format_by_name(name);
-            if (event->format == REFOCUS_FRAME_ANY || event->format == REFOCUS_FRAME_MJPEG ||
+            if (event->format == REFOCUS_FRAME_ANY ||
+                event->format == REFOCUS_FRAME_MJPEG ||
                 !parse_size(size + 1, &event->width, &event->height))
                 return false;
         } else if (word[3] ? !parse_number(word[3], -1e9, 1e9, &value)
@@ -100,7 +101,8 @@ static bool parse_line(struct rf_script *script, const char *word[4])
     }
     if (strcmp(key, "format") == 0) {
         script->format = rf_format_by_name(word[1] ? word[1] : "");
-        return script->format != REFOCUS_FRAME_ANY && script->format != REFOCUS_FRAME_MJPEG;
+        return script->format != REFOCUS_FRAME_ANY &&
+               script->format != REFOCUS_FRAME_MJPEG;
     }
     if (strcmp(key, "size") == 0)
         return parse_size(word[1], &script->width, &script->height);
@@ -150,14 +152,15 @@ int rf_script_parse(struct rf_script *script, char *text, struct refocus_reason 
             word[n++] = w;
         if (n > 0 && !parse_line(script, word))
             return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                                   "line %d of the script: '%.40s %.40s' is not understood; "
-                                   "platform/README.md lists what is", number, word[0],
-                                   word[1] ? word[1] : "");
+                                   "line %d of the script: '%.40s %.40s' is not "
+                                   "understood; platform/README.md lists what is",
+                                   number, word[0], word[1] ? word[1] : "");
     }
     if (script->stride == 0)
         script->stride = rf_plane_row(script->format, 0, script->width);
     if (script->format != REFOCUS_FRAME_MJPEG &&
-        rf_frame_bytes(script->format, script->stride, script->width, script->height) == 0)
+        rf_frame_bytes(script->format, script->stride, script->width, script->height) ==
+            0)
         return rf_capture_fail(reason, REFOCUS_ERR_SIZE,
                                "the script's stride is less than a row");
     return REFOCUS_OK;

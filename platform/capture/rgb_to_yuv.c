@@ -5,7 +5,8 @@
 /* BT.601 limited range in 1/65536: 219 Kr, 219 Kg, 219 Kb and so on, of 255. */
 static uint8_t luma(const uint8_t *p)
 {
-    return (uint8_t)((16829 * p[0] + 33039 * p[1] + 6416 * p[2] + (16 << 16) + 32768) >> 16);
+    return (uint8_t)((16829 * p[0] + 33039 * p[1] + 6416 * p[2] + (16 << 16) + 32768) >>
+                     16);
 }
 
 static uint8_t chroma_u(int r, int g, int b, int shift)
@@ -44,8 +45,8 @@ static void encode_packed_422(const struct refocus_image *image,
 }
 
 /* Two rows of Y and one of U and V. */
-static void encode_420(const struct refocus_image *image, const struct refocus_frame *frame,
-                       int y)
+static void encode_420(const struct refocus_image *image,
+                       const struct refocus_frame *frame, int y)
 {
     const uint8_t *top = image->plane[0] + y * image->stride[0];
     const uint8_t *low = y + 1 < image->height ? top + image->stride[0] : top;
@@ -54,7 +55,8 @@ static void encode_420(const struct refocus_image *image, const struct refocus_f
     const int step = planar ? 1 : 2;
     uint8_t *out[2] = {plane_row(frame, 0, y), plane_row(frame, 0, y + (low != top))};
     uint8_t *u = plane_row(frame, 1, y / 2) + swapped;
-    uint8_t *v = planar ? plane_row(frame, 2, y / 2) : plane_row(frame, 1, y / 2) + !swapped;
+    uint8_t *v =
+        planar ? plane_row(frame, 2, y / 2) : plane_row(frame, 1, y / 2) + !swapped;
 
     for (int x = 0; x < image->width; x++) {
         out[0][x] = luma(top + 3 * x);
@@ -71,8 +73,8 @@ static void encode_420(const struct refocus_image *image, const struct refocus_f
     }
 }
 
-static void encode_rgb(const struct refocus_image *image, const struct refocus_frame *frame,
-                       int y)
+static void encode_rgb(const struct refocus_image *image,
+                       const struct refocus_frame *frame, int y)
 {
     const bool blue = frame->format == REFOCUS_FRAME_BGR24 ||
                       frame->format == REFOCUS_FRAME_BGRX;
@@ -112,10 +114,14 @@ uint32_t rf_frame_format_of(uint32_t image_format)
 void rf_copy_frame(const struct refocus_image *image, const struct refocus_frame *frame)
 {
     for (int i = 0; i < rf_format_planes(rf_frame_format_of(image->format)); i++) {
-        const size_t bytes = (size_t)rf_plane_row(rf_frame_format_of(image->format), i, image->width);
+        const size_t bytes =
+            (size_t)rf_plane_row(rf_frame_format_of(image->format), i, image->width);
 
-        for (int y = 0; y < rf_plane_rows(rf_frame_format_of(image->format), i, image->height); y++)
-            memcpy(plane_row(frame, i, y), image->plane[i] + y * image->stride[i], bytes);
+        for (int y = 0;
+             y < rf_plane_rows(rf_frame_format_of(image->format), i, image->height);
+             y++)
+            memcpy(plane_row(frame, i, y), image->plane[i] + y * image->stride[i],
+                   bytes);
     }
 }
 

@@ -12,7 +12,8 @@ static const struct rf_sink_ops *const kinds[] = {
     &rf_sink_y4m, &rf_sink_raw,
 };
 
-static int open_null(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
+static int open_null(struct refocus_sink *sink, const char *rest,
+                     struct refocus_reason *reason)
 {
     (void)sink;
     (void)rest;
@@ -54,9 +55,12 @@ static bool take_all(const struct refocus_sink *sink, uint32_t format)
     return true;
 }
 
-const struct rf_sink_ops rf_sink_null = {
-    .scheme = "null", .open = open_null, .takes = take_all, .start = start_null, .write = write_null,
-    .close = close_null};
+const struct rf_sink_ops rf_sink_null = {.scheme = "null",
+                                         .open = open_null,
+                                         .takes = take_all,
+                                         .start = start_null,
+                                         .write = write_null,
+                                         .close = close_null};
 
 static const struct rf_sink_ops *find_window(struct refocus_reason *reason)
 {
@@ -92,8 +96,8 @@ static const struct rf_sink_ops *find(const char *name, const char **rest,
     if (rf_pattern_check(name) == 1)
         return &rf_sink_pictures;
     rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                    "no such kind of sink; give window, v4l2:DEVICE, y4m:FILE, raw:FILE, null or "
-                    "a pattern of pictures such as frames-%%04d.png");
+                    "no such kind of sink; give window, v4l2:DEVICE, y4m:FILE, "
+                    "raw:FILE, null or a pattern of pictures such as frames-%%04d.png");
     return NULL;
 }
 
@@ -133,12 +137,14 @@ int refocus_sink_takes(struct refocus_sink *sink, uint32_t format)
 {
     if (!sink)
         return 0;
-    return format == REFOCUS_FORMAT_RGB8 || (rf_frame_format_of(format) && sink->ops->takes &&
-                                             sink->ops->takes(sink, format));
+    return format == REFOCUS_FORMAT_RGB8 ||
+           (rf_frame_format_of(format) && sink->ops->takes &&
+            sink->ops->takes(sink, format));
 }
 
-int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_image *like,
-                             double fps, struct refocus_reason *reason)
+int refocus_sink_start_image(struct refocus_sink *sink,
+                             const struct refocus_image *like, double fps,
+                             struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     int status;
@@ -181,10 +187,11 @@ int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *im
     reason->text[0] = '\0';
     if (!sink || !sink->started)
         return rf_capture_fail(reason, REFOCUS_ERR_STATE, "the sink is not started");
-    if (!image || !image->plane[0] || image->format != sink->format || image->width != sink->width ||
-        image->height != sink->height)
+    if (!image || !image->plane[0] || image->format != sink->format ||
+        image->width != sink->width || image->height != sink->height)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "give a picture of the size and format that were announced");
+                               "give a picture of the size and format that were "
+                               "announced");
     return sink->ops->write(sink, image, reason);
 }
 

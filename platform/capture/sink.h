@@ -13,12 +13,14 @@ struct refocus_sink {
     bool started;
     int width, height;
     double fps;
-    uint32_t format, matrix, range; /* of pictures to come: enum refocus_format and so on */
+    uint32_t format, matrix, range; /* of pictures to come: enum refocus_format and so
+                                       on */
 };
 
 struct rf_sink_ops {
     const char *scheme; /* before the colon, or NULL for a pattern of pictures */
-    int (*open)(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason);
+    int (*open)(struct refocus_sink *sink, const char *rest,
+                struct refocus_reason *reason);
     /* Formats of Y, U and V; NULL: none. */
     bool (*takes)(const struct refocus_sink *sink, uint32_t format);
     /* sink->format and so on are set. */
@@ -29,11 +31,11 @@ struct rf_sink_ops {
     int (*close)(struct refocus_sink *sink, struct refocus_reason *reason);
 };
 
-extern const struct rf_sink_ops rf_sink_null, rf_sink_y4m, rf_sink_raw, rf_sink_pictures,
-    rf_sink_v4l2;
+extern const struct rf_sink_ops rf_sink_null, rf_sink_y4m, rf_sink_raw,
+    rf_sink_pictures, rf_sink_v4l2;
 
-/* rgb_to_yuv.c: an RGB8 picture as a frame of BT.601, limited range, each chroma sample the
- * mean of its pixels; or as packed RGB. The frame's planes are written to. */
+/* rgb_to_yuv.c: an RGB8 picture as a frame of BT.601, limited range, each chroma sample
+ * the mean of its pixels; or as packed RGB. The frame's planes are written to. */
 void rf_encode(const struct refocus_image *image, const struct refocus_frame *frame);
 bool rf_can_encode(uint32_t format);
 
@@ -41,6 +43,7 @@ bool rf_can_encode(uint32_t format);
 uint32_t rf_frame_format_of(uint32_t image_format);
 
 /* The rows of a picture of Y, U and V into a frame of the same format. */
-void rf_copy_frame(const struct refocus_image *image, const struct refocus_frame *frame);
+void rf_copy_frame(const struct refocus_image *image,
+                   const struct refocus_frame *frame);
 
 #endif

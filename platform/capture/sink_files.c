@@ -17,14 +17,16 @@ struct stream {
     char *path;
     int fd;
     bool y4m, begun;
-    uint32_t format, range;     /* of its pictures: enum refocus_format, refocus_range */
+    uint32_t format, range;     /* of its pictures: enum refocus_format,
+                                   refocus_range */
     struct refocus_frame frame; /* in memory */
     uint8_t *memory;
     size_t bytes;
 };
 
-/* A write into a closed pipe raises SIGPIPE, which is the program's business and not ours:
- * it is held back in this thread, and taken away when it was this write that raised it. */
+/* A write into a closed pipe raises SIGPIPE, which is the program's business and not
+ * ours: it is held back in this thread, and taken away when it was this write that
+ * raised it. */
 static ssize_t quiet_write(int fd, const void *bytes, size_t size)
 {
     const struct timespec none = {0, 0};
@@ -99,12 +101,14 @@ static int open_stream(struct refocus_sink *sink, const char *rest, bool y4m,
     return status;
 }
 
-static int open_y4m(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
+static int open_y4m(struct refocus_sink *sink, const char *rest,
+                    struct refocus_reason *reason)
 {
     return open_stream(sink, rest, true, reason);
 }
 
-static int open_raw(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
+static int open_raw(struct refocus_sink *sink, const char *rest,
+                    struct refocus_reason *reason)
 {
     return open_stream(sink, rest, false, reason);
 }
@@ -116,7 +120,8 @@ static bool is_422(uint32_t format)
 
 static uint32_t range_of(const struct refocus_sink *sink)
 {
-    return sink->format == REFOCUS_FORMAT_RGB8 ? (uint32_t)REFOCUS_RANGE_LIMITED : sink->range;
+    return sink->format == REFOCUS_FORMAT_RGB8 ? (uint32_t)REFOCUS_RANGE_LIMITED
+                                               : sink->range;
 }
 
 static bool takes_yuv(const struct refocus_sink *sink, uint32_t format)
@@ -136,8 +141,8 @@ static bool lay_out(struct stream *stream, int width, int height)
     frame->format = stream->y4m ? REFOCUS_FRAME_YUV420 : REFOCUS_FRAME_RGB24;
     frame->width = width;
     frame->height = height;
-    stream->bytes = (size_t)rf_frame_bytes(frame->format, rf_plane_row(frame->format, 0, width),
-                                           width, height);
+    stream->bytes = (size_t)rf_frame_bytes(
+        frame->format, rf_plane_row(frame->format, 0, width), width, height);
     if (is_422(stream->format))
         stream->bytes = ((size_t)width + 2 * half) * (size_t)height;
     stream->memory = malloc(stream->bytes);
@@ -163,20 +168,25 @@ static void take_row(uint8_t *to, const uint8_t *from, int step, int n)
 static void take_apart(const struct refocus_image *image, struct stream *stream)
 {
     const int half = (image->width + 1) / 2;
-    const bool planar = image->format == REFOCUS_FORMAT_I420, packed = is_422(image->format);
+    const bool planar = image->format == REFOCUS_FORMAT_I420,
+               packed = is_422(image->format);
     const bool swapped = image->format == REFOCUS_FORMAT_NV21;
     uint8_t *at = stream->memory;
 
     for (int i = 0; i < 3; i++) {
         const int plane = packed ? 0 : planar ? i : i > 0;
         const int step = i == 0 ? (packed ? 2 : 1) : packed ? 4 : planar ? 1 : 2;
-        const int first = i == 0 || planar ? 0 : packed ? 2 * i - 1 : (i == 2) ^ swapped;
+        const int first = i == 0 || planar ? 0
+                          : packed         ? 2 * i - 1
+                                           : (i == 2) ^ swapped;
         const int n = i == 0 ? image->width : half;
 
         for (int y = 0; y < (i == 0 ? image->height
-                                    : rf_plane_rows(rf_frame_format_of(image->format), plane, image->height));
+                                    : rf_plane_rows(rf_frame_format_of(image->format),
+                                                    plane, image->height));
              y++, at += n)
-            take_row(at, image->plane[plane] + y * image->stride[plane] + first, step, n);
+            take_row(at, image->plane[plane] + y * image->stride[plane] + first, step,
+                     n);
     }
 }
 
@@ -188,12 +198,14 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
 
     if (stream->begun) {
         if (width == stream->frame.width && height == stream->frame.height &&
-            is_422(sink->format) == is_422(stream->format) && range_of(sink) == stream->range)
+            is_422(sink->format) == is_422(stream->format) &&
+            range_of(sink) == stream->range)
             return REFOCUS_OK;
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "%.120s: a stream of %dx%d has begun, and %dx%d came, or other "
-                               "colours; begin another", stream->path, stream->frame.width,
-                               stream->frame.height, width, height);
+                               "%.120s: a stream of %dx%d has begun, and %dx%d came, "
+                               "or other colours; begin another",
+                               stream->path, stream->frame.width, stream->frame.height,
+                               width, height);
     }
     stream->format = sink->format;
     stream->range = range_of(sink);

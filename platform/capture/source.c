@@ -51,9 +51,11 @@ static int unknown(const char *name, struct refocus_reason *reason)
     static const char *const known[] = {"v4l2", "libcamera"};
 
     for (int i = 0; i < 2; i++)
-        if (strncmp(name, known[i], strlen(known[i])) == 0 && name[strlen(known[i])] == ':')
+        if (strncmp(name, known[i], strlen(known[i])) == 0 &&
+            name[strlen(known[i])] == ':')
             return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                                   "this build has no %s, or its module is gone; there are %s",
+                                   "this build has no %s, or its module is gone; there "
+                                   "are %s",
                                    known[i], refocus_source_backends());
     return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                            "no such kind of source; give KIND:NAME with one of %s",
@@ -128,7 +130,8 @@ static bool config_is_sound(const struct refocus_source_config *config)
     return config->struct_size == sizeof *config &&
            config->format < REFOCUS_FRAME_FORMAT_COUNT && config->width >= 0 &&
            config->width <= REFOCUS_MAX_SIDE && config->height >= 0 &&
-           config->height <= REFOCUS_MAX_SIDE && config->fps >= 0 && config->fps <= 10000 &&
+           config->height <= REFOCUS_MAX_SIDE && config->fps >= 0 &&
+           config->fps <= 10000 &&
            (config->buffers == 0 ||
             (config->buffers >= 2 && config->buffers <= RF_MOST_BUFFERS)) &&
            config->flags < 16;
@@ -151,7 +154,8 @@ static int begin(struct refocus_source *source, struct refocus_source_mode *mode
 
 int refocus_source_start(struct refocus_source *source,
                          const struct refocus_source_config *config,
-                         struct refocus_source_mode *mode, struct refocus_reason *reason)
+                         struct refocus_source_mode *mode,
+                         struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     uint64_t ignored;
@@ -162,7 +166,8 @@ int refocus_source_start(struct refocus_source *source,
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "what is wanted of the source is out of its range");
     if (source->streaming)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it streams already; stop it first");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it streams already; stop it "
+                                                          "first");
     source->config = config ? *config : refocus_source_config_default();
     if (source->config.buffers == 0)
         source->config.buffers = 4;
@@ -171,7 +176,8 @@ int refocus_source_start(struct refocus_source *source,
     return begin(source, mode, reason);
 }
 
-/* Counts what the camera left out; a step back is no gap but a device that began anew. */
+/* Counts what the camera left out; a step back is no gap but a device that began
+ * anew. */
 static void count(struct refocus_source *source, const struct refocus_frame *frame)
 {
     const uint32_t step = frame->sequence - source->sequence;
@@ -185,7 +191,8 @@ static void count(struct refocus_source *source, const struct refocus_frame *fra
 }
 
 int refocus_source_wait(struct refocus_source *source, int timeout_ms,
-                        const struct refocus_frame **result, struct refocus_reason *reason)
+                        const struct refocus_frame **result,
+                        struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     struct refocus_frame *frame = NULL;
@@ -197,15 +204,17 @@ int refocus_source_wait(struct refocus_source *source, int timeout_ms,
         return REFOCUS_ERR_ARGUMENT;
     *result = NULL;
     if (!source->streaming)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it does not stream; start it");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it does not stream; start "
+                                                          "it");
     status = rf_source_poll(source, -1, 0, 0, NULL);
     if (status == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, status, "interrupted");
     status = source->ops->wait(
-        source, rf_now_ns() + (int64_t)(timeout_ms > 0 ? timeout_ms : 0) * 1000000, &frame,
-        reason);
+        source, rf_now_ns() + (int64_t)(timeout_ms > 0 ? timeout_ms : 0) * 1000000,
+        &frame, reason);
     if (status == REFOCUS_ERR_TIMEOUT)
-        return rf_capture_fail(reason, status, "no frame came within %d ms", timeout_ms);
+        return rf_capture_fail(reason, status, "no frame came within %d ms",
+                               timeout_ms);
     if (status == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, status, "interrupted");
     if (status != REFOCUS_OK)
@@ -216,7 +225,8 @@ int refocus_source_wait(struct refocus_source *source, int timeout_ms,
     return REFOCUS_OK;
 }
 
-void refocus_source_release(struct refocus_source *source, const struct refocus_frame *frame)
+void refocus_source_release(struct refocus_source *source,
+                            const struct refocus_frame *frame)
 {
     if (!source || !frame || !source->streaming || frame->buffer >= RF_MOST_BUFFERS ||
         !(source->out >> frame->buffer & 1))
@@ -236,7 +246,8 @@ void refocus_source_stop(struct refocus_source *source)
     source->streaming = false;
 }
 
-int refocus_source_restart(struct refocus_source *source, struct refocus_source_mode *mode,
+int refocus_source_restart(struct refocus_source *source,
+                           struct refocus_source_mode *mode,
                            struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
@@ -265,8 +276,8 @@ void refocus_source_interrupt(struct refocus_source *source)
         return;
 }
 
-int refocus_source_set_control(struct refocus_source *source, const char *name, double value,
-                               struct refocus_reason *reason)
+int refocus_source_set_control(struct refocus_source *source, const char *name,
+                               double value, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
 

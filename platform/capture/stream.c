@@ -57,7 +57,8 @@ static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
         return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
                                "%.160s: it is not a YUV4MPEG2 stream", stream->path);
     stream->format = REFOCUS_FRAME_YUV420;
-    for (word = strtok_r(header + 9, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
+    for (word = strtok_r(header + 9, " ", &rest); word;
+         word = strtok_r(NULL, " ", &rest)) {
         if (*word == 'W')
             stream->width = atoi(word + 1);
         else if (*word == 'H')
@@ -73,8 +74,8 @@ static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "%.160s: give 4:2:0 of 8 bits, mono or mono16",
                                stream->path);
-    stream->fps = numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator
-                                                   : 30;
+    stream->fps =
+        numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator : 30;
     return REFOCUS_OK;
 }
 
@@ -102,8 +103,8 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
     stream->format = rf_format_by_name(word[n - 1]);
     if (stream->format == REFOCUS_FRAME_ANY || stream->format == REFOCUS_FRAME_MJPEG)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "'%.40s' is no format of raw frames; give NV12, YUYV, RGB24, "
-                               "Y16, ...", word[n - 1]);
+                               "'%.40s' is no format of raw frames; give NV12, YUYV, "
+                               "RGB24, Y16, ...", word[n - 1]);
     return REFOCUS_OK;
 }
 
@@ -225,7 +226,8 @@ static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
         if (!read_line(stream->file, header, sizeof header) ||
             strncmp(header, "FRAME", 5) != 0)
             return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                                   "%.160s: damaged: frame %lld does not begin with FRAME",
+                                   "%.160s: damaged: frame %lld does not begin with "
+                                   "FRAME",
                                    stream->path, (long long)stream->frame);
     }
     n = fread(memory, 1, bytes, stream->file);
@@ -246,21 +248,25 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     struct stream *stream = source->state;
     const int64_t due = rf_pace_due(&stream->pace, stream->frame);
     const int64_t row = rf_plane_row(stream->format, 0, stream->width);
-    const uint64_t bytes = rf_frame_bytes(stream->format, row, stream->width, stream->height);
+    const uint64_t bytes =
+        rf_frame_bytes(stream->format, row, stream->width, stream->height);
     struct refocus_frame *frame;
     int buffer, status;
 
     if (!stream->pace.fast && due > rf_now_ns()) {
-        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
+        status =
+            rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
         if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
             return status;
     }
     buffer = rf_ring_take(&stream->ring);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
-    status = rf_ring_reserve(&stream->ring, buffer, bytes)
-                 ? read_frame(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
-                 : rf_capture_fail_memory(reason);
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; "
+                                                          "release one");
+    status =
+        rf_ring_reserve(&stream->ring, buffer, bytes)
+            ? read_frame(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
+            : rf_capture_fail_memory(reason);
     if (status == REFOCUS_ERR_END && source->config.flags & REFOCUS_SOURCE_LOOP &&
         !stream->is_pipe && stream->frame > 0 &&
         fseek(stream->file, stream->begin, SEEK_SET) == 0)
@@ -303,11 +309,11 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
     return REFOCUS_OK;
 }
 
-#define STREAM_OPS(word, open_function)                                                     \
-    {                                                                                       \
-        .scheme = word, .open = open_function, .get_mode = get_mode, .start = start,        \
-        .wait = wait_frame, .release = release, .stop = stop, .reopen = reopen,             \
-        .close = close_stream                                                               \
+#define STREAM_OPS(word, open_function)                                                \
+    {                                                                                  \
+        .scheme = word, .open = open_function, .get_mode = get_mode, .start = start,   \
+        .wait = wait_frame, .release = release, .stop = stop, .reopen = reopen,        \
+        .close = close_stream                                                          \
     }
 const struct rf_source_ops rf_source_y4m = STREAM_OPS("y4m", open_y4m);
 const struct rf_source_ops rf_source_raw = STREAM_OPS("raw", open_raw);

@@ -4,9 +4,9 @@
 #include <refocus/refocus.h>
 #include <refocus/platform/file.h>
 #include <refocus/platform/source.h>
-#include "commands.h"
-#include "interrupt.h"
-#include "report.h"
+#include "commands/commands.h"
+#include "line/interrupt.h"
+#include "line/report.h"
 
 static const struct command *const commands[] = {&render_command, &depth_command,
                                                  &sheet_command,
@@ -27,9 +27,11 @@ static void print_usage(FILE *out)
             "  refocus SUBCOMMAND --help  says more of one\n"
             "  refocus --version          version and file formats\n"
             "\n"
-            "Example: refocus render portrait.jpg --focus-at 1200,900 --blur 40 -o out.jpg\n"
+            "Example: refocus render portrait.jpg --focus-at 1200,900 --blur 40 -o "
+            "out.jpg\n"
             "\n"
-            "exit status: 0 done, 1 it could not be done, 2 the command line is wrong\n");
+            "exit status: 0 done, 1 it could not be done, 2 the command line is "
+            "wrong\n");
 }
 
 static const char *command_name(const void *list, int i)

@@ -1,5 +1,6 @@
-/* Depth into a JPEG that exists: GDepth in a standard and an extended XMP packet of our own,
- * in front of the first segment that is neither JFIF nor EXIF. All other bytes stay. */
+/* Depth into a JPEG that exists: GDepth in a standard and an extended XMP packet of our
+ * own, in front of the first segment that is neither JFIF nor EXIF. All other bytes
+ * stay. */
 #include "internal.h"
 
 #include <math.h>
@@ -9,13 +10,15 @@
 enum { MARKER_APP0 = 0xe0, MARKER_APP1 = 0xe1, CHUNK = 65000 };
 
 #define OPENING "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\" x:xmptk=\"" RF_XMP_TOOL "\">"
-#define RDF                                                                              \
-    "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"                \
+#define RDF                                                                            \
+    "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"              \
     "<rdf:Description rdf:about=\"\""
 #define CLOSING "/></rdf:RDF></x:xmpmeta>"
 #define GDEPTH  " xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\""
 #define GFOCUS  " xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\""
-#define NOTE    " xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" xmpNote:HasExtendedXMP=\""
+#define NOTE                                                                           \
+    " xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" "                                \
+    "xmpNote:HasExtendedXMP=\""
 
 /* Text that grows; `failed` once memory ran out. */
 struct text {
@@ -47,8 +50,8 @@ static void put_words(struct text *text, const char *words)
     put(text, words, strlen(words));
 }
 
-/* 12 digits: a reader that is off in the last bits writes the same ones again. The locale's
- * point becomes a dot. */
+/* 12 digits: a reader that is off in the last bits writes the same ones again. The
+ * locale's point becomes a dot. */
 static void put_number(struct text *text, const char *name, double value)
 {
     char number[64];
@@ -107,7 +110,8 @@ static int encode(const struct refocus_depth_write *depth, int orientation,
     for (int32_t y = 0; y < depth->height; y++) {
         const uint16_t *const in =
             (const uint16_t *)((const char *)depth->disparity + y * depth->stride);
-        uint16_t *const out = (uint16_t *)raster.pixels + (size_t)y * (size_t)depth->width;
+        uint16_t *const out =
+            (uint16_t *)raster.pixels + (size_t)y * (size_t)depth->width;
 
         for (int32_t x = 0; x < depth->width; x++) {
             out[x] = (uint16_t)(65535 - in[x]);
@@ -147,7 +151,8 @@ static void make_standard(struct text *text, const struct refocus_depth_write *d
     put_words(text, "\" GDepth:Format=\"RangeInverse\" GDepth:Mime=\"image/png\"");
     if (depth->near_m > 0 && depth->far_m > depth->near_m) {
         put_number(text, " GDepth:Near", depth->near_m);
-        /* Far has to be a number; farther than this no blur can be told from infinity. */
+        /* Far has to be a number; farther than this no blur can be told from
+         * infinity. */
         put_number(text, " GDepth:Far", isfinite(depth->far_m) ? depth->far_m : 1e9);
         put_words(text, " GDepth:Units=\"m\"");
     }
@@ -172,7 +177,8 @@ static void put_segment(struct rf_store *store, const void *head, size_t head_si
                         const void *body, size_t size)
 {
     const size_t length = head_size + size + 2;
-    const uint8_t marker[4] = {0xff, MARKER_APP1, (uint8_t)(length >> 8), (uint8_t)length};
+    const uint8_t marker[4] = {0xff, MARKER_APP1, (uint8_t)(length >> 8),
+                               (uint8_t)length};
 
     rf_store_write(store, marker, sizeof marker);
     rf_store_write(store, head, head_size);
@@ -185,8 +191,8 @@ static void put_packets(struct rf_store *store, const struct text *standard,
     uint8_t head[sizeof rf_jpeg_extended_signature + 40];
     uint8_t *const numbers = head + sizeof rf_jpeg_extended_signature + 32;
 
-    put_segment(store, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, standard->data,
-                standard->size);
+    put_segment(store, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
+                standard->data, standard->size);
     memcpy(head, rf_jpeg_extended_signature, sizeof rf_jpeg_extended_signature);
     memcpy(head + sizeof rf_jpeg_extended_signature, guid, 32);
     for (size_t at = 0; at < extended->size; at += CHUNK) {
@@ -202,16 +208,19 @@ static void put_packets(struct rf_store *store, const struct text *standard,
 
 bool rf_xmp_is_ours(struct rf_bytes packet)
 {
-    return packet.size > sizeof OPENING && memcmp(packet.data, OPENING, sizeof OPENING - 1) == 0;
+    return packet.size > sizeof OPENING &&
+           memcmp(packet.data, OPENING, sizeof OPENING - 1) == 0;
 }
 
-/* Whether a segment is of a packet that an earlier writing left; its GUID comes first. */
+/* Whether a segment is of a packet that an earlier writing left; its GUID comes
+ * first. */
 static bool is_old(struct rf_bytes segment, char guid[33])
 {
     const size_t before = sizeof(OPENING RDF GDEPTH NOTE) - 1;
     struct rf_bytes rest;
 
-    if (rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, &rest) &&
+    if (rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
+                      &rest) &&
         rf_xmp_is_ours(rest)) {
         if (rest.size >= before + 32) {
             memcpy(guid, rest.data + before, 32);
@@ -225,9 +234,9 @@ static bool is_old(struct rf_bytes segment, char guid[33])
 }
 
 /* Copy the original and put the packets in. */
-static int splice(struct rf_store *store, struct rf_bytes file, const struct text *standard,
-                  const struct text *extended, const char *guid,
-                  struct refocus_reason *reason)
+static int splice(struct rf_store *store, struct rf_bytes file,
+                  const struct text *standard, const struct text *extended,
+                  const char *guid, struct refocus_reason *reason)
 {
     struct rf_jpeg_walk walk;
     enum rf_jpeg_step step;
@@ -242,9 +251,10 @@ static int splice(struct rf_store *store, struct rf_bytes file, const struct tex
     while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
         const size_t begin = (size_t)(walk.segment.data - file.data) - 4;
         struct rf_bytes rest;
-        const bool head = walk.marker == MARKER_APP0 ||
-                          (walk.marker == MARKER_APP1 &&
-                           rf_jpeg_after(walk.segment, rf_jpeg_exif_signature, 6, &rest));
+        const bool head =
+            walk.marker == MARKER_APP0 ||
+            (walk.marker == MARKER_APP1 &&
+             rf_jpeg_after(walk.segment, rf_jpeg_exif_signature, 6, &rest));
         const bool skip = walk.marker == MARKER_APP1 && is_old(walk.segment, old);
 
         if ((!head && !placed) || skip) {
@@ -261,7 +271,8 @@ static int splice(struct rf_store *store, struct rf_bytes file, const struct tex
     }
     if (step != RF_JPEG_END || !placed) {
         return rf_fail(reason, REFOCUS_ERR_FORMAT,
-                       "damaged JPEG: it ends in the middle of the picture; copy it again");
+                       "damaged JPEG: it ends in the middle of the picture; copy it "
+                       "again");
     }
     rf_store_write(store, file.data + copied, file.size - copied);
     return REFOCUS_OK;
@@ -270,16 +281,18 @@ static int splice(struct rf_store *store, struct rf_bytes file, const struct tex
 static bool good(const struct refocus_depth_write *depth)
 {
     return depth && depth->struct_size == sizeof *depth && depth->disparity &&
-           depth->width >= 1 && depth->width <= REFOCUS_MAX_SIDE && depth->height >= 1 &&
-           depth->height <= REFOCUS_MAX_SIDE && depth->stride % 2 == 0 &&
-           depth->stride != PTRDIFF_MIN &&
-           (depth->height == 1 || (depth->stride < 0 ? -depth->stride : depth->stride) >=
-                                      2 * (ptrdiff_t)depth->width) &&
+           depth->width >= 1 && depth->width <= REFOCUS_MAX_SIDE &&
+           depth->height >= 1 && depth->height <= REFOCUS_MAX_SIDE &&
+           depth->stride % 2 == 0 && depth->stride != PTRDIFF_MIN &&
+           (depth->height == 1 ||
+            (depth->stride < 0 ? -depth->stride : depth->stride) >=
+                2 * (ptrdiff_t)depth->width) &&
            depth->focus_x <= 1 && depth->focus_y <= 1;
 }
 
 static int write_all(const char *path, struct rf_bytes file, int orientation,
-                     const struct refocus_depth_write *depth, struct refocus_reason *reason)
+                     const struct refocus_depth_write *depth,
+                     struct refocus_reason *reason)
 {
     struct text standard = {NULL, 0, 0, false}, extended = {NULL, 0, 0, false};
     struct refocus_blob png = {NULL, 0};
@@ -295,7 +308,8 @@ static int write_all(const char *path, struct rf_bytes file, int orientation,
     put_words(&extended, "\"" CLOSING);
     free(png.data);
     if (!extended.failed) {
-        rf_md5_hex((struct rf_bytes){(const uint8_t *)extended.data, extended.size}, guid);
+        rf_md5_hex((struct rf_bytes){(const uint8_t *)extended.data, extended.size},
+                   guid);
         make_standard(&standard, depth, orientation, guid);
     }
     if (standard.failed || extended.failed) {

@@ -321,13 +321,13 @@ static int take_second(struct heic *heic)
     if (heif_context_get_number_of_top_level_images(heic->context) != 2 ||
         heif_context_get_list_of_top_level_image_IDs(heic->context, id, 2) != 2) {
         return rf_fail(heic->read->reason, REFOCUS_ERR_UNSUPPORTED,
-                       "it does not hold two pictures; give an MPO, a stereo HEIC, or two "
-                       "pictures");
+                       "it does not hold two pictures; give an MPO, a stereo HEIC, or "
+                       "two pictures");
     }
     heif_image_handle_release(heic->primary);
     heic->primary = NULL;
-    error = heif_context_get_image_handle(heic->context, id[0] == main_id ? id[1] : id[0],
-                                          &heic->primary);
+    error = heif_context_get_image_handle(
+        heic->context, id[0] == main_id ? id[1] : id[0], &heic->primary);
     return error.code == heif_error_Ok ? REFOCUS_OK : fail_heif(heic->read, error);
 }
 
@@ -353,7 +353,8 @@ static int run(struct heic *heic)
     }
     if (read->second) {
         status = take_second(heic);
-        return status == REFOCUS_OK ? decode(heic, heic->primary, true, &read->image) : status;
+        return status == REFOCUS_OK ? decode(heic, heic->primary, true, &read->image)
+                                    : status;
     }
     say_orientation(heic);
     status = read_exif(heic);

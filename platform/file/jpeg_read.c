@@ -7,7 +7,8 @@ enum { MARKER_APP1 = 0xe1, MARKER_APP2 = 0xe2, ICC_CHUNKS = 255 };
 
 struct parts {
     struct rf_bytes exif, xmp, mpf;
-    struct rf_bytes older_xmp; /* what was there before our own packet was put in front */
+    struct rf_bytes older_xmp; /* what was there before our own packet was put in
+                                  front */
     struct rf_bytes icc[ICC_CHUNKS];
     int icc_count; /* as the chunks say; -1: they disagree */
     size_t end;    /* the byte behind the main picture */
@@ -45,7 +46,8 @@ static void take_segment(struct parts *parts, int marker, struct rf_bytes segmen
                    rf_jpeg_after(segment, rf_jpeg_xmp_signature,
                                  sizeof rf_jpeg_xmp_signature, &rest)) {
             parts->xmp = rest;
-        } else if (parts->xmp.data && !parts->older_xmp.data && rf_xmp_is_ours(parts->xmp) &&
+        } else if (parts->xmp.data && !parts->older_xmp.data &&
+                   rf_xmp_is_ours(parts->xmp) &&
                    rf_jpeg_after(segment, rf_jpeg_xmp_signature,
                                  sizeof rf_jpeg_xmp_signature, &rest)) {
             parts->older_xmp = rest;
@@ -145,9 +147,10 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     return status;
 }
 
-/* Of the packet before ours: the all-in-focus original, when its main picture is blurred. */
-static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
-                      struct rf_xmp *xmp)
+/* Of the packet before ours: the all-in-focus original, when its main picture is
+ * blurred. */
+static int read_older(struct rf_read *read, struct rf_bytes file,
+                      struct rf_bytes packet, struct rf_xmp *xmp)
 {
     static const enum rf_xmp_key keys[] = {RF_XMP_IMAGE_MIME, RF_XMP_IMAGE_DATA};
     struct rf_xmp older = {{NULL}, {0}};
@@ -204,7 +207,8 @@ static int read_depth(struct rf_read *read, struct rf_bytes file,
 #endif
 
 /* The picture of an MPO that follows the first and is a whole JPEG. */
-static int read_second(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
+static int read_second(struct rf_read *read, struct rf_bytes file,
+                       const struct parts *parts)
 {
     struct rf_mpf mpf;
 
@@ -216,16 +220,19 @@ static int read_second(struct rf_read *read, struct rf_bytes file, const struct 
             const uint64_t size = mpf.image[i].size;
 
             if (begin < parts->end || begin > file.size || size > file.size - begin ||
-                size < 4 || rf_sniff((struct rf_bytes){file.data + begin, (size_t)size}) !=
-                                RF_CONTAINER_JPEG) {
+                size < 4 ||
+                rf_sniff((struct rf_bytes){file.data + begin, (size_t)size}) !=
+                    RF_CONTAINER_JPEG) {
                 continue;
             }
             read->second = false;
-            return rf_read_jpeg(read, (struct rf_bytes){file.data + begin, (size_t)size});
+            return rf_read_jpeg(read,
+                                (struct rf_bytes){file.data + begin, (size_t)size});
         }
     }
     return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                   "it holds one picture only; give an MPO, a stereo HEIC, or two pictures");
+                   "it holds one picture only; give an MPO, a stereo HEIC, or two "
+                   "pictures");
 }
 
 int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)

@@ -33,9 +33,9 @@ static void take_block(uint32_t state[4], const uint8_t block[64])
                                : round == 2 ? b ^ c ^ d
                                             : c ^ (b | ~d);
         const uint8_t *const p = block + 4 * word;
-        const uint32_t sum = a + mixed + sines[i] + ((uint32_t)p[0] | (uint32_t)p[1] << 8 |
-                                                     (uint32_t)p[2] << 16 |
-                                                     (uint32_t)p[3] << 24);
+        const uint32_t sum = a + mixed + sines[i] +
+                             ((uint32_t)p[0] | (uint32_t)p[1] << 8 |
+                              (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24);
 
         a = d;
         d = c;

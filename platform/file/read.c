@@ -89,7 +89,8 @@ static int read_container(struct rf_read *read, struct rf_bytes file)
     if (read->second && rf_sniff(file) != RF_CONTAINER_JPEG &&
         rf_sniff(file) != RF_CONTAINER_HEIC) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                       "it is no stereo file; give an MPO, a stereo HEIC, or two pictures");
+                       "it is no stereo file; give an MPO, a stereo HEIC, or two "
+                       "pictures");
     }
     switch (rf_sniff(file)) {
     case RF_CONTAINER_JPEG:
@@ -123,8 +124,9 @@ static void set_limits(struct rf_read *read, const struct refocus_read_limits *l
 }
 
 int rf_read_begin(struct rf_read *read, struct rf_bytes file,
-                  const struct refocus_read_limits *limits, bool picture_always, bool second,
-                  struct refocus_photo_info *info, struct refocus_reason *reason)
+                  const struct refocus_read_limits *limits, bool picture_always,
+                  bool second, struct refocus_photo_info *info,
+                  struct refocus_reason *reason)
 {
     int status;
 

@@ -6,8 +6,8 @@
 
 enum { WINDOW = 11, HALF = WINDOW / 2 };
 
-double quality_rmse(const uint8_t *a, const uint8_t *b, int width, int height, int border,
-                    const uint8_t *mask, long *pixels)
+double quality_rmse(const uint8_t *a, const uint8_t *b, int width, int height,
+                    int border, const uint8_t *mask, long *pixels)
 {
     uint64_t sum = 0;
     long count = 0;
@@ -137,8 +137,8 @@ static void add_disc(int32_t *cover, int width, int height, int x, int y, double
 }
 
 /* Radius of the edge band about (x, y), or -1 where no jump is. */
-static double edge_radius(const uint16_t *disparity, int width, int height, int x, int y,
-                          double focus, double blur)
+static double edge_radius(const uint16_t *disparity, int width, int height, int x,
+                          int y, double focus, double blur)
 {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     const double here = disparity[(size_t)y * (size_t)width + (size_t)x] / 65535.0;
@@ -165,7 +165,8 @@ int quality_edge_mask(const uint16_t *disparity, int width, int height, double f
         return -1;
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
-            const double radius = edge_radius(disparity, width, height, x, y, focus, blur);
+            const double radius =
+                edge_radius(disparity, width, height, x, y, focus, blur);
             if (radius >= 0)
                 add_disc(cover, width, height, x, y, radius);
         }
@@ -181,8 +182,9 @@ int quality_edge_mask(const uint16_t *disparity, int width, int height, double f
     return 0;
 }
 
-int quality_score(const uint8_t *picture, const uint8_t *reference, int width, int height,
-                  int border, const uint8_t *mask, struct quality_scores *scores)
+int quality_score(const uint8_t *picture, const uint8_t *reference, int width,
+                  int height, int border, const uint8_t *mask,
+                  struct quality_scores *scores)
 {
     scores->rmse = quality_rmse(picture, reference, width, height, border, NULL,
                                 &scores->pixels);
@@ -190,7 +192,7 @@ int quality_score(const uint8_t *picture, const uint8_t *reference, int width, i
     scores->edge_psnr = NAN;
     scores->edge_pixels = 0;
     if (mask)
-        scores->edge_psnr = quality_psnr(quality_rmse(picture, reference, width, height,
-                                                      border, mask, &scores->edge_pixels));
+        scores->edge_psnr = quality_psnr(quality_rmse(
+            picture, reference, width, height, border, mask, &scores->edge_pixels));
     return quality_ssim(picture, reference, width, height, border, &scores->ssim);
 }

@@ -138,8 +138,9 @@ static void serve(struct window *window)
         SDL_DestroyWindow(screen.window);
 }
 
-/* SDL's own search ends with a screen that nobody sees, and asking for Wayland where there is
- * none prints a line. SDL_VIDEODRIVER of the environment has the first word. */
+/* SDL's own search ends with a screen that nobody sees, and asking for Wayland where
+ * there is none prints a line. SDL_VIDEODRIVER of the environment has the first
+ * word. */
 static bool init_video(void)
 {
     if (SDL_GetHint("SDL_VIDEODRIVER"))

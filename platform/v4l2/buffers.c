@@ -43,7 +43,8 @@ uint64_t rf_v4l2_needed(const struct rf_v4l2 *device, int i)
         return UINT64_MAX;
     if (device->memories == 1)
         return rf_frame_bytes(device->format, stride, device->width, device->height);
-    return (uint64_t)stride * (uint64_t)rf_plane_rows(device->format, i, device->height);
+    return (uint64_t)stride *
+           (uint64_t)rf_plane_rows(device->format, i, device->height);
 }
 
 /* Map memory i of buffer n; 0 or an errno. */
@@ -106,7 +107,8 @@ int rf_v4l2_map(struct rf_v4l2 *device, int count, bool export_dmabuf,
     error = rf_v4l2_ioctl(device->fd, VIDIOC_REQBUFS, &request);
     if (error)
         return rf_v4l2_fail(device, reason, error, "asking for buffers");
-    device->count = request.count < RF_MOST_BUFFERS ? (int)request.count : RF_MOST_BUFFERS;
+    device->count =
+        request.count < RF_MOST_BUFFERS ? (int)request.count : RF_MOST_BUFFERS;
     for (int n = 0; n < device->count; n++)
         for (int i = 0; i < 3; i++) {
             device->buffer[n].memory[i] = NULL;
@@ -119,7 +121,8 @@ int rf_v4l2_map(struct rf_v4l2 *device, int count, bool export_dmabuf,
     rf_v4l2_unmap(device);
     if (error == EOVERFLOW)
         return rf_capture_fail(reason, REFOCUS_ERR_IO,
-                               "%s: the driver's strides or buffers are less than a picture",
+                               "%s: the driver's strides or buffers are less than a "
+                               "picture",
                                device->path);
     if (!error)
         return rf_capture_fail_memory(reason);
@@ -167,7 +170,8 @@ void rf_v4l2_lay_out(const struct rf_v4l2 *device, int n, const uint32_t offset[
     frame->flags = device->flags;
     frame->buffer = (uint32_t)n;
     if (device->memories == 1) {
-        rf_frame_lay_out(frame, buffer->memory[0] + offset[0], bytes_per_line(device, 0));
+        rf_frame_lay_out(frame, buffer->memory[0] + offset[0],
+                         bytes_per_line(device, 0));
         for (int i = 0; i < rf_format_planes(frame->format); i++)
             frame->dmabuf[i] = buffer->dmabuf[0];
         return;
@@ -227,7 +231,8 @@ void rf_v4l2_sync(const struct rf_v4l2_buffer *buffer, bool begin)
     for (int i = 0; i < 3; i++)
         if (buffer->dmabuf[i] >= 0) {
             struct dma_buf_sync sync = {
-                .flags = DMA_BUF_SYNC_READ | (begin ? DMA_BUF_SYNC_START : DMA_BUF_SYNC_END)};
+                .flags = DMA_BUF_SYNC_READ |
+                         (begin ? DMA_BUF_SYNC_START : DMA_BUF_SYNC_END)};
 
             rf_v4l2_ioctl(buffer->dmabuf[i], DMA_BUF_IOCTL_SYNC, &sync);
         }

@@ -60,7 +60,7 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
     return rf_v4l2_open(&camera->device, camera->name, false, reason);
 }
 
-/* Modes ----------------------------------------------------------------------------------- */
+/* Modes ---------------------------------------------------------------------------- */
 
 static double greatest_rate(int fd, uint32_t fourcc, uint32_t width, uint32_t height)
 {
@@ -99,7 +99,8 @@ static bool find_size(const struct rf_v4l2 *device, uint32_t fourcc, int *index,
          size.index++) {
         const bool discrete = size.type == V4L2_FRMSIZE_TYPE_DISCRETE;
         const uint32_t width = discrete ? size.discrete.width : size.stepwise.max_width;
-        const uint32_t height = discrete ? size.discrete.height : size.stepwise.max_height;
+        const uint32_t height =
+            discrete ? size.discrete.height : size.stepwise.max_height;
 
         if ((*index)-- == 0) {
             mode->format = rf_v4l2_format_of(fourcc);
@@ -150,10 +151,11 @@ static bool offers(const struct rf_v4l2 *device, uint32_t fourcc)
     return false;
 }
 
-/* Start ------------------------------------------------------------------------------------ */
+/* Start ---------------------------------------------------------------------------- */
 
 /* What the node is set to, then what is cheap to convert, then depth. */
-static uint32_t choose_fourcc(const struct rf_v4l2 *device, uint32_t wanted, uint32_t present)
+static uint32_t choose_fourcc(const struct rf_v4l2 *device, uint32_t wanted,
+                              uint32_t present)
 {
     static const uint32_t preferred[] = {REFOCUS_FRAME_NV12,   REFOCUS_FRAME_NV21,
                                          REFOCUS_FRAME_YUV420, REFOCUS_FRAME_YUYV,
@@ -206,7 +208,8 @@ static void follow_signal(struct camera *camera)
         rf_v4l2_ioctl(camera->device.fd, VIDIOC_S_DV_TIMINGS, &timings);
 }
 
-/* Where the driver can tell: of the input that is chosen, whose number is the event's. */
+/* Where the driver can tell: of the input that is chosen, whose number is the
+ * event's. */
 static void watch_signal(const struct rf_v4l2 *device)
 {
     struct v4l2_event_subscription change;
@@ -232,20 +235,20 @@ static int choose_format(struct refocus_source *source, struct refocus_reason *r
     error = rf_v4l2_ioctl(device->fd, VIDIOC_G_FMT, &present);
     if (error)
         return rf_v4l2_fail(device, reason, error, "asking for the format");
-    fourcc = device->multi ? present.fmt.pix_mp.pixelformat : present.fmt.pix.pixelformat;
+    fourcc =
+        device->multi ? present.fmt.pix_mp.pixelformat : present.fmt.pix.pixelformat;
     width = device->multi ? present.fmt.pix_mp.width : present.fmt.pix.width;
     height = device->multi ? present.fmt.pix_mp.height : present.fmt.pix.height;
     fourcc = choose_fourcc(device, source->config.format, fourcc);
     if (fourcc == 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "%s: it has no %s; --list shows what it has", device->path,
-                               source->config.format
-                                   ? refocus_frame_format_name(source->config.format)
-                                   : "format that is known");
-    status = rf_v4l2_set_format(device, fourcc,
-                                source->config.width ? source->config.width : (int)width,
-                                source->config.height ? source->config.height : (int)height,
-                                reason);
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_UNSUPPORTED,
+            "%s: it has no %s; --list shows what it has", device->path,
+            source->config.format ? refocus_frame_format_name(source->config.format)
+                                  : "format that is known");
+    status = rf_v4l2_set_format(
+        device, fourcc, source->config.width ? source->config.width : (int)width,
+        source->config.height ? source->config.height : (int)height, reason);
     if (status == REFOCUS_OK && source->config.format &&
         device->format != source->config.format)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
@@ -301,7 +304,7 @@ static void stop(struct refocus_source *source)
     rf_v4l2_unmap(&camera->device);
 }
 
-/* Frames ----------------------------------------------------------------------------------- */
+/* Frames --------------------------------------------------------------------------- */
 
 /* True when the signal at the input is another one. */
 static bool read_events(struct camera *camera)
@@ -334,12 +337,14 @@ static void fill(struct camera *camera, const struct rf_v4l2_done *done,
 
     rf_v4l2_lay_out(device, done->index, cut ? none : done->offset, frame);
     if (device->format == REFOCUS_FRAME_MJPEG) {
-        frame->plane[0] = device->buffer[done->index].memory[0] + (cut ? 0 : done->offset[0]);
+        frame->plane[0] =
+            device->buffer[done->index].memory[0] + (cut ? 0 : done->offset[0]);
         frame->bytes = cut ? 0 : done->bytes[0] - done->offset[0];
     }
     if (cut || done->flags & V4L2_BUF_FLAG_ERROR)
         frame->flags |= REFOCUS_FRAME_CORRUPT;
-    if ((done->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC)
+    if ((done->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) ==
+        V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC)
         frame->flags |= REFOCUS_FRAME_MONOTONIC;
     frame->sequence = done->sequence;
     frame->timestamp_ns = done->timestamp_ns;
@@ -356,9 +361,11 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
 
     if (camera->failed)
         return rf_capture_fail(reason, REFOCUS_ERR_IO,
-                               "%s: the driver takes its buffers no more", device->path);
+                               "%s: the driver takes its buffers no more",
+                               device->path);
     for (;;) {
-        status = rf_source_poll(source, device->fd, POLLIN | POLLPRI, deadline_ns, &events);
+        status =
+            rf_source_poll(source, device->fd, POLLIN | POLLPRI, deadline_ns, &events);
         if (status != REFOCUS_OK)
             return status;
         if (events & POLLPRI && read_events(camera))
@@ -398,7 +405,7 @@ static void release(struct refocus_source *source, struct refocus_frame *frame)
         camera->failed = error != ENODEV; /* which wait will report by itself */
 }
 
-/* Controls and the list of cameras ------------------------------------------------------- */
+/* Controls and the list of cameras ------------------------------------------------- */
 
 /* "Focus, Absolute" becomes "focus_absolute". */
 static void plain_name(char *plain, size_t size, const char *name)
@@ -431,14 +438,17 @@ static int set_control(struct refocus_source *source, const char *name, double v
     while (rf_v4l2_ioctl(camera->device.fd, VIDIOC_QUERYCTRL, &query) == 0) {
         plain_name(plain, sizeof plain, (const char *)query.name);
         if (strcmp(plain, name) == 0) {
-            struct v4l2_control control = {.id = query.id, .value = (int32_t)lround(value)};
+            struct v4l2_control control = {.id = query.id,
+                                           .value = (int32_t)lround(value)};
             const int error = rf_v4l2_ioctl(camera->device.fd, VIDIOC_S_CTRL, &control);
 
-            return error ? rf_v4l2_fail(&camera->device, reason, error, name) : REFOCUS_OK;
+            return error ? rf_v4l2_fail(&camera->device, reason, error, name)
+                         : REFOCUS_OK;
         }
         query.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
     }
-    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%s: it has no control '%.60s'",
+    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%s: it has no control "
+                                                         "'%.60s'",
                            camera->device.path, name);
 }
 

@@ -81,10 +81,12 @@ int rf_v4l2_fail(const struct rf_v4l2 *device, struct refocus_reason *reason, in
     return rf_capture_fail_errno(reason, error, what);
 }
 
-static int check_device(struct rf_v4l2 *device, bool output, struct refocus_reason *reason)
+static int check_device(struct rf_v4l2 *device, bool output,
+                        struct refocus_reason *reason)
 {
     const uint32_t single = output ? V4L2_CAP_VIDEO_OUTPUT : V4L2_CAP_VIDEO_CAPTURE;
-    const uint32_t multi = output ? V4L2_CAP_VIDEO_OUTPUT_MPLANE : V4L2_CAP_VIDEO_CAPTURE_MPLANE;
+    const uint32_t multi =
+        output ? V4L2_CAP_VIDEO_OUTPUT_MPLANE : V4L2_CAP_VIDEO_CAPTURE_MPLANE;
     struct v4l2_capability capability;
     struct stat file;
     uint32_t has;
@@ -149,9 +151,11 @@ void rf_v4l2_close(struct rf_v4l2 *device)
 static void read_colours(struct rf_v4l2 *device)
 {
     const struct v4l2_format *f = &device->v4l2_format;
-    const uint32_t space = device->multi ? f->fmt.pix_mp.colorspace : f->fmt.pix.colorspace;
+    const uint32_t space =
+        device->multi ? f->fmt.pix_mp.colorspace : f->fmt.pix.colorspace;
     uint32_t encoding = device->multi ? f->fmt.pix_mp.ycbcr_enc : f->fmt.pix.ycbcr_enc;
-    uint32_t range = device->multi ? f->fmt.pix_mp.quantization : f->fmt.pix.quantization;
+    uint32_t range =
+        device->multi ? f->fmt.pix_mp.quantization : f->fmt.pix.quantization;
 
     if (encoding == V4L2_YCBCR_ENC_DEFAULT)
         encoding = V4L2_MAP_YCBCR_ENC_DEFAULT(space);
@@ -160,7 +164,8 @@ static void read_colours(struct rf_v4l2 *device)
     device->matrix = encoding == V4L2_YCBCR_ENC_709 || encoding == V4L2_YCBCR_ENC_XV709
                          ? REFOCUS_MATRIX_BT709
                          : REFOCUS_MATRIX_BT601;
-    device->flags = range == V4L2_QUANTIZATION_FULL_RANGE ? REFOCUS_FRAME_FULL_RANGE : 0;
+    device->flags =
+        range == V4L2_QUANTIZATION_FULL_RANGE ? REFOCUS_FRAME_FULL_RANGE : 0;
 }
 
 int rf_v4l2_set_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int height,
@@ -192,12 +197,13 @@ int rf_v4l2_set_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int h
     device->height = (int)(device->multi ? f->fmt.pix_mp.height : f->fmt.pix.height);
     device->memories = device->multi ? f->fmt.pix_mp.num_planes : 1;
     read_colours(device);
-    if (device->format == REFOCUS_FRAME_ANY || device->width < 1 || device->height < 1 ||
-        device->width > REFOCUS_MAX_SIDE || device->height > REFOCUS_MAX_SIDE ||
-        device->memories != memories_of(fourcc))
+    if (device->format == REFOCUS_FRAME_ANY || device->width < 1 ||
+        device->height < 1 || device->width > REFOCUS_MAX_SIDE ||
+        device->height > REFOCUS_MAX_SIDE || device->memories != memories_of(fourcc))
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "%s: it delivers '%.4s' of %dx%d, which cannot be used; --list "
-                               "shows what can", device->path, (const char *)&fourcc,
-                               device->width, device->height);
+                               "%s: it delivers '%.4s' of %dx%d, which cannot be used; "
+                               "--list shows what can",
+                               device->path, (const char *)&fourcc, device->width,
+                               device->height);
     return REFOCUS_OK;
 }

@@ -51,8 +51,8 @@ static bool try_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int h
     if (!rf_can_encode(rf_v4l2_format_of(fourcc)))
         return false;
     *status = rf_v4l2_set_format(device, fourcc, width, height, reason);
-    return *status == REFOCUS_OK && rf_can_encode(device->format) && device->width == width &&
-           device->height == height;
+    return *status == REFOCUS_OK && rf_can_encode(device->format) &&
+           device->width == width && device->height == height;
 }
 
 /* That of the pictures themselves. */
@@ -69,12 +69,15 @@ static int choose_yuv(struct rf_v4l2 *device, uint32_t format, int width, int he
     if (status != REFOCUS_OK && status != REFOCUS_ERR_UNSUPPORTED)
         return status;
     return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                           "%s: it takes no %s frames of %dx%d; set its size or the camera's",
-                           device->path, refocus_frame_format_name(rf_frame_format_of(format)),
-                           width, height);
+                           "%s: it takes no %s frames of %dx%d; set its size or the "
+                           "camera's",
+                           device->path,
+                           refocus_frame_format_name(rf_frame_format_of(format)), width,
+                           height);
 }
 
-/* The format that the node is set to, if it is one of ours, else the first that fits. */
+/* The format that the node is set to, if it is one of ours, else the first that
+ * fits. */
 static int choose_format(struct rf_v4l2 *device, int width, int height,
                          struct refocus_reason *reason)
 {
@@ -100,7 +103,8 @@ static int choose_format(struct rf_v4l2 *device, int width, int height,
     if (status != REFOCUS_OK && status != REFOCUS_ERR_UNSUPPORTED)
         return status;
     return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                           "%s: it takes no frames of %dx%d; set its size or the camera's",
+                           "%s: it takes no frames of %dx%d; set its size or the "
+                           "camera's",
                            device->path, width, height);
 }
 

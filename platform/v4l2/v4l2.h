@@ -25,7 +25,7 @@ struct rf_v4l2 {
     bool streaming;
 };
 
-/* device.c ------------------------------------------------------------------------------- */
+/* device.c ------------------------------------------------------------------------- */
 
 /* ioctl() that is not cut short by signals: 0 or an errno. */
 int rf_v4l2_ioctl(int fd, unsigned long request, void *argument);
@@ -33,8 +33,9 @@ int rf_v4l2_ioctl(int fd, unsigned long request, void *argument);
 int rf_v4l2_open(struct rf_v4l2 *device, const char *name, bool output,
                  struct refocus_reason *reason);
 void rf_v4l2_close(struct rf_v4l2 *device);
-/* Set a format of this size and check what the driver made of it. memories: planes in memories
- * of their own. REFOCUS_ERR_UNSUPPORTED when the driver chose a format that is not ours. */
+/* Set a format of this size and check what the driver made of it. memories: planes in
+ * memories of their own. REFOCUS_ERR_UNSUPPORTED when the driver chose a format that is
+ * not ours. */
 int rf_v4l2_set_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int height,
                        struct refocus_reason *reason);
 int rf_v4l2_fail(const struct rf_v4l2 *device, struct refocus_reason *reason, int error,
@@ -44,7 +45,7 @@ uint32_t rf_v4l2_format_of(uint32_t fourcc);
 /* The n-th code that means a format. */
 uint32_t rf_v4l2_fourcc_of(uint32_t format, int n);
 
-/* buffers.c ------------------------------------------------------------------------------ */
+/* buffers.c ------------------------------------------------------------------------ */
 
 /* Ask for buffers and map them, all or none. */
 int rf_v4l2_map(struct rf_v4l2 *device, int count, bool export_dmabuf,

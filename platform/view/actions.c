@@ -176,11 +176,21 @@ static void next_method(struct rf_window *w)
 {
     static const uint32_t methods[] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
                                        REFOCUS_METHOD_JITTERED, REFOCUS_METHOD_BLUR};
-    size_t i = 0;
+    enum { COUNT = sizeof methods / sizeof *methods };
+    const uint32_t allowed =
+        w->setup->methods ? w->setup->methods : REFOCUS_METHODS_ALL;
+    int from = 0;
 
-    while (i < sizeof methods / sizeof *methods && methods[i] != w->state.method)
-        i++;
-    w->state.method = methods[i + 1 < sizeof methods / sizeof *methods ? i + 1 : 0];
+    while (from < COUNT && methods[from] != w->state.method)
+        from++;
+    for (int i = 1; i <= COUNT; i++) {
+        const uint32_t method = methods[(from < COUNT ? from + i : i - 1) % COUNT];
+
+        if (allowed & REFOCUS_METHOD_BIT(method)) {
+            w->state.method = method;
+            break;
+        }
+    }
     rf_window_show(w, "method");
 }
 
@@ -251,6 +261,12 @@ static void act_on_picture(struct rf_window *w, enum rf_action action)
         break;
     case RF_ACT_HELP:
         w->help = !w->help;
+        w->settings = false;
+        w->redraw = true;
+        break;
+    case RF_ACT_SETTINGS:
+        w->settings = !w->settings;
+        w->help = false;
         w->redraw = true;
         break;
     case RF_ACT_QUIT:

@@ -29,6 +29,7 @@ static const struct {
     {SDLK_s, RF_ACT_SAVE_PICTURE, "s", "save the picture"},
     {SDLK_j, RF_ACT_SAVE_SETTINGS, "j", "save the settings"},
     {SDLK_w, RF_ACT_SAVE_DEPTH, "w", "save the depth, and the strokes"},
+    {SDLK_i, RF_ACT_SETTINGS, "i", "the settings that it began with"},
     {SDLK_h, RF_ACT_HELP, "h", "keys"},
     {SDLK_q, RF_ACT_QUIT, "q", "quit"},
 };
@@ -41,7 +42,8 @@ static const struct {
     {"less", RF_ACT_LESS},    {"ground", RF_ACT_GROUND}, {"slope", RF_ACT_GRADIENT},
     {"fill", RF_ACT_FILL},    {"far", RF_ACT_FARTHER},   {"near", RF_ACT_NEARER},
     {"undo", RF_ACT_UNDO},    {"method", RF_ACT_METHOD}, {"depth", RF_ACT_DEPTH},
-    {"peak", RF_ACT_PEAKING}, {"before", RF_ACT_BEFORE}, {"save", RF_ACT_SAVE_PICTURE},
+    {"peak", RF_ACT_PEAKING}, {"before", RF_ACT_BEFORE}, {"set", RF_ACT_SETTINGS},
+    {"save", RF_ACT_SAVE_PICTURE},
 };
 enum { KEYS = sizeof keys / sizeof *keys, BUTTONS = sizeof buttons / sizeof *buttons };
 
@@ -80,6 +82,7 @@ SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **lab
             (action == RF_ACT_LESS && w->stroke_kind == REFOCUS_STROKE_LESS))) ||
           (action == RF_ACT_DEPTH && w->state.mode == RF_VIEW_DEPTH) ||
           (action == RF_ACT_BEFORE && w->state.mode == RF_VIEW_BEFORE) ||
+          (action == RF_ACT_SETTINGS && w->settings) ||
           (action == RF_ACT_PEAKING && w->state.peaking);
     return place;
 }

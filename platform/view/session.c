@@ -22,6 +22,8 @@ static int take_memory(struct rf_session *s)
     if (!s->small_photo || !s->small_out || !s->selection || !s->small_disparity ||
         !s->full_out)
         return REFOCUS_ERR_MEMORY;
+    if (s->strokes)
+        return REFOCUS_OK;
     return refocus_strokes_create(&s->strokes, photo, s->setup.disparity ? &map : NULL);
 }
 
@@ -35,6 +37,7 @@ int rf_session_create(struct rf_session **session, const struct rf_session_setup
     if (!s)
         return REFOCUS_ERR_MEMORY;
     s->setup = *setup;
+    s->strokes = setup->strokes;
     s->reduction = 1;
     while ((int64_t)(photo->width / s->reduction) * (photo->height / s->reduction) >
            PREVIEW_PIXELS)
@@ -87,7 +90,8 @@ void rf_session_destroy(struct rf_session **session)
     }
     refocus_renderer_destroy(&s->small);
     refocus_renderer_destroy(&s->full);
-    refocus_strokes_destroy(&s->strokes);
+    if (!s->setup.strokes)
+        refocus_strokes_destroy(&s->strokes);
     for (int i = 0; i < 3; i++)
         free(s->frames[i].pixels);
     free(s->orders);

@@ -46,13 +46,24 @@ struct rf_view_result {
     const struct refocus_render_params *params;
     const uint16_t *disparity; /* of the photo's size, packed */
     const struct refocus_strokes *strokes;
+    const struct rf_view_state *state; /* with the focus that was found */
 };
 
 struct rf_session_setup {
     const struct refocus_image *photo;   /* RGB8; the caller's, until the end */
     const uint16_t *disparity;           /* of its size, packed; NULL: all 0. Copied */
+    struct refocus_strokes *strokes;     /* the painting so far, over those disparities,
+                                            or NULL: none. The caller's, but the
+                                            session's to change until its end */
     struct refocus_render_params params; /* what the state does not say */
-    bool sigma_of_sweep; /* params.sigma is of sweep alone, other methods average plainly */
+    /* What else follows from a focus that was found: changes params, which have it, the
+     * method and the blur already; lengths in pixels are the photo's. From the
+     * session's thread; NULL: nothing. */
+    void (*aim)(void *user, const struct rf_view_state *state,
+                struct refocus_render_params *params);
+    void *aim_user;
+    bool sigma_of_sweep; /* params.sigma is of sweep alone, other methods average
+                            plainly */
     int threads;
     uint32_t cpu;
     void (*notify)(void *user); /* a frame is there; from the session's thread */

@@ -17,6 +17,9 @@ struct rf_view_setup {
     struct rf_session_setup session; /* all but notify, which is the window's */
     struct rf_view_state state;      /* focus, blur and method to begin with */
     const char *title;               /* UTF-8 */
+    const char *settings; /* lines that tell what else the picture is made by; may be ""
+                             or NULL */
+    uint32_t methods; /* REFOCUS_METHOD_BIT() of those to choose from, or-ed; 0 = all */
     int width, height; /* of the window; 0 = as large as the photo asks for */
     bool fullscreen;
     bool (*stop)(void *user); /* polled: whether to end; may be NULL */

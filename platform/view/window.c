@@ -169,13 +169,15 @@ static void draw_buttons(struct rf_window *w)
 static void draw_status(struct rf_window *w)
 {
     const int dot = (int)(2 * w->density);
+    const char *const more = w->setup->settings && *w->setup->settings ? "  + i" : "";
     char text[120];
     SDL_Rect bar = {0, 0, w->width, 11 * dot};
 
-    SDL_snprintf(text, sizeof text, "%s  focus %.3f  blur %.1f%s",
+    SDL_snprintf(text, sizeof text, "%s  focus %.3f  blur %.1f%s%s",
                  refocus_method_name(w->state.method),
                  w->frame ? (double)w->frame->of.focus : (double)w->state.focus,
-                 (double)w->state.blur, w->frame && w->frame->full ? "" : "  ...");
+                 (double)w->state.blur, more,
+                 w->frame && w->frame->full ? "" : "  ...");
     set_grey(w, 20, 150);
     SDL_RenderFillRect(w->renderer, &bar);
     set_grey(w, 240, 255);
@@ -190,15 +192,41 @@ static void draw_status(struct rf_window *w)
     rf_text(w->renderer, text, bar.x + 5 * dot, bar.y + 2 * dot, dot);
 }
 
-static void draw_help(struct rf_window *w)
+/* Darkens what lies under a page of text. */
+static void begin_page(struct rf_window *w, int dot)
 {
-    const int dot = (int)(2 * w->density);
     const SDL_Rect all = {0, 11 * dot, w->width, w->height};
-    const char *what, *key;
 
     set_grey(w, 10, 200);
     SDL_RenderFillRect(w->renderer, &all);
     set_grey(w, 240, 255);
+}
+
+/* What the picture is made by beside focus, blur and method. */
+static void draw_settings(struct rf_window *w)
+{
+    const int dot = (int)(2 * w->density);
+    const char *line = w->setup->settings;
+    char text[120];
+
+    begin_page(w, dot);
+    if (!line || !*line)
+        line = "a plain lens: no settings beside focus and blur";
+    for (int i = 0; *line; i++) {
+        const size_t length = strcspn(line, "\n");
+
+        SDL_snprintf(text, sizeof text, "%.*s", (int)length, line);
+        rf_text(w->renderer, text, 6 * dot, (16 + 8 * i) * dot, dot);
+        line += length + (line[length] != '\0');
+    }
+}
+
+static void draw_help(struct rf_window *w)
+{
+    const int dot = (int)(2 * w->density);
+    const char *what, *key;
+
+    begin_page(w, dot);
     for (int i = 0; (key = rf_view_key(i, &what)) != NULL; i++) {
         rf_text(w->renderer, key, 6 * dot, (16 + 8 * i) * dot, dot);
         rf_text(w->renderer, what, 50 * dot, (16 + 8 * i) * dot, dot);
@@ -227,6 +255,8 @@ static void draw(struct rf_window *w)
     draw_status(w);
     if (w->help)
         draw_help(w);
+    else if (w->settings)
+        draw_settings(w);
     draw_buttons(w);
     SDL_RenderPresent(w->renderer);
     w->redraw = false;

@@ -32,6 +32,7 @@ enum rf_action {
     RF_ACT_SAVE_SETTINGS,
     RF_ACT_SAVE_DEPTH,
     RF_ACT_HELP,
+    RF_ACT_SETTINGS,
     RF_ACT_QUIT,
     RF_ACTIONS
 };
@@ -58,7 +59,7 @@ struct rf_window {
     double density;    /* of them in a unit of the mouse's places */
     const struct rf_view_frame *frame;
     Uint32 frame_event;
-    bool redraw, quit, help;
+    bool redraw, quit, help, settings;
     bool fitted; /* the whole photo is shown, also after a change of size */
 
     enum rf_tool tool;

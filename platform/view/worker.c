@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <refocus/focus.h>
 #include "reduce.h"
 #include "show.h"
 #include "worker.h"
@@ -17,37 +18,18 @@ static const uint16_t *disparity_of(const struct rf_session *s)
     return refocus_strokes_disparity(s->strokes);
 }
 
-static int by_value(const void *a, const void *b)
-{
-    return *(const uint16_t *)a - *(const uint16_t *)b;
-}
-
-/* The surface at a pixel: the median around, or where two meet the nearer one. */
+/* The surface at a pixel, as --focus-at has it. */
 static float focus_at(const struct rf_session *s, double at_x, double at_y)
 {
-    enum { RADIUS = 4, SIDE = 2 * RADIUS + 1 };
     const int w = s->setup.photo->width, h = s->setup.photo->height;
-    const int step = 1 + (w > h ? w : h) / 2000;
-    const uint16_t *const d = disparity_of(s);
-    uint16_t values[SIDE * SIDE];
-    int n = 0;
+    const struct refocus_disparity map =
+        refocus_disparity16(disparity_of(s), w, h, 2 * (ptrdiff_t)w);
+    const int x = (int)(at_x + 0.5), y = (int)(at_y + 0.5);
+    float focus = 0;
 
-    for (int j = -RADIUS; j <= RADIUS; j++) {
-        for (int i = -RADIUS; i <= RADIUS; i++) {
-            const int x = (int)(at_x + 0.5) + i * step,
-                      y = (int)(at_y + 0.5) + j * step;
-
-            if (x >= 0 && x < w && y >= 0 && y < h)
-                values[n++] = d[(size_t)y * (size_t)w + (size_t)x];
-        }
-    }
-    if (n == 0)
-        return 0;
-    qsort(values, (size_t)n, sizeof *values, by_value);
-    /* The median of the nearer half where the far half is another surface. */
-    if (values[3 * n / 4] - values[n / 4] > 65535 / 32)
-        return (float)values[7 * n / 8] / 65535;
-    return (float)values[n / 2] / 65535;
+    refocus_focus_at_point(&map, x < 0 ? 0 : x < w ? x : w - 1,
+                           y < 0 ? 0 : y < h ? y : h - 1, 0, &focus);
+    return focus;
 }
 
 /* The lens of a state, for the full picture or for the reduced one. */
@@ -60,7 +42,12 @@ lens_of(const struct rf_session *s, const struct rf_view_state *state, bool full
     params.method = state->method;
     params.focus_disparity = state->focus;
     params.field_disparity = state->focus;
-    params.max_blur_radius = state->blur / (float)reduction;
+    params.max_blur_radius = state->blur;
+    if (s->setup.aim)
+        s->setup.aim(s->setup.aim_user, state, &params);
+    params.max_blur_radius /= (float)reduction;
+    params.blur_limit /= (float)reduction;
+    params.star_length /= (float)reduction;
     if (!full) {
         /* The quickest; the full picture is by the method that was asked for. */
         params.method = REFOCUS_METHOD_SWEEP;
@@ -72,12 +59,21 @@ lens_of(const struct rf_session *s, const struct rf_view_state *state, bool full
     return params;
 }
 
+static bool is_same(float a, float b)
+{
+    return memcmp(&a, &b, sizeof a) == 0;
+}
+
 static bool same_lens(const struct refocus_render_params *a,
                       const struct refocus_render_params *b)
 {
-    return a->method == b->method &&
-           !memcmp(&a->focus_disparity, &b->focus_disparity, 4) &&
-           !memcmp(&a->max_blur_radius, &b->max_blur_radius, 4);
+    /* Numbers that come from the same places: equal when nothing has changed. */
+    return a->method == b->method && is_same(a->focus_disparity, b->focus_disparity) &&
+           is_same(a->max_blur_radius, b->max_blur_radius) &&
+           is_same(a->field_disparity, b->field_disparity) &&
+           is_same(a->tilt_x, b->tilt_x) && is_same(a->tilt_y, b->tilt_y) &&
+           is_same(a->tilt_across, b->tilt_across) &&
+           is_same(a->tilt_down, b->tilt_down);
 }
 
 /* Depth of the gradient's far end: what lies there before it is painted. */
@@ -330,8 +326,12 @@ static void save(struct rf_session *s, const struct rf_view_state *state, uint32
     const struct refocus_image picture =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width,
                              photo->height, 3 * (ptrdiff_t)photo->width);
-    const struct rf_view_result result = {what, &picture, &params, disparity_of(s),
-                                          s->strokes};
+    const struct rf_view_result result = {.what = what,
+                                          .picture = &picture,
+                                          .params = &params,
+                                          .disparity = disparity_of(s),
+                                          .strokes = s->strokes,
+                                          .state = state};
     int status = REFOCUS_OK;
 
     /* Nothing cancels this one: what is saved is what was asked for. */

@@ -1,5 +1,5 @@
-/* OpenCV's contrib filters. They come with 144 shared libraries: a module of its own, loaded
- * when it is asked for (platform/opencv/module.cpp). */
+/* OpenCV's contrib filters. They come with 144 shared libraries: a module of its own,
+ * loaded when it is asked for (platform/opencv/module.cpp). */
 #include "ximgproc.h"
 
 #include <cmath>
@@ -21,16 +21,19 @@ void smooth(uint32_t filter, const cv::Mat &photo, cv::Mat &depth, int reach)
         cv::ximgproc::guidedFilter(photo, depth, out, reach, 0.02 * 255 * 0.02 * 255);
         break;
     case REFOCUS_CV_FAST_GLOBAL:
-        cv::ximgproc::fastGlobalSmootherFilter(photo, depth, out, reach * (double)reach, 12);
+        cv::ximgproc::fastGlobalSmootherFilter(photo, depth, out, reach * (double)reach,
+                                               12);
         break;
     default:
         photo.convertTo(guide, CV_32F, 1 / 255.0);
-        cv::ximgproc::jointBilateralFilter(guide, depth, out, 2 * reach + 1, 0.1, reach);
+        cv::ximgproc::jointBilateralFilter(guide, depth, out, 2 * reach + 1, 0.1,
+                                           reach);
     }
     out.copyTo(depth);
 }
 
-int try_smooth(uint32_t filter, const uint8_t *rgb, float *depth, int width, int height, int reach)
+int try_smooth(uint32_t filter, const uint8_t *rgb, float *depth, int width, int height,
+               int reach)
 {
     try {
         const cv::Mat photo(height, width, CV_8UC3, const_cast<uint8_t *>(rgb));
@@ -58,13 +61,14 @@ cv::Mat fixed(const float *d, int width, int height)
     return out;
 }
 
-int try_wls(const uint8_t *rgb, const float *left, const float *right, float *out, int width,
-            int height)
+int try_wls(const uint8_t *rgb, const float *left, const float *right, float *out,
+            int width, int height)
 {
     try {
         const cv::Mat photo(height, width, CV_8UC3, const_cast<uint8_t *>(rgb));
         const auto filter = cv::ximgproc::createDisparityWLSFilterGeneric(true);
-        cv::Mat result, back = fixed(right, width, height), map(height, width, CV_32F, out);
+        cv::Mat result, back = fixed(right, width, height),
+                        map(height, width, CV_32F, out);
 
         back = -back; /* of the right picture they are negative there */
         filter->setLambda(8000);
@@ -82,5 +86,5 @@ int try_wls(const uint8_t *rgb, const float *left, const float *right, float *ou
 
 } // namespace
 
-extern "C" __attribute__((visibility("default"))) const rf_ximgproc rf_ximgproc_filters = {
-    RF_XIMGPROC_VERSION, try_smooth, try_wls};
+extern "C" __attribute__((visibility("default")))
+const rf_ximgproc rf_ximgproc_filters = {RF_XIMGPROC_VERSION, try_smooth, try_wls};

@@ -22,8 +22,8 @@ static void add_up(double pushed, double area[STEPS + 1])
 {
     area[0] = 0;
     for (int i = 0; i < STEPS; i++)
-        area[i + 1] =
-            area[i] + height_at((i + 0.5) / STEPS * (1 - pushed), pushed) * (1 - pushed) / STEPS;
+        area[i + 1] = area[i] + height_at((i + 0.5) / STEPS * (1 - pushed), pushed) *
+                                    (1 - pushed) / STEPS;
 }
 
 void rf_cat_eye_make(struct rf_cat_eye *eye)
@@ -46,7 +46,8 @@ void rf_cat_eye_make(struct rf_cat_eye *eye)
 
             while (at < STEPS - 1 && cut[at + 1] <= share)
                 at++;
-            x = (at + (share - cut[at]) / (cut[at + 1] - cut[at])) / STEPS * (1 - pushed);
+            x = (at + (share - cut[at]) / (cut[at + 1] - cut[at])) / STEPS *
+                (1 - pushed);
             eye->to[level][k] = to_q15(k < RF_CAT_KNOTS ? x : 1 - pushed);
             eye->height[level][k] =
                 to_q15(height_at(x, pushed) / height_at((double)knot / STEPS, 0));
@@ -65,7 +66,8 @@ void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t c
 {
     const int64_t square = x * x + y * y;
     const double length = sqrt((double)square); /* exact to the last bit */
-    const int pushed = (int)(square * amount / corner * RF_CAT_LEVELS >> 8); /* Q8 of levels */
+    /* Q8 of levels */
+    const int pushed = (int)(square * amount / corner * RF_CAT_LEVELS >> 8);
     int level = pushed >> 8, part = pushed & 255;
 
     here->is_round = pushed == 0;

@@ -1,10 +1,12 @@
-/* cat_eye.h: openings that are cut off at two sides, as a lens's is away from its axis.
+/* cat_eye.h: openings that are cut off at two sides, as a lens's is away from its axis:
+ * circles, and masks, which are squeezed like one. Other outlines are cut by
+ * cat_shape.h.
  *
- * What is left of the unit circle is the part common to two unit circles, one pushed by +d
- * and one by -d along an axis: |x| <= 1 - d, half as high as sqrt(1 - (|x| + d)^2). Rays of the
- * circle are moved into it so that equal areas stay equal: along the axis by the shares of
- * area, across it in proportion to the heights. So every tile keeps all its rays, and they
- * move little from one tile to the next.
+ * What is left of the unit circle is the part common to two unit circles, one pushed by
+ * +d and one by -d along an axis: |x| <= 1 - d, half as high as sqrt(1 - (|x| + d)^2).
+ * Rays of the circle are moved into it so that equal areas stay equal: along the axis
+ * by the shares of area, across it in proportion to the heights. So every tile keeps
+ * all its rays, and they move little from one tile to the next.
  */
 #ifndef RF_CAT_EYE_H
 #define RF_CAT_EYE_H
@@ -34,8 +36,8 @@ struct rf_cat_eye_here {
     int16_t to[RF_CAT_KNOTS + 1], height[RF_CAT_KNOTS + 1];
 };
 
-/* At (x, y) from the middle of a picture, `corner` from there to a corner squared, where d is
- * `amount`, Q16. */
+/* At (x, y) from the middle of a picture, `corner` from there to a corner squared,
+ * where d is `amount`, Q16. */
 void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t corner,
                    int amount, struct rf_cat_eye_here *here);
 

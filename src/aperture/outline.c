@@ -1,14 +1,16 @@
 /* outline.c: openings whose rim is seen whole from their middle.
  *
- * Such a rim is a radius for each direction. It is kept as RF_OUTLINE vertices at equal steps
- * of the circle: the triangles between the middle and two neighbours have the areas by which
- * rays are spread, and the same triangles say whether a place lies within.
+ * Such a rim is a radius for each direction. It is kept as RF_OUTLINE vertices at equal
+ * steps of the circle: the triangles between the middle and two neighbours have the
+ * areas by which rays are spread, and the same triangles say whether a place lies
+ * within.
  */
 #include "aperture/aperture.h"
 
 #include <math.h>
 
-/* Radius of a side between two corners on the unit circle, `off` turns from its middle. */
+/* Radius of a side between two corners on the unit circle, `off` turns from its
+ * middle. */
 static double side_radius(int blades, double curvature, double off)
 {
     double half_chord, apothem, sine, cosine, bulge, arc, back;
@@ -18,7 +20,8 @@ static double side_radius(int blades, double curvature, double off)
     bulge = curvature * (1 - apothem);
     if (bulge < 1e-6)
         return apothem / cosine;
-    arc = (half_chord * half_chord + bulge * bulge) / (2 * bulge); /* radius of the blade */
+    /* radius of the blade */
+    arc = (half_chord * half_chord + bulge * bulge) / (2 * bulge);
     back = arc - (apothem + bulge); /* its centre lies that far behind the middle */
     return sqrt(arc * arc - back * back * sine * sine) - back * cosine;
 }
@@ -41,15 +44,18 @@ static double iris_radius(const struct refocus_aperture_params *p, double turns)
         return radius;
     least = side_radius(p->blades, p->curvature, 0);
     radius *= p->opening / least;
-    most = p->opening / least < 1 ? p->opening / least : 1; /* of corners in the barrel */
+    /* of corners in the barrel */
+    most = p->opening / least < 1 ? p->opening / least : 1;
     return (radius < 1 ? radius : 1) / most;
 }
 
-/* Of a star: straight lines between points at 1 and notches at the golden ratio's square. */
+/* Of a star: straight lines between points at 1 and notches at the golden ratio's
+ * square. */
 static double star_radius(int points, double turns)
 {
     const double part = along_blade(turns, points);
-    const double off = (part < 0.5 ? part : 1 - part) / points, notch = 0.38196601125010515;
+    const double off = (part < 0.5 ? part : 1 - part) / points,
+                 notch = 0.38196601125010515;
     double sine, cosine, dx, dy;
 
     rf_sincos_turns(0.5 / points, &sine, &cosine);
@@ -59,7 +65,8 @@ static double star_radius(int points, double turns)
     return dy / (cosine * dy - sine * dx);
 }
 
-/* Of the heart (x^2 + y^2 - 1)^3 = x^2 y^3, its middle moved up and all within radius 1. */
+/* Of the heart (x^2 + y^2 - 1)^3 = x^2 y^3, its middle moved up and all within radius
+ * 1. */
 static double heart_radius(double turns)
 {
     double low = 0, high = 1, sine, cosine;
@@ -90,7 +97,8 @@ static double radius_at(const struct refocus_aperture_params *p, double turns)
     }
 }
 
-void rf_outline_make(struct refocus_aperture *a, const struct refocus_aperture_params *p)
+void rf_outline_make(struct refocus_aperture *a,
+                     const struct refocus_aperture_params *p)
 {
     const double rotation = p->rotation_deg / 360;
     double sum = 0;
@@ -108,7 +116,8 @@ void rf_outline_make(struct refocus_aperture *a, const struct refocus_aperture_p
     a->vertex_y[RF_OUTLINE] = a->vertex_y[0];
     for (int i = 0; i < RF_OUTLINE; i++) {
         a->area[i] = sum;
-        sum += a->vertex_x[i] * a->vertex_y[i + 1] - a->vertex_y[i] * a->vertex_x[i + 1];
+        sum +=
+            a->vertex_x[i] * a->vertex_y[i + 1] - a->vertex_y[i] * a->vertex_x[i + 1];
     }
     for (int i = 0; i < RF_OUTLINE; i++)
         a->area[i] /= sum;

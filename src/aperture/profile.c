@@ -1,5 +1,5 @@
-/* profile.c: light from the middle of an aperture to its rim; refocus_aperture_params has the
- * equations. */
+/* profile.c: light from the middle of an aperture to its rim; refocus_aperture_params
+ * has the equations. */
 #include "aperture/aperture.h"
 
 /* Share of the light within v of the area. */

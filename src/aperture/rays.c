@@ -1,10 +1,11 @@
 /* rays.c: ray samples from an aperture.
  *
- * N rays of equal share. A disc takes Vogel's spiral: ray n at radius sqrt((n + 1/2) / N)
- * and n golden turns. A polygon takes the same spiral, its circles drawn onto the polygon
- * so that equal areas stay equal; so does any other outline, by its triangles, and where light
- * is not spread evenly the radii are those of equal light. A mask takes N points at equal steps
- * of light along a Hilbert curve over it, then a few steps of Lloyd's relaxation.
+ * N rays of equal share. A disc takes Vogel's spiral: ray n at radius sqrt((n + 1/2) /
+ * N) and n golden turns. A polygon takes the same spiral, its circles drawn onto the
+ * polygon so that equal areas stay equal; so does any other outline, by its triangles,
+ * and where light is not spread evenly the radii are those of equal light. A mask takes
+ * N points at equal steps of light along a Hilbert curve over it, then a few steps of
+ * Lloyd's relaxation.
  *
  * In every case (u, v) is minus the place on the mask as it is drawn; see
  * refocus/aperture.h.
@@ -22,9 +23,11 @@ static int16_t to_q15(double x)
     return (int16_t)(q > 32767 ? 32767 : q < -32767 ? -32767 : q);
 }
 
-static struct refocus_ray squeezed_ray(const struct refocus_aperture *a, double x, double y)
+static struct refocus_ray squeezed_ray(const struct refocus_aperture *a, double x,
+                                       double y)
 {
-    return (struct refocus_ray){to_q15(-x * a->squeeze_x), to_q15(-y * a->squeeze_y), 255};
+    return (struct refocus_ray){to_q15(-x * a->squeeze_x), to_q15(-y * a->squeeze_y),
+                                255};
 }
 
 static struct refocus_ray make_ray(double x, double y, int weight)
@@ -116,7 +119,8 @@ struct place {
     int32_t x, y;
 };
 
-static void relax(const uint8_t *cell, int count, struct place *place, struct rf_run *run)
+static void relax(const uint8_t *cell, int count, struct place *place,
+                  struct rf_run *run)
 {
     int64_t sum_x[REFOCUS_MAX_RAYS] = {0}, sum_y[REFOCUS_MAX_RAYS] = {0};
     int64_t sum[REFOCUS_MAX_RAYS] = {0};
@@ -238,8 +242,9 @@ static int coverage(const struct refocus_aperture *a, double radius, int x, int 
     return (sum + 32) / 64;
 }
 
-int rf_aperture_full_rays(const struct refocus_aperture *aperture, double max_blur_radius,
-                          int capacity, struct refocus_ray *rays, struct rf_run *run)
+int rf_aperture_full_rays(const struct refocus_aperture *aperture,
+                          double max_blur_radius, int capacity,
+                          struct refocus_ray *rays, struct rf_run *run)
 {
     int count = 0, most = 0;
 

@@ -15,7 +15,8 @@ static void bias_row(const struct refocus_renderer *r, uint16_t *m, int y)
     m[-1] = m[r->width] = 0;
 }
 
-/* Steps straight and diagonally from above, into one plane, or from below, into another. */
+/* Steps straight and diagonally from above, into one plane, or from below, into
+ * another. */
 void rf_background_dilate(struct refocus_renderer *r, bool upwards)
 {
     const int first = upwards ? r->height - 1 : 0, step = upwards ? -1 : 1;
@@ -30,12 +31,14 @@ void rf_background_dilate(struct refocus_renderer *r, bool upwards)
     }
 }
 
-void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1)
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0,
+                             int y1)
 {
     const int w = r->width;
     uint16_t *row = scratch + RF_SPREAD_MARGIN;
     uint16_t *spare = row + w + 2 * RF_SPREAD_MARGIN;
-    const int reach = 2 * r->pad; /* blurs differ by K at most, the cone by half a pixel */
+    const int reach = 2 * r->pad; /* blurs differ by K at most, the cone by half a
+                                     pixel */
 
     for (int y = y0; y < y1; y++) {
         const ptrdiff_t at = y * r->stride;
@@ -80,8 +83,8 @@ static void push_rows(struct refocus_renderer *r, int i, int y0, int y1)
         const uint16_t *const lower[3] = {fine.light[0] + b, fine.light[1] + b,
                                           fine.light[2] + b};
 
-        r->kernels.push(out, coarse.blur + at, upper, lower, fine.blur + a, fine.blur + b,
-                        coarse.width);
+        r->kernels.push(out, coarse.blur + at, upper, lower, fine.blur + a,
+                        fine.blur + b, coarse.width);
         if (coarse.width % 2)
             coarse.blur[at + coarse.width] = RF_NO_BLUR;
     }
@@ -113,7 +116,8 @@ static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int 
         for (int c = 0; c < 3; c++)
             r->kernels.pull(fine.light[c] + at, fine.blur + at,
                             coarse.light[c] + near_y * coarse.stride,
-                            coarse.light[c] + far_y * coarse.stride, scratch, coarse.width);
+                            coarse.light[c] + far_y * coarse.stride, scratch,
+                            coarse.width);
         r->kernels.pull_blur(fine.blur + at, coarse.blur + near_y * coarse.stride,
                              coarse.width);
     }
@@ -181,5 +185,6 @@ void rf_background_pull(struct refocus_renderer *r, int from, int to)
         run(&fill, pull_item, level_of(r, fill.level).height);
     if (r->levels == 0) /* a picture of one pixel: nothing is unknown */
         for (int c = 0; c < 4; c++)
-            rf_extend_rows(r, c < 3 ? (void *)r->behind.light[c] : r->behind.blur, 0, 1);
+            rf_extend_rows(r, c < 3 ? (void *)r->behind.light[c] : r->behind.blur, 0,
+                           1);
 }

@@ -9,9 +9,9 @@
  *     max over q of (s(q) - |p - q| / 2) > s(p) + 1/2 pixel,
  *
  * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and
- * sqrt 2. Slope 1 would mark what can be seen through; slope 1/2 marks twice as deep, so that
- * the sources nearest to what is seen lie on the far side. Fill: marked pixels take light
- * and blur by push-pull from the rest, in a pyramid.
+ * sqrt 2. Slope 1 would mark what can be seen through; slope 1/2 marks twice as deep,
+ * so that the sources nearest to what is seen lie on the far side. Fill: marked pixels
+ * take light and blur by push-pull from the rest, in a pyramid.
  *
  * The steps, in this order; rows may be shared out within a step.
  */
@@ -20,22 +20,24 @@
 
 #include "renderer/renderer.h"
 
-/* The dilation but for its steps along rows: from above, and from below. Both directions
- * may run at once. Uses the planes r->behind.light[0] and [1]. */
+/* The dilation but for its steps along rows: from above, and from below. Both
+ * directions may run at once. Uses the planes r->behind.light[0] and [1]. */
 void rf_background_dilate(struct refocus_renderer *r, bool upwards);
 
 /* The steps along rows, and the mark; copies r->smooth. */
-void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1);
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0,
+                             int y1);
 
-/* Fill: up the pyramid from a level to another, and down again; level 0 with its border. All of
- * it is 0 to r->levels. */
+/* Fill: up the pyramid from a level to another, and down again; level 0 with its
+ * border. All of it is 0 to r->levels. */
 void rf_background_push(struct refocus_renderer *r, int from, int to);
 void rf_background_pull(struct refocus_renderer *r, int from, int to);
 
 /*
- * Whether the fill of the pixels in `need` is that of the whole photo, though only a window is
- * there: between push and pull. The mark and the light of the window are those of the whole
- * photo in `exact`. Unknown pixels ask for their parents, and so on, until all are known.
+ * Whether the fill of the pixels in `need` is that of the whole photo, though only a
+ * window is there: between push and pull. The mark and the light of the window are
+ * those of the whole photo in `exact`. Unknown pixels ask for their parents, and so on,
+ * until all are known.
  */
 bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect need,
                             struct rf_rect exact);
@@ -44,11 +46,12 @@ bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect nee
 bool rf_all_known(const int16_t *blur, int n);
 
 /*
- * The same for a photo of Y, U and V. Chroma of 4:2:0 is as large as level 1 of the pyramid and
- * is filled from there on; a sample is known if any of its pixels is. That of 4:2:2 is made as
- * small for it: the background has half its rows.
+ * The same for a photo of Y, U and V. Chroma of 4:2:0 is as large as level 1 of the
+ * pyramid and is filled from there on; a sample is known if any of its pixels is. That
+ * of 4:2:2 is made as small for it: the background has half its rows.
  */
-void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1);
+void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0,
+                                 int y1);
 void rf_background_yuv_fill(struct refocus_renderer *r);
 
 #endif

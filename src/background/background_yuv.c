@@ -5,7 +5,8 @@
 #include "planes/yuv.h"
 #include "renderer/bands.h"
 
-void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0, int y1)
+void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0,
+                                 int y1)
 {
     const int w = r->width;
     uint16_t *row = scratch + RF_SPREAD_MARGIN;

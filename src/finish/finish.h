@@ -23,22 +23,30 @@ struct rf_star {
 };
 
 /* Most stars of a picture; the lamps after them, row by row, have no spikes. */
-enum { RF_MOST_STARS = 1024, RF_MOST_SPIKES = 16, RF_NOISE_LEVELS = 8, RF_NOISE_BINS = 1024 };
+enum {
+    RF_MOST_STARS = 1024,
+    RF_MOST_SPIKES = 16,
+    RF_NOISE_LEVELS = 8,
+    RF_NOISE_BINS = 1024
+};
 
 /* Grain of the photo, measured where it is sharp. */
 struct rf_grain {
-    uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS]; /* by luma and by variance, 1/16 code^2 */
+    /* by luma and by variance, 1/16 code^2 */
+    uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS];
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
     uint8_t lost[1024];              /* by |s| >> 5: how much of it a blur takes, Q8 */
 };
 
-/* What the next function needs, once a frame: of the whole photo, whatever the window is. */
+/* What the next function needs, once a frame: of the whole photo, whatever the window
+ * is. */
 void rf_finish_begin(struct rf_frame *f);
 
 /* A rectangle of the window that is encoded. */
 void rf_finish_rect(const struct rf_frame *f, struct rf_rect rect);
 
-/* Stars of the lamps that are known, r->star[0 .. r->stars - 1]; the photo's grain, r->grain. */
+/* Stars of the lamps that are known, r->star[0 .. r->stars - 1]; the photo's grain,
+ * r->grain. */
 void rf_find_stars(struct rf_frame *f);
 void rf_measure_grain(struct rf_frame *f);
 

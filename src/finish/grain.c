@@ -1,11 +1,13 @@
 /* grain.c: the noise of the photo, put back where blur has averaged it away.
  *
- * How strong: in each block of 8 x 8 pixels that this lens leaves sharp, the mean square of the
- * second difference of luma along rows is 6 sigma^2 of its noise, and more where there is
- * texture. Of the blocks of one brightness the smoothest quarter holds noise alone; its median,
- * the eighth of all, is 0.71 of the mean where all blocks are noise alone.
+ * How strong: in each block of 8 x 8 pixels that this lens leaves sharp, the mean
+ * square of the second difference of luma along rows is 6 sigma^2 of its noise, and
+ * more where there is texture. Of the blocks of one brightness the smoothest quarter
+ * holds noise alone; its median, the eighth of all, is 0.71 of the mean where all
+ * blocks are noise alone.
  *
- * How much is missing: a mean over a disc of radius r leaves 1 / (pi r^2) of the variance.
+ * How much is missing: a mean over a disc of radius r leaves 1 / (pi r^2) of the
+ * variance.
  *
  * The grain is a hash of place and seed: the sum of four bytes, nearly Gaussian.
  */
@@ -37,7 +39,8 @@ static int luma_at(const struct refocus_renderer *r, int x, int y)
     if (r->in_place.on) {
         const struct refocus_image *image = &r->in_place.photo;
         const struct rf_order o = rf_order_of(image->format);
-        const uint8_t *code = image->plane[0] + y * image->stride[0] + (ptrdiff_t)x * o.bytes;
+        const uint8_t *code =
+            image->plane[0] + y * image->stride[0] + (ptrdiff_t)x * o.bytes;
 
         return luma(code[o.r], code[o.g], code[o.b]);
     }
@@ -45,9 +48,10 @@ static int luma_at(const struct refocus_renderer *r, int x, int y)
                 to_code[4 * photo->light[2][at]]);
 }
 
-/* Variance of a block's noise in 1/16, and its mean; -1 when it does not count: it is not
- * sharp, or touches black or white, where noise is cut off. */
-static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blur, int *mean)
+/* Variance of a block's noise in 1/16, and its mean; -1 when it does not count: it is
+ * not sharp, or touches black or white, where noise is cut off. */
+static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blur,
+                          int *mean)
 {
     int sum = 0, square = 0;
 
@@ -57,7 +61,8 @@ static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blu
         for (int x = 0; x < BLOCK; x++) {
             v[x] = luma_at(f->r, x0 + x, y);
             sum += v[x];
-            if (v[x] < 2 || v[x] > 253 || (!any_blur && abs(rf_blur_at(f, x0 + x, y)) >= SHARP))
+            if (v[x] < 2 || v[x] > 253 ||
+                (!any_blur && abs(rf_blur_at(f, x0 + x, y)) >= SHARP))
                 return -1;
         }
         for (int x = 1; x < BLOCK - 1; x++) {
@@ -114,9 +119,10 @@ static void fill_levels(const int sigma[RF_NOISE_LEVELS], uint16_t out[RF_NOISE_
         out[i] = 0;
         for (int away = 0; away < RF_NOISE_LEVELS; away++) {
             const int below = i - away, above = i + away;
-            const int found = below >= 0 && sigma[below] >= 0                    ? sigma[below]
-                              : above < RF_NOISE_LEVELS && sigma[above] >= 0 ? sigma[above]
-                                                                                 : -1;
+            const int found = below >= 0 && sigma[below] >= 0 ? sigma[below]
+                              : above < RF_NOISE_LEVELS && sigma[above] >= 0
+                                  ? sigma[above]
+                                  : -1;
 
             if (found >= 0) {
                 out[i] = (uint16_t)found;
@@ -137,7 +143,8 @@ void rf_measure_grain(struct rf_frame *f)
         sigma[i] = sigma_of(r->grain->blocks[i]);
     fill_levels(sigma, r->grain->sigma);
     for (int i = 0; i < 1024; i++) {
-        const double radius = (i * 32 + 16) / 256.0, area = 3.14159265358979 * radius * radius;
+        const double radius = (i * 32 + 16) / 256.0,
+                     area = 3.14159265358979 * radius * radius;
         const double left = area > 1 ? 1 / area : 1;
 
         r->grain->lost[i] = (uint8_t)floor(sqrt(1 - left) * 255 + 0.5);
@@ -153,14 +160,17 @@ static int sigma_at(const struct rf_grain *grain, int code)
 
     if (level >= last)
         return grain->sigma[last];
-    return (grain->sigma[level] * (LEVEL_WIDTH - part) + grain->sigma[level + 1] * part) /
+    return (grain->sigma[level] * (LEVEL_WIDTH - part) +
+            grain->sigma[level + 1] * part) /
            LEVEL_WIDTH;
 }
 
-/* Sum of four random bytes about 0: standard deviation sqrt(4 (256^2 - 1) / 12) = 147.8. */
+/* Sum of four random bytes about 0: standard deviation sqrt(4 (256^2 - 1) / 12) =
+ * 147.8. */
 static int noise_at(int x, int y, uint32_t seed)
 {
-    uint32_t h = seed * 0x9e3779b9u + (uint32_t)x * 0x85ebca6bu + (uint32_t)y * 0xc2b2ae35u;
+    uint32_t h =
+        seed * 0x9e3779b9u + (uint32_t)x * 0x85ebca6bu + (uint32_t)y * 0xc2b2ae35u;
 
     h = (h ^ (h >> 16)) * 0x7feb352du;
     h = (h ^ (h >> 15)) * 0x846ca68bu;
@@ -177,7 +187,8 @@ void rf_add_grain(const struct rf_frame *f, struct rf_rect rect)
 {
     const struct refocus_renderer *r = f->r;
     const int64_t amount = (int64_t)floorf(f->params->grain * 256 + 0.5f);
-    const int64_t unit = (int64_t)(147.80 * 256 * 256 * 255); /* of what is multiplied below */
+    /* of what is multiplied below */
+    const int64_t unit = (int64_t)(147.80 * 256 * 256 * 255);
 
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
@@ -189,7 +200,8 @@ void rf_add_grain(const struct rf_frame *f, struct rf_rect rect)
             if (lost == 0)
                 continue;
             rf_pixel_codes(f, x, y, code);
-            add = amount * lost * noise_at(r->origin_x + x, r->origin_y + y, f->params->seed) *
+            add = amount * lost *
+                  noise_at(r->origin_x + x, r->origin_y + y, f->params->seed) *
                   sigma_at(r->grain, luma(*code[0], *code[1], *code[2]));
             change = (int)((llabs(add) + unit / 2) / unit);
             for (int c = 0; c < 3; c++)

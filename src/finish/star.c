@@ -1,9 +1,10 @@
 /* star.c: spikes of a star filter.
  *
- * Each lamp has `star_spikes` spikes that together carry `star_strength` of its light, on top of
- * it. Along a spike of length L light falls by 3 / L (1 - l / L)^2, across it by
- * 3 / 4b (1 - (w / b)^2), b the lamp's blur radius, at least 3/4 pixel: the spike of a lamp that
- * is out of focus is as wide as its disc. The filter is before the lens: nothing hides a spike.
+ * Each lamp has `star_spikes` spikes that together carry `star_strength` of its light,
+ * on top of it. Along a spike of length L light falls by 3 / L (1 - l / L)^2, across it
+ * by 3 / 4b (1 - (w / b)^2), b the lamp's blur radius, at least 3/4 pixel: the spike of
+ * a lamp that is out of focus is as wide as its disc. The filter is before the lens:
+ * nothing hides a spike.
  */
 #include "finish/finish.h"
 
@@ -41,8 +42,8 @@ static struct rf_star *new_star(struct refocus_renderer *r, int x, int y)
     return star;
 }
 
-/* One more pixel of a star, whose place becomes the middle of them all. What a lamp lost, a third
- * of `added`, is its hue at white. */
+/* One more pixel of a star, whose place becomes the middle of them all. What a lamp
+ * lost, a third of `added`, is its hue at white. */
 static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp,
                       struct rf_star *star)
 {
@@ -96,12 +97,14 @@ static struct spikes spikes_of(const struct refocus_render_params *p)
     struct spikes spikes = {
         .count = p->star_spikes,
         .length = (int64_t)floorf(p->star_length * 256 + 0.5f),
-        .share = (int64_t)floorf(p->star_strength / (float)p->star_spikes * 65536 + 0.5f)};
+        .share =
+            (int64_t)floorf(p->star_strength / (float)p->star_spikes * 65536 + 0.5f)};
 
     for (int i = 0; i < spikes.count; i++) {
         double sine, cosine;
 
-        rf_sincos_turns(p->star_angle / 360.0 + (double)i / spikes.count, &sine, &cosine);
+        rf_sincos_turns(p->star_angle / 360.0 + (double)i / spikes.count, &sine,
+                        &cosine);
         spikes.x[i] = (int64_t)floor(cosine * 32768 + 0.5);
         spikes.y[i] = (int64_t)floor(-sine * 32768 + 0.5); /* y down */
     }
@@ -119,8 +122,8 @@ static int64_t density(int64_t along, int64_t across, int64_t length, int64_t wi
     return a * b >> 16;
 }
 
-static void add_star(const struct rf_star *star, const struct spikes *spikes, int x0, int y0,
-                     int64_t sum[3][LANES])
+static void add_star(const struct rf_star *star, const struct spikes *spikes, int x0,
+                     int y0, int64_t sum[3][LANES])
 {
     const int64_t wide = star->blur > 192 ? star->blur : 192;
 
@@ -143,7 +146,8 @@ static void add_star(const struct rf_star *star, const struct spikes *spikes, in
 }
 
 /* Add Q20 light to encoded pixels. */
-static void add_light(const struct rf_frame *f, struct rf_rect rect, int64_t sum[3][LANES])
+static void add_light(const struct rf_frame *f, struct rf_rect rect,
+                      int64_t sum[3][LANES])
 {
     const struct rf_transfer *transfer = &f->r->transfer[f->r->blend];
 
@@ -158,7 +162,8 @@ static void add_light(const struct rf_frame *f, struct rf_rect rect, int64_t sum
                                      ((sum[c][i] + (1 << 5)) >> 6);
 
                 if (sum[c][i] >= 1 << 5)
-                    *code[c] = transfer->to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
+                    *code[c] =
+                        transfer->to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
             }
         }
     }
@@ -167,7 +172,8 @@ static void add_light(const struct rf_frame *f, struct rf_rect rect, int64_t sum
 void rf_add_stars(const struct rf_frame *f, struct rf_rect rect)
 {
     const struct refocus_renderer *r = f->r;
-    const int x0 = r->origin_x + rect.x0 / RF_TILE * RF_TILE; /* of the tile, in the photo */
+    /* of the tile, in the photo */
+    const int x0 = r->origin_x + rect.x0 / RF_TILE * RF_TILE;
     const int y0 = r->origin_y + rect.y0 / RF_TILE * RF_TILE;
     const struct spikes spikes = spikes_of(f->params);
     int64_t sum[3][LANES];

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* sqrt is exact to the last bit wherever doubles are IEEE's, and v has 53 bits at most. */
+/* sqrt is exact to the last bit wherever doubles are IEEE's, and v has 53 bits at
+ * most. */
 static int32_t length(int64_t a, int64_t b, int64_t c)
 {
     return (int32_t)floor(sqrt((double)(a * a + b * b + c * c)) + 0.5);

@@ -1,7 +1,8 @@
 /* focus.h: how much each pixel is out of focus, when that is more than K (df - d).
  *
- * Everything ends in one signed blur a pixel, s = K e with e in units of disparity, 65535 =
- * 1; what renders it need not know how it came about. All of it is whole numbers.
+ * Everything ends in one signed blur a pixel, s = K e with e in units of disparity,
+ * 65535 = 1; what renders it need not know how it came about. All of it is whole
+ * numbers.
  */
 #ifndef RF_FOCUS_H
 #define RF_FOCUS_H
@@ -15,8 +16,8 @@
 
 enum { RF_ONE = 65535 }; /* disparity 1, or a picture's width, in what follows */
 
-/* A band about the main focus: offset of its middle from df, and where its blur begins and
- * where it is the lens's again. */
+/* A band about the main focus: offset of its middle from df, and where its blur begins
+ * and where it is the lens's again. */
 struct rf_band {
     int32_t offset, sharp, whole;
 };
@@ -45,18 +46,19 @@ struct rf_focus_plan {
 };
 
 /* Of parameters that are in their ranges. */
-void rf_focus_plan_make(struct rf_focus_plan *plan, const struct refocus_render_params *params,
+void rf_focus_plan_make(struct rf_focus_plan *plan,
+                        const struct refocus_render_params *params,
                         struct rf_focus focus, int width, int height);
 
 /* Signed blur of n pixels of disparities from (x, y) on, Q7.8. */
-void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity,
-                  int x, int y, int n);
+void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur,
+                  const uint16_t *disparity, int x, int y, int n);
 
 /* e of a field, signed as s is: what is nearer than its centre is below 0. */
 int32_t rf_field_at(const struct rf_focus_plan *plan, int x, int y, int d);
 
-/* A map's value at pixel (x, y) of a picture of width x height that it covers: between its
- * samples in proportion; the sample itself when the sizes are the same. */
+/* A map's value at pixel (x, y) of a picture of width x height that it covers: between
+ * its samples in proportion; the sample itself when the sizes are the same. */
 int rf_map_at(const struct refocus_disparity *map, int width, int height, int x, int y);
 
 #endif

@@ -7,8 +7,8 @@ static int sample(const struct refocus_disparity *map, int x, int y)
     return map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
 }
 
-/* Where the middle of pixel `at` of `pixels` lies among `samples`, Q16 from the middle of the
- * first, within the first and the last. */
+/* Where the middle of pixel `at` of `pixels` lies among `samples`, Q16 from the middle
+ * of the first, within the first and the last. */
 static int64_t place(int at, int pixels, int samples)
 {
     const int64_t twice = ((int64_t)(2 * at + 1) * samples << 16) / pixels;

@@ -10,7 +10,8 @@ enum {
     BINS = 2048,
     WIDTH = 65536 / BINS, /* disparities of a bin */
     APART = BINS / 64,    /* empty bins that part two surfaces */
-    NOISE = 1024,         /* a bin with less than 1/NOISE of the pixels is as good as empty */
+    NOISE = 1024,         /* a bin with less than 1/NOISE of the pixels is as good as
+                             empty */
     SHARE = 4,            /* the nearest surface with 1/SHARE of them is meant */
 };
 
@@ -25,7 +26,8 @@ static int value_at(const struct part *part, int x, int y)
 {
     const uint8_t *row = (const uint8_t *)part->map->samples + y * part->map->stride;
 
-    return part->map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
+    return part->map->bits == 8 ? row[x] * 257
+                                : ((const uint16_t *)(const void *)row)[x];
 }
 
 static bool is_inside(const struct part *part, int x, int y)
@@ -117,8 +119,8 @@ static int smaller(int a, int b)
     return a < b ? a : b;
 }
 
-int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y, int radius,
-                           float *focus)
+int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y,
+                           int radius, float *focus)
 {
     struct part part = {.map = map, .cx = x, .cy = y};
 
@@ -136,8 +138,8 @@ int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y, in
     return REFOCUS_OK;
 }
 
-int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y, int width,
-                               int height, float *focus)
+int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y,
+                               int width, int height, float *focus)
 {
     struct part part = {.map = map, .x0 = x, .y0 = y};
 

@@ -1,5 +1,5 @@
-/* plane.c: planes of focus. 1/z of a plane in space is affine in the picture's coordinates,
- * and disparity is affine in 1/z. */
+/* plane.c: planes of focus. 1/z of a plane in space is affine in the picture's
+ * coordinates, and disparity is affine in 1/z. */
 #include <refocus/render.h>
 
 #include <math.h>
@@ -19,7 +19,8 @@ static bool good_point(const struct refocus_focus_point *p)
 
 static int good_plane(const struct refocus_focus_plane *plane)
 {
-    return fabsf(plane->across) <= REFOCUS_MAX_TILT && fabsf(plane->down) <= REFOCUS_MAX_TILT
+    return fabsf(plane->across) <= REFOCUS_MAX_TILT &&
+                   fabsf(plane->down) <= REFOCUS_MAX_TILT
                ? REFOCUS_OK
                : REFOCUS_ERR_ARGUMENT;
 }
@@ -56,8 +57,8 @@ int refocus_focus_plane_of_line(struct refocus_focus_plane *plane,
 {
     double dx, dy, length, sine, cosine, slope;
 
-    if (!plane || !from || !to || !good_point(from) || !good_point(to) || !(aspect > 0) ||
-        !isfinite(aspect) || !(angle_deg > -90 && angle_deg < 90))
+    if (!plane || !from || !to || !good_point(from) || !good_point(to) ||
+        !(aspect > 0) || !isfinite(aspect) || !(angle_deg > -90 && angle_deg < 90))
         return REFOCUS_ERR_ARGUMENT;
     dx = (double)to->x - from->x; /* in picture widths */
     dy = ((double)to->y - from->y) * aspect;
@@ -69,7 +70,8 @@ int refocus_focus_plane_of_line(struct refocus_focus_plane *plane,
     plane->x = from->x;
     plane->y = from->y;
     plane->focus_disparity = from->disparity;
-    plane->across = (float)(slope * -dy / length); /* to the right of (dx, dy), y down */
+    /* to the right of (dx, dy), y down */
+    plane->across = (float)(slope * -dy / length);
     plane->down = (float)(slope * dx / length * aspect);
     return good_plane(plane);
 }

@@ -20,12 +20,13 @@ static int32_t shorten(const struct rf_band *band, int32_t distance)
 }
 
 /*
- * The least that any band leaves of e, which is counted from the focus at this place, or for
- * the further bands of `flat`, counted from the focus disparity. Before the nearest of them a
- * pixel is a foreground, behind it a background: so what is blurred between two bands stays
- * behind the near one instead of spreading over it.
+ * The least that any band leaves of e, which is counted from the focus at this place,
+ * or for the further bands of `flat`, counted from the focus disparity. Before the
+ * nearest of them a pixel is a foreground, behind it a background: so what is blurred
+ * between two bands stays behind the near one instead of spreading over it.
  */
-static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e, int32_t flat)
+static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e,
+                                int32_t flat)
 {
     int32_t least = INT32_MAX;
     bool before = true;
@@ -54,13 +55,14 @@ static int32_t lens_at(const struct rf_focus_plan *plan, int x, int y, int d)
     int32_t e = flat;
 
     if (plan->surface)
-        e = depth_of(plan, rf_map_at(plan->surface, plan->width, plan->height, x, y) - d) +
+        e = depth_of(plan,
+                     rf_map_at(plan->surface, plan->width, plan->height, x, y) - d) +
             rise;
     return plan->bands ? shorten_by_bands(plan, e, flat) : e;
 }
 
-void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity,
-                  int x, int y, int n)
+void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur,
+                  const uint16_t *disparity, int x, int y, int n)
 {
     for (int i = 0; i < n; i++) {
         const int d = clamp(disparity[i], plan->least, plan->most);
@@ -68,11 +70,13 @@ void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_
                               ? lens_at(plan, x + i, y, d)
                               : rf_field_at(plan, x + i, y, d);
         const uint32_t distance = (uint32_t)clamp(abs(e), 0, RF_ONE);
-        uint32_t s = (distance * plan->focus.radius + (1 << 15)) >> 16; /* as signed_blur */
+        /* as signed_blur */
+        uint32_t s = (distance * plan->focus.radius + (1 << 15)) >> 16;
 
         s = s > plan->limit ? plan->limit : s;
         if (plan->sharp) {
-            const int sharp = rf_map_at(plan->sharp, plan->width, plan->height, x + i, y);
+            const int sharp =
+                rf_map_at(plan->sharp, plan->width, plan->height, x + i, y);
 
             s = (s * (uint32_t)(RF_ONE - sharp) + RF_ONE / 2) / RF_ONE;
         }

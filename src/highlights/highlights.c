@@ -73,7 +73,8 @@ static void rim_hue(const struct refocus_renderer *r, int x, int y, const int ar
     most = sum[0] > sum[1] ? sum[0] : sum[1];
     most = sum[2] > most ? sum[2] : most;
     for (int c = 0; c < 3; c++)
-        hue[c] = most < RF_LIGHT_MAX / 4 ? RF_LIGHT_MAX : (int)(sum[c] * RF_LIGHT_MAX / most);
+        hue[c] = most < RF_LIGHT_MAX / 4 ? RF_LIGHT_MAX
+                                         : (int)(sum[c] * RF_LIGHT_MAX / most);
 }
 
 /* 0 to 256 as v goes from a to b. */
@@ -83,10 +84,10 @@ static int ramp(int64_t v, int64_t a, int64_t b)
 }
 
 /*
- * How steep the rim is around (x, y), 0 to 256. Where a pixel is lit in part, a lamp of L times
- * white still clips down to a share of 0.94 / L of it and is half lit only from there to 0.4 / L:
- * the brighter, the fewer half lit pixels around it. White paint and the shine of rounded things
- * fade out over many.
+ * How steep the rim is around (x, y), 0 to 256. Where a pixel is lit in part, a lamp of
+ * L times white still clips down to a share of 0.94 / L of it and is half lit only from
+ * there to 0.4 / L: the brighter, the fewer half lit pixels around it. White paint and
+ * the shine of rounded things fade out over many.
  */
 static int steepness(const struct refocus_renderer *r, int x, int y)
 {
@@ -104,9 +105,10 @@ static int steepness(const struct refocus_renderer *r, int x, int y)
     return ramp(clipped, 2 * half_lit, 4 * half_lit);
 }
 
-/* Whether pixel (x, y), whose surroundings have this sum of luminance, is a clipped lamp. */
-static bool is_lamp(const struct refocus_renderer *r, int x, int y, int own, int64_t sum,
-                    struct rf_highlight *lamp)
+/* Whether pixel (x, y), whose surroundings have this sum of luminance, is a clipped
+ * lamp. */
+static bool is_lamp(const struct refocus_renderer *r, int x, int y, int own,
+                    int64_t sum, struct rf_highlight *lamp)
 {
     const int level = ramp(brightest(r, y * r->stride + x), LEVEL, RF_LIGHT_MAX);
     const int alone = ramp((int64_t)own * AREA, 3 * sum, 6 * sum);
@@ -142,10 +144,10 @@ static void luminance_row(const struct refocus_renderer *r, uint16_t *out, int y
                          r->front.light[2] + at, r->width);
 }
 
-/* Sums of 25 luminances in columns around row y, from those around row y - 1 unless `afresh`.
- * At most 25 * 2047 < 2^16. */
-static void sum_columns(const struct refocus_renderer *r, uint16_t *sum, uint16_t *row, int y,
-                        bool afresh)
+/* Sums of 25 luminances in columns around row y, from those around row y - 1 unless
+ * `afresh`. At most 25 * 2047 < 2^16. */
+static void sum_columns(const struct refocus_renderer *r, uint16_t *sum, uint16_t *row,
+                        int y, bool afresh)
 {
     if (afresh)
         memset(sum, 0, (size_t)r->width * sizeof *sum);
@@ -170,7 +172,8 @@ static int sum_around(const struct refocus_renderer *r, const uint16_t *columns,
     return sum;
 }
 
-/* The lamps of a row whose columns are summed; the luminance of its pixels is in `row`. */
+/* The lamps of a row whose columns are summed; the luminance of its pixels is in
+ * `row`. */
 static void find_in_row(struct refocus_renderer *r, struct rf_rect rect, int y,
                         const uint16_t *columns, const uint16_t *row)
 {
@@ -199,7 +202,8 @@ void rf_forget_highlights(struct refocus_renderer *r)
         r->photo[r->used].highlights[part].count = 0;
 }
 
-void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect, uint16_t *scratch)
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect,
+                        uint16_t *scratch)
 {
     uint16_t *columns = scratch, *row = scratch + r->width;
     int summed = -2 * AROUND; /* row that the columns are summed around */
@@ -259,8 +263,8 @@ void rf_sort_highlights(struct refocus_renderer *r)
     }
 }
 
-/* Whether a bright pixel of another depth is beside (x, y): then this one is the edge of that,
- * and only its depth says otherwise. */
+/* Whether a bright pixel of another depth is beside (x, y): then this one is the edge
+ * of that, and only its depth says otherwise. */
 static bool is_edge(const struct refocus_renderer *r, int x, int y)
 {
     const int own = abs(r->front.blur[y * r->stride + x]);
@@ -278,8 +282,8 @@ static bool is_edge(const struct refocus_renderer *r, int x, int y)
 }
 
 /* Where in the window a highlight is; false: not in it. */
-static bool place_of(const struct refocus_renderer *r, const struct rf_highlight *lamp, int *x,
-                     int *y)
+static bool place_of(const struct refocus_renderer *r, const struct rf_highlight *lamp,
+                     int *x, int *y)
 {
     *x = lamp->x - r->origin_x;
     *y = lamp->y - r->origin_y;
@@ -306,12 +310,12 @@ static int reach_of(int blur, double gap)
 }
 
 /*
- * Rays whose gaps are wider than a lamp would show it as a disc of dots. What is around it within
- * half a gap, farther away and blurred itself, takes its blur: then the pre-filter spreads its
- * light over that.
+ * Rays whose gaps are wider than a lamp would show it as a disc of dots. What is around
+ * it within half a gap, farther away and blurred itself, takes its blur: then the
+ * pre-filter spreads its light over that.
  */
-static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_bin_scale scale,
-                  double gap)
+static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y,
+                  struct rf_bin_scale scale, double gap)
 {
     const int16_t own = r->front.blur[lamp_y * r->stride + lamp_x];
     const int reach = reach_of(own, gap);
@@ -348,7 +352,8 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
         bins->lamp = (int16_t)blur;
 }
 
-bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap)
+bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
+                        double gap)
 {
     bool any = false;
 
@@ -377,7 +382,8 @@ static void gain_of(const struct refocus_renderer *r, const struct rf_highlight 
         gained[c] = (((lamp->added[c] * share) >> 8) * blurred) >> 8;
 }
 
-static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share, int sign)
+static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share,
+                int sign)
 {
     ptrdiff_t at;
     int x, y, gained[3];
@@ -386,7 +392,8 @@ static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int
         return;
     at = y * r->stride + x;
     gain_of(r, lamp, at, share, gained);
-    for (int c = 0; c < (r->yuv.on ? 1 : 3); c++) /* of Y, U and V all three are one plane */
+    for (int c = 0; c < (r->yuv.on ? 1 : 3); c++) /* of Y, U and V all three are one
+                                                     plane */
         r->front.light[c][at] = (uint16_t)(r->front.light[c][at] + sign * gained[c]);
 }
 
@@ -414,8 +421,8 @@ void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts)
         add_part(r, gain, -1, part);
 }
 
-/* Places within `reach` of (cx, cy) that have its blur, at most (2 WIDEST + 1)^2; it itself at
- * least. */
+/* Places within `reach` of (cx, cy) that have its blur, at most (2 WIDEST + 1)^2; it
+ * itself at least. */
 static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach,
                      ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)])
 {
@@ -428,15 +435,16 @@ static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach
             const ptrdiff_t at = y * r->stride + x;
 
             if (x >= 0 && y >= 0 && x < r->width && y < r->height &&
-                dx * dx + dy * dy <= reach * reach + 1 && abs(r->front.blur[at] - own) <= 256)
+                dx * dx + dy * dy <= reach * reach + 1 &&
+                abs(r->front.blur[at] - own) <= 256)
                 place[count++] = at;
         }
     }
     return count;
 }
 
-static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp, int share,
-                       double gap, int most)
+static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp,
+                       int share, double gap, int most)
 {
     ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)], at;
     int x, y, places, gained[3];
@@ -448,14 +456,16 @@ static void add_spread(struct refocus_renderer *r, const struct rf_highlight *la
     gain_of(r, lamp, at, share, gained);
     for (int i = 0; i < places; i++) {
         for (int c = 0; c < 3; c++) {
-            const int light = r->smooth[c][place[i]] + (gained[c] + places / 2) / places;
+            const int light =
+                r->smooth[c][place[i]] + (gained[c] + places / 2) / places;
 
             r->smooth[c][place[i]] = (uint16_t)(light < most ? light : most);
         }
     }
 }
 
-void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap, int most)
+void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap,
+                              int most)
 {
     const int share = rf_highlight_share(gain - RF_PLAIN_GAIN);
 

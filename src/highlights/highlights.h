@@ -1,9 +1,10 @@
 /* highlights.h: light that the photo's white point cut off, given back to small lamps.
  *
- * A lamp out of focus is a disc whose brightness is the lamp's, spread over the disc. In the
- * photo the lamp is clipped to white, so its disc comes out grey. Pixels are taken for
- * clipped lamps when they are nearly white and stand alone: many times brighter than
- * what is around them. Never large clipped areas: a white wall is just white.
+ * A lamp out of focus is a disc whose brightness is the lamp's, spread over the disc.
+ * In the photo the lamp is clipped to white, so its disc comes out grey. Pixels are
+ * taken for clipped lamps when they are nearly white and stand alone: many times
+ * brighter than what is around them. Never large clipped areas: a white wall is just
+ * white.
  *
  *     level      ramp of max(R, G, B) from 0.94 to 1
  *     isolation  ramp of luminance / mean luminance of the 25x25 pixels around, 3 to 6
@@ -11,8 +12,8 @@
  *     added      (gain - 1) * level * isolation * steepness * hue
  *
  * The hue is that of the lamp's rim: the pixels around that are brighter than their
- * surroundings but not clipped. What is added acts on pixels that are blurred; the sharp ones
- * stay as they are.
+ * surroundings but not clipped. What is added acts on pixels that are blurred; the
+ * sharp ones stay as they are.
  */
 #ifndef RF_HIGHLIGHTS_H
 #define RF_HIGHLIGHTS_H
@@ -32,9 +33,12 @@ struct rf_highlight {
     uint16_t is_edge;  /* for this lens: of something bright and sharper, left alone */
 };
 
-/* Highlights are looked for in parts of so many rows, each with room for one pixel in 32;
- * further ones, row by row, stay as they are. */
-enum { RF_LAMP_ROWS = 64, RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS };
+/* Highlights are looked for in parts of so many rows, each with room for one pixel in
+ * 32; further ones, row by row, stay as they are. */
+enum {
+    RF_LAMP_ROWS = 64,
+    RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS
+};
 
 struct rf_highlights {
     struct rf_highlight *lamp;
@@ -54,21 +58,23 @@ static inline uint32_t rf_lamp_capacity(int width)
 /* Forget the highlights of the photo in use. */
 void rf_forget_highlights(struct refocus_renderer *r);
 
-/* Add those of a rectangle of the window, in r->blend, to the lists of the parts of the photo in
- * use. Pixels 12 away from it are looked at. Rectangles of different parts may run at once.
- * `scratch` is rf_scratch() of the worker. */
-void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect, uint16_t *scratch);
+/* Add those of a rectangle of the window, in r->blend, to the lists of the parts of the
+ * photo in use. Pixels 12 away from it are looked at. Rectangles of different parts may
+ * run at once. `scratch` is rf_scratch() of the worker. */
+void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect,
+                        uint16_t *scratch);
 
 /* Put lists that were found in several rectangles in the order of the rows. */
 void rf_sort_highlights(struct refocus_renderer *r);
 
-/* In the window, for the lens setting of r->front.blur and r->bins: tell edges from lamps, note in its tile how
- * far a lamp is blurred, and widen lamps that rays `gap` times their blur apart would miss.
- * False: there are none. */
-bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
+/* In the window, for the lens setting of r->front.blur and r->bins: tell edges from
+ * lamps, note in its tile how far a lamp is blurred, and widen lamps that rays `gap`
+ * times their blur apart would miss. False: there are none. */
+bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
+                        double gap);
 
-/* Up to that gain lamps go through all passes; what is more is added before the rays alone,
- * because passes sum four pixels in 16 bits. */
+/* Up to that gain lamps go through all passes; what is more is added before the rays
+ * alone, because passes sum four pixels in 16 bits. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
 
 /* Share of rf_highlight.added, Q8, that adds so many times white. */
@@ -77,12 +83,14 @@ static inline int rf_highlight_share(float times)
     return (int)(times * (256 / 3) + 0.5f);
 }
 
-/* Add what a gain beyond RF_PLAIN_GAIN adds to that, to r->smooth, up to `most` there; spread
- * over half a gap of the rays, as the pre-filter does with the rest. */
-void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap, int most);
+/* Add what a gain beyond RF_PLAIN_GAIN adds to that, to r->smooth, up to `most` there;
+ * spread over half a gap of the rays, as the pre-filter does with the rest. */
+void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap,
+                              int most);
 
-/* Add what those in the window lost, gain 1 to 4, to the light. Returns the number of parts that
- * were done before the run was cancelled, all if it was not: to take it away again from. */
+/* Add what those in the window lost, gain 1 to 4, to the light. Returns the number of
+ * parts that were done before the run was cancelled, all if it was not: to take it away
+ * again from. */
 int rf_add_highlights(struct refocus_renderer *r, float gain);
 void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts);
 

@@ -61,7 +61,8 @@ static bool beside_jump(const struct refocus_renderer *r, int x, int y)
     const int x0 = x > 0 ? -1 : 0, x1 = x + 1 < r->width ? 1 : 0;
     const uint16_t *up = r->disparity + (y > 0 ? y - 1 : y) * r->stride + x;
     const uint16_t *row = r->disparity + y * r->stride + x;
-    const uint16_t *down = r->disparity + (y + 1 < r->height ? y + 1 : y) * r->stride + x;
+    const uint16_t *down =
+        r->disparity + (y + 1 < r->height ? y + 1 : y) * r->stride + x;
     int least = row[0];
 
     for (int i = x0; i <= x1; i++) {
@@ -86,13 +87,15 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
 
             if (r->disparity[py * r->stride + px] + JUMP < r->disparity[n] &&
                 photo->rims < photo->capacity && is_rim(r, px, py, n))
-                photo->rim[photo->rims++] = (struct rf_rim){
-                    (uint16_t)(px + r->origin_x), (uint16_t)(py + r->origin_y), r->disparity[n]};
+                photo->rim[photo->rims++] =
+                    (struct rf_rim){(uint16_t)(px + r->origin_x),
+                                    (uint16_t)(py + r->origin_y), r->disparity[n]};
         }
     }
 }
 
-/* Brightest value of n pixels. Signed: baseline x86 has a signed 16-bit maximum only. */
+/* Brightest value of n pixels. Signed: baseline x86 has a signed 16-bit maximum
+ * only. */
 static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
 {
     const int16_t *a = (const int16_t *)r->front.light[0] + at;

@@ -1,14 +1,15 @@
 /* rims.h: the rim of something bright belongs to it.
  *
- * The pixels at the edge of an object are mixtures of it and of what is behind it. Where
- * the object is bright enough to be clipped, they are nearly as bright as it is, but half of
- * them have the depth of what is behind: blurred, they would draw a halo around the sharp
- * object. For a pixel p beside a clipped one N that is nearer, with F the mean light of the
- * pixels of p's depth two away,
+ * The pixels at the edge of an object are mixtures of it and of what is behind it.
+ * Where the object is bright enough to be clipped, they are nearly as bright as it is,
+ * but half of them have the depth of what is behind: blurred, they would draw a halo
+ * around the sharp object. For a pixel p beside a clipped one N that is nearer, with F
+ * the mean light of the pixels of p's depth two away,
  *
  *     alpha = (p - F) . (N - F) / |N - F|^2
  *
- * tells how much of N it holds. Above 0.6, p is rendered at the depth of N, of several the nearest.
+ * tells how much of N it holds. Above 0.6, p is rendered at the depth of N, of several
+ * the nearest.
  */
 #ifndef RF_RIMS_H
 #define RF_RIMS_H
@@ -31,8 +32,8 @@ static inline uint64_t rf_rim_capacity(int width, int height)
     return (uint64_t)width * height / 64 + 64;
 }
 
-/* Add to the rims of the photo in use those of the bright pixels in a part of the window, in linear
- * light. Pixels three away from the part are looked at. */
+/* Add to the rims of the photo in use those of the bright pixels in a part of the
+ * window, in linear light. Pixels three away from the part are looked at. */
 void rf_find_rims(struct refocus_renderer *r, struct rf_rect part);
 
 /* Put those in the window into r->front.blur and r->bins. */

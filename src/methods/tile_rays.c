@@ -26,9 +26,13 @@ void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
         const int64_t x = 2 * r->origin_x + (2 * tx + 1) * RF_TILE - w;
         const int64_t y = 2 * r->origin_y + (2 * ty + 1) * RF_TILE - h;
 
-        rf_cat_eye_at(&r->cat_eye, x, y, w * w + h * h,
-                      (int)floorf(f->params->cat_eye * 65536 + 0.5f), &rays->eye);
+        const int amount = (int)floorf(f->params->cat_eye * 65536 + 0.5f);
+
+        rf_cat_eye_at(&r->cat_eye, x, y, w * w + h * h, amount, &rays->eye);
         rays->has_eye = !rays->eye.is_round;
+        rays->shape = r->cat_shape.is_there ? &r->cat_shape : NULL;
+        if (rays->has_eye && rays->shape)
+            rf_cat_shape_at(rays->shape, x, y, w * w + h * h, amount, &rays->rim);
     }
 }
 
@@ -44,7 +48,8 @@ static const struct refocus_ray *get(const struct rf_tile_rays *rays,
     if (!rays->has_eye)
         return ray;
     for (int n = 0; n < count; n++)
-        memory[n] = rf_cat_eye_ray(&rays->eye, &ray[n]);
+        memory[n] = rays->shape ? rf_cat_shape_ray(rays->shape, &rays->rim, &ray[n])
+                                : rf_cat_eye_ray(&rays->eye, &ray[n]);
     return memory;
 }
 

@@ -4,12 +4,15 @@
 #define RF_TILE_RAYS_H
 
 #include "aperture/cat_eye.h"
+#include "aperture/cat_shape.h"
 #include "methods/method.h"
 
 struct rf_tile_rays {
     const struct rf_ray_set *set;
     bool has_eye;
-    struct rf_cat_eye_here eye;
+    struct rf_cat_eye_here eye;       /* of a circle or a mask, */
+    const struct rf_cat_shape *shape; /* or, unless it is NULL, of another outline */
+    struct rf_cat_shape_here rim;
     int shorter_before, shorter_behind; /* Q8 part that blurs lose; 0: nothing */
 };
 

@@ -1,4 +1,5 @@
-/* The thin lens, see refocus/lens.h. Only + - * / in doubles: the same bits everywhere. */
+/* The thin lens, see refocus/lens.h. Only + - * / in doubles: the same bits
+ * everywhere. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -46,14 +47,16 @@ double refocus_focal_length_px(const struct refocus_lens *lens, double picture_w
     return lens->focal_length_mm / lens->sensor_width_mm * picture_width_px;
 }
 
-double refocus_disparity_of_depth(const struct refocus_depth_range *range, double depth_m)
+double refocus_disparity_of_depth(const struct refocus_depth_range *range,
+                                  double depth_m)
 {
     if (!is_range(range) || !is_depth(depth_m))
         return NAN;
     return (1 / depth_m - 1 / range->far_m) / dioptres(range);
 }
 
-double refocus_depth_of_disparity(const struct refocus_depth_range *range, double disparity)
+double refocus_depth_of_disparity(const struct refocus_depth_range *range,
+                                  double disparity)
 {
     if (!is_range(range) || !isfinite(disparity))
         return NAN;
@@ -100,8 +103,9 @@ double refocus_blur_radius(double max_blur_radius_px, double disparity,
  *     C = f/N |V_u / V_p - 1| = f/N |1/u - 1/p| V_u,    V_u = f / (1 - f/u)
  *
  * which holds for infinite depths too and does not subtract two equal V. Half of it in
- * pixels is s R |1/u - 1/p| V_u / f = K |d - df| / (1 - f/u): eq. 2 of Yang et al. leaves
- * the last factor, by which the picture grows when the lens moves out to focus, away.
+ * pixels is s R |1/u - 1/p| V_u / f = K |d - df| / (1 - f/u): eq. 2 of Yang et al.
+ * leaves the last factor, by which the picture grows when the lens moves out to focus,
+ * away.
  */
 double refocus_circle_of_confusion_m(const struct refocus_lens *lens, double focus_m,
                                      double depth_m)
@@ -112,7 +116,8 @@ double refocus_circle_of_confusion_m(const struct refocus_lens *lens, double foc
     const double f = lens->focal_length_mm / 1000;
     if (!(focus_m > f) || !(depth_m > f))
         return NAN;
-    return f / lens->f_number * fabs(1 / focus_m - 1 / depth_m) * (f / (1 - f / focus_m));
+    return f / lens->f_number * fabs(1 / focus_m - 1 / depth_m) *
+           (f / (1 - f / focus_m));
 }
 
 double refocus_hyperfocal_m(const struct refocus_lens *lens, double acuity)
@@ -122,7 +127,8 @@ double refocus_hyperfocal_m(const struct refocus_lens *lens, double acuity)
     return acuity * (lens->focal_length_mm / 1000) / lens->f_number;
 }
 
-struct refocus_depth_of_field refocus_depth_of_field_m(double focus_m, double hyperfocal_m)
+struct refocus_depth_of_field refocus_depth_of_field_m(double focus_m,
+                                                       double hyperfocal_m)
 {
     struct refocus_depth_of_field field = {NAN, NAN};
 

@@ -175,8 +175,10 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     if (!pinhole)
         rf_make_rays(r, f->aperture, f->params->rays, f->params->highlight_gain > 1,
                      f->params->max_blur_radius);
-    if (f->params->cat_eye > 0)
+    if (f->params->cat_eye > 0) {
         rf_cat_eye_make(&r->cat_eye);
+        rf_cat_shape_make(&r->cat_shape, f->aperture);
+    }
     if (rf_cancelled(r))
         return;
     f->row_gap = pinhole ? 0 : rf_row_gap(f);

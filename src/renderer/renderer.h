@@ -9,6 +9,7 @@
 #include <refocus/render.h>
 
 #include "aperture/cat_eye.h"
+#include "aperture/cat_shape.h"
 #include "colour/transfer.h"
 #include "colour/yuv.h"
 #include "finish/finish.h"
@@ -233,7 +234,8 @@ struct refocus_renderer {
     int set_rays;
     bool set_denser;
     float set_blur;
-    struct rf_cat_eye cat_eye; /* made when it is first asked for */
+    struct rf_cat_eye cat_eye; /* made when it is first asked for; */
+    struct rf_cat_shape cat_shape; /* that of the last aperture with one */
 };
 
 /* Pixels of `size` in photo i. */

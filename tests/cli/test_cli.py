@@ -53,15 +53,21 @@ class Usage(Case):
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background '
-                     '--threads --cpu --repeat --json --settings --save-settings -h --help',
+                     '--threads --cpu --json --settings --save-settings -h --help',
             'pull': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
                     '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
-                    '--sigma --highlights --mirror --background --threads --cpu --repeat --json '
+                    '--sigma --highlights --mirror --background --threads --cpu --json '
                     '--settings --save-settings -h --help',
+            'view': self.PAPERS + self.CONTROLS +
+                    '-o --output --depth --depth-unit --near --far --invalid --speckle --strokes '
+                    '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '--focal-length --sensor-width --method --rays --iterations --quality '
+                    '--aperture --blend --sigma --highlights --mirror --background --threads '
+                    '--cpu --json --settings --size --fullscreen --seconds -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-rectangle '
@@ -197,6 +203,142 @@ class Limits(Case):
                    'bench', 'photo.ppm', '--size', '10x10')
         self.fails(2, 'bench: --depth, --depth-unit, --near, --far and --focus-distance go '
                       'with a photo; give one', 'bench', '--depth', 'depth.pgm')
+
+    def test_what_would_change_nothing(self):
+        for method, other, *option in (
+                ('search', 'sweep', '--iterations', '1'), ('search', 'blur', '--mirror'),
+                ('search', 'sweep', '--background'), ('sweep', 'search', '--highlights', '2'),
+                ('sweep', 'scatter', '--highlight-stops', '2'),
+                ('sweep, search, raytrace, lightfield, blur', 'jittered', '--rays', '8'),
+                ('jittered', 'sweep', '--cell', '3'),
+                ('scatter', 'sweep', '--spread', 'lommel'),
+                ('scatter', 'sweep', '--depth-ratio', '3'),
+                ('sweep, scatter', 'search', '--star', '4'),
+                ('interpolated', 'sweep', '--last-ratio', '3'),
+                ('foveated', 'sweep', '--attention', '1,1'),
+                ('diffusion', 'sweep', '--layers', '3')):
+            self.fails(2, '%s: it changes nothing with --method %s; give %s, or leave it out' %
+                       (option[0], other, method), *self.render('--method', other, *option))
+            self.succeeds(*self.render(*option, '--blur', '3', '--method',
+                                       method.rsplit(' ')[-1]))
+            os.remove('out.ppm')
+        self.fails(2, '--seed: it changes nothing with --method sweep; give jittered, or '
+                   '--grain, or leave it out', *self.render('--seed', '3'))
+        self.succeeds(*self.render('--seed', '3', '--grain', '1'))
+        self.succeeds(*self.render('--seed', '3', '--method', 'jittered'))
+        # a file of settings may hold what it likes
+        self.succeeds(*self.render('--method', 'search', '--iterations', '1', '--save-settings',
+                                   's.json'))
+        self.succeeds('render', 'photo.ppm', '-o', 'out.ppm', '--settings', 's.json', '--method',
+                      'sweep')
+        os.remove('s.json')
+        os.remove('out.ppm')
+        for option, value, needs, more in (
+                ('--star-length', '9', '--star', '4'), ('--star-angle', '9', '--bokeh', 'sparkle'),
+                ('--star-strength', '1', '--star', '4'),
+                ('--field-radius', '0', '--field', 'plus'), ('--field-at', '1,1', '--field', 'plus'),
+                ('--field-disparity', '1', '--field', 'plus'),
+                ('--tilt-line', '0,0,9,9', '--tilt-angle', '5')):
+            self.fails(2, '%s: it goes with %s; give that too' %
+                       (option, needs if needs != '--bokeh' else '--star'),
+                       *self.render(option, value))
+            self.succeeds(*self.render(option, value, needs, more))
+        os.remove('out.ppm')
+
+    def test_an_aperture_overrules_a_preset(self):
+        made = {}
+        for name, *more in (('disc',), ('preset', '--bokeh', 'heart'),
+                            ('both', '--bokeh', 'heart', '--aperture', 'disc')):
+            self.succeeds(*self.render('--blur', '9', '--focus', '1', *more))
+            made[name] = pictures.read_pnm('out.ppm')
+        self.same(made['both'], made['disc'])
+        self.differs(made['both'], made['preset'])
+        os.remove('out.ppm')
+
+    def test_what_commands_would_pass_over(self):
+        pull = ('pull', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'p-%d.ppm')
+        sheet = ('sheet', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'p.ppm')
+        depth = ('depth', 'photo.ppm', '-o', 'd.png')
+        place = ': --from and --to are in its place; leave it out'
+        for option, value in (('--focus', '0.5'), ('--focus-at', '1,1'),
+                              ('--focus-distance', '2'), ('--focus-rectangle', '1,1,2,2')):
+            self.fails(2, option + place, *pull, option, value)
+            self.fails(2, option + ': --focuses is in its place; give that, or another --kind',
+                       *sheet, option, value)
+        self.fails(2, '--focus-at' + place, *pull, '--focus-at', '1,1', '--tilt-angle', '9',
+                   '--tilt-line', '0,0,9,9')
+        self.fails(2, '--ease: is of the way from --from to --to; leave it or --wiggle out',
+                   *pull, '--wiggle', '3', '--ease', 'in')
+        self.fails(2, "--repeat: unknown option; 'refocus pull --help' lists them", *pull, '--repeat', '3')
+        self.fails(2, '--blur: --blurs is in its place; leave one of them out', *sheet, '--blur',
+                   '3', '--blurs', '3')
+        self.fails(2, '--aperture: --apertures is in its place; leave it out', *sheet,
+                   '--aperture', 'heart', '--kind', 'aperture')
+        for option, value in ('--sigma', '9'), ('--blend', 'linear'):
+            self.fails(2, option + ': the sheet has cells for several; leave it out', *sheet,
+                       option, value, '--kind', 'sigma')
+        self.fails(2, '--upsample: it goes with --full; give that too', *depth, '--depth',
+                   'depth.pgm', '--upsample', 'core')
+        for option, value in (('--snap', '2'), ('--depth-unit', 'mm'), ('--speckle', '4'),
+                              ('--invalid', 'zero'), ('--upsample', 'core')):
+            self.fails(2, option + ': --strokes alone paint over nothing; give --depth, or leave '
+                       'it out', *depth, '--strokes', 's.json', option, value)
+        for option, value in (('--input-size', '64,64'), ('--input-mean', '1,2,3'),
+                              ('--input-scale', '1'), ('--far-is-large', None)):
+            self.fails(2, option + ': it goes with --estimate; give that too', *depth, '--depth',
+                       'depth.pgm', option, *([value] if value else []))
+        self.fails(2, '--match: it is of stereo pairs; give RIGHT, --side-by-side or '
+                   '--stereo-file, or leave it out', *depth, '--depth', 'depth.pgm', '--match',
+                   'plain')
+        self.fails(2, '--depth-unit: it is of depth that is read from a file; leave it out',
+                   *depth, '--stereo-file', '--depth-unit', 'mm')
+        self.fails(2, "--upsample: depth of a stereo pair has the photo's size; leave it out",
+                   *depth, '--stereo-file', '--full', '--upsample', 'core')
+        self.fails(2, '--focus-at: it is kept in a photo alone; give -o a .jpg, or leave it out',
+                   *depth, '--depth', 'depth.pgm', '--focus-at', '1,1')
+        self.fails(2, '--blur: the table of --frames has its own; leave it out', 'bench',
+                   '--frames', '--blur', '3')
+        self.fails(2, '--size: it does not go with --kernels; leave it out', 'bench', '--kernels',
+                   '--size', '9x9')
+        self.fails(2, '--kernels: it takes no photo; leave one of them out', 'bench', '--kernels',
+                   'photo.ppm')
+        for option in '--fast', '--loop':
+            self.fails(2, option + ': it is of files and scripts, not of cameras; leave it out',
+                       'live', '--camera', 'v4l2:9', '--depth', 'depth.pgm', option)
+        self.fails(2, '--dmabuf: it is of V4L2 cameras; leave it out', 'live', '--camera',
+                   'file:x-%d.ppm', '--depth', 'depth.pgm', '--dmabuf')
+
+    def test_inputs_are_never_written_over(self):
+        pictures.pgm('map.pgm', W, H, lambda x, y: x)
+        with open('keys.json', 'w') as file:
+            file.write('{"refocus-pull": 1, "keys": [{"time": 0, "focus": 1}, {"time": 1}]}')
+        for option, file, more in (
+                ('--depth', 'depth.pgm', ()), ('--focus-map', 'map.pgm', ()),
+                ('--sharp-mask', 'map.pgm', ()), ('--aperture', 'map.pgm', ()),
+                ('--field-map', 'map.pgm', ('--field', 'picture')), ('--settings', 's.json', ())):
+            if file == 's.json':
+                with open(file, 'w') as settings:
+                    settings.write('{"refocus": 1}')
+            other = os.path.join('.', file)
+            name = other.rsplit('.', 1)[0] + '.ppm'  # the same file by another name
+            if not os.path.exists(name):
+                os.link(file, name)
+            for command, out in ('render', name), ('sheet', name), ('pull', None):
+                depth = ('--depth', 'depth.pgm') if option != '--depth' else ()
+                if out:
+                    self.fails(2, re.compile('it is an input'), command, 'photo.ppm', *depth,
+                               option, file, *more, '-o', out)
+                json_name = name[:-4] + '.json'
+                if not os.path.exists(json_name):
+                    os.link(file, json_name)
+                self.fails(2, re.compile('it is an input'), command, 'photo.ppm', *depth, option,
+                           file, *more, '-o', 'o-%d.ppm' if command == 'pull' else 'o.ppm',
+                           '--save-settings', json_name)
+        self.fails(2, re.compile('it is an input'), 'pull', 'photo.ppm', '--depth', 'depth.pgm',
+                   '--keys', 'keys.json', '-o', 'o-%d.ppm', '--save-settings', 'keys.json')
+        for name in ('map.pgm', 'map.ppm', 'map.json', 'depth.ppm', 'depth.json', 's.ppm',
+                     's.json', 'keys.json'):
+            os.remove(name)
 
     def test_apertures(self):
         pictures.pgm('mask.pgm', 9, 5, lambda x, y: 255 if x > 2 else 0)
@@ -476,9 +618,10 @@ class Papers(Case):
         for why, *options in (
                 ("--star: '1' cannot be used; give 0 for none, or 2 to 16 spikes", '--star', '1'),
                 ("--middle-ratio: '1' cannot be used; give a number above 1", '--middle-ratio',
-                 '1'),
+                 '1', '--method', 'interpolated'),
                 ('--middle-ratio: 4 is not below --last-ratio 3; give the smaller number to '
-                 '--middle-ratio', '--middle-ratio', '4', '--last-ratio', '3'),
+                 '--middle-ratio', '--middle-ratio', '4', '--last-ratio', '3', '--method',
+                 'interpolated'),
                 ('--field: picture needs one; give a grey picture to --field-map', '--field',
                  'picture'),
                 ('--field-map: it goes with --field picture; give that too', '--field-map', 'x'),
@@ -486,7 +629,7 @@ class Papers(Case):
                  'alone; leave one of them out', '--aperture', 'polygon:5', '--method',
                  'scatter'),
                 ('--attention: 5000,1 lies outside of the picture; give 0,0 to %d,%d'
-                 % (W - 1, H - 1), '--attention', '5000,1')):
+                 % (W - 1, H - 1), '--attention', '5000,1', '--method', 'foveated')):
             self.fails(2, why, *self.render(*options))
         for option, value in (('--cell', '0'), ('--airy-radius', '0.1'), ('--layers', '9'),
                               ('--conductivity', '0'), ('--star-strength', '2'),

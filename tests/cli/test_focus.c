@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <string.h>
-#include "live.h"
+#include "live/live.h"
 
 static int64_t now;
 

@@ -42,7 +42,7 @@ class Settings(Case):
     def test_saved_settings_make_the_same_picture_and_file(self):
         for more in ((), ('--focus', '0.1', '--blur', '5.3'),
                      ('--aperture', 'polygon:6:15', '--sigma', '128', '--quality', 'best'),
-                     ('--highlights', 'off', '--region', '1,2,30,20', '--mirror'),
+                     ('--highlights', 'off', '--region', '1,2,30,20'), ('--method', 'search', '--mirror'),
                      ('--focus', '0.30000000000000004', '--far', 'inf', '--near', '0.7')):
             first = self.picture('--depth', 'depth.pgm', *more, '--save-settings', 'a.json')
             self.same(self.picture('--settings', 'a.json', '--save-settings', 'b.json'), first)

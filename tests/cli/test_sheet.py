@@ -81,6 +81,22 @@ class Sheet(Case):
             self.same(cell, self.rendered('--focus', '1', '--blur', '7', '--aperture', shape))
         self.assertEqual(len(self.made('--kind', 'aperture')[1]), 8)
 
+    def test_bokeh(self):
+        names = re.search(r'--bokeh NAME.*?\n((?: {28}.*\n)+)',
+                          self.succeeds('sheet', '--help')).group(1)
+        names = re.findall(r'(?m)^ {28}(\S+)', names)
+        self.assertIn('swirl', names)
+        for more in (), ('--cat-eye', '0.3', '--seed', '2', '--grain', '0.5'):
+            report, cells, _ = self.made('--kind', 'bokeh', '--focus', '1', '--blur', '7', *more)
+            self.assertEqual((report['cells'], report['columns']), (names, 4))
+            for cell, name in zip(cells, names):
+                self.same(cell, self.rendered('--focus', '1', '--blur', '7', '--bokeh', name,
+                                              *more), name)
+        self.fails(2, '--bokeh: the sheet has a cell for each; leave it out',
+                   *self.sheet('--kind', 'bokeh', '--bokeh', 'swirl'))
+        self.fails(2, '--cat-eye: it does not go with --method search; give sweep, or leave it '
+                   'out', *self.sheet('--kind', 'bokeh', '--method', 'search'))
+
     def test_sigmas(self):
         report, cells, _ = self.made('--kind', 'sigma', '--sigmas', 'off,50', '--focus', '1')
         self.assertEqual(report['cells'][:3],
@@ -177,8 +193,10 @@ class Sheet(Case):
 
     def test_interrupted(self):
         before = sorted(os.listdir('.'))
-        process = subprocess.Popen([REFOCUS, *self.sheet('--repeat', '10000', '--method',
-                                                         'raytrace')],
+        many = ','.join(str(127 - i) for i in range(16))
+        process = subprocess.Popen([REFOCUS, *self.sheet('--blurs', many, '--focuses',
+                                                         ','.join('1' * 16), '--rays', 'full',
+                                                         '--method', 'raytrace')],
                                    stderr=subprocess.PIPE, text=True)
         time.sleep(0.5)
         self.assertIsNone(process.poll())

@@ -181,6 +181,104 @@ def looked_at(refocus, folder, display):
     check(report['times'][0]['full_ms'] > report['times'][0]['first_ms'] > 0, report)
 
 
+def with_settings(refocus, folder, display):
+    """What is saved is what `render` makes of the same settings, before and after a tap."""
+    photo, depth = SCENE + 'allfocus.png', SCENE + 'disparity.png'
+    small = folder + '/small.pgm'  # to be brought to the photo's size, alike in both
+    rows = read_depth(depth)
+    pictures.pgm(small, W // 4, H // 4, lambda x, y: int.from_bytes(
+        rows[4 * y + 1][8 * x + 2:8 * x + 4], 'big'), 65535)
+    grey = folder + '/grey.pgm'
+    pictures.pgm(grey, 60, 45, lambda x, y: 255 * (x > 20 and y > 15))
+    saved, settings = folder + '/s.png', folder + '/s-settings.json'
+    for number, (map_, tap, *options) in enumerate((
+            (depth, None, '--bokeh', 'vintage', '--focus-at', '400,200'),
+            (small, None, '--focus-at', '400,200', '--tilt-angle', '30', '--grain', '1', '--seed',
+             '3'),
+            (depth, (300, 330), '--tilt-angle', '-25', '--star', '6', '--star-length', '40'),
+            (depth, (300, 330), '--tilt-angle', '20', '--tilt-line', '100,100,600,400',
+             '--focus', '0.3'),
+            (depth, None, '--focus-plane', '100,500,600,500,400,200', '--cat-eye', '0.5'),
+            (depth, (500, 100), '--focus-plane', '100,500,600,500,400,200', '--focus-width',
+             '0.02', '--also-focus', '0.9:0.01', '--far-clamp', '0.1', '--blur-limit', '9'),
+            (depth, (200, 400), '--sharp-mask', grey, '--squeeze', '0.6', '--fringe', '0.1'),
+            (depth, (200, 400), '--field', 'plus', '--field-at', '300,300', '--field-disparity',
+             '0.4', '--method', 'search', '--iterations', '1'),
+            (depth, (200, 400), '--field', 'cylinder', '--field-radius', '0.2', '--aperture',
+             'polygon:5', '--curvature', '0.5', '--quality', 'best'))):
+        viewer = Viewer(refocus, folder, display, photo, '--depth', map_, '--blur', '12',
+                        *options, '-o', saved)
+        if tap:
+            viewer.tap(*tap)
+        viewer.key('s', 'j')
+        viewer.until(lambda: os.path.exists(saved) and os.path.exists(settings), 'both files')
+        if number == 0:
+            viewer.key('i')
+            time.sleep(0.3 * SLOW)
+            viewer.keep('settings')
+        viewer.end()
+        run(refocus, 'render', photo, '--settings', settings, '-o', folder + '/r.png')
+        check(read_png8(saved) == read_png8(folder + '/r.png'), ('settings', options))
+        if not tap:
+            run(refocus, 'render', photo, '--depth', map_, '--blur', '12', *options, '-o',
+                folder + '/r.png')
+            check(read_png8(saved) == read_png8(folder + '/r.png'), ('options', options))
+        # and the file that was saved opens where it was left
+        os.remove(saved)
+        viewer = Viewer(refocus, folder, display, photo, '--settings', settings, '-o', saved)
+        viewer.key('s')
+        viewer.until(lambda: os.path.exists(saved), 'the picture again')
+        viewer.end()
+        check(read_png8(saved) == read_png8(folder + '/r.png'), ('again', options))
+        os.remove(saved)
+        os.remove(settings)
+    # methods that cannot do it are passed over
+    viewer = Viewer(refocus, folder, display, photo, '--depth', depth, '--cat-eye', '0.5', '-o',
+                    saved)
+    viewer.key('m', 'm')
+    check(viewer.end()['method'] == 'sweep', 'cat eyes are of sweep')
+    viewer = Viewer(refocus, folder, display, photo, '--depth', depth, '--tilt-angle', '9', '-o',
+                    saved)
+    viewer.key('m', 'm')
+    check(viewer.end()['method'] == 'blur', 'jittered knows no tilt')
+
+
+def with_strokes(refocus, folder, display):
+    """--strokes paint before the window opens, and can be taken back."""
+    photo, depth = SCENE + 'allfocus.png', SCENE + 'disparity.png'
+    strokes, saved = folder + '/strokes.json', folder + '/w.png'
+    with open(strokes, 'w') as file:
+        json.dump({'refocus-strokes': 1, 'width': W, 'height': H, 'strokes': [
+            {'kind': 'all', 'gradient': [[0, 0, 0.1], [0, H - 1, 0.9]]},
+            {'kind': 'object', 'radius': 9, 'points': [[380, 170], [400, 280]],
+             'disparity': 0.6}]}, file)
+    for base in ((), ('--depth', depth)):
+        run(refocus, 'depth', photo, *base, '--strokes', strokes, '-o', folder + '/d.png')
+        run(refocus, 'render', photo, '--depth', folder + '/d.png', '--focus-at', '390,200',
+            '--blur', '10', '-o', folder + '/r.png')
+        viewer = Viewer(refocus, folder, display, photo, *base, '--strokes', strokes,
+                        '--focus-at', '390,200', '--blur', '10', '-o', saved)
+        viewer.shows(read_png8(folder + '/r.png'), 'the picture of strokes')
+        viewer.key('s', 'w')
+        viewer.until(lambda: os.path.exists(folder + '/w-strokes.json'), 'strokes saved')
+        check(read_png8(saved) == read_png8(folder + '/r.png'), 'the picture of strokes')
+        check(read_depth(folder + '/w-depth.png') == read_depth(folder + '/d.png'), 'their depth')
+        for name in 'w-depth.png', 'w-strokes.json', 'w.png':
+            os.remove(os.path.join(folder, name))
+        viewer.key('u', 'u', 'w')
+        viewer.until(lambda: os.path.exists(folder + '/w-depth.png'), 'depth without strokes')
+        check(viewer.end()['strokes'] == 0, 'none is left')
+        left = read_depth(folder + '/w-depth.png')
+        check(left == (read_depth(depth) if base else [bytes(2 * W)] * H), 'what was below')
+        os.remove(folder + '/w-depth.png')
+    with open(strokes, 'w') as file:
+        file.write('{')
+    done = subprocess.run([refocus, 'view', photo, '--strokes', strokes], text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    check(done.returncode == 1 and done.stderr.count('\n') == 1 and
+          done.stderr.startswith('refocus: ' + strokes + ': '), done)
+
+
 def painted(refocus, folder, display):
     """Depth from nothing: a ground, a slope, an object, more and less of it, undo."""
     photo = SCENE + 'allfocus.png'
@@ -263,6 +361,8 @@ def main():
             refused(refocus, folder)
             looked_at(refocus, folder, display)
             painted(refocus, folder, display)
+            with_settings(refocus, folder, display)
+            with_strokes(refocus, folder, display)
         finally:
             server.terminate()
             server.wait()

@@ -5,12 +5,14 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 #include <refocus/refocus.h>
 
 #include "aperture/aperture.h"
+#include "aperture/cat_shape.h"
 
 enum { RAYS = 1024 };
 
@@ -285,9 +287,138 @@ static void refused(void **state)
     assert_int_equal(refocus_aperture_create(NULL, &good), REFOCUS_ERR_ARGUMENT);
 }
 
+/* Whether a place lies within both circles, in the coordinates before the squeeze. */
+static bool in_lens(const struct refocus_aperture *a, double x, double y, double d, double ex,
+                    double ey, double slack)
+{
+    x /= a->squeeze_x;
+    y /= a->squeeze_y;
+    return hypot(x - d * ex, y - d * ey) <= 1 + slack && hypot(x + d * ex, y + d * ey) <= 1 + slack;
+}
+
+/* The light of the opening that is common to the aperture and the two circles. */
+static struct light of_common(const struct refocus_aperture *a, double d, double ex, double ey)
+{
+    enum { STEPS = 150 };
+    struct light l = {0, 0, 0, 0, 0};
+
+    for (int j = 0; j < 2 * STEPS; j++) {
+        for (int i = 0; i < 2 * STEPS; i++) {
+            const double x = (i + 0.5) / STEPS - 1, y = (j + 0.5) / STEPS - 1;
+
+            if (!rf_aperture_open(a, x, y) || !in_lens(a, x, y, d, ex, ey, 0))
+                continue;
+            l.all++;
+            l.x += x;
+            l.y += y;
+            l.xx += x * x;
+            l.yy += y * y;
+        }
+    }
+    l.x /= l.all;
+    l.y /= l.all;
+    l.xx /= l.all;
+    l.yy /= l.all;
+    return l;
+}
+
+/* Whether the aperture is open within a distance of a place. */
+static bool is_open_about(const struct refocus_aperture *a, double x, double y, double within)
+{
+    for (int turn = 0; turn < 16; turn++)
+        for (int part = 0; part <= 4; part++)
+            if (rf_aperture_open(a, x + within * part / 4 * cos(turn * 0.3927),
+                                 y + within * part / 4 * sin(turn * 0.3927)))
+                return true;
+    return false;
+}
+
+static void near_to(const char *what, double is, double should, double by)
+{
+    if (fabs(is - should) > by)
+        fail_msg("%s: %g instead of %g", what, is, should);
+}
+
+/* Rays of irises and figures that two circles cut off: within all three, evenly. */
+static void cut_off(void **state)
+{
+    enum { CORNER = 100 * 100, AMOUNT = 58982 }; /* 0.9 */
+    static const struct {
+        int x, y;
+    } places[] = {{30, 0}, {-60, 25}, {0, -80}, {70, 70}, {-55, 60}, {13, -97}};
+    static struct cat_case {
+        const char *name;
+        int blades;
+        double curvature, squeeze;
+        uint32_t figure;
+    } cases[] = {{"triangle", 3, 0, 1, 0},   {"hexagon", 6, 0, 1, 0},
+                 {"curved", 5, 0.5, 1, 0},   {"squeezed", 7, 0.2, 0.6, 0},
+                 {"star", 5, 0, 1, REFOCUS_FIGURE_STAR}, {"heart", 0, 0, 1, REFOCUS_FIGURE_HEART}};
+    static struct refocus_ray rays[RAYS], left[RAYS];
+    static struct rf_cat_shape shape;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct refocus_aperture_params p = refocus_aperture_params_default();
+        struct refocus_aperture *a;
+
+        p.blades = cases[i].blades;
+        p.rotation_deg = 11;
+        p.curvature = cases[i].curvature;
+        p.squeeze = cases[i].squeeze;
+        p.figure = cases[i].figure;
+        if (p.figure)
+            p.rotation_deg = 0;
+        assert_int_equal(refocus_aperture_create(&a, &p), REFOCUS_OK);
+        assert_int_equal(refocus_aperture_rays(a, RAYS, rays), REFOCUS_OK);
+        rf_cat_shape_make(&shape, a);
+        assert_true(shape.is_there);
+        for (size_t j = 0; j < sizeof places / sizeof *places; j++) {
+            const int x = places[j].x, y = places[j].y;
+            const double r = hypot(x, y), d = 0.9 * r * r / CORNER;
+            struct rf_cat_shape_here here;
+            struct light is, should;
+
+            rf_cat_shape_at(&shape, x, y, CORNER, AMOUNT, &here);
+            for (int n = 0; n < RAYS; n++) {
+                const struct refocus_ray *const to = &left[n];
+                double u, v;
+
+                left[n] = rf_cat_shape_ray(&shape, &here, &rays[n]);
+                u = -to->u / 32768.0;
+                v = -to->v / 32768.0;
+                assert_int_equal(to->weight, rays[n].weight);
+                if (!is_open_about(a, u, v, 0.004) ||
+                    !in_lens(a, u, v, d, x / r, y / r, 0.002))
+                    fail_msg("%s at %d,%d: ray %d is outside, at %g,%g", cases[i].name, x, y, n,
+                             u, v);
+            }
+            is = of_rays(left, RAYS);
+            should = of_common(a, d, x / r, y / r);
+            near_to(cases[i].name, is.x, should.x, 0.006);
+            near_to(cases[i].name, is.y, should.y, 0.006);
+            near_to(cases[i].name, sqrt(is.xx), sqrt(should.xx), 0.004);
+            near_to(cases[i].name, sqrt(is.yy), sqrt(should.yy), 0.004);
+        }
+        /* nothing pushed: nothing moves by more than steps of the rim are long */
+        struct rf_cat_shape_here whole;
+        rf_cat_shape_at(&shape, 1, 0, CORNER, 0, &whole);
+        for (int n = 0; n < RAYS; n++) {
+            const struct refocus_ray to = rf_cat_shape_ray(&shape, &whole, &rays[n]);
+
+            if (abs(to.u - rays[n].u) > 100 || abs(to.v - rays[n].v) > 100)
+                fail_msg("%s: ray %d moves from %d,%d to %d,%d", cases[i].name, n, rays[n].u,
+                         rays[n].v, to.u, to.v);
+        }
+        refocus_aperture_destroy(&a);
+    }
+    rf_cat_shape_make(&shape, &rf_disc);
+    assert_false(shape.is_there);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(light),    cmocka_unit_test(simple),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(cut_off), cmocka_unit_test(light),    cmocka_unit_test(simple),
                                        cmocka_unit_test(blades),   cmocka_unit_test(figures),
                                        cmocka_unit_test(profiles), cmocka_unit_test(refused)};
 

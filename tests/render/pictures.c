@@ -241,9 +241,10 @@ enum { FIRST_LOOK = 15, IRIS = FIRST_LOOK };
 static void set_look(struct refocus_render_params *params, int i)
 {
     const bool all = i == IRIS + 14;
+    const bool cut_off = i == IRIS + 15 || i == IRIS + 16;
 
-    params->cat_eye = i == IRIS + 1 || all ? 0.6f : 0;
-    params->rays = i == IRIS + 3 || i == IRIS + 7 ? REFOCUS_RAYS_FULL : 64;
+    params->cat_eye = i == IRIS + 1 || all ? 0.6f : cut_off ? 0.85f : 0;
+    params->rays = i == IRIS + 3 || i == IRIS + 7 || i == IRIS + 16 ? REFOCUS_RAYS_FULL : 64;
     params->sigma = i == IRIS + 5 || i == IRIS + 12 || all ? 200 : INFINITY;
     params->fringe = i == IRIS + 6 || all ? 0.2f : i == IRIS + 7 ? -0.3f : 0;
     params->star_spikes = i == IRIS + 8 || all ? 5 : 0;
@@ -271,7 +272,8 @@ bool effect_params(int i, float focus, float blur, struct refocus_render_params 
         "cat's eye",       "bubbles",        "rings full",   "squeezed star",
         "heart weighted",  "fringe",         "fringe full",  "star filter",
         "grain",           "lamps 8",        "lamps 16",     "lamps 16 weighted",
-        "mask, sides",     "all of bokeh"};
+        "mask, sides",     "all of bokeh",   "star cut off",
+        "blades cut off, full"};
     const int count = sizeof names / sizeof *names;
 
     *params = refocus_render_params_default(focus, blur);
@@ -307,13 +309,16 @@ struct refocus_aperture *effect_aperture(int i)
 
     if (i < FIRST_LOOK)
         return NULL;
-    p.blades = i == IRIS || i == IRIS + 14 ? 6 : i == IRIS + 4 ? 7 : 0;
+    p.blades = i == IRIS || i == IRIS + 14   ? 6
+               : i == IRIS + 4 || i == IRIS + 15 ? 7
+               : i == IRIS + 16                  ? 5
+                                                 : 0;
     p.rotation_deg = p.blades ? 20 : 0;
     p.curvature = i == IRIS ? 0.4 : 0;
     p.opening = i == IRIS ? 0.8 : 0;
-    p.figure = i == IRIS + 4   ? REFOCUS_FIGURE_STAR
-               : i == IRIS + 5 ? REFOCUS_FIGURE_HEART
-                               : REFOCUS_FIGURE_NONE;
+    p.figure = i == IRIS + 4 || i == IRIS + 15 ? REFOCUS_FIGURE_STAR
+               : i == IRIS + 5                 ? REFOCUS_FIGURE_HEART
+                                               : REFOCUS_FIGURE_NONE;
     p.squeeze = i == IRIS + 4 || i == IRIS + 14 ? 0.6 : 1;
     p.hole = i == IRIS + 3 || i == IRIS + 14 ? 0.4 : 0;
     p.edge_behind = i == IRIS + 2 || i == IRIS + 14 ? 0.6 : i == IRIS + 3 ? -0.5 : 0;

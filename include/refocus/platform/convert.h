@@ -1,7 +1,7 @@
 /** @file platform/convert.h  Frames of cameras as pictures and depth maps for the core.
  *
- * Part of librefocus-capture. A converter holds the rows and tables that it works with; it
- * is reentrant.
+ * Part of librefocus-capture. A converter holds the rows and tables that it works with;
+ * it is reentrant.
  */
 #ifndef REFOCUS_PLATFORM_CONVERT_H
 #define REFOCUS_PLATFORM_CONVERT_H
@@ -26,16 +26,17 @@ REFOCUS_API void refocus_converter_destroy(struct refocus_converter **converter)
 
 /**
  * The format that the core takes a frame's pixels in as they are: one with Y, U and V;
- * REFOCUS_FORMAT_NONE for what has to become RGB8 first. UYVY becomes YUYV. Thread-safe.
+ * REFOCUS_FORMAT_NONE for what has to become RGB8 first. UYVY becomes YUYV.
+ * Thread-safe.
  */
 REFOCUS_API uint32_t refocus_frame_image_format(uint32_t frame_format);
 
 /**
- * A frame of such a format, copied. Reads each row of each plane once, whole and in order:
- * camera memory may be uncached.
+ * A frame of such a format, copied. Reads each row of each plane once, whole and in
+ * order: camera memory may be uncached.
  *
- * @param out  of the frame's size and of refocus_frame_image_format(); its matrix and range
- *             are set to the frame's
+ * @param out  of the frame's size and of refocus_frame_image_format(); its matrix and
+ *             range are set to the frame's
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (no such format),
  *         REFOCUS_ERR_MEMORY
  */
@@ -45,14 +46,15 @@ REFOCUS_API int refocus_convert_copy(struct refocus_converter *converter,
                                      struct refocus_reason *reason);
 
 /**
- * A frame as RGB8. Reads each row of each plane once, from the first to the last, in whole
- * rows: camera memory may be uncached. Y, U and V become R, G and B by BT.601 or BT.709 as
- * the frame says, each within 1 of the real value.
+ * A frame as RGB8. Reads each row of each plane once, from the first to the last, in
+ * whole rows: camera memory may be uncached. Y, U and V become R, G and B by BT.601 or
+ * BT.709 as the frame says, each within 1 of the real value.
  *
  * @param out  RGB8 of the frame's size
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (size or format of @p out, a stride below a
  *         row), REFOCUS_ERR_FORMAT (a damaged JPEG, or one of another size),
- *         REFOCUS_ERR_UNSUPPORTED (a format this build cannot convert), REFOCUS_ERR_MEMORY
+ *         REFOCUS_ERR_UNSUPPORTED (a format this build cannot convert),
+ *         REFOCUS_ERR_MEMORY
  */
 REFOCUS_API int refocus_convert_rgb8(struct refocus_converter *converter,
                                      const struct refocus_frame *frame,
@@ -67,10 +69,12 @@ REFOCUS_API int refocus_convert_rgb8(struct refocus_converter *converter,
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (a colour format)
  */
 REFOCUS_API int refocus_convert_samples(struct refocus_converter *converter,
-                                        const struct refocus_frame *frame, uint16_t *samples,
+                                        const struct refocus_frame *frame,
+                                        uint16_t *samples,
                                         struct refocus_reason *reason);
 
-/** A pinhole camera: pixel (x, y) of a point (X, Y, Z) is (fx X/Z + cx, fy Y/Z + cy). */
+/** A pinhole camera: pixel (x, y) of a point (X, Y, Z) is (fx X/Z + cx, fy Y/Z +
+ *  cy). */
 struct refocus_pinhole {
     int32_t width, height;
     double fx, fy, cx, cy;
@@ -85,11 +89,12 @@ struct refocus_calibration {
 };
 
 /**
- * Register depth onto colour: warp every sample to the pixel of the colour camera that sees
- * it, the nearer one where two meet. A sample covers as many pixels as its share of the
- * picture; pixels that no sample reaches stay 0 (unknown).
+ * Register depth onto colour: warp every sample to the pixel of the colour camera that
+ * sees it, the nearer one where two meet. A sample covers as many pixels as its share
+ * of the picture; pixels that no sample reaches stay 0 (unknown).
  *
- * @param samples          calibration->depth.width x height distances, packed; 0 = unknown
+ * @param samples          calibration->depth.width x height distances, packed; 0 =
+ *                         unknown
  * @param metres_per_unit  > 0
  * @param out              receives calibration->colour.width x height distances, packed
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT. Thread-safe.

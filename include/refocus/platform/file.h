@@ -1,8 +1,8 @@
 /** @file platform/file.h  Photos with their depth from files, and pictures into files.
  *
  * Part of librefocus-file, not of the core: `#include <refocus/platform/file.h>`,
- * pkg-config name `refocus-file`. Formats that were left out of a build are refused with
- * REFOCUS_ERR_UNSUPPORTED; see refocus_file_formats().
+ * pkg-config name `refocus-file`. Formats that were left out of a build are refused
+ * with REFOCUS_ERR_UNSUPPORTED; see refocus_file_formats().
  */
 #ifndef REFOCUS_PLATFORM_FILE_H
 #define REFOCUS_PLATFORM_FILE_H
@@ -32,14 +32,16 @@ struct refocus_blob {
 /** Bounds that a reader keeps whatever a file claims. Zeros stand for the defaults. */
 struct refocus_read_limits {
     uint64_t max_pixels; /**< of one picture; default 268,435,456 (2^28) */
-    uint64_t max_bytes;  /**< of a file, and of what any part unpacks to; default 1 GiB */
+    uint64_t max_bytes;  /**< of a file, and of what any part unpacks to; default 1
+                              GiB */
 };
 
 /** Container in which depth was found. */
 enum refocus_depth_source {
     REFOCUS_DEPTH_SOURCE_NONE = 0,
     REFOCUS_DEPTH_SOURCE_GDEPTH = 1,    /**< Google GDepth in XMP */
-    REFOCUS_DEPTH_SOURCE_APPLE_MPF = 2, /**< Apple portrait JPEG: a disparity image by MPF */
+    REFOCUS_DEPTH_SOURCE_APPLE_MPF = 2, /**< Apple portrait JPEG: a disparity image by
+                                             MPF */
     REFOCUS_DEPTH_SOURCE_HEIF = 3,      /**< HEIC: auxiliary depth image */
     REFOCUS_DEPTH_SOURCE_FILE = 4,      /**< a depth file of its own */
 };
@@ -54,17 +56,20 @@ struct refocus_photo_info {
     int32_t stored_height;
     int32_t orientation;    /**< EXIF 1 to 8, already applied to photo and depth */
     uint32_t depth_source;  /**< enum refocus_depth_source */
-    int32_t original_used;  /**< 1: the main picture was blurred; the photo is the file's
-                                 own all-in-focus original (GImage) */
+    int32_t original_used;  /**< 1: the main picture was blurred; the photo is the
+                                 file's own all-in-focus original (GImage) */
     double focal_length_mm; /**< EXIF */
     double focal_length_35mm; /**< EXIF, equivalent on 36 x 24 mm */
     double f_number;        /**< EXIF, of the lens that took the photo */
-    double focus_x, focus_y;      /**< GFocus FocalPoint, 0..1 of the upright picture; -1: none */
+    double focus_x, focus_y;      /**< GFocus FocalPoint, 0..1 of the upright picture;
+                                       -1: none */
     double focus_distance;        /**< GFocus FocalDistance, unit of the depth range */
-    double blur_at_infinity;      /**< GFocus BlurAtInfinity, of the larger picture side */
+    double blur_at_infinity;      /**< GFocus BlurAtInfinity, of the larger picture
+                                       side */
     char camera[96];              /**< EXIF make and model, printable ASCII */
-    /** What was found and why it is believed, a line each: containers, parts passed over
-     *  (gain map, portrait matte), units, polarity. Printable ASCII, never a position. */
+    /** What was found and why it is believed, a line each: containers, parts passed
+     *  over (gain map, portrait matte), units, polarity. Printable ASCII, never a
+     *  position. */
     char evidence[REFOCUS_INFO_LINES][REFOCUS_INFO_LENGTH];
     int32_t evidence_count;
 };
@@ -74,8 +79,9 @@ struct refocus_photo {
     struct refocus_image image;     /**< RGB8; plane[0] NULL in a pure depth file */
     struct refocus_depth_map depth; /**< samples NULL when the file carries none */
     struct refocus_photo_info info;
-    /** TIFF block without "Exif\0\0", made true for the upright photo: orientation 1, width
-     *  and height exchanged when it lay on its side, the old thumbnail unlinked. */
+    /** TIFF block without "Exif\0\0", made true for the upright photo: orientation 1,
+     *  width and height exchanged when it lay on its side, the old thumbnail
+     *  unlinked. */
     struct refocus_blob exif;
     struct refocus_blob icc; /**< ICC profile, when it is one for RGB */
 };
@@ -83,38 +89,42 @@ struct refocus_photo {
 /**
  * Read a photo: JPEG, PNG, HEIC, PPM or PGM, told by its content, not its name.
  *
- * EXIF orientation is applied to photo and depth alike. Depth comes from GDepth (standard or
- * extended XMP), Apple's MPF disparity, or a HEIC auxiliary depth image.
+ * EXIF orientation is applied to photo and depth alike. Depth comes from GDepth
+ * (standard or extended XMP), Apple's MPF disparity, or a HEIC auxiliary depth image.
  *
- * Memory at the most, while reading: the file, 8 times the XMP in it, 9 bytes a pixel of the
- * photo, 9 bytes a sample of the depth, and 128 KiB; and what the decoding libraries take
- * for themselves, which is much for progressive JPEG and HEIC (some 6 bytes a pixel).
- * The limits are checked before memory is asked for.
+ * Memory at the most, while reading: the file, 8 times the XMP in it, 9 bytes a pixel
+ * of the photo, 9 bytes a sample of the depth, and 128 KiB; and what the decoding
+ * libraries take for themselves, which is much for progressive JPEG and HEIC (some 6
+ * bytes a pixel). The limits are checked before memory is asked for.
  *
- * @param photo   receives a new object, or NULL on an error; ended by refocus_photo_free()
+ * @param photo   receives a new object, or NULL on an error; ended by
+ *                refocus_photo_free()
  * @param limits  NULL for the defaults
  * @param reason  receives words on an error; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_IO, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE,
- *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. Depth that is damaged is an error,
- *         not a photo without depth. Thread-safe.
+ *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. Depth that is damaged is an
+ *         error, not a photo without depth. Thread-safe.
  */
 REFOCUS_API int refocus_photo_read(struct refocus_photo **photo, const char *path,
                                    const struct refocus_read_limits *limits,
                                    struct refocus_reason *reason);
 
 /** The same from memory; the bytes are not used after the return. */
-REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
-                                          size_t size,
+REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo,
+                                          const void *bytes, size_t size,
                                           const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
 
 /**
- * The second picture of a stereo file: of an MPO (a JPEG with the other view behind it, CIPA
- * DC-007), or of a HEIC with two pictures. refocus_photo_read() reads the first, the left one.
+ * The second picture of a stereo file: of an MPO (a JPEG with the other view behind it,
+ * CIPA DC-007), or of a HEIC with two pictures. refocus_photo_read() reads the first,
+ * the left one.
  *
- * @return as refocus_photo_read(); REFOCUS_ERR_UNSUPPORTED when there is only one picture
+ * @return as refocus_photo_read(); REFOCUS_ERR_UNSUPPORTED when there is only one
+ *         picture
  */
-REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo, const char *path,
+REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo,
+                                          const char *path,
                                           const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
 
@@ -122,16 +132,17 @@ REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo, const ch
 REFOCUS_API void refocus_photo_free(struct refocus_photo **photo);
 
 /**
- * Read a depth file of its own: greyscale (or grey-valued) PNG, PGM or JPEG of 8 or 16 bits, PFM
- * (both byte orders), or any photo with depth in it. The result has no image, only depth.
+ * Read a depth file of its own: greyscale (or grey-valued) PNG, PGM or JPEG of 8 or 16
+ * bits, PFM (both byte orders), or any photo with depth in it. The result has no image,
+ * only depth.
  *
- * @param unit  how to read the samples, the words of the command line: "disparity" (bright =
- *              near), "inverse" (dark = near), "mm", "m", or a number per metre such as
- *              "5000/m". NULL: what the file says, else "disparity". In distances 0 means
- *              unknown.
+ * @param unit  how to read the samples, the words of the command line: "disparity"
+ *              (bright = near), "inverse" (dark = near), "mm", "m", or a number per
+ *              metre such as "5000/m". NULL: what the file says, else "disparity". In
+ *              distances 0 means unknown.
  * @param near_m, far_m  z0 and z1 in metres; 0 = what the file says, else measured
- * @return as refocus_photo_read(), and REFOCUS_ERR_ARGUMENT for a unit it does not know,
- *         REFOCUS_ERR_NO_DEPTH for a colour picture
+ * @return as refocus_photo_read(), and REFOCUS_ERR_ARGUMENT for a unit it does not
+ *         know, REFOCUS_ERR_NO_DEPTH for a colour picture
  */
 REFOCUS_API int refocus_depth_read(struct refocus_photo **depth, const char *path,
                                    const char *unit, double near_m, double far_m,
@@ -139,14 +150,15 @@ REFOCUS_API int refocus_depth_read(struct refocus_photo **depth, const char *pat
                                    struct refocus_reason *reason);
 
 /** The same from memory. */
-REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
-                                          size_t size, const char *unit, double near_m,
-                                          double far_m,
+REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth,
+                                          const void *bytes, size_t size,
+                                          const char *unit, double near_m, double far_m,
                                           const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
 
 /** Words of the command line for how samples are read; see refocus_depth_read().
- *  Changes @p map's meaning, values and flags. @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT */
+ *  Changes @p map's meaning, values and flags. @return REFOCUS_OK or
+ *  REFOCUS_ERR_ARGUMENT */
 REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit);
 
 /** What goes into a file beside the pixels. Zeros: nothing. */
@@ -159,28 +171,28 @@ struct refocus_write_options {
 /**
  * Write an 8-bit picture; the end of the name says how: .jpg .jpeg .png .ppm.
  *
- * The file is written beside its place under a temporary name and moved there when whole: on an
- * error what was there before is untouched and nothing partial is left. Alpha is kept in PNG
- * and dropped elsewhere.
+ * The file is written beside its place under a temporary name and moved there when
+ * whole: on an error what was there before is untouched and nothing partial is left.
+ * Alpha is kept in PNG and dropped elsewhere.
  *
- * @param reason  receives words on an error and, on success, what had to be left out: EXIF of
- *                more than 65,527 bytes does not fit into a JPEG, a damaged ICC profile
- *                is not taken by PNG; else empty. May be NULL
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (an ending it does not
- *         know), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Thread-safe.
+ * @param reason  receives words on an error and, on success, what had to be left out:
+ *                EXIF of more than 65,527 bytes does not fit into a JPEG, a damaged ICC
+ *                profile is not taken by PNG; else empty. May be NULL
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (an ending it does
+ *         not know), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Thread-safe.
  */
 REFOCUS_API int refocus_image_write(const char *path, const struct refocus_image *image,
                                     const struct refocus_write_options *options,
                                     struct refocus_reason *reason);
 
 /**
- * Write 16-bit samples as greyscale: .png (16 bits) or .pgm (16 bits), or .pfm with the value
- * sample / 65535 as 32-bit float. As refocus_image_write() otherwise.
+ * Write 16-bit samples as greyscale: .png (16 bits) or .pgm (16 bits), or .pfm with the
+ * value sample / 65535 as 32-bit float. As refocus_image_write() otherwise.
  *
  * @param stride  bytes from a row to the next; even
  */
-REFOCUS_API int refocus_gray16_write(const char *path, const uint16_t *samples, int width,
-                                     int height, ptrdiff_t stride,
+REFOCUS_API int refocus_gray16_write(const char *path, const uint16_t *samples,
+                                     int width, int height, ptrdiff_t stride,
                                      struct refocus_reason *reason);
 
 /** Depth to be saved in a photo. Start from refocus_depth_write_default(). */
@@ -189,11 +201,14 @@ struct refocus_depth_write {
     int32_t width;             /**< samples, 1 to REFOCUS_MAX_SIDE */
     int32_t height;            /**< samples, 1 to REFOCUS_MAX_SIDE */
     const uint16_t *disparity; /**< of the upright photo: 65535 nearest, 0 farthest */
-    ptrdiff_t stride;          /**< bytes from a row to the next; even; may be negative */
+    ptrdiff_t stride;          /**< bytes from a row to the next; even; may be
+                                    negative */
     double near_m, far_m;      /**< z0 and z1 in metres; 0 = not known */
-    double focus_x, focus_y;   /**< where the focus is, 0..1 of the upright photo; -1: none */
+    double focus_x, focus_y;   /**< where the focus is, 0..1 of the upright photo; -1:
+                                    none */
     double focus_distance;     /**< metres; 0 = not known */
-    double blur_at_infinity;   /**< radius of its blur, of the larger side; 0 = not known */
+    double blur_at_infinity;   /**< radius of its blur, of the larger side; 0 = not
+                                    known */
 };
 
 static inline struct refocus_depth_write refocus_depth_write_default(void)
@@ -207,15 +222,16 @@ static inline struct refocus_depth_write refocus_depth_write_default(void)
 }
 
 /**
- * Save a JPEG photo with depth in it, as GDepth: a standard XMP packet with the range and the
- * focus, and an extended one with the depth as a 16-bit PNG. Every segment of the original
- * stays byte for byte, also an XMP packet that is there already; what an earlier call put
- * in is replaced, so that writing the same depth again gives the same file.
+ * Save a JPEG photo with depth in it, as GDepth: a standard XMP packet with the range
+ * and the focus, and an extended one with the depth as a 16-bit PNG. Every segment of
+ * the original stays byte for byte, also an XMP packet that is there already; what an
+ * earlier call put in is replaced, so that writing the same depth again gives the same
+ * file.
  *
  * @param path      as for refocus_image_write(): whole or not at all
  * @param original  a JPEG; may be @p path
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (the original is no JPEG),
- *         REFOCUS_ERR_FORMAT (it is damaged), REFOCUS_ERR_SIZE, REFOCUS_ERR_IO,
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (the original is no
+ *         JPEG), REFOCUS_ERR_FORMAT (it is damaged), REFOCUS_ERR_SIZE, REFOCUS_ERR_IO,
  *         REFOCUS_ERR_MEMORY. Thread-safe.
  */
 REFOCUS_API int refocus_photo_write_depth(const char *path, const char *original,
@@ -232,12 +248,14 @@ REFOCUS_API int refocus_photo_write_depth(const char *path, const char *original
  *         REFOCUS_ERR_MEMORY. Thread-safe.
  */
 REFOCUS_API int refocus_file_read(const char *path, uint64_t max_bytes,
-                                  struct refocus_blob *blob, struct refocus_reason *reason);
+                                  struct refocus_blob *blob,
+                                  struct refocus_reason *reason);
 
 /**
  * Write any file, whole or not at all: beside its place, then renamed.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Thread-safe.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY.
+ *         Thread-safe.
  */
 REFOCUS_API int refocus_file_write(const char *path, const void *bytes, size_t size,
                                    struct refocus_reason *reason);

@@ -1,7 +1,7 @@
 /** @file platform/opencv.h  Depth from two pictures or from one, by OpenCV.
  *
- * Part of librefocus-opencv, not of the core: pkg-config name `refocus-opencv`. A C face: no
- * exception gets out, and cv::setNumThreads() is left as it is.
+ * Part of librefocus-opencv, not of the core: pkg-config name `refocus-opencv`. A C
+ * face: no exception gets out, and cv::setNumThreads() is left as it is.
  */
 #ifndef REFOCUS_PLATFORM_OPENCV_H
 #define REFOCUS_PLATFORM_OPENCV_H
@@ -23,19 +23,22 @@ struct refocus_cv_reason {
 
 /** How the disparities of a pair are found. */
 enum refocus_stereo_method {
-    REFOCUS_STEREO_CHECKED = 0, /**< both ways; where they disagree by more than a pixel, and in
-                                     specks, there is no value */
-    REFOCUS_STEREO_PLAIN = 1,   /**< OpenCV's semi-global matching as it is: to compare with */
-    REFOCUS_STEREO_WLS = 2,     /**< both ways, and filled by the weighted least squares filter
-                                     of OpenCV contrib, from the module refocus-ximgproc */
+    REFOCUS_STEREO_CHECKED = 0, /**< both ways; where they disagree by more than a
+                                     pixel, and in specks, there is no value */
+    REFOCUS_STEREO_PLAIN = 1,   /**< OpenCV's semi-global matching as it is: to compare
+                                     with */
+    REFOCUS_STEREO_WLS = 2,     /**< both ways, and filled by the weighted least squares
+                                     filter of OpenCV contrib, from the module
+                                     refocus-ximgproc */
 };
 
 /** Stereo matching. Start from refocus_stereo_params_default(). */
 struct refocus_stereo_params {
     uint32_t struct_size; /**< sizeof(struct refocus_stereo_params) */
-    int32_t max_side;     /**< pictures are matched at no more than this width; default 1600 */
-    float least_match;    /**< share of pixels that has to agree from left and right, else the
-                               pair is refused; default 0.3 */
+    int32_t max_side;     /**< pictures are matched at no more than this width; default
+                               1600 */
+    float least_match;    /**< share of pixels that has to agree from left and right,
+                               else the pair is refused; default 0.3 */
     uint32_t method;      /**< enum refocus_stereo_method */
 };
 
@@ -58,21 +61,22 @@ struct refocus_stereo_report {
 };
 
 /**
- * Disparities of a rectified stereo pair, in pixels of the left picture: a point at x in it is at
- * x - disparity in the right one. Semi-global matching (Hirschmueller 2008), both ways; where
- * they disagree by more than a pixel there is NaN. The range of disparities and a small vertical
- * offset are found at a reduced size.
+ * Disparities of a rectified stereo pair, in pixels of the left picture: a point at x
+ * in it is at x - disparity in the right one. Semi-global matching (Hirschmueller
+ * 2008), both ways; where they disagree by more than a pixel there is NaN. The range of
+ * disparities and a small vertical offset are found at a reduced size.
  *
  * @param left, right  RGB8, of the same size, at least 64 x 32
  * @param disparity    receives width x height floats, larger = nearer
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (the pictures do not match),
- *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the reason). On an
- *         error @p disparity holds nothing of use. Thread-safe.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (the pictures do not
+ *         match), REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the
+ *         reason). On an error @p disparity holds nothing of use. Thread-safe.
  */
 REFOCUS_API int refocus_cv_stereo(const struct refocus_image *left,
                                   const struct refocus_image *right,
                                   const struct refocus_stereo_params *params,
-                                  float *disparity, struct refocus_stereo_report *report,
+                                  float *disparity,
+                                  struct refocus_stereo_report *report,
                                   struct refocus_cv_reason *reason);
 
 /** How a network wants its picture: value = (code - mean) scale, R G B. */
@@ -88,13 +92,14 @@ REFOCUS_API const char *refocus_cv_network_name(uint32_t index);
 REFOCUS_API int refocus_cv_network(uint32_t index, struct refocus_network *network);
 
 /**
- * Take width and height from the shape of the input that an ONNX file states; a side that is
- * left open there, or no such shape, leaves what @p network holds.
+ * Take width and height from the shape of the input that an ONNX file states; a side
+ * that is left open there, or no such shape, leaves what @p network holds.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file), REFOCUS_ERR_FORMAT
- *         (the shape is beyond 32 to 2048)
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file),
+ *         REFOCUS_ERR_FORMAT (the shape is beyond 32 to 2048)
  */
-REFOCUS_API int refocus_cv_network_fit(struct refocus_network *network, const char *model,
+REFOCUS_API int refocus_cv_network_fit(struct refocus_network *network,
+                                       const char *model,
                                        struct refocus_cv_reason *reason);
 
 /** Depth of one picture, without a unit. */
@@ -106,16 +111,19 @@ struct refocus_estimate {
 /**
  * Depth of one picture by a network in an ONNX file, larger = nearer.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file), REFOCUS_ERR_FORMAT (no
- *         network that OpenCV reads, or not one with this input), REFOCUS_ERR_MEMORY
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file),
+ *         REFOCUS_ERR_FORMAT (no network that OpenCV reads, or not one with this
+ *         input), REFOCUS_ERR_MEMORY
  */
-REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo, const char *model,
+REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo,
+                                    const char *model,
                                     const struct refocus_network *network,
                                     struct refocus_estimate *estimate,
                                     struct refocus_cv_reason *reason);
 REFOCUS_API void refocus_cv_estimate_free(struct refocus_estimate *estimate);
 
-/** A network that is read once and run as often as wanted, as for a camera. Opaque; reentrant. */
+/** A network that is read once and run as often as wanted, as for a camera. Opaque;
+ *  reentrant. */
 struct refocus_estimator;
 
 /**
@@ -123,7 +131,8 @@ struct refocus_estimator;
  *
  * @param estimator  receives the network, or NULL on an error; ended by
  *                   refocus_cv_estimator_destroy()
- * @return as refocus_cv_estimate(), but that the network's input and output are not yet tried
+ * @return as refocus_cv_estimate(), but that the network's input and output are not yet
+ *         tried
  */
 REFOCUS_API int refocus_cv_estimator_create(struct refocus_estimator **estimator,
                                             const char *model,
@@ -140,21 +149,25 @@ REFOCUS_API int refocus_cv_estimator_run(struct refocus_estimator *estimator,
 REFOCUS_API void refocus_cv_estimator_destroy(struct refocus_estimator **estimator);
 
 /**
- * Joint bilateral upsampling (Kopf et al. 2007) of a map of disparities to the photo's size, of
- * OpenCV's parts: the mean of the samples around, weighted by nearness and likeness. The core's
- * refocus_upsample() is better and faster; this is what it is compared with.
+ * Joint bilateral upsampling (Kopf et al. 2007) of a map of disparities to the photo's
+ * size, of OpenCV's parts: the mean of the samples around, weighted by nearness and
+ * likeness. The core's refocus_upsample() is better and faster; this is what it is
+ * compared with.
  *
  * @param sigma_range  of the likeness, in codes
  * @param out          width x height, packed
  */
 REFOCUS_API int refocus_cv_upsample(const struct refocus_image *photo,
-                                    const struct refocus_disparity *map, float sigma_range,
-                                    uint16_t *out, struct refocus_cv_reason *reason);
+                                    const struct refocus_disparity *map,
+                                    float sigma_range, uint16_t *out,
+                                    struct refocus_cv_reason *reason);
 
 /** Ways of OpenCV to bring a map to the photo's size. */
 enum refocus_cv_filter {
-    REFOCUS_CV_BILINEAR = 0,        /**< means of four samples; the photo is not looked at */
-    REFOCUS_CV_JOINT_BILATERAL = 1, /**< refocus_cv_upsample() with a sigma of a tenth */
+    REFOCUS_CV_BILINEAR = 0,        /**< means of four samples; the photo is not looked
+                                         at */
+    REFOCUS_CV_JOINT_BILATERAL = 1, /**< refocus_cv_upsample() with a sigma of a
+                                         tenth */
     /* Of OpenCV contrib: bilinear, then smoothed by the photo. */
     REFOCUS_CV_GUIDED = 2,          /**< guided filter (He et al. 2010) */
     REFOCUS_CV_FAST_GLOBAL = 3,     /**< fast global smoother (Min et al. 2014) */
@@ -167,14 +180,17 @@ REFOCUS_API const char *refocus_cv_filter_name(uint32_t filter);
 
 /**
  * refocus_cv_upsample() by any of these filters. Those of contrib are in a module,
- * refocus-ximgproc.so, that is looked for beside this library when it is first asked for.
+ * refocus-ximgproc.so, that is looked for beside this library when it is first asked
+ * for.
  *
  * @param filter  enum refocus_cv_filter
- * @return as refocus_cv_upsample(); REFOCUS_ERR_UNSUPPORTED when the module is not there
+ * @return as refocus_cv_upsample(); REFOCUS_ERR_UNSUPPORTED when the module is not
+ *         there
  */
-REFOCUS_API int refocus_cv_upsample_by(uint32_t filter, const struct refocus_image *photo,
-                                       const struct refocus_disparity *map, uint16_t *out,
-                                       struct refocus_cv_reason *reason);
+REFOCUS_API int refocus_cv_upsample_by(uint32_t filter,
+                                       const struct refocus_image *photo,
+                                       const struct refocus_disparity *map,
+                                       uint16_t *out, struct refocus_cv_reason *reason);
 
 #ifdef __cplusplus
 }

@@ -5,13 +5,14 @@
  *     null                   nowhere, for timing
  *     window                 a window by SDL2, or the whole screen of a console (KMS)
  *     v4l2:/dev/video9       a V4L2 output node (virtual camera)
- *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0, BT.601 limited range;
- *                            pictures of Y, U and V keep their codes, 4:2:0 or 4:2:2
+ *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0, BT.601 limited
+ *                            range; pictures of Y, U and V keep their codes, 4:2:0 or
+ *                                4:2:2
  *     raw:FILE               RGB8 frames without a header
  *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0
  *
- * FILE may be "-" for standard output, or a pipe. A sink is reentrant. The window has a thread of
- * its own, which must be the only one of the process that uses SDL's video.
+ * FILE may be "-" for standard output, or a pipe. A sink is reentrant. The window has a
+ * thread of its own, which must be the only one of the process that uses SDL's video.
  */
 #ifndef REFOCUS_PLATFORM_SINK_H
 #define REFOCUS_PLATFORM_SINK_H
@@ -43,22 +44,22 @@ REFOCUS_API int refocus_sink_open(struct refocus_sink **sink, const char *name,
 /**
  * Say what will come: before the first frame, and whenever the size changes.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_UNSUPPORTED (a stream of one size has begun, or the device
- *         has no such size), and as refocus_sink_open()
+ * @return REFOCUS_OK, REFOCUS_ERR_UNSUPPORTED (a stream of one size has begun, or the
+ *         device has no such size), and as refocus_sink_open()
  */
 REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int height,
                                    double fps, struct refocus_reason *reason);
 
 /**
- * Whether pictures of a format can be written without a change of their codes: 0 or 1. RGB8 is
- * taken by every sink, formats of Y, U and V by `null` and `y4m`, and by `v4l2` where the node has
- * that format.
+ * Whether pictures of a format can be written without a change of their codes: 0 or 1.
+ * RGB8 is taken by every sink, formats of Y, U and V by `null` and `y4m`, and by `v4l2`
+ * where the node has that format.
  */
 REFOCUS_API int refocus_sink_takes(struct refocus_sink *sink, uint32_t format);
 
 /**
- * refocus_sink_start() for pictures like this one: of its size, format, matrix and range.
- * A format that the sink does not take is REFOCUS_ERR_UNSUPPORTED.
+ * refocus_sink_start() for pictures like this one: of its size, format, matrix and
+ * range. A format that the sink does not take is REFOCUS_ERR_UNSUPPORTED.
  */
 REFOCUS_API int refocus_sink_start_image(struct refocus_sink *sink,
                                          const struct refocus_image *like, double fps,
@@ -68,10 +69,11 @@ REFOCUS_API int refocus_sink_start_image(struct refocus_sink *sink,
  * Write a frame of the size and format that was announced.
  *
  * @param image  RGB8, or as refocus_sink_start_image() was told; not kept
- * @return REFOCUS_OK, REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader closed the pipe, the
- *         device is unplugged), REFOCUS_ERR_TIMEOUT (the device took none for a second: the
- *         frame is dropped), REFOCUS_ERR_END (the user closed the window, or pressed Escape or
- *         q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never raises SIGPIPE.
+ * @return REFOCUS_OK, REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader closed the pipe,
+ *         the device is unplugged), REFOCUS_ERR_TIMEOUT (the device took none for a
+ *         second: the frame is dropped), REFOCUS_ERR_END (the user closed the window,
+ *         or pressed Escape or q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never raises
+ *         SIGPIPE.
  */
 REFOCUS_API int refocus_sink_write(struct refocus_sink *sink,
                                    const struct refocus_image *image,
@@ -81,7 +83,8 @@ REFOCUS_API int refocus_sink_write(struct refocus_sink *sink,
  * Write what is left, close, free, set the handle to NULL. A NULL handle is fine.
  * @return REFOCUS_OK, or what refocus_sink_write() returns when the rest was lost
  */
-REFOCUS_API int refocus_sink_close(struct refocus_sink **sink, struct refocus_reason *reason);
+REFOCUS_API int refocus_sink_close(struct refocus_sink **sink,
+                                   struct refocus_reason *reason);
 
 #ifdef __cplusplus
 }

@@ -1,22 +1,24 @@
 /** @file platform/source.h  Frames from cameras, files and scripts.
  *
- * Part of librefocus-capture, not of the core: pkg-config name `refocus-capture`. A source is
- * opened by name:
+ * Part of librefocus-capture, not of the core: pkg-config name `refocus-capture`. A
+ * source is opened by name:
  *
  *     v4l2:/dev/video0            a V4L2 capture node
  *     libcamera:0                 a libcamera camera, by its number or its identifier
- *     file:frames-%04d.png        pictures; one conversion that takes an int, from 0 or 1 on
+ *     file:frames-%04d.png        pictures; one conversion that takes an int, from 0 or
+ *         1 on
  *     file:photo.jpg              one picture, as often as it is asked for
  *     y4m:FILE                    a YUV4MPEG2 stream; "-" is standard input
  *     raw:FILE,NV12,640x480,30    frames without a header: format, size, rate
  *     replay:SCRIPT               frames and faults by a script; see platform/README.md
  *     replay::LINE;LINE;...       the same with the script in the name
  *
- * The life of a source: open, start, then wait and release for each frame, stop, close. When
- * wait reports that the device has failed or gone, refocus_source_restart() opens it again.
+ * The life of a source: open, start, then wait and release for each frame, stop, close.
+ * When wait reports that the device has failed or gone, refocus_source_restart() opens
+ * it again.
  *
- * A source is reentrant: one thread at a time, except refocus_source_interrupt(), which any
- * thread may call while the source is open.
+ * A source is reentrant: one thread at a time, except refocus_source_interrupt(), which
+ * any thread may call while the source is open.
  */
 #ifndef REFOCUS_PLATFORM_SOURCE_H
 #define REFOCUS_PLATFORM_SOURCE_H
@@ -55,18 +57,22 @@ enum { REFOCUS_FRAME_FORMAT_COUNT = 14 };
 REFOCUS_API const char *refocus_frame_format_name(uint32_t format);
 
 enum refocus_frame_flags {
-    REFOCUS_FRAME_CORRUPT = 1,    /**< the driver says that pixels are missing or wrong */
+    REFOCUS_FRAME_CORRUPT = 1,    /**< the driver says that pixels are missing or
+                                       wrong */
     REFOCUS_FRAME_FULL_RANGE = 2, /**< Y, U and V use 0 to 255, not 16 to 235 (240) */
-    REFOCUS_FRAME_CHANGED = 4,    /**< format, size or stride differ from the frame before */
+    REFOCUS_FRAME_CHANGED = 4,    /**< format, size or stride differ from the frame
+                                       before */
     REFOCUS_FRAME_MONOTONIC = 8,  /**< timestamp_ns is of CLOCK_MONOTONIC */
-    REFOCUS_FRAME_STILL = 16,     /**< the same picture at every time: it goes with any other */
+    REFOCUS_FRAME_STILL = 16,     /**< the same picture at every time: it goes with any
+                                       other */
 };
 
 /** A frame in the memory of the source, until it is released. */
 struct refocus_frame {
     uint32_t format;         /**< enum refocus_frame_format */
     int32_t width, height;   /**< pixels */
-    const uint8_t *plane[3]; /**< may be uncached camera memory: read it once, in order */
+    const uint8_t *plane[3]; /**< may be uncached camera memory: read it once, in
+                                  order */
     ptrdiff_t stride[3];     /**< bytes from a row to the next one below */
     size_t bytes;            /**< of MJPEG */
     uint32_t matrix;         /**< enum refocus_matrix */
@@ -75,7 +81,8 @@ struct refocus_frame {
     uint32_t sequence;       /**< of the camera; gaps are frames it dropped; wraps */
     uint32_t buffer;         /**< number of the buffer it lies in */
     float lens_dioptres;     /**< 1 / focus distance in metres; NAN when not known */
-    int dmabuf[3];           /**< descriptor of each plane's memory, of the source; or -1 */
+    int dmabuf[3];           /**< descriptor of each plane's memory, of the source; or
+                                  -1 */
 };
 
 /** What a source can deliver. */
@@ -86,9 +93,11 @@ struct refocus_source_mode {
 };
 
 enum refocus_source_flags {
-    REFOCUS_SOURCE_FAST = 1,   /**< files and scripts: as fast as can be, none is dropped */
+    REFOCUS_SOURCE_FAST = 1,   /**< files and scripts: as fast as can be, none is
+                                    dropped */
     REFOCUS_SOURCE_LOOP = 2,   /**< files: from the beginning again at the end */
-    REFOCUS_SOURCE_DEPTH = 4,  /**< files: the samples of depth files, not their pictures */
+    REFOCUS_SOURCE_DEPTH = 4,  /**< files: the samples of depth files, not their
+                                    pictures */
     REFOCUS_SOURCE_DMABUF = 8, /**< V4L2: export the buffers as DMA-BUF */
 };
 
@@ -119,7 +128,8 @@ struct refocus_source_counters {
     uint64_t corrupt;  /**< handed out with REFOCUS_FRAME_CORRUPT */
     uint64_t dequeued; /**< buffers taken from the driver */
     uint64_t queued;   /**< buffers given back to the driver after that */
-    uint64_t lost;     /**< buffers that the driver did not take back, or dropped with a stop */
+    uint64_t lost;     /**< buffers that the driver did not take back, or dropped with a
+                            stop */
     uint64_t restarts; /**< refocus_source_restart() that succeeded */
 };
 
@@ -129,10 +139,11 @@ struct refocus_source;
 /**
  * Open a source by name; see the top of this file.
  *
- * @param source  receives the source, or NULL on an error; ended by refocus_source_close()
+ * @param source  receives the source, or NULL on an error; ended by
+ *                refocus_source_close()
  * @param reason  receives words on an error; may be NULL, as in all functions here
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (the name), REFOCUS_ERR_UNSUPPORTED (left out of
- *         this build, or no capture device), REFOCUS_ERR_GONE (no such device),
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (the name), REFOCUS_ERR_UNSUPPORTED (left
+ *         out of this build, or no capture device), REFOCUS_ERR_GONE (no such device),
  *         REFOCUS_ERR_BUSY, REFOCUS_ERR_PERMISSION, REFOCUS_ERR_IO, REFOCUS_ERR_FORMAT,
  *         REFOCUS_ERR_MEMORY
  */
@@ -142,7 +153,8 @@ REFOCUS_API int refocus_source_open(struct refocus_source **source, const char *
 /** Stop and close; sets the handle to NULL. A NULL handle is fine. */
 REFOCUS_API void refocus_source_close(struct refocus_source **source);
 
-/** Mode number @p index. @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT behind the last one */
+/** Mode number @p index. @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT behind the last
+ *  one */
 REFOCUS_API int refocus_source_get_mode(struct refocus_source *source, int index,
                                         struct refocus_source_mode *mode);
 
@@ -152,8 +164,8 @@ REFOCUS_API int refocus_source_get_mode(struct refocus_source *source, int index
  * @param config  NULL: whatever the source prefers
  * @param mode    receives what will come; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (it streams),
- *         REFOCUS_ERR_UNSUPPORTED (not in this format), and as refocus_source_open(). After
- *         an error the source is stopped.
+ *         REFOCUS_ERR_UNSUPPORTED (not in this format), and as refocus_source_open().
+ *         After an error the source is stopped.
  */
 REFOCUS_API int refocus_source_start(struct refocus_source *source,
                                      const struct refocus_source_config *config,
@@ -166,8 +178,8 @@ REFOCUS_API int refocus_source_start(struct refocus_source *source,
  * @param timeout_ms  0 = only look
  * @param frame       receives the frame; it and its memory stay until it is released
  * @return REFOCUS_OK, REFOCUS_ERR_TIMEOUT, REFOCUS_ERR_CANCELLED (interrupted),
- *         REFOCUS_ERR_END (no more frames), REFOCUS_ERR_GONE (unplugged) or REFOCUS_ERR_IO
- *         (the stream failed): release all frames and restart,
+ *         REFOCUS_ERR_END (no more frames), REFOCUS_ERR_GONE (unplugged) or
+ *         REFOCUS_ERR_IO (the stream failed): release all frames and restart,
  *         REFOCUS_ERR_FORMAT (a damaged file), REFOCUS_ERR_MEMORY,
  *         REFOCUS_ERR_STATE (not streaming, or every buffer is out)
  */
@@ -183,8 +195,8 @@ REFOCUS_API void refocus_source_release(struct refocus_source *source,
 REFOCUS_API void refocus_source_stop(struct refocus_source *source);
 
 /**
- * Stop, close the device, open it again by its name, start again as before. Frames that are
- * out become invalid. To be called again every 100 ms or so until it succeeds.
+ * Stop, close the device, open it again by its name, start again as before. Frames that
+ * are out become invalid. To be called again every 100 ms or so until it succeeds.
  *
  * @return as refocus_source_start(), and REFOCUS_ERR_CANCELLED after an interrupt
  */
@@ -193,8 +205,8 @@ REFOCUS_API int refocus_source_restart(struct refocus_source *source,
                                        struct refocus_reason *reason);
 
 /**
- * Let the wait that is running, and later ones, return REFOCUS_ERR_CANCELLED, until the next
- * refocus_source_start(). Thread-safe.
+ * Let the wait that is running, and later ones, return REFOCUS_ERR_CANCELLED, until the
+ * next refocus_source_start(). Thread-safe.
  */
 REFOCUS_API void refocus_source_interrupt(struct refocus_source *source);
 
@@ -202,17 +214,19 @@ REFOCUS_API void refocus_source_interrupt(struct refocus_source *source);
  * Set a control by name: for V4L2 the driver's names in lower case with underscores
  * ("brightness", "focus_absolute"), for libcamera its own ("LensPosition").
  *
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (no such control), REFOCUS_ERR_UNSUPPORTED (the
- *         source has none), REFOCUS_ERR_GONE, REFOCUS_ERR_IO
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (no such control), REFOCUS_ERR_UNSUPPORTED
+ *         (the source has none), REFOCUS_ERR_GONE, REFOCUS_ERR_IO
  */
-REFOCUS_API int refocus_source_set_control(struct refocus_source *source, const char *name,
-                                           double value, struct refocus_reason *reason);
+REFOCUS_API int refocus_source_set_control(struct refocus_source *source,
+                                           const char *name, double value,
+                                           struct refocus_reason *reason);
 
 REFOCUS_API void refocus_source_get_counters(const struct refocus_source *source,
                                              struct refocus_source_counters *counters);
 
 /** Receives a camera: the name to open it by, and what it calls itself. */
-typedef void refocus_source_found(void *user, const char *name, const char *description);
+typedef void refocus_source_found(void *user, const char *name,
+                                  const char *description);
 
 /** List the cameras of this machine. @return their number or a negative status */
 REFOCUS_API int refocus_source_list(refocus_source_found *found, void *user);

@@ -1,14 +1,16 @@
-/** @file platform/strokes.h  Depth by a finger: objects are painted over, and get a depth.
+/** @file platform/strokes.h  Depth by a finger: objects are painted over, and get a
+ *  depth.
  *
  * Part of librefocus-strokes, not of the core: `#include <refocus/platform/strokes.h>`,
  * pkg-config name `refocus-strokes`. Without jansson the two functions on JSON return
  * REFOCUS_ERR_UNSUPPORTED, and the rest is the same.
  *
- * A painting is a list of strokes over a photo (Yang et al. 2016, section on depth by strokes):
- * the ground first, then objects over it, each later one in front of the earlier. A stroke over
- * an object selects it to its edge; the selection is filled with one disparity or with a gradient
- * between two points. Undo drops the last stroke. What comes out depends on the photo and the
- * list of strokes alone, not on how a stroke was cut into segments nor on strokes dropped again.
+ * A painting is a list of strokes over a photo (Yang et al. 2016, section on depth by
+ * strokes): the ground first, then objects over it, each later one in front of the
+ * earlier. A stroke over an object selects it to its edge; the selection is filled with
+ * one disparity or with a gradient between two points. Undo drops the last stroke. What
+ * comes out depends on the photo and the list of strokes alone, not on how a stroke was
+ * cut into segments nor on strokes dropped again.
  *
  * Coordinates are pixels of the photo, x right, y down, centres at whole numbers.
  *
@@ -33,7 +35,8 @@ struct refocus_strokes;
 /** What a stroke does. */
 enum refocus_stroke_kind {
     REFOCUS_STROKE_ALL = 0,    /**< the whole picture, for the ground; has no points */
-    REFOCUS_STROKE_OBJECT = 1, /**< selects the object that it is painted over, to its edge */
+    REFOCUS_STROKE_OBJECT = 1, /**< selects the object that it is painted over, to its
+                                    edge */
     REFOCUS_STROKE_MORE = 2,   /**< is part of the object of the strokes before */
     REFOCUS_STROKE_LESS = 3,   /**< is not part of the object of the strokes before */
     REFOCUS_STROKE_BRUSH = 4,  /**< exactly what the brush covers */
@@ -44,9 +47,9 @@ enum refocus_stroke_kind {
 enum refocus_fill_kind {
     REFOCUS_FILL_NONE = 0,     /**< not at all: selected only */
     REFOCUS_FILL_SOLID = 1,    /**< with one disparity: d0 */
-    REFOCUS_FILL_GRADIENT = 2, /**< d0 at (x0, y0) to d1 at (x1, y1), linear on the way and
-                                    constant before and beyond: a plane, disparities being
-                                    linear in a picture of one */
+    REFOCUS_FILL_GRADIENT = 2, /**< d0 at (x0, y0) to d1 at (x1, y1), linear on the way
+                                    and constant before and beyond: a plane, disparities
+                                    being linear in a picture of one */
 };
 
 struct refocus_fill {
@@ -61,9 +64,10 @@ struct refocus_stroke {
     uint32_t struct_size;     /**< sizeof(struct refocus_stroke) */
     uint32_t kind;            /**< enum refocus_stroke_kind */
     float radius;             /**< of the brush in pixels, 0.5 to 4096 */
-    float reach;              /**< object, more: how far from its path, in brush radii, a stroke
-                                   selects, 1 to 64 */
-    struct refocus_fill fill; /**< of the layer; of more and less: NONE keeps that it has */
+    float reach;              /**< object, more: how far from its path, in brush radii,
+                                   a stroke selects, 1 to 64 */
+    struct refocus_fill fill; /**< of the layer; of more and less: NONE keeps that it
+                                   has */
 };
 
 static inline struct refocus_stroke refocus_stroke_default(uint32_t kind, float radius)
@@ -94,14 +98,14 @@ struct refocus_strokes_reason {
 /**
  * Begin a painting.
  *
- * Memory: 3 bytes a pixel, and while a stroke is made up to 2 bytes a pixel that it reaches
- * and 120 bytes a pixel of its edge.
+ * Memory: 3 bytes a pixel, and while a stroke is made up to 2 bytes a pixel that it
+ * reaches and 120 bytes a pixel of its edge.
  *
- * @param photo  of a packed format. Its pixels are read until refocus_strokes_destroy() and must
- *               not change
+ * @param photo  of a packed format. Its pixels are read until refocus_strokes_destroy()
+ *               and must not change
  * @param base   what is painted over, of the photo's size; copied; NULL: all 0
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_MEMORY; on an error
- *         *strokes is NULL
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_MEMORY; on an
+ *         error *strokes is NULL
  */
 REFOCUS_API int refocus_strokes_create(struct refocus_strokes **strokes,
                                        const struct refocus_image *photo,
@@ -115,9 +119,9 @@ REFOCUS_API void refocus_strokes_destroy(struct refocus_strokes **strokes);
  * refocus_strokes_extend().
  *
  * @param changed  receives the part of the disparities that changed; may be NULL
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (more and less without an object
- *         as the last layer, fill without a layer), REFOCUS_ERR_SIZE (too many strokes),
- *         REFOCUS_ERR_MEMORY. On an error nothing has changed.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (more and less without an
+ *         object as the last layer, fill without a layer), REFOCUS_ERR_SIZE (too many
+ *         strokes), REFOCUS_ERR_MEMORY. On an error nothing has changed.
  */
 REFOCUS_API int refocus_strokes_begin(struct refocus_strokes *strokes,
                                       const struct refocus_stroke *stroke,
@@ -128,14 +132,16 @@ REFOCUS_API int refocus_strokes_begin(struct refocus_strokes *strokes,
  *
  * @param points  x and y of each, pixels of the photo: x from -0.5 to width - 0.5
  * @param count   of points, >= 1
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (the last stroke has no points, or
- *         there is none), REFOCUS_ERR_SIZE (too many points), REFOCUS_ERR_MEMORY. On an error
- *         nothing has changed.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (the last stroke has no
+ *         points, or there is none), REFOCUS_ERR_SIZE (too many points),
+ *         REFOCUS_ERR_MEMORY. On an error nothing has changed.
  */
-REFOCUS_API int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points,
-                                       int count, struct refocus_changed *changed);
+REFOCUS_API int refocus_strokes_extend(struct refocus_strokes *strokes,
+                                       const float *points, int count,
+                                       struct refocus_changed *changed);
 
-/** Drop the last stroke. As refocus_strokes_extend(); REFOCUS_ERR_STATE when there is none. */
+/** Drop the last stroke. As refocus_strokes_extend(); REFOCUS_ERR_STATE when there is
+ *  none. */
 REFOCUS_API int refocus_strokes_undo(struct refocus_strokes *strokes,
                                      struct refocus_changed *changed);
 
@@ -143,7 +149,8 @@ REFOCUS_API int refocus_strokes_undo(struct refocus_strokes *strokes,
 REFOCUS_API int refocus_strokes_count(const struct refocus_strokes *strokes);
 
 /**
- * A stroke and its points, x and y of each. They are the painting's, until it is changed.
+ * A stroke and its points, x and y of each. They are the painting's, until it is
+ * changed.
  *
  * @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT
  */
@@ -152,7 +159,8 @@ REFOCUS_API int refocus_strokes_get(const struct refocus_strokes *strokes, int i
                                     int *count);
 
 /** The disparities, packed, of the photo's size; the painting's, and changed by it. */
-REFOCUS_API const uint16_t *refocus_strokes_disparity(const struct refocus_strokes *strokes);
+REFOCUS_API const uint16_t *
+refocus_strokes_disparity(const struct refocus_strokes *strokes);
 
 /**
  * What the last layer covers, 255 or 0.
@@ -161,8 +169,9 @@ REFOCUS_API const uint16_t *refocus_strokes_disparity(const struct refocus_strok
  * @param stride  bytes from a row to the next
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT
  */
-REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes, uint8_t *mask,
-                                          int width, int height, ptrdiff_t stride);
+REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes,
+                                          uint8_t *mask, int width, int height,
+                                          ptrdiff_t stride);
 
 /**
  * Paint the strokes of a file after those that there are. The file is one JSON object:
@@ -173,22 +182,23 @@ REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes,
  *        "disparity": 0.6},
  *       {"kind": "less", "radius": 8, "points": [[330, 480]]}]}
  *
- * width and height are those of the upright photo. Kinds: all, object, more, less, brush, fill;
- * see enum refocus_stroke_kind. "disparity" D or "gradient" [[X0, Y0, D0], [X1, Y1, D1]] is the
- * fill, neither means none. "radius" and "points" belong to every kind but all and fill, "reach"
- * may go with object and more. Other keys are errors.
+ * width and height are those of the upright photo. Kinds: all, object, more, less,
+ * brush, fill; see enum refocus_stroke_kind. "disparity" D or "gradient" [[X0, Y0, D0],
+ * [X1, Y1, D1]] is the fill, neither means none. "radius" and "points" belong to every
+ * kind but all and fill, "reach" may go with object and more. Other keys are errors.
  *
  * @param reason  receives words on an error; may be NULL
- * @return REFOCUS_OK, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE (it is of a picture of another size, or
- *         has too many strokes or points, or more than 64 MiB), REFOCUS_ERR_MEMORY,
- *         REFOCUS_ERR_UNSUPPORTED. On an error nothing has changed.
+ * @return REFOCUS_OK, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE (it is of a picture of
+ *         another size, or has too many strokes or points, or more than 64 MiB),
+ *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. On an error nothing has changed.
  */
 REFOCUS_API int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
-                                     size_t size, struct refocus_strokes_reason *reason);
+                                     size_t size,
+                                     struct refocus_strokes_reason *reason);
 
 /**
- * The strokes as such a file, in memory of malloc() that the caller frees. Numbers are written so
- * that they are read as the same again.
+ * The strokes as such a file, in memory of malloc() that the caller frees. Numbers are
+ * written so that they are read as the same again.
  *
  * @return REFOCUS_OK, REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED
  */

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "with_failures.h"
-#include "live.h"
+#include "live/live.h"
 
 enum { MOST_SIDE = 64 };
 

@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include "with_failures.h"
-#include "live.h"
-#include "live_lines.h"
+#include "live/live.h"
+#include "live/live_lines.h"
 
 int64_t live_now_ns(void)
 {

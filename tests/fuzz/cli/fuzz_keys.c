@@ -1,9 +1,9 @@
 /* Key frames: what is taken gives values in their ranges at any time. */
 #include <math.h>
 #include <stdlib.h>
-#include "keys.h"
-#include "options.h"
-#include "report.h"
+#include "commands/keys.h"
+#include "line/options.h"
+#include "line/report.h"
 
 int report_failure(int exit_code, const char *what, const char *format, ...)
 {

@@ -4,9 +4,9 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include "outputs.h"
-#include "report.h"
-#include "settings.h"
+#include "outputs/outputs.h"
+#include "line/report.h"
+#include "line/settings.h"
 
 struct values {
     bool flag;

@@ -1,0 +1,31 @@
+/* What the rays of a scene meet: the statistics of Yang et al. 2016, figures 2 and
+ * 3. */
+#ifndef RF_CLI_BENCH_RAYS_H
+#define RF_CLI_BENCH_RAYS_H
+
+#include <refocus/refocus.h>
+#include "line/report.h"
+
+enum { RAYS_TESTS = 8 };
+
+struct ray_statistics {
+    double K, focus;
+    long pixels, rays;       /* looked at: every ray of the mask, of a grid of pixels */
+    long hidden;             /* rays that meet nothing in the picture */
+    long found[RAYS_TESTS];  /* first found after i + 1 tests */
+    long never;              /* not within RAYS_TESTS */
+    long first[RAYS_TESTS];  /* with T = i + 1: the result is the front-most hit, or
+                                beside it */
+    long in_set[RAYS_TESTS]; /* or, farther invalid ones replaced, one of another ray of
+                                p */
+};
+
+/* disparity: packed. Returns 0, or -1 without memory. */
+int ray_statistics(struct ray_statistics *statistics, const uint16_t *disparity,
+                   int width, int height, double focus, double blur,
+                   const struct refocus_aperture *aperture);
+
+json_t *ray_statistics_json(const struct ray_statistics *statistics);
+void ray_statistics_print(const struct ray_statistics *statistics);
+
+#endif

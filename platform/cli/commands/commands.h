@@ -1,0 +1,17 @@
+/* The subcommands, one file each. */
+#ifndef RF_CLI_COMMANDS_H
+#define RF_CLI_COMMANDS_H
+
+#include "line/options.h"
+
+extern const struct command render_command;
+extern const struct command depth_command;
+extern const struct command info_command;
+extern const struct command bench_command;
+extern const struct command pull_command;
+extern const struct command sheet_command;
+extern const struct command compare_command;
+extern const struct command live_command;
+extern const struct command view_command;
+
+#endif

@@ -1,0 +1,467 @@
+/* refocus depth */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include "commands/commands.h"
+#include "inputs/inputs.h"
+#include "line/interrupt.h"
+#include "inputs/made.h"
+#include "outputs/outputs.h"
+#include "inputs/painted.h"
+#include "line/report.h"
+
+enum view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };
+
+struct settings {
+    struct depth_settings depth;
+    double focus_at[2], blur;
+    const char *output, *model, *strokes;
+    struct network_settings network;
+    int view;
+    struct stereo_settings stereo;
+    bool side_by_side;
+    bool json;
+};
+
+static const char *view_name(uint32_t index)
+{
+    static const char *const names[] = {"none", "disparity", "confidence"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+static const char *view_summary(uint32_t index)
+{
+    static const char *const words[] = {"the disparities as they are",
+                                        "their picture, bright = near",
+                                        "white where it was measured, black where "
+                                        "filled"};
+
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+static const char *match_name(uint32_t index)
+{
+    static const char *const names[] = {"checked", "plain", "wls"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+static const char *match_summary(uint32_t index)
+{
+    static const char *const words[] = {
+        "both ways; what disagrees is filled", "OpenCV's semi-global matching as it is",
+        "filled by weighted least squares; needs the module refocus-ximgproc"};
+
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+static const struct option options[] = {
+    OUTPUT_OPTION(struct settings, output,
+                  "the disparities to write, 1 = nearest: .png or .pgm of 16 bits "
+                  "(65535 = 1) or .pfm of 32-bit floats; or a .jpg: the JPEG photo, "
+                  "every byte of it, with the depth inside as GDepth"),
+    DEPTH_FILE_OPTION(struct settings, depth),
+    DEPTH_UNIT_OPTIONS(struct settings, depth),
+    REPAIR_OPTIONS(struct settings, depth),
+    {.kind = OPTION_FLAG,
+     .name = "--full",
+     .offset = offsetof(struct settings, depth.full),
+     .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_INTEGER,
+     .name = "--snap",
+     .argument = "N",
+     .offset = offsetof(struct settings, depth.snap),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SNAP,
+     .help = "move edges of depth of the photo's size onto the photo's, where they are "
+             "off by up to N pixels; default 0: leave them"},
+    {.kind = OPTION_CHOICE,
+     .name = "--upsample",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, depth.upsample),
+     .choice = made_upsampler,
+     .help = "how --full does it: the library's own way, or one of OpenCV's filters to "
+             "compare with; the last three need the module refocus-ximgproc",
+     .needs = "--full,--strokes"},
+    {.kind = OPTION_TEXT,
+     .name = "--estimate",
+     .argument = "MODEL.onnx",
+     .offset = offsetof(struct settings, model),
+     .help = "depth of the one photo, by a network"},
+    {.kind = OPTION_CHOICE,
+     .name = "--preset",
+     .argument = "NAME",
+     .offset = offsetof(struct settings, network.preset),
+     .choice = made_preset,
+     .help = "which network it is: range of its input, and its size where the file "
+             "leaves it open",
+     .needs = "--estimate"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--input-size",
+     .argument = "W,H",
+     .offset = offsetof(struct settings, network.size),
+     .least = 32,
+     .greatest = 2048,
+     .count = 2,
+     .help = "of the picture that the network takes; default: what the file says, else "
+             "the preset",
+     .needs = "--estimate"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--input-mean",
+     .argument = "R,G,B",
+     .offset = offsetof(struct settings, network.mean),
+     .least = -1000,
+     .greatest = 1000,
+     .count = 3,
+     .help = "codes that the network takes as 0; default: the preset's",
+     .needs = "--estimate"},
+    {.kind = OPTION_NUMBER,
+     .name = "--input-scale",
+     .argument = "S",
+     .offset = offsetof(struct settings, network.scale),
+     .least = -1000,
+     .greatest = 1000,
+     .help = "and what a code is worth: value = (code - mean) S; default: the preset's",
+     .needs = "--estimate"},
+    {.kind = OPTION_FLAG,
+     .name = "--far-is-large",
+     .offset = offsetof(struct settings, network.inverse),
+     .help = "the network gives distances: larger = farther",
+     .needs = "--estimate"},
+    {.kind = OPTION_TEXT,
+     .name = "--strokes",
+     .argument = "FILE.json",
+     .offset = offsetof(struct settings, strokes),
+     .help = "paint these strokes: over nothing, or over the depth of --depth, "
+             "--estimate or a stereo pair"},
+    {.kind = OPTION_FLAG,
+     .name = "--stereo-file",
+     .offset = offsetof(struct settings, stereo.within),
+     .help = "FILE holds both pictures of a stereo pair: an MPO or a stereo HEIC"},
+    {.kind = OPTION_CHOICE,
+     .name = "--match",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, stereo.method),
+     .choice = match_name,
+     .summary = match_summary,
+     .help = "how a stereo pair is matched"},
+    {.kind = OPTION_FLAG,
+     .name = "--side-by-side",
+     .offset = offsetof(struct settings, side_by_side),
+     .help = "FILE holds both pictures of a stereo pair, the left one left"},
+    {.kind = OPTION_CHOICE,
+     .name = "--view",
+     .argument = "WHAT",
+     .offset = offsetof(struct settings, view),
+     .choice = view_name,
+     .summary = view_summary,
+     .help = "write an 8-bit picture to look at instead: .png, .jpg or .ppm"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--focus-at",
+     .argument = "X,Y",
+     .offset = offsetof(struct settings, focus_at),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SIDE,
+     .count = 2,
+     .help = "for a .jpg: the pixel in focus when it is opened again; default: what "
+             "the photo says"},
+    {.kind = OPTION_NUMBER,
+     .name = "--blur",
+     .argument = "K",
+     .offset = offsetof(struct settings, blur),
+     .least = 0,
+     .greatest = REFOCUS_MAX_BLUR_RADIUS,
+     .help = "for a .jpg, with --focus-at: the blur radius of disparity 0 when 1 is in "
+             "focus"},
+    {.kind = OPTION_FLAG,
+     .name = "--json",
+     .offset = offsetof(struct settings, json),
+     .help = "print the report as one JSON object"},
+    {.help = NULL},
+};
+
+static double percent(uint64_t part, const struct refocus_depth_map *map)
+{
+    return 100.0 * (double)part / ((double)map->width * map->height);
+}
+
+static int print_report(const struct settings *settings, const struct input *input)
+{
+    const struct refocus_depth_map *map = &input->depth_from->depth;
+    const struct refocus_depth_report *report = &input->report;
+
+    if (settings->json) {
+        json_t *json = json_pack("{s:o, s:o, s:i, s:i, s:o}", "file",
+                                 report_text_json(input->photo_name), "output",
+                                 report_text_json(settings->output), "width",
+                                 input->width, "height", input->height, "depth",
+                                 report_depth_json(input->depth_from, report));
+        return report_print_json(json);
+    }
+    printf("size     %dx%d\n", input->width, input->height);
+    if (report->near_m > 0)
+        printf("near     %.4g m\n", report->near_m);
+    if (report->far_m > 0)
+        printf("far      %.4g m\n", report->far_m);
+    printf("filled   %llu samples without a value, %.1f %%\n",
+           (unsigned long long)report->unknown, percent(report->unknown, map));
+    if (settings->depth.speckle > 1)
+        printf("specks   %llu samples in small patches, filled too, %.1f %%\n",
+               (unsigned long long)report->specks, percent(report->specks, map));
+    for (int i = 0; i < input->made.info.evidence_count; i++)
+        printf("because  %s\n", input->made.info.evidence[i]);
+    printf("clamped  %llu samples beyond the range, %.1f %%\n",
+           (unsigned long long)report->clamped, percent(report->clamped, map));
+    return report_end_output();
+}
+
+static bool is_jpeg(const char *path)
+{
+    const char *dot = path ? strrchr(path, '.') : NULL;
+
+    return dot && (!strcasecmp(dot, ".jpg") || !strcasecmp(dot, ".jpeg"));
+}
+
+/* A grey picture of the disparities or of what is known of them. */
+static int write_view(const struct settings *settings, const struct input *input)
+{
+    const bool known = settings->view == VIEW_CONFIDENCE;
+    const int width = known ? input->depth_from->depth.width : input->width;
+    const int height = known ? input->depth_from->depth.height : input->height;
+    const size_t pixels = (size_t)width * (size_t)height;
+    uint8_t *rgb = pixels <= SIZE_MAX / 3 ? malloc(3 * pixels) : NULL;
+    int status;
+
+    if (!rgb)
+        return report_failure(EXIT_FAILED, settings->output, "not enough memory");
+    for (size_t i = 0; i < 3 * pixels; i++)
+        rgb[i] =
+            known ? input->confidence[i / 3] : (uint8_t)(input->disparity[i / 3] >> 8);
+
+    const struct refocus_image image = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, rgb, width, height, 3 * (ptrdiff_t)width);
+    status = output_write_image(settings->output, &image, NULL);
+    free(rgb);
+    return status;
+}
+
+/* The focus to be saved: that of the options, else that of the photo. */
+static int settle_focus(const struct settings *settings, const struct input *input,
+                        struct refocus_depth_write *depth)
+{
+    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_photo_info *info = &input->photo->info;
+    const double larger = photo->width > photo->height ? photo->width : photo->height;
+    const double x = settings->focus_at[0], y = settings->focus_at[1];
+    double d;
+
+    if (isnan(x)) {
+        if (info->focus_x > 0 || info->focus_y > 0) {
+            depth->focus_x = info->focus_x;
+            depth->focus_y = info->focus_y;
+        }
+        depth->focus_distance = info->focus_distance;
+        depth->blur_at_infinity = info->blur_at_infinity;
+        return EXIT_DONE;
+    }
+    if (x >= photo->width || y >= photo->height)
+        return report_failure(EXIT_WRONG, "--focus-at",
+                              "%g,%g lies outside of %s; give 0,0 to %d,%d", x, y,
+                              input->photo_name, photo->width - 1, photo->height - 1);
+    depth->focus_x = (x + 0.5) / photo->width;
+    depth->focus_y = (y + 0.5) / photo->height;
+    d = input->disparity[(size_t)(depth->focus_y * input->height) *
+                             (size_t)input->width +
+                         (size_t)(depth->focus_x * input->width)] /
+        65535.0;
+    if (depth->near_m > 0 && depth->far_m > depth->near_m) {
+        const struct refocus_depth_range range = {depth->near_m, depth->far_m};
+        const double z = refocus_depth_of_disparity(&range, d);
+
+        depth->focus_distance = isfinite(z) ? z : 0;
+    }
+    if (!isnan(settings->blur))
+        depth->blur_at_infinity = settings->blur * d / larger;
+    return EXIT_DONE;
+}
+
+static int write_photo(const struct settings *settings, const struct input *input)
+{
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    struct refocus_reason reason = {""};
+    int status;
+
+    depth.disparity = input->disparity;
+    depth.width = input->width;
+    depth.height = input->height;
+    depth.stride = 2 * (ptrdiff_t)input->width;
+    depth.near_m = input->report.near_m;
+    depth.far_m = input->report.far_m;
+    status = settle_focus(settings, input, &depth);
+    if (status != EXIT_DONE)
+        return status;
+    interrupt_hold(true);
+    status = interrupt_came()
+                 ? REFOCUS_ERR_CANCELLED
+                 : refocus_photo_write_depth(settings->output, input->photo_name,
+                                             &depth, &reason);
+    interrupt_hold(false);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return report_failure(EXIT_FAILED, settings->output,
+                              "interrupted; nothing was written");
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, settings->output, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+static int write_output(const struct settings *settings, const struct input *input)
+{
+    if (settings->view != VIEW_NONE)
+        return write_view(settings, input);
+    if (is_jpeg(settings->output))
+        return write_photo(settings, input);
+    return output_write_gray16(settings->output, input->disparity, input->width,
+                               input->height);
+}
+
+static bool is_made(const struct settings *settings, const char *const *files)
+{
+    return files[1] || settings->side_by_side || settings->stereo.within ||
+           settings->model;
+}
+
+/* Options of depth that is read or matched, with depth that is not. */
+static int check_ways(const struct settings *settings, const char *const *files,
+                      int argc, char **argv)
+{
+    static const char *const of_read[] = {"--depth-unit", "--invalid",  "--speckle",
+                                          "--snap",       "--upsample", NULL};
+    const bool pair = is_made(settings, files) && !settings->model;
+    const bool nothing =
+        settings->strokes && !settings->depth.file && !is_made(settings, files);
+
+    if (!pair && options_given(&depth_command, argc, argv, "--match"))
+        return report_failure(EXIT_WRONG, "--match",
+                              "it is of stereo pairs; give RIGHT, --side-by-side or "
+                              "--stereo-file, or leave it out");
+    if (is_made(settings, files) && settings->depth.unit)
+        return report_failure(EXIT_WRONG, "--depth-unit",
+                              "it is of depth that is read from a file; leave it out");
+    if (pair && options_given(&depth_command, argc, argv, "--upsample"))
+        return report_failure(EXIT_WRONG, "--upsample",
+                              "depth of a stereo pair has the photo's size; leave it "
+                              "out");
+    if (!nothing)
+        return EXIT_DONE;
+    return options_refuse(&depth_command, argc, argv, of_read,
+                          "--strokes alone paint over nothing; give --depth, or leave "
+                          "it out");
+}
+
+static int check(const struct settings *settings, const char *const *files, int argc,
+                 char **argv)
+{
+    static const char *const endings[] = {".png", ".pgm",  ".pfm",
+                                          ".jpg", ".jpeg", NULL};
+    static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
+    const char *const inputs[] = {files[0], settings->depth.file, files[1],
+                                  settings->model, settings->strokes};
+    int status = input_check_depth(&settings->depth);
+
+    if (status == EXIT_DONE)
+        status =
+            output_check(settings->output, settings->view ? views : endings, inputs, 5);
+    if (status == EXIT_DONE &&
+        (files[1] != NULL) + settings->side_by_side + settings->stereo.within +
+                (settings->model != NULL) +
+                (settings->depth.file != NULL) > 1)
+        return report_failure(EXIT_WRONG, files[0],
+                              "its depth is given twice; give one of RIGHT, "
+                              "--side-by-side, --stereo-file, "
+                              "--estimate and --depth");
+    if (status == EXIT_DONE && is_made(settings, files) && is_jpeg(settings->output) &&
+        settings->side_by_side && settings->view == VIEW_NONE)
+        return report_failure(EXIT_WRONG, settings->output,
+                              "depth of half a picture does not fit the file; give a "
+                              ".png");
+    if (status == EXIT_DONE && settings->strokes && settings->side_by_side)
+        return report_failure(EXIT_WRONG, "--strokes",
+                              "they are not painted over half a picture; give LEFT and "
+                              "RIGHT");
+    if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
+        return report_failure(EXIT_WRONG, "--blur",
+                              "it goes with --focus-at; give that too");
+    if (status == EXIT_DONE && !isnan(settings->focus_at[0]) &&
+        (settings->view != VIEW_NONE || !is_jpeg(settings->output)))
+        return report_failure(EXIT_WRONG, "--focus-at",
+                              "it is kept in a photo alone; give -o a .jpg, or leave "
+                              "it out");
+    return status == EXIT_DONE ? check_ways(settings, files, argc, argv) : status;
+}
+
+static int read_input(const struct settings *settings, const char *const *files,
+                      struct input *input)
+{
+    if (settings->model)
+        return input_read_estimate(input, files[0], settings->model, &settings->network,
+                                   &settings->depth);
+    if (is_made(settings, files))
+        return input_read_stereo(input, files[0], files[1], &settings->stereo,
+                                 &settings->depth);
+    if (settings->strokes && !settings->depth.file)
+        return painted_read(input, files[0], &settings->depth);
+    if (settings->depth.file || settings->depth.full || settings->depth.snap > 0 ||
+        (is_jpeg(settings->output) && settings->view == VIEW_NONE))
+        return input_read(input, files[0], &settings->depth);
+    return input_read_depth(input, files[0], &settings->depth);
+}
+
+static int run(int argc, char **argv)
+{
+    struct settings settings = {
+        .network = NETWORK_SETTINGS_NONE, .depth = DEPTH_SETTINGS_NONE,
+        .focus_at = {NAN, NAN}, .blur = NAN};
+    struct input input = {0};
+    const char *files[3] = {NULL};
+    int status;
+
+    status = options_parse(&depth_command, argc, argv, &settings, files);
+    if (status != OPTIONS_PARSED)
+        return status;
+    status = check(&settings, files, argc, argv);
+    if (status != EXIT_DONE)
+        return status;
+    settings.depth.full |= settings.strokes != NULL;
+    report_progress("reading", 0);
+    status = read_input(&settings, files, &input);
+    if (status == EXIT_DONE && settings.strokes) {
+        report_progress("painting", 0.4);
+        status = painted_apply(&input, settings.strokes);
+    }
+    if (status == EXIT_DONE) {
+        report_progress("writing", 0.7);
+        status = write_output(&settings, &input);
+    }
+    report_progress_end();
+    if (status == EXIT_DONE)
+        status = print_report(&settings, &input);
+    input_free(&input);
+    return status;
+}
+
+const struct command depth_command = {
+    .name = "depth",
+    .usage = "FILE [RIGHT] -o OUT [options]",
+    .summary = "make, read, repair or upsample the depth of a photo, and write it",
+    .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, "
+             "the left picture of a stereo pair, or any photo with --estimate or "
+             "--strokes. Samples without a value are filled from those around them, "
+             "from the farther side where two surfaces meet, and counted.",
+    .options = options,
+    .files_least = 1,
+    .files_most = 2,
+    .run = run,
+};

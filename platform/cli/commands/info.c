@@ -1,0 +1,253 @@
+/* refocus info */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <refocus/refocus.h>
+#include "commands/commands.h"
+#include "line/report.h"
+
+struct settings {
+    bool json;
+};
+
+static const struct option options[] = {
+    {.kind = OPTION_FLAG,
+     .name = "--json",
+     .offset = offsetof(struct settings, json),
+     .help = "print it as one JSON object; what is not known is null"},
+    {.help = NULL},
+};
+
+/* What the samples of a map mean, in words. */
+static void describe_meaning(char *text, size_t size,
+                             const struct refocus_depth_map *map)
+{
+    if (map->meaning == REFOCUS_DEPTH_DISTANCE)
+        snprintf(text, size, "distance, %.6g m + %.6g m a unit", map->metres_at_zero,
+                 map->metres_per_unit);
+    else if (map->value_near == map->value_far)
+        snprintf(text, size, "disparity, bright = near, range measured");
+    else
+        snprintf(text, size, "disparity, %s = near, %.6g = nearest, %.6g = farthest",
+                 map->value_near > map->value_far ? "bright" : "dark", map->value_near,
+                 map->value_far);
+}
+
+static const char *sample_name(uint32_t sample)
+{
+    return sample == REFOCUS_SAMPLE_U8    ? "8-bit"
+           : sample == REFOCUS_SAMPLE_U16 ? "16-bit"
+                                          : "float";
+}
+
+static const char *source_text(uint32_t source)
+{
+    switch (source) {
+    case REFOCUS_DEPTH_SOURCE_GDEPTH:
+        return "GDepth in XMP";
+    case REFOCUS_DEPTH_SOURCE_APPLE_MPF:
+        return "Apple disparity image in MPF";
+    case REFOCUS_DEPTH_SOURCE_HEIF:
+        return "auxiliary depth image in HEIF";
+    case REFOCUS_DEPTH_SOURCE_FILE:
+        return "the file itself, as --depth reads it";
+    }
+    return "none";
+}
+
+static void print_metres(const char *name, double metres)
+{
+    if (metres > 0)
+        printf("%-13s %.5g m\n", name, metres);
+    else
+        printf("%-13s not known\n", name);
+}
+
+static void print_depth(const struct refocus_photo *photo,
+                        const struct refocus_depth_report *report)
+{
+    const struct refocus_depth_map *map = &photo->depth;
+    char text[160];
+
+    printf("depth         %s\n", source_text(photo->info.depth_source));
+    if (!map->samples)
+        return;
+    describe_meaning(text, sizeof text, map);
+    printf("depth size    %dx%d, %s\n", (int)map->width, (int)map->height,
+           sample_name(map->sample));
+    printf("depth unit    %s\n", text);
+    print_metres("near", report->near_m);
+    print_metres("far", report->far_m);
+    printf("without value %llu samples, %.1f %%\n", (unsigned long long)report->unknown,
+           100.0 * (double)report->unknown / ((double)map->width * map->height));
+}
+
+static void print_text(const char *file, const struct refocus_photo *photo,
+                       const struct refocus_depth_report *report)
+{
+    const struct refocus_photo_info *info = &photo->info;
+    char clean[REFOCUS_INFO_LENGTH];
+
+    report_clean(clean, sizeof clean, file);
+    printf("file          %s\n", clean);
+    printf("container     %s\n", info->container);
+    if (photo->image.plane[0])
+        printf("picture       %dx%d, upright%s\n", (int)photo->image.width,
+               (int)photo->image.height,
+               info->original_used ? ", the all-in-focus original in the file" : "");
+    if (info->stored_width > 0)
+        printf("stored        %dx%d, orientation %d\n", (int)info->stored_width,
+               (int)info->stored_height,
+               info->orientation ? (int)info->orientation : 1);
+    report_clean(clean, sizeof clean, info->camera);
+    if (clean[0])
+        printf("camera        %s\n", clean);
+    if (info->focal_length_mm > 0)
+        printf("focal length  %.4g mm\n", info->focal_length_mm);
+    if (info->focal_length_35mm > 0)
+        printf("35 mm terms   %.4g mm\n", info->focal_length_35mm);
+    if (info->f_number > 0)
+        printf("f-number      f/%.3g\n", info->f_number);
+    if (info->focus_x >= 0 && info->focus_y >= 0 && photo->image.plane[0] &&
+        (info->focus_x > 0 || info->focus_y > 0))
+        printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image.width,
+               info->focus_y * photo->image.height);
+    print_depth(photo, report);
+    for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++) {
+        report_clean(clean, sizeof clean, info->evidence[i]);
+        printf("%s %s\n", i == 0 ? "because      " : "             ", clean);
+    }
+}
+
+static json_t *positive(double value)
+{
+    return value > 0 ? report_number_json(value) : json_null();
+}
+
+static json_t *size_json(int width, int height)
+{
+    return json_pack("[i, i]", width, height);
+}
+
+static json_t *evidence_json(const struct refocus_photo_info *info)
+{
+    json_t *lines = json_array();
+
+    for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++)
+        json_array_append_new(lines, report_text_json(info->evidence[i]));
+    return lines;
+}
+
+static json_t *make_json(const char *file, const struct refocus_photo *photo,
+                         const struct refocus_depth_report *report)
+{
+    const struct refocus_photo_info *info = &photo->info;
+    const bool focus = info->focus_x >= 0 && info->focus_y >= 0 &&
+                       (info->focus_x > 0 || info->focus_y > 0);
+    json_t *depth =
+        photo->depth.samples ? report_depth_json(photo, report) : json_null();
+    char text[160];
+
+    if (photo->depth.samples && depth) {
+        describe_meaning(text, sizeof text, &photo->depth);
+        json_object_set_new(depth, "unit", report_text_json(text));
+        json_object_set_new(depth, "sample",
+                            json_string(sample_name(photo->depth.sample)));
+    }
+    return json_pack(
+        "{s:o, s:s, s:o, s:o, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "file",
+        report_text_json(file), "container", info->container, "picture",
+        photo->image.plane[0] ? size_json(photo->image.width, photo->image.height)
+                              : json_null(),
+        "stored",
+        info->stored_width > 0 ? size_json(info->stored_width, info->stored_height)
+                               : json_null(),
+        "orientation", info->orientation ? (int)info->orientation : 1, "original_used",
+        (int)info->original_used, "camera",
+        info->camera[0] ? report_text_json(info->camera) : json_null(),
+        "focal_length_mm", positive(info->focal_length_mm), "focal_length_35mm",
+        positive(info->focal_length_35mm), "f_number", positive(info->f_number),
+        "focus_point",
+        focus ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(),
+        "depth", depth, "evidence", evidence_json(info));
+}
+
+/* Read a photo, or a depth file that is none; a grey picture without depth may be
+ * both. */
+static int read_any(struct refocus_photo **photo, const char *file)
+{
+    struct refocus_reason reason = {""};
+    struct refocus_photo *map = NULL;
+    int status = refocus_photo_read(photo, file, NULL, &reason);
+
+    if (status == REFOCUS_OK ? !(*photo)->depth.samples
+                             : status == REFOCUS_ERR_FORMAT ||
+                                   status == REFOCUS_ERR_UNSUPPORTED)
+        if (refocus_depth_read(&map, file, NULL, 0, 0, NULL, NULL) == REFOCUS_OK) {
+            refocus_photo_free(photo);
+            *photo = map;
+            status = REFOCUS_OK;
+        }
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, file, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+/* The range of the depth map and its holes; a map of nothing but holes is worth
+ * telling. */
+static int measure_depth(const char *file, const struct refocus_depth_map *map,
+                         struct refocus_depth_report *report)
+{
+    const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
+    uint16_t *disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
+    int status = disparity ? refocus_depth_to_disparity(
+                                 map, disparity, (ptrdiff_t)map->width * 2, report)
+                           : REFOCUS_ERR_MEMORY;
+
+    free(disparity);
+    if (status == REFOCUS_ERR_NO_DEPTH) {
+        report->unknown = samples;
+        status = REFOCUS_OK;
+    }
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, file, "the depth map: %s",
+                              refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+static int run(int argc, char **argv)
+{
+    struct settings settings = {false};
+    struct refocus_photo *photo = NULL;
+    struct refocus_depth_report report;
+    const char *files[2];
+    int status;
+
+    memset(&report, 0, sizeof report);
+    status = options_parse(&info_command, argc, argv, &settings, files);
+    if (status != OPTIONS_PARSED)
+        return status;
+    status = read_any(&photo, files[0]);
+    if (status == EXIT_DONE && photo->depth.samples)
+        status = measure_depth(files[0], &photo->depth, &report);
+    if (status == EXIT_DONE && settings.json) {
+        status = report_print_json(make_json(files[0], photo, &report));
+    } else if (status == EXIT_DONE) {
+        print_text(files[0], photo, &report);
+        status = report_end_output();
+    }
+    refocus_photo_free(&photo);
+    return status;
+}
+
+const struct command info_command = {
+    .name = "info",
+    .usage = "FILE [--json]",
+    .summary = "what depth, lens and orientation data a file carries, and why it is "
+               "believed",
+    .options = options,
+    .files_least = 1,
+    .files_most = 1,
+    .run = run,
+};

@@ -1,0 +1,361 @@
+/* refocus compare */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "commands/commands.h"
+#include "compare/compare.h"
+#include "compare/compare_list.h"
+#include "shot/engine.h"
+#include "inputs/inputs.h"
+#include "outputs/outputs.h"
+
+struct settings {
+    struct depth_settings depth;
+    struct lens_settings lens;
+    struct engine_settings engine;
+    const char *reference, *methods, *output;
+    double border;
+};
+
+static const struct option options[] = {
+    {.kind = OPTION_HEADING, .help = "Files"},
+    {.kind = OPTION_TEXT,
+     .name = "--reference",
+     .argument = "GT",
+     .offset = offsetof(struct settings, reference),
+     .help = "the picture as it should be, of the photo's size"},
+    OUTPUT_OPTION(struct settings, output,
+                  "a picture of labelled crops where depth jumps: .jpg, .png or .ppm"),
+    DEPTH_FILE_OPTION(struct settings, depth),
+    DEPTH_UNIT_OPTIONS(struct settings, depth),
+    {.kind = OPTION_HEADING, .help = "What is compared"},
+    {.kind = OPTION_TEXT,
+     .name = "--methods",
+     .argument = "NAME[:OPTION[=VALUE]...],...",
+     .offset = offsetof(struct settings, methods),
+     .help = "methods of 'refocus render', with commas, each with options of its own "
+             "such as search:rays=full:iterations=1 or jittered:cell=4; default: all "
+             "that know the aperture"},
+    {.kind = OPTION_NUMBER,
+     .name = "--border",
+     .argument = "N",
+     .offset = offsetof(struct settings, border),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SIDE,
+     .help = "pixels at each side that do not count; default the blur radius"},
+    {.kind = OPTION_HEADING, .help = "Focus and blur"},
+    FOCUS_OPTIONS(struct settings, lens),
+    LENS_OPTIONS(struct settings, lens),
+    {.kind = OPTION_HEADING, .help = "Rendering"},
+    METHOD_OPTIONS(struct settings, engine),
+    {.kind = OPTION_HEADING, .help = "Running"},
+    RUN_OPTIONS(struct settings, engine),
+    REPEAT_OPTION(struct settings, engine),
+    PAPER_OPTIONS(struct settings, engine.papers, engine.method),
+    {.help = NULL},
+};
+
+static int check(const struct settings *settings, const char *photo)
+{
+    static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
+    const char *const inputs[] = {photo, settings->depth.file, settings->reference,
+                                  settings->engine.aperture};
+    int status = input_check_depth(&settings->depth);
+
+    if (status == EXIT_DONE)
+        status = input_check_lens(&settings->lens);
+    if (status == EXIT_DONE && !settings->reference)
+        status = report_failure(EXIT_WRONG, "--reference",
+                                "there is nothing to compare with; give --reference "
+                                "GT");
+    if (status == EXIT_DONE && settings->output)
+        status = output_check(settings->output, endings, inputs, 4);
+    return status;
+}
+
+static int read_reference(struct refocus_photo **reference, const char *file,
+                          const struct refocus_image *photo)
+{
+    struct refocus_reason reason = {""};
+    const int status = refocus_photo_read(reference, file, NULL, &reason);
+
+    if (status != REFOCUS_OK || !(*reference)->image.plane[0])
+        return report_failure(EXIT_FAILED, file, "%s",
+                              reason.text[0] ? reason.text : "it is not a picture");
+    if ((*reference)->image.width != photo->width ||
+        (*reference)->image.height != photo->height)
+        return report_failure(EXIT_FAILED, file,
+                              "it has %dx%d pixels, the photo %dx%d; give one of the "
+                              "same size",
+                              (int)(*reference)->image.width,
+                              (int)(*reference)->image.height, (int)photo->width,
+                              (int)photo->height);
+    return EXIT_DONE;
+}
+
+/* A packed copy of a picture, or room for one. */
+static uint8_t *packed(const struct refocus_image *image, bool copy)
+{
+    const size_t row = 3 * (size_t)image->width;
+    uint8_t *rgb = malloc(row * (size_t)image->height);
+
+    for (int y = 0; rgb && copy && y < image->height; y++)
+        memcpy(rgb + (size_t)y * row, image->plane[0] + y * image->stride[0], row);
+    return rgb;
+}
+
+static uint64_t memory_of(const struct engine *engine,
+                          const struct refocus_image *photo, uint32_t method)
+{
+    struct refocus_renderer_params params = refocus_renderer_params_default(
+        photo->width, photo->height, engine->params.max_blur_radius);
+
+    params.threads = engine->info.threads;
+    params.methods = REFOCUS_METHOD_BIT(method);
+    return refocus_renderer_memory(&params);
+}
+
+static int add(struct comparison *c, const char *name,
+               const struct refocus_image *image, bool copy)
+{
+    struct compared *item = &c->item[c->count++];
+
+    item->name = name;
+    item->rgb = packed(image, copy);
+    return item->rgb ? EXIT_DONE : report_failure(EXIT_FAILED, name, "not enough "
+                                                                     "memory");
+}
+
+static int score(struct comparison *c, const uint8_t *mask, int border)
+{
+    for (int i = 1; i < c->count; i++) {
+        struct compared *item = &c->item[i];
+
+        if (quality_score(item->rgb, c->item[0].rgb, c->width, c->height, border, mask,
+                          &item->scores) != 0)
+            return report_failure(EXIT_FAILED, item->name, "not enough memory to score "
+                                                           "it");
+        item->scored = item->scores.pixels > 0;
+    }
+    return EXIT_DONE;
+}
+
+static int render_all(struct engine *engine, struct comparison *c,
+                      const struct variants *variants,
+                      const struct refocus_image *photo, int repeat)
+{
+    const struct refocus_render_params lens = engine->params;
+
+    for (int i = 0; i < variants->count; i++) {
+        const struct variant *variant = &variants->variant[i];
+        struct refocus_render_params *params = &engine->params;
+        struct refocus_image out = *photo;
+        int status = add(c, variant->label, photo, false);
+
+        *params = variant->engine.params;
+        params->focus_disparity = lens.focus_disparity;
+        params->max_blur_radius = lens.max_blur_radius;
+        engine->field_disparity = variant->engine.field_disparity;
+        if (status == EXIT_DONE)
+            status = papers_place(&variant->settings.papers, params, photo->width,
+                                  photo->height);
+        if (status != EXIT_DONE)
+            return status;
+        out.plane[0] = c->item[c->count - 1].rgb;
+        out.stride[0] = (ptrdiff_t)photo->width * 3;
+        report_progress(refocus_method_name(params->method),
+                        (i + 0.5) / variants->count);
+        status = engine_render(engine, &out, repeat);
+        if (status != EXIT_DONE)
+            return status;
+        c->item[c->count - 1].ms = engine->render_ms;
+        c->item[c->count - 1].cpu_ms = engine->cpu_ms;
+        c->item[c->count - 1].memory = memory_of(engine, photo, params->method);
+    }
+    return EXIT_DONE;
+}
+
+static json_t *item_json(const struct compared *item)
+{
+    const struct quality_scores *s = &item->scores;
+    const int length = (int)strcspn(item->name, ":");
+    json_t *json = json_pack(
+        "{s:s#, s:o, s:o, s:o, s:o, s:o}", "method", item->name, length, "label",
+        report_text_json(item->name), "psnr", report_number_json(s->psnr), "ssim",
+        report_number_json(s->ssim), "edge_psnr", report_number_json(s->edge_psnr),
+        "rmse", report_number_json(s->rmse));
+
+    if (json && item->memory)
+        json_object_set_new(json, "render_ms", report_spread_json(item->ms));
+    if (json && item->memory)
+        json_object_set_new(json, "cpu_ms", report_spread_json(item->cpu_ms));
+    if (json && item->memory)
+        json_object_set_new(json, "renderer_bytes",
+                            json_integer((json_int_t)item->memory));
+    return json;
+}
+
+static int print_report(const struct settings *settings, const struct engine *engine,
+                        const struct comparison *c, const char *photo, int border)
+{
+    int widest = 13;
+
+    if (settings->engine.json) {
+        json_t *rows = json_array();
+        json_t *run = engine_json(engine);
+        json_t *json =
+            json_pack("{s:o, s:o, s:i, s:i, s:i}", "photo", report_text_json(photo),
+                      "reference", report_text_json(settings->reference), "width",
+                      c->width, "height", c->height, "border", border);
+
+        for (int i = 1; i < c->count; i++)
+            json_array_append_new(rows, item_json(&c->item[i]));
+        if (json && run) {
+            static const char *const of_one[] = {"method", "render_ms", "cpu_ms",
+                                                  "renderer_bytes"};
+
+            for (int i = 0; i < 4; i++)
+                json_object_del(run, of_one[i]);
+            json_object_update(json, run);
+        }
+        json_decref(run);
+        if (json)
+            json_object_set_new(json, "methods", rows);
+        else
+            json_decref(rows);
+        return report_print_json(json);
+    }
+    for (int i = 1; i < c->count; i++)
+        if ((int)strlen(c->item[i].name) > widest)
+            widest = (int)strlen(c->item[i].name);
+    printf("%-*s %7s %7s %9s %7s %10s %8s\n", widest, "method", "PSNR", "SSIM",
+           "edge PSNR", "RMSE", "ms", "MiB");
+    for (int i = 1; i < c->count; i++) {
+        const struct compared *item = &c->item[i];
+        const struct quality_scores *s = &item->scores;
+
+        printf("%-*s %7.2f %7.4f %9.2f %7.2f", widest, item->name, s->psnr, s->ssim,
+               s->edge_psnr, s->rmse);
+        if (item->memory)
+            printf(" %10.2f %8.1f", item->ms.median, (double)item->memory / (1 << 20));
+        putchar('\n');
+    }
+    return report_end_output();
+}
+
+static int compare(struct engine *engine, struct input *input, struct comparison *c,
+                   const struct settings *settings, const struct variants *variants)
+{
+    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_depth_map *map = &input->depth_from->depth;
+    const struct refocus_disparity disparity = refocus_disparity16(
+        input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
+    const size_t pixels = (size_t)photo->width * (size_t)photo->height;
+    uint16_t *prepared = malloc(pixels * 2);
+    uint8_t *mask = malloc(pixels);
+    double blur = 0, focus = 0;
+    int status, border = 0;
+
+    status = prepared && mask
+                 ? input_blur(input, &settings->lens, &blur)
+                 : report_failure(EXIT_FAILED, "compare", "not enough memory");
+    if (status == EXIT_DONE)
+        status =
+            engine_create(engine, &settings->engine, photo->width, photo->height, blur);
+    if (status == EXIT_DONE)
+        status = engine_prepare(engine, photo, &disparity);
+    if (status == EXIT_DONE) {
+        refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared,
+                         (ptrdiff_t)photo->width * 2);
+        status = input_focus(input, &settings->lens, prepared, &focus);
+        engine->params.focus_disparity = (float)focus;
+        border = isnan(settings->border) ? (int)ceil(blur) : (int)settings->border;
+    }
+    if (status == EXIT_DONE)
+        status = add(c, "photo", photo, true);
+    if (status == EXIT_DONE)
+        status = render_all(engine, c, variants, photo, (int)settings->engine.repeat);
+    if (status == EXIT_DONE &&
+        quality_edge_mask(prepared, c->width, c->height, focus, blur, mask) != 0)
+        status = report_failure(EXIT_FAILED, "compare", "not enough memory");
+    if (status == EXIT_DONE)
+        status = score(c, mask, border);
+    report_progress_end();
+    if (status == EXIT_DONE && settings->output) {
+        struct refocus_image picture = compare_picture(c, prepared);
+
+        status = picture.plane[0]
+                     ? output_write_image(settings->output, &picture, NULL)
+                     : report_failure(EXIT_FAILED, settings->output, "not enough "
+                                                                     "memory");
+        free(picture.plane[0]);
+    }
+    if (status == EXIT_DONE)
+        status = print_report(settings, engine, c, input->photo_name, border);
+    free(prepared);
+    free(mask);
+    return status;
+}
+
+static int run(int argc, char **argv)
+{
+    struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
+                                .lens = LENS_SETTINGS_NONE,
+                                .engine = ENGINE_SETTINGS_NONE(1),
+                                .border = NAN};
+    struct comparison comparison = {0};
+    struct refocus_photo *reference = NULL;
+    struct engine engine;
+    struct input input = {0};
+    struct variants variants = {0};
+    const char *files[2];
+    int status;
+
+    settings.engine.method = -1; /* several: options of any may be given */
+    status = options_parse(&compare_command, argc, argv, &settings, files);
+    settings.engine.method = REFOCUS_METHOD_SWEEP;
+    if (status != OPTIONS_PARSED)
+        return status;
+    status = check(&settings, files[0]);
+    if (status != EXIT_DONE)
+        return status;
+    status = engine_begin(&engine, &settings.engine);
+    engine.name = files[0];
+    if (status == EXIT_DONE)
+        status = variants_begin(&variants, settings.methods, &settings.engine);
+    for (int i = 0; i < variants.count; i++)
+        engine.methods |= variants.variant[i].engine.methods;
+    if (status == EXIT_DONE)
+        status = input_read(&input, files[0], &settings.depth);
+    if (status == EXIT_DONE)
+        status = read_reference(&reference, settings.reference, &input.photo->image);
+    if (status == EXIT_DONE) {
+        comparison.width = input.photo->image.width;
+        comparison.height = input.photo->image.height;
+        status = add(&comparison, "reference", &reference->image, true);
+    }
+    if (status == EXIT_DONE)
+        status = compare(&engine, &input, &comparison, &settings, &variants);
+    report_progress_end();
+    for (int i = 0; i < comparison.count; i++)
+        free(comparison.item[i].rgb);
+    refocus_photo_free(&reference);
+    variants_end(&variants);
+    engine_end(&engine);
+    input_free(&input);
+    return status;
+}
+
+const struct command compare_command = {
+    .name = "compare",
+    .usage = "PHOTO --reference GT [options]",
+    .summary = "render with several methods and score them against a reference picture",
+    .notes = "PSNR and RMSE are of the 8-bit values, SSIM of their luma; the edge PSNR "
+             "is of the pixels within reach of a depth edge of two pixels of blur or "
+             "more. The row 'photo' is the untouched photo. The times are of rendering "
+             "alone; MiB is all that a renderer for the one method takes.",
+    .options = options,
+    .files_least = 1,
+    .files_most = 1,
+    .run = run,
+};

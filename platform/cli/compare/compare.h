@@ -1,0 +1,31 @@
+/* What `refocus compare` has rendered, and its picture of it. */
+#ifndef RF_CLI_COMPARE_H
+#define RF_CLI_COMPARE_H
+
+#include <refocus/refocus.h>
+#include "compare/compare_list.h"
+#include "metrics.h"
+#include "line/report.h"
+
+enum { COMPARE_MOST = VARIANTS_MOST + 2 }; /* and the reference and the photo */
+
+struct compared {
+    const char *name; /* NAME:OPTION=VALUE:... */
+    uint8_t *rgb; /* packed */
+    bool scored;
+    struct quality_scores scores;
+    struct spread ms, cpu_ms;
+    uint64_t memory; /* of a renderer for this method alone */
+};
+
+struct comparison {
+    int width, height, count;
+    struct compared item[COMPARE_MOST];
+};
+
+/* Labelled crops where depth jumps, a column for each picture; plane[0] is to be freed,
+ * NULL without memory. disparity: packed, of the photo's size. */
+struct refocus_image compare_picture(const struct comparison *comparison,
+                                     const uint16_t *disparity);
+
+#endif

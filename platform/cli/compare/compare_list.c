@@ -1,0 +1,133 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "compare/compare_list.h"
+
+enum { WORDS_MOST = 32 }; /* of one method */
+
+static const struct option options[] = {
+    METHOD_OPTIONS(struct variant, settings),
+    PAPER_OPTIONS(struct variant, settings.papers, settings.method),
+    {.help = NULL},
+};
+
+/* What an entry's options are parsed as. */
+static const struct command entry = {
+    .name = "compare", .usage = "[options]", .options = options};
+
+static const char *method_word(const void *list, int i)
+{
+    (void)list;
+    return refocus_method_name((uint32_t)i);
+}
+
+static int find_method(const char *name, int *method)
+{
+    const char *nearest;
+
+    for (*method = 0; *method < REFOCUS_METHOD_COUNT; ++*method)
+        if (strcmp(refocus_method_name((uint32_t)*method), name) == 0)
+            return EXIT_DONE;
+    nearest = options_nearest(name, method_word, NULL);
+    return report_failure(EXIT_WRONG, "--methods", "'%s' is no method%s%s%s", name,
+                          nearest ? "; did you mean '"
+                                  : "; 'refocus render --help' lists them",
+                          nearest ? nearest : "", nearest ? "'?" : "");
+}
+
+/* "search:rays=64:mirror" with its colons cut: to "--rays=64", "--mirror" in *words. */
+static int parse_entry(struct variant *variant, char *text, char **words)
+{
+    char *argv[WORDS_MOST + 2] = {(char *)"compare"};
+    const char *files[1];
+    char *name = text, *next = strchr(text, ':');
+    int argc = 1, status;
+
+    while (next) {
+        const char *option = next + 1;
+
+        *next = '\0';
+        next = strchr(next + 1, ':');
+        if (argc > WORDS_MOST)
+            return report_failure(EXIT_WRONG, "--methods",
+                                  "'%s' has too many options; give at "
+                                  "most %d",
+                                  name, WORDS_MOST);
+        argv[argc++] = *words;
+        *words += 1 + sprintf(*words, "--%.*s", (int)strcspn(option, ":"), option);
+    }
+    status = find_method(name, &variant->settings.method);
+    if (status != EXIT_DONE)
+        return status;
+    status = options_parse(&entry, argc, argv, variant, files);
+    if (status != OPTIONS_PARSED)
+        return status;
+    return engine_begin(&variant->engine, &variant->settings);
+}
+
+static bool is_listed(const struct variants *variants, const char *label)
+{
+    for (int i = 0; i < variants->count; i++)
+        if (strcmp(variants->variant[i].label, label) == 0)
+            return true;
+    return false;
+}
+
+/* Splits list, which is written to, and copies each entry to *words twice: as it is,
+ * and cut. */
+static int add_all(struct variants *variants, char *list, char **words,
+                   const struct engine_settings *common)
+{
+    for (char *text = strtok(list, ","); text; text = strtok(NULL, ",")) {
+        struct variant *variant = &variants->variant[variants->count];
+        char *copy = *words;
+        int status;
+
+        if (is_listed(variants, text))
+            continue;
+        if (variants->count == VARIANTS_MOST)
+            return report_failure(EXIT_WRONG, "--methods",
+                                  "there are too many; give at most %d", VARIANTS_MOST);
+        variants->count++;
+        variant->label = text;
+        variant->settings = *common;
+        *words += 1 + sprintf(copy, "%s", text);
+        status = parse_entry(variant, copy, words);
+        if (status != EXIT_DONE)
+            return status;
+    }
+    if (variants->count == 0)
+        return report_failure(EXIT_WRONG, "--methods",
+                              "no method is named; give one or more");
+    return EXIT_DONE;
+}
+
+int variants_begin(struct variants *variants, const char *list,
+                   const struct engine_settings *common)
+{
+    const bool disc = !common->aperture || strcmp(common->aperture, "disc") == 0;
+    char all[16 * REFOCUS_METHOD_COUNT] = "", *words;
+    size_t length;
+
+    memset(variants, 0, sizeof *variants);
+    for (uint32_t i = 0;
+         !list && i < (disc ? REFOCUS_METHOD_COUNT : REFOCUS_METHOD_SCATTER); i++)
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s,",
+                 refocus_method_name(i));
+    list = list ? list : all;
+    length = strlen(list) + 1;
+    /* the list, its entries, and their options with two dashes for a colon */
+    variants->words = malloc(4 * length);
+    if (!variants->words)
+        return report_failure(EXIT_FAILED, "--methods", "not enough memory");
+    memcpy(variants->words, list, length);
+    words = variants->words + length;
+    return add_all(variants, variants->words, &words, common);
+}
+
+void variants_end(struct variants *variants)
+{
+    for (int i = 0; i < variants->count; i++)
+        engine_end(&variants->variant[i].engine);
+    free(variants->words);
+}

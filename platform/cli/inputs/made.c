@@ -1,0 +1,209 @@
+/* Depth that is made of pictures: of a stereo pair, or of one photo by a network. */
+#include <stdlib.h>
+#include <string.h>
+#include "inputs/inputs.h"
+#include "inputs/made.h"
+#include "line/report.h"
+
+#ifdef RF_HAVE_OPENCV
+#include <refocus/platform/opencv.h>
+
+/* The other picture of a pair: a file of its own, or the second one of the left
+ * one's. */
+static int read_right(struct refocus_photo **photo, const char *name, bool second)
+{
+    struct refocus_reason reason = {""};
+    const int status = second ? refocus_photo_read_second(photo, name, NULL, &reason)
+                              : refocus_photo_read(photo, name, NULL, &reason);
+
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, name, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    if (!(*photo)->image.plane[0])
+        return report_failure(EXIT_FAILED, name, "it is a depth map, not a photo; give "
+                                                 "a photo");
+    return EXIT_DONE;
+}
+
+/* Floats that grow towards the camera, as the depth of the photo. */
+static int take(struct input *input, float *samples, int width, int height,
+                const struct depth_settings *settings)
+{
+    struct refocus_depth_map *map = &input->made.depth;
+
+    input->made_samples = samples;
+    map->samples = samples;
+    map->width = width;
+    map->height = height;
+    map->stride = (ptrdiff_t)width * (ptrdiff_t)sizeof *samples;
+    map->sample = REFOCUS_SAMPLE_F32;
+    map->meaning = REFOCUS_DEPTH_DISPARITY;
+    if (!isnan(settings->near_m))
+        map->near_m = settings->near_m;
+    if (!isnan(settings->far_m))
+        map->far_m = settings->far_m;
+    input->depth_from = &input->made;
+    return input_convert(input, settings);
+}
+
+/* Two pictures in one, side by side: the halves. */
+static void halve(struct refocus_image *left, struct refocus_image *right)
+{
+    left->width /= 2;
+    *right = *left;
+    right->plane[0] += 3 * (ptrdiff_t)left->width;
+}
+
+int input_read_stereo(struct input *input, const char *left, const char *right,
+                      const struct stereo_settings *how,
+                      const struct depth_settings *settings)
+{
+    struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_stereo_report report;
+    struct refocus_cv_reason reason = {""};
+    struct refocus_image other;
+    float *samples = NULL;
+    int status = input_read_photo(input, left, "a photo");
+
+    params.method = (uint32_t)how->method;
+    if (status == EXIT_DONE && (right || how->within))
+        status = read_right(&input->side, right ? right : left, right == NULL);
+    if (status != EXIT_DONE)
+        return status;
+    if (!input->side && input->photo->image.width < 2)
+        return report_failure(EXIT_FAILED, left,
+                              "it is one pixel wide; give two pictures side by side");
+    if (input->side)
+        other = input->side->image;
+    else
+        halve(&input->photo->image, &other);
+    samples = malloc((size_t)input->photo->image.width *
+                     (size_t)input->photo->image.height * sizeof *samples);
+    if (!samples)
+        return report_failure(EXIT_FAILED, left, "not enough memory");
+    report_progress("matching", 0.2);
+    status = refocus_cv_stereo(&input->photo->image, &other, &params, samples, &report,
+                               &reason);
+    if (status != REFOCUS_OK) {
+        free(samples);
+        return report_failure(EXIT_FAILED, right ? right : left, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    }
+    snprintf(input->made.info.evidence[0], REFOCUS_INFO_LENGTH,
+             "stereo: disparities %.1f to %.1f pixels, right picture %.0f pixels "
+             "lower, %.0f %% of the pixels agree from both sides",
+             (double)report.least, (double)report.greatest,
+             (double)report.vertical_offset, 100.0 * (double)report.matched);
+    input->made.info.evidence_count = 1;
+    return take(input, samples, input->photo->image.width, input->photo->image.height,
+                settings);
+}
+
+static void adjust(struct refocus_network *network, const struct network_settings *how)
+{
+    if (!isnan(how->size[0])) {
+        network->width = (int32_t)how->size[0];
+        network->height = (int32_t)how->size[1];
+    }
+    if (!isnan(how->mean[0]))
+        for (int i = 0; i < 3; i++)
+            network->mean[i] = (float)how->mean[i];
+    if (!isnan(how->scale))
+        network->scale = (float)how->scale;
+    if (how->inverse)
+        network->inverse = !network->inverse;
+}
+
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *how,
+                        const struct depth_settings *settings)
+{
+    struct refocus_estimate estimate;
+    struct refocus_network network;
+    struct refocus_cv_reason reason = {""};
+    int status = input_read_photo(input, photo, "a photo");
+
+    if (status != EXIT_DONE)
+        return status;
+    refocus_cv_network((uint32_t)how->preset, &network);
+    status = refocus_cv_network_fit(&network, model, &reason);
+    adjust(&network, how);
+    report_progress("estimating", 0.2);
+    if (status == REFOCUS_OK)
+        status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate,
+                                     &reason);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, model, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    return take(input, estimate.samples, estimate.width, estimate.height, settings);
+}
+
+const char *made_preset(uint32_t index)
+{
+    return refocus_cv_network_name(index);
+}
+const char *made_upsampler(uint32_t index)
+{
+    return index ? refocus_cv_filter_name(index - 1) : "core";
+}
+
+int made_upsample(uint32_t filter, const struct refocus_image *photo,
+                  const struct refocus_disparity *map, uint16_t *out, const char *name)
+{
+    struct refocus_cv_reason reason = {""};
+    const int status = refocus_cv_upsample_by(filter, photo, map, out, &reason);
+
+    if (status == REFOCUS_OK)
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, name, "--upsample %s: %s",
+                          refocus_cv_filter_name(filter),
+                          reason.text[0] ? reason.text : refocus_strerror(status));
+}
+#else
+static int absent(const char *what)
+{
+    return report_failure(EXIT_FAILED, what, "this build has no OpenCV; build it with "
+                                             "OpenCV");
+}
+
+int input_read_stereo(struct input *input, const char *left, const char *right,
+                      const struct stereo_settings *how,
+                      const struct depth_settings *settings)
+{
+    (void)settings;
+    (void)how;
+    memset(input, 0, sizeof *input);
+    return absent(right ? right : left);
+}
+
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *how,
+                        const struct depth_settings *settings)
+{
+    (void)photo;
+    (void)how;
+    (void)settings;
+    memset(input, 0, sizeof *input);
+    return absent(model);
+}
+
+const char *made_preset(uint32_t index)
+{
+    return index == 0 ? "none" : NULL;
+}
+
+const char *made_upsampler(uint32_t index)
+{
+    return index ? NULL : "core";
+}
+
+int made_upsample(uint32_t filter, const struct refocus_image *photo,
+                  const struct refocus_disparity *map, uint16_t *out, const char *name)
+{
+    (void)filter;
+    (void)photo;
+    (void)map;
+    (void)out;
+    return absent(name);
+}
+#endif

@@ -1,0 +1,66 @@
+/* What the command tells: errors, progress, times, JSON. */
+#ifndef RF_CLI_REPORT_H
+#define RF_CLI_REPORT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <jansson.h>
+#include <refocus/depth.h>
+#include <refocus/platform/file.h>
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_WRONG = 2 };
+
+/* Print "refocus: WHAT: WHY" on one line of standard error; returns exit_code. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+int report_failure(int exit_code, const char *what, const char *why, ...);
+
+/* After the last output on standard output: EXIT_DONE, or EXIT_FAILED when it was
+ * lost. */
+int report_end_output(void);
+
+/* A bar on standard error, when that is a terminal: what is being done, and how much of
+ * the whole, 0 to 1, is behind. report_failure() and report_progress_end() wipe it. */
+void report_progress(const char *doing, double done);
+void report_progress_end(void);
+bool report_is_watched(void); /* whether there is such a terminal */
+
+/* Milliseconds of a clock that only moves forwards. */
+double report_clock_ms(void);
+
+/* Milliseconds of processor time that this process has taken, all threads together. */
+double report_cpu_ms(void);
+
+/* Processors that may be used. */
+int report_processors(void);
+
+/* The most memory this process has held. */
+int64_t report_peak_rss_kib(void);
+
+/* Least, median and greatest of count >= 1 values, which are sorted by it. */
+struct spread {
+    double min, median, max;
+};
+struct spread report_spread(double *values, int count);
+json_t *report_spread_json(struct spread spread);
+
+/* JSON of values that JSON has no words for: NAN and 0 metres are null, infinity is the
+ * text "infinity"; bytes that are not printable ASCII or UTF-8 become '?'. */
+json_t *report_number_json(double value);
+json_t *report_metres_json(double metres);
+json_t *report_text_json(const char *text);
+
+/* Text with control characters replaced, cut to the size. */
+void report_clean(char *clean, size_t size, const char *text);
+
+/* The words of --json for what a depth map is. */
+json_t *report_depth_json(const struct refocus_photo *from,
+                          const struct refocus_depth_report *report);
+const char *report_depth_source(uint32_t source);
+
+/* Print an object, or say that there was no memory for it; frees it. Returns an exit
+ * code. */
+int report_print_json(json_t *object);
+
+#endif

@@ -1,0 +1,326 @@
+#include "line/settings.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <jansson.h>
+#include <refocus/platform/file.h>
+#include "outputs/outputs.h"
+#include "line/report.h"
+
+enum { LONGEST_NAME = 64, LONGEST_VALUE = 256 };
+
+/* Settings point into texts of the files that were read; all are freed at the end. */
+static json_t *kept;
+
+static void forget(void)
+{
+    json_decref(kept);
+    kept = NULL;
+}
+
+static bool keep(json_t *root)
+{
+    if (!kept) {
+        kept = json_array();
+        if (kept && atexit(forget) != 0)
+            forget();
+    }
+    return kept && json_array_append(kept, root) == 0;
+}
+
+/* What errors call a member of a file. */
+static const char *member_name(char what[LONGEST_VALUE], const char *file,
+                               const char *key)
+{
+    char name[LONGEST_NAME];
+
+    report_clean(name, sizeof name, key);
+    snprintf(what, LONGEST_VALUE, "%.*s: %s", LONGEST_VALUE - LONGEST_NAME - 3, file,
+             name);
+    return what;
+}
+
+static int damaged(const char *file, const char *key, const char *why)
+{
+    char what[LONGEST_VALUE];
+
+    member_name(what, file, key);
+    return report_failure(EXIT_FAILED, what, "%s", why);
+}
+
+/* A number as the command line has it; false: there is no text for it. */
+static bool number_text(const json_t *value, char *text, size_t size)
+{
+    if (json_is_integer(value))
+        return snprintf(text, size, "%" JSON_INTEGER_FORMAT,
+                        json_integer_value(value)) > 0;
+    if (!json_is_real(value))
+        return false;
+    return snprintf(text, size, "%.17g", json_real_value(value)) > 0;
+}
+
+/* "1,2,3" of an array of numbers. */
+static bool numbers_text(const json_t *array, char *text, size_t size)
+{
+    const json_t *value;
+    size_t i, n = 0;
+
+    json_array_foreach(array, i, value) {
+        if (n + 32 > size)
+            return false;
+        if (i > 0)
+            text[n++] = ',';
+        if (!number_text(value, text + n, size - n))
+            return false;
+        n += strlen(text + n);
+    }
+    return n > 0;
+}
+
+static int set_member(const struct command *command, const char *file, const char *key,
+                      const json_t *value, void *settings)
+{
+    char name[LONGEST_NAME + 2], text[LONGEST_VALUE], what[LONGEST_VALUE];
+    const struct option *option;
+    const char *given = text;
+    int status;
+
+    snprintf(name, sizeof name, "--%s", key);
+    option = strlen(key) < LONGEST_NAME ? options_find(command, name) : NULL;
+    if (!option || option->elsewhere) {
+        const char *nearest = options_nearest_name(command, name);
+        char why[LONGEST_VALUE];
+
+        if (option)
+            return damaged(file, key, "is not of the picture; give it on the command "
+                                      "line");
+        snprintf(why, sizeof why, "unknown setting%s%s%s",
+                 nearest ? "; did you mean '" : "",
+                 nearest ? nearest + strspn(nearest, "-") : "", nearest ? "'?" : "");
+        return damaged(file, key, why);
+    }
+    if (option->kind == OPTION_FLAG) {
+        if (!json_is_boolean(value))
+            return damaged(file, key, "give true or false");
+        *(bool *)((char *)settings + option->offset) = json_is_true(value);
+        return OPTIONS_PARSED;
+    }
+    if (json_is_string(value))
+        given = json_string_value(value);
+    else if (!number_text(value, text, sizeof text) &&
+             !numbers_text(value, text, sizeof text))
+        return damaged(file, key, option->kind == OPTION_NUMBERS ? "give numbers, as "
+                                                                   "[1, 2]"
+                                                                 : "give a number or a "
+                                                                   "text");
+    status = options_set(option, member_name(what, file, key), given, settings);
+    return status == EXIT_WRONG ? EXIT_FAILED : status;
+}
+
+int settings_read(const struct command *command, const char *file, const char *bytes,
+                  size_t size, void *settings)
+{
+    json_error_t error;
+    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
+    int status = OPTIONS_PARSED;
+    const char *key;
+    json_t *value;
+
+    if (!root)
+        return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s",
+                              error.line, error.column, error.text);
+    value = json_object_get(root, "refocus");
+    if (!json_is_integer(value) || json_integer_value(value) != SETTINGS_VERSION)
+        status = report_failure(EXIT_FAILED, file,
+                                "holds no settings: its member \"refocus\" should be "
+                                "%d",
+                                SETTINGS_VERSION);
+    else if (!keep(root))
+        status = report_failure(EXIT_FAILED, file, "not enough memory");
+    if (status == OPTIONS_PARSED) {
+        json_object_foreach(root, key, value) {
+            if (strcmp(key, "refocus") == 0)
+                continue;
+            status = set_member(command, file, key, value, settings);
+            if (status != OPTIONS_PARSED)
+                break;
+        }
+    }
+    json_decref(root);
+    return status;
+}
+
+int settings_load(const struct command *command, const char *file, void *settings)
+{
+    struct refocus_reason reason = {{0}};
+    struct refocus_blob blob;
+    int status = refocus_file_read(file, SETTINGS_MOST_BYTES, &blob, &reason);
+
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, file, "%s", reason.text);
+    status = settings_read(command, file, (const char *)blob.data, blob.size, settings);
+    free(blob.data);
+    return status;
+}
+
+int settings_check(const char *file, const char *const *inputs, int input_count)
+{
+    static const char *const endings[] = {".json", NULL};
+
+    return output_check(file, endings, inputs, input_count);
+}
+
+/* Digits that a number needs to be read back as it is. */
+static int digits_of(double value)
+{
+    for (int digits = 15; digits < 17; digits++) {
+        char text[32];
+
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            return digits;
+    }
+    return 17;
+}
+
+/* A whole number where it is one, so that files look as people write them. */
+static json_t *number_json(double value, int *digits)
+{
+    *digits = digits_of(value) > *digits ? digits_of(value) : *digits;
+    return value == floor(value) && fabs(value) < 1e15 ? json_integer((json_int_t)value)
+                                                       : json_real(value);
+}
+
+/* The member of an option; NULL: it was not given, or *failed. */
+static json_t *member_of(const struct option *option, const void *settings, int *digits,
+                         bool *failed)
+{
+    const void *at = (const char *)settings + option->offset;
+    const double *number = at;
+    json_t *json = NULL;
+
+    switch (option->kind) {
+    case OPTION_FLAG:
+        return *(const bool *)at ? json_true() : NULL;
+    case OPTION_CHOICE:
+        if (*(const int *)at == 0 && strcmp(option->choice(0), "none") == 0)
+            return NULL; /* says nothing, and not every command has it */
+        json = json_string(option->choice((uint32_t)*(const int *)at));
+        break;
+    case OPTION_TEXT:
+        if (!*(const char *const *)at)
+            return NULL;
+        json = json_string(*(const char *const *)at);
+        break;
+    case OPTION_NUMBER:
+    case OPTION_INTEGER:
+        if (isnan(*number))
+            return NULL;
+        if (option->word && *number == option->word_value)
+            json = json_string(option->word);
+        else
+            json = isinf(*number) ? json_string("inf") : number_json(*number, digits);
+        break;
+    case OPTION_NUMBERS:
+        if (isnan(*number))
+            return NULL;
+        json = json_array();
+        for (int i = 0; json && i < option->count; i++)
+            if (json_array_append_new(json, number_json(number[i], digits)) != 0)
+                *failed = true;
+        break;
+    case OPTION_HEADING:
+        return NULL;
+    }
+    *failed = *failed || !json;
+    return json;
+}
+
+static bool is_among(const char *name, const char *const *names)
+{
+    for (int i = 0; names[i]; i++)
+        if (strcmp(names[i], name) == 0)
+            return true;
+    return false;
+}
+
+/* "name 1,2,3" into text with a line's end; what it takes of it. */
+static size_t line_of(const struct option *option, const json_t *json, char *text,
+                      size_t size)
+{
+    char value[LONGEST_VALUE];
+    int n;
+
+    if (json_is_string(json))
+        report_clean(value, sizeof value, json_string_value(json));
+    else if (json_is_true(json) ||
+             (!number_text(json, value, sizeof value) &&
+              !numbers_text(json, value, sizeof value)))
+        value[0] = '\0';
+    n = snprintf(text, size, "%s%s%s\n", option->name + 2, *value ? " " : "", value);
+    return n > 0 && (size_t)n < size ? (size_t)n : 0;
+}
+
+char *settings_text(const struct command *command, const void *settings,
+                    const void *usual, const char *const *names)
+{
+    size_t size = 1, used = 0;
+    bool failed = false;
+    char *text;
+
+    for (const struct option *option = command->options; option->help; option++)
+        size += LONGEST_NAME + LONGEST_VALUE;
+    text = malloc(size);
+    if (!text)
+        return NULL;
+    text[0] = '\0';
+    for (const struct option *option = command->options; option->help; option++) {
+        int digits = 15;
+        json_t *json, *other;
+
+        if (option->elsewhere || option->kind == OPTION_HEADING ||
+            is_among(option->name, names))
+            continue;
+        json = member_of(option, settings, &digits, &failed);
+        other = member_of(option, usual, &digits, &failed);
+        if (json && !(other && json_equal(json, other)))
+            used += line_of(option, json, text + used, size - used);
+        json_decref(json);
+        json_decref(other);
+    }
+    if (failed) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+int settings_save(const struct command *command, const char *file, const void *settings)
+{
+    json_t *root = json_pack("{s:i}", "refocus", (int)SETTINGS_VERSION);
+    struct refocus_reason reason = {{0}};
+    bool failed = !root;
+    char *text = NULL;
+    int status = EXIT_DONE, digits = 15;
+
+    for (const struct option *option = command->options; option->help && !failed;
+         option++) {
+        json_t *json =
+            option->elsewhere ? NULL : member_of(option, settings, &digits, &failed);
+
+        if (json && json_object_set_new(root, option->name + 2, json) != 0)
+            failed = true;
+    }
+    if (!failed)
+        text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
+    if (!text)
+        status = report_failure(EXIT_FAILED, file,
+                                "not enough memory, or a file's name is not UTF-8");
+    else if (refocus_file_write(file, text, strlen(text), &reason) != REFOCUS_OK)
+        status = report_failure(EXIT_FAILED, file, "%s", reason.text);
+    free(text);
+    json_decref(root);
+    return status;
+}

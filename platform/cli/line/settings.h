@@ -1,0 +1,67 @@
+/* Files of settings: one JSON object that describes a picture, whose members are
+ * options.
+ *
+ *     {
+ *       "refocus": 1,
+ *       "focus": 0.25,
+ *       "blur": 24,
+ *       "aperture": "polygon:6:15",
+ *       "quality": "best",
+ *       "region": [0, 0, 640, 480],
+ *       "mirror": true
+ *     }
+ *
+ * "refocus" is the version of the format and has to be there. Every other member is an
+ * option of the command without its dashes; its value is a number, a text, true (of
+ * flags) or an array of numbers, of the ranges that the option has on the command line.
+ * Names of files are as on the command line, from the folder that the command runs in.
+ * What the command line says overrules the file.
+ */
+#ifndef RF_CLI_SETTINGS_H
+#define RF_CLI_SETTINGS_H
+
+#include "line/options.h"
+
+#define SETTINGS_NAME "--settings"
+
+enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
+
+/* Rows of a table of options. */
+#define SETTINGS_OPTION(type, load)                                                    \
+    {.kind = OPTION_TEXT,                                                              \
+     .name = SETTINGS_NAME,                                                            \
+     .argument = "FILE",                                                               \
+     .offset = offsetof(type, load),                                                   \
+     .help = "JSON object of options; the command line overrules it",                  \
+     .elsewhere = true}
+#define SAVE_SETTINGS_OPTION(type, save)                                               \
+    {.kind = OPTION_TEXT,                                                              \
+     .name = "--save-settings",                                                        \
+     .argument = "FILE",                                                               \
+     .offset = offsetof(type, save),                                                   \
+     .help = "write the options that make this picture as JSON for --settings",        \
+     .elsewhere = true}
+
+/* Read a file of settings; OPTIONS_PARSED, or the exit code after an error, which is
+ * printed. Texts live as long as the program. */
+int settings_load(const struct command *command, const char *file, void *settings);
+
+/* The same from memory; `file` is what errors call it. */
+int settings_read(const struct command *command, const char *file, const char *bytes,
+                  size_t size, void *settings);
+
+/* Before the work: can a file of settings be written there, and is it none of the
+ * inputs? */
+int settings_check(const char *file, const char *const *inputs, int input_count);
+
+/* "option value" in a line of each that says something else than in `usual`, where it
+ * is not of a run and not among `names`, which end with NULL. To be freed; NULL without
+ * memory. */
+char *settings_text(const struct command *command, const void *settings,
+                    const void *usual, const char *const *names);
+
+/* Write what `settings` says, whole or not at all; an exit code. */
+int settings_save(const struct command *command, const char *file,
+                  const void *settings);
+
+#endif

@@ -1,0 +1,149 @@
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include "live/live.h"
+
+void live_depths_init(struct live_depths *depths, bool every)
+{
+    pthread_condattr_t attributes;
+
+    memset(depths, 0, sizeof *depths);
+    pthread_mutex_init(&depths->lock, NULL);
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&depths->changed, &attributes);
+    pthread_condattr_destroy(&attributes);
+    depths->pinned = -1;
+    depths->every = every;
+    depths->needed_ns = INT64_MIN;
+}
+
+void live_depths_free(struct live_depths *depths)
+{
+    for (int i = 0; i < LIVE_DEPTHS; i++)
+        free(depths->map[i].disparity);
+    pthread_cond_destroy(&depths->changed);
+    pthread_mutex_destroy(&depths->lock);
+}
+
+void live_depths_end(struct live_depths *depths)
+{
+    pthread_mutex_lock(&depths->lock);
+    depths->ended = true;
+    pthread_cond_broadcast(&depths->changed);
+    pthread_mutex_unlock(&depths->lock);
+}
+
+/* The oldest map that may be overwritten, or NULL. When every frame counts, only those
+ * from before the present frame may. */
+static struct live_depth_map *oldest(struct live_depths *depths)
+{
+    struct live_depth_map *found = NULL;
+
+    for (int i = 0; i < LIVE_DEPTHS; i++) {
+        struct live_depth_map *map = &depths->map[i];
+
+        if (i == depths->pinned)
+            continue;
+        if (map->number > 0 && depths->every && map->timestamp_ns >= depths->needed_ns)
+            continue;
+        if (!found || map->number < found->number)
+            found = map;
+    }
+    return found;
+}
+
+struct live_depth_map *live_depths_fill(struct live_depths *depths, int width,
+                                        int height)
+{
+    const uint64_t bytes = (uint64_t)width * (uint64_t)height * 2;
+    struct live_depth_map *map = NULL;
+
+    pthread_mutex_lock(&depths->lock);
+    while (!depths->ended && !(map = oldest(depths)))
+        pthread_cond_wait(&depths->changed, &depths->lock);
+    if (map)
+        map->number = 0;
+    pthread_mutex_unlock(&depths->lock);
+    if (!map)
+        return NULL;
+    if (bytes > map->capacity) {
+        free(map->disparity);
+        map->disparity = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
+        map->capacity = map->disparity ? (size_t)bytes : 0;
+    }
+    map->width = width;
+    map->height = height;
+    return map->disparity ? map : NULL;
+}
+
+void live_depths_put(struct live_depths *depths, struct live_depth_map *map,
+                     int64_t timestamp_ns, bool still)
+{
+    pthread_mutex_lock(&depths->lock);
+    depths->still |= still;
+    map->timestamp_ns = timestamp_ns;
+    map->number = ++depths->count;
+    pthread_cond_broadcast(&depths->changed);
+    pthread_mutex_unlock(&depths->lock);
+}
+
+/* The map nearest in time, and the newest. */
+static const struct live_depth_map *nearest(const struct live_depths *depths,
+                                            int64_t time,
+                                            const struct live_depth_map **newest)
+{
+    const struct live_depth_map *found = NULL;
+
+    *newest = NULL;
+    for (int i = 0; i < LIVE_DEPTHS; i++) {
+        const struct live_depth_map *map = &depths->map[i];
+
+        if (map->number == 0)
+            continue;
+        if (!found ||
+            llabs(map->timestamp_ns - time) < llabs(found->timestamp_ns - time))
+            found = map;
+        if (!*newest || map->number > (*newest)->number)
+            *newest = map;
+    }
+    return found;
+}
+
+const struct live_depth_map *live_depths_pair(struct live_depths *depths,
+                                              int64_t timestamp_ns, int64_t half_ns,
+                                              bool *paired)
+{
+    const struct live_depth_map *map, *newest;
+    struct timespec until;
+    int64_t wait_ns = 3 * half_ns; /* what a depth camera may be late */
+    int error = 0;
+
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    wait_ns += until.tv_nsec;
+    until.tv_sec += (time_t)(wait_ns / 1000000000);
+    until.tv_nsec = (long)(wait_ns % 1000000000);
+    pthread_mutex_lock(&depths->lock);
+    depths->pinned = -1;
+    if (timestamp_ns - half_ns > depths->needed_ns)
+        depths->needed_ns = timestamp_ns - half_ns;
+    pthread_cond_broadcast(&depths->changed);
+    for (;;) {
+        map = nearest(depths, timestamp_ns, &newest);
+        *paired = map &&
+                  (depths->still || llabs(map->timestamp_ns - timestamp_ns) <= half_ns);
+        /* A newer map that does not fit says that none will. */
+        if (*paired || depths->ended || error == ETIMEDOUT ||
+            (newest && newest->timestamp_ns > timestamp_ns + half_ns))
+            break;
+        error = depths->every
+                    ? pthread_cond_wait(&depths->changed, &depths->lock)
+                    : pthread_cond_timedwait(&depths->changed, &depths->lock, &until);
+    }
+    if (!*paired)
+        map = newest;
+    depths->pinned = map ? (int)(map - depths->map) : -1;
+    pthread_mutex_unlock(&depths->lock);
+    return map;
+}

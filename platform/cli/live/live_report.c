@@ -1,0 +1,101 @@
+/* What became of the frames, and how long it took. */
+#include <stdio.h>
+#include "live/live.h"
+
+static json_t *stage_json(const struct live_stage *stage)
+{
+    return json_pack(
+        "{s:I, s:I, s:I, s:I, s:I, s:I, s:f}", "frames", (json_int_t)stage->frames,
+        "corrupt", (json_int_t)stage->corrupt, "damaged", (json_int_t)stage->damaged,
+        "reordered", (json_int_t)stage->reordered, "timeouts",
+        (json_int_t)stage->timeouts, "recoveries", (json_int_t)stage->recoveries,
+        "worst_recovery_ms", stage->worst_recovery_ms);
+}
+
+static double mean(const struct live_stage *stage)
+{
+    return stage->times.count ? stage->times.sum_ms / (double)stage->times.count : 0;
+}
+
+/* What the last frame was rendered in. */
+static const char *rendered_in(uint32_t image_format)
+{
+    for (uint32_t i = 1; i < REFOCUS_FRAME_FORMAT_COUNT; i++)
+        if (i != REFOCUS_FRAME_UYVY && refocus_frame_image_format(i) == image_format &&
+            image_format != REFOCUS_FORMAT_NONE)
+            return refocus_frame_format_name(i);
+    return "RGB24";
+}
+
+/* Of the time that a frame is worked on: that which is not preparing and rendering it.
+ */
+static double outside_rendering(const struct live *live)
+{
+    const double inside = mean(&live->prepare) + mean(&live->render);
+    const double outside = mean(&live->capture) + mean(&live->output);
+
+    return inside + outside > 0 ? outside / (inside + outside) : 0;
+}
+
+int live_report(struct live *live)
+{
+    const struct live_settings *settings = live->settings;
+    const uint64_t out = atomic_load(&live->frames_out);
+    const double seconds = (double)(live->last_out_ns - live->first_out_ns) / 1e9;
+    const double fps = seconds > 0 ? (double)(out - 1) / seconds : 0;
+    const uint64_t dropped_rendered = live_queue_dropped(&live->rendered);
+    const uint64_t dropped =
+        live->capture.skipped + live_queue_dropped(&live->captured) + dropped_rendered;
+    struct refocus_source_counters counters;
+    json_t *json;
+
+    refocus_source_get_counters(live->camera, &counters);
+    if (!settings->engine.json) {
+        fprintf(stderr,
+                "%llu frames in, %llu out, %llu dropped; %.1f a second, %.1f ms from "
+                "camera to sink\n",
+                (unsigned long long)live->capture.frames, (unsigned long long)out,
+                (unsigned long long)(dropped + counters.dropped), fps,
+                live_times_quantile(&live->latency, 0.5));
+        return EXIT_DONE;
+    }
+    json = json_pack(
+        "{s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, "
+        "s:f, s:f}",
+        "camera", report_text_json(settings->camera), "format",
+        refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width,
+        "height", (int)live->mode.height, "frames_in", (json_int_t)live->capture.frames,
+        "frames_out", (json_int_t)out, "dropped", (json_int_t)dropped, "camera_dropped",
+        (json_int_t)counters.dropped, "sink_dropped", (json_int_t)live->sink_dropped,
+        "paired", (json_int_t)live->paired, "unpaired", (json_int_t)live->unpaired,
+        "without_depth", (json_int_t)live->without_depth, "commands",
+        (json_int_t)live->commands, "fps", fps, "latency_ms",
+        live_times_json(&live->latency), "outside_rendering", outside_rendering(live),
+        "create_ms", live->create_ms);
+    if (json) {
+        json_object_set_new(json, "rendered_in",
+                            json_string(rendered_in(live->rendered_format)));
+        json_object_set_new(json, "colour", stage_json(&live->capture));
+        if (live->depth_camera || live->estimator)
+            json_object_set_new(json, "depth", stage_json(&live->depth));
+        json_object_set_new(json, "dropped_rendered", /* of "dropped" */
+                            json_integer((json_int_t)dropped_rendered));
+        json_object_set_new(json, "buffers_lost",
+                            json_integer((json_int_t)counters.lost));
+        json_object_set_new(json, "sink_recoveries",
+                            json_integer((json_int_t)live->output.recoveries));
+        json_object_set_new(json, "lens_dioptres",
+                            report_number_json(live->lens_dioptres));
+        json_object_set_new(json, "stages_ms",
+                            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
+                                      live_times_json(&live->capture.times), "depth",
+                                      live_times_json(&live->depth.times), "pair",
+                                      live_times_json(&live->pair.times), "steady",
+                                      live_times_json(&live->steady.times), "prepare",
+                                      live_times_json(&live->prepare.times), "render",
+                                      live_times_json(&live->render.times), "output",
+                                      live_times_json(&live->output.times)));
+        json_object_set_new(json, "peak_rss_kib", json_integer(report_peak_rss_kib()));
+    }
+    return report_print_json(json);
+}

@@ -1,0 +1,214 @@
+#include "outputs/animation.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+#include <refocus/platform/file.h>
+#include <refocus/platform/sink.h>
+#include "outputs/apng.h"
+#include "outputs/encoder.h"
+#include "outputs/outputs.h"
+#include "line/report.h"
+
+enum kind { KIND_NONE, KIND_PICTURES, KIND_Y4M, KIND_APNG, KIND_ENCODER };
+
+struct animation {
+    enum kind kind;
+    char path[PATH_MAX], temporary[PATH_MAX];
+    int frames; /* written */
+    struct refocus_sink *sink;
+    struct apng *apng;
+    struct encoder *encoder;
+};
+
+static bool ends_in(const char *path, const char *ending)
+{
+    const size_t n = strlen(path), m = strlen(ending);
+
+    return n > m && strcasecmp(path + n - m, ending) == 0;
+}
+
+/* Whether a name has one %d, with a width if wanted, and no other %. */
+static bool is_pattern(const char *path)
+{
+    const char *percent = strchr(path, '%');
+
+    if (!percent || strchr(percent + 1, '%'))
+        return false;
+    return percent[1 + strspn(percent + 1, "0123456789")] == 'd' &&
+           strspn(percent + 1, "0123456789") < 3;
+}
+
+static enum kind kind_of(const char *path)
+{
+    if (strchr(path, '%'))
+        return is_pattern(path) && (ends_in(path, ".png") || ends_in(path, ".jpg") ||
+                                    ends_in(path, ".jpeg") || ends_in(path, ".ppm"))
+                   ? KIND_PICTURES
+                   : KIND_NONE;
+    if (ends_in(path, ".y4m"))
+        return KIND_Y4M;
+    if (ends_in(path, ".apng"))
+        return KIND_APNG;
+    if (ends_in(path, ".mp4") || ends_in(path, ".gif") || ends_in(path, ".webm"))
+        return KIND_ENCODER;
+    return KIND_NONE;
+}
+
+/* The pattern was looked at: its one % takes an int. */
+static bool frame_name(const struct animation *a, int i, char name[PATH_MAX])
+{
+    const char *percent = strchr(a->path, '%');
+    const int width = atoi(percent + 1 + (percent[1] == '0'));
+    const char *rest = strchr(percent, 'd') + 1;
+
+    return snprintf(name, PATH_MAX, percent[1] == '0' ? "%.*s%0*d%s" : "%.*s%*d%s",
+                    (int)(percent - a->path), a->path, width, i, rest) < PATH_MAX;
+}
+
+int animation_check(const char *path, const char *const *inputs, int input_count)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg", ".ppm", ".y4m",
+                                          ".apng", ".mp4", ".gif", ".webm", NULL};
+    const enum kind kind = path ? kind_of(path) : KIND_NONE;
+
+    if (path && strlen(path) + 64 > PATH_MAX)
+        return report_failure(EXIT_FAILED, path, "the name is too long; give a shorter "
+                                                 "one");
+    if (path && kind == KIND_NONE)
+        return report_failure(EXIT_WRONG, path,
+                              "no such animation is written; give frames-%%03d.png, "
+                              ".jpg or .ppm, or end the name in .y4m, .apng, .mp4, "
+                              ".gif or .webm");
+    if (kind == KIND_ENCODER && !encoder_is_there())
+        return report_failure(EXIT_FAILED, path,
+                              "there is no ffmpeg program to write it; install ffmpeg, "
+                              "or give a name in .apng or .y4m");
+    return output_check(path, endings, inputs, input_count);
+}
+
+/* A name beside the place, with the same ending. */
+static void name_temporary(struct animation *a)
+{
+    const char *slash = strrchr(a->path, '/'), *dot = strrchr(a->path, '.');
+    const int folder = slash ? (int)(slash + 1 - a->path) : 0;
+
+    snprintf(a->temporary, sizeof a->temporary, "%.*s.refocus-%ld.tmp%.8s", folder,
+             a->path, (long)getpid(), dot);
+}
+
+static int lost(const struct animation *a, const struct refocus_reason *reason)
+{
+    return report_failure(EXIT_FAILED, a->path, "%s", reason->text);
+}
+
+int animation_open(struct animation **animation, const char *path, int width,
+                   int height, double fps, int frames)
+{
+    struct animation *a = calloc(1, sizeof *a);
+    struct refocus_reason reason = {{0}};
+    int status = REFOCUS_OK;
+
+    *animation = a;
+    if (!a)
+        return report_failure(EXIT_FAILED, path, "not enough memory");
+    snprintf(a->path, sizeof a->path, "%s", path);
+    a->kind = kind_of(path);
+    name_temporary(a);
+    if (a->kind == KIND_Y4M) {
+        char name[PATH_MAX + 8];
+
+        snprintf(name, sizeof name, "y4m:%s", a->temporary);
+        status = refocus_sink_open(&a->sink, name, &reason);
+        if (status == REFOCUS_OK)
+            status = refocus_sink_start(a->sink, width, height, fps, &reason);
+    } else if (a->kind == KIND_APNG) {
+        status = apng_open(&a->apng, a->temporary, width, height, fps, frames, &reason);
+    } else if (a->kind == KIND_ENCODER) {
+        status = encoder_open(&a->encoder, a->temporary, width, height, fps, &reason);
+    }
+    return status == REFOCUS_OK ? EXIT_DONE : lost(a, &reason);
+}
+
+static int write_picture(struct animation *a, const struct refocus_image *image,
+                         struct refocus_reason *reason)
+{
+    char name[PATH_MAX];
+
+    if (!frame_name(a, a->frames, name)) {
+        snprintf(reason->text, sizeof reason->text, "the name is too long; give a "
+                                                    "shorter one");
+        return REFOCUS_ERR_ARGUMENT;
+    }
+    return refocus_image_write(name, image, NULL, reason);
+}
+
+int animation_write(struct animation *a, const struct refocus_image *image)
+{
+    struct refocus_reason reason = {{0}};
+    int status = REFOCUS_OK;
+
+    switch (a->kind) {
+    case KIND_PICTURES:
+        status = write_picture(a, image, &reason);
+        break;
+    case KIND_Y4M:
+        status = refocus_sink_write(a->sink, image, &reason);
+        break;
+    case KIND_APNG:
+        status = apng_write(a->apng, image, &reason);
+        break;
+    case KIND_ENCODER:
+        status = encoder_write(a->encoder, image, &reason);
+        break;
+    case KIND_NONE:
+        break;
+    }
+    if (status != REFOCUS_OK)
+        return lost(a, &reason);
+    a->frames++;
+    return EXIT_DONE;
+}
+
+static void take_away(const struct animation *a)
+{
+    char name[PATH_MAX];
+
+    if (a->kind != KIND_PICTURES) {
+        unlink(a->temporary);
+        return;
+    }
+    for (int i = 0; i < a->frames; i++)
+        if (frame_name(a, i, name))
+            unlink(name);
+}
+
+int animation_close(struct animation *a, bool keep)
+{
+    struct refocus_reason reason = {{0}};
+    int status = REFOCUS_OK, result = EXIT_DONE;
+
+    if (!a)
+        return EXIT_DONE;
+    if (a->sink)
+        status = refocus_sink_close(&a->sink, &reason);
+    else if (a->apng)
+        status = apng_close(a->apng, &reason);
+    else if (a->encoder)
+        status = encoder_close(a->encoder, keep, &reason);
+    if (status != REFOCUS_OK && keep)
+        result = lost(a, &reason);
+    if (!keep || status != REFOCUS_OK) {
+        take_away(a);
+    } else if (a->kind != KIND_PICTURES && rename(a->temporary, a->path) != 0) {
+        result = report_failure(EXIT_FAILED, a->path, "cannot write it: %s",
+                                strerror(errno));
+        take_away(a);
+    }
+    free(a);
+    return result;
+}

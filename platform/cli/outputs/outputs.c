@@ -1,0 +1,115 @@
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include "line/interrupt.h"
+#include "outputs/outputs.h"
+#include "line/report.h"
+
+static int check_ending(const char *path, const char *const *endings)
+{
+    const size_t length = strlen(path);
+    char words[64] = "";
+
+    for (int i = 0; endings[i]; i++) {
+        const size_t n = strlen(endings[i]);
+        if (length > n && strcasecmp(path + length - n, endings[i]) == 0)
+            return EXIT_DONE;
+        snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
+                 i == 0 ? "" : endings[i + 1] ? ", " : " or ", endings[i]);
+    }
+    return report_failure(EXIT_WRONG, path, "no such format is written; end the name "
+                                            "in %s",
+                          words);
+}
+
+static int check_folder(const char *path)
+{
+    char folder[4096];
+    const char *slash = strrchr(path, '/');
+    const int length = slash ? (int)(slash - path) : 0;
+
+    if (slash && length >= (int)sizeof folder)
+        return report_failure(EXIT_FAILED, path, "the name is too long; give a shorter "
+                                                 "one");
+    snprintf(folder, sizeof folder, "%.*s", slash ? (length ? length : 1) : 1,
+             slash ? path : ".");
+    if (access(folder, W_OK | X_OK) != 0)
+        return report_failure(EXIT_FAILED, path,
+                              "the folder %s cannot be written to (%s); give another "
+                              "place",
+                              folder, strerror(errno));
+    return EXIT_DONE;
+}
+
+int output_check(const char *path, const char *const *endings,
+                 const char *const *inputs, int input_count)
+{
+    struct stat out, in;
+    int status;
+
+    if (!path)
+        return report_failure(EXIT_WRONG, "-o", "the output has no name; give -o OUT");
+    status = check_ending(path, endings);
+    if (status != EXIT_DONE)
+        return status;
+    if (stat(path, &out) != 0)
+        return check_folder(path);
+    if (S_ISDIR(out.st_mode))
+        return report_failure(EXIT_FAILED, path, "it is a folder; give the name of a "
+                                                 "file");
+    for (int i = 0; i < input_count; i++)
+        if (inputs[i] && stat(inputs[i], &in) == 0 && in.st_dev == out.st_dev &&
+            in.st_ino == out.st_ino)
+            return report_failure(EXIT_WRONG, path,
+                                  "it is an input too and would be lost; give another "
+                                  "name");
+    return check_folder(path);
+}
+
+static int written(int status, const char *path, const struct refocus_reason *reason)
+{
+    if (status == REFOCUS_OK)
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, path, "%s",
+                          reason->text[0] ? reason->text : refocus_strerror(status));
+}
+
+int output_write_image(const char *path, const struct refocus_image *image,
+                       const struct refocus_photo *of)
+{
+    struct refocus_reason reason = {""};
+    struct refocus_write_options options;
+    int status;
+
+    memset(&options, 0, sizeof options);
+    if (of) {
+        options.exif = of->exif.data ? &of->exif : NULL;
+        options.icc = of->icc.data ? &of->icc : NULL;
+    }
+    interrupt_hold(true);
+    status = interrupt_came() ? REFOCUS_ERR_CANCELLED
+                              : refocus_image_write(path, image, &options, &reason);
+    interrupt_hold(false);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return report_failure(EXIT_FAILED, path, "interrupted; nothing was written");
+    return written(status, path, &reason);
+}
+
+int output_write_gray16(const char *path, const uint16_t *samples, int width,
+                        int height)
+{
+    struct refocus_reason reason = {""};
+    int status;
+
+    interrupt_hold(true);
+    status = interrupt_came() ? REFOCUS_ERR_CANCELLED
+                              : refocus_gray16_write(path, samples, width, height,
+                                                     (ptrdiff_t)width * 2, &reason);
+    interrupt_hold(false);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return report_failure(EXIT_FAILED, path, "interrupted; nothing was written");
+    return written(status, path, &reason);
+}

@@ -1,0 +1,281 @@
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "shot/bokeh.h"
+#include "shot/papers.h"
+#include "line/report.h"
+
+/* Numbers of 0 mean what they say: nothing. */
+struct preset {
+    const char *name, *summary;
+    const char *aperture;
+    double curvature, squeeze, ring, edge, edge_before, cat_eye, fringe;
+    int star;
+};
+
+static const struct preset presets[] = {
+    {"plain", "a perfect lens, the default", "disc", 0, 1, 0, 0, 0, 0, 0, 0},
+    {"classic", "seven blades, a little curved; discs narrower in the corners",
+     "polygon:7:90", 0.4, 1, 0, 0.1, -0.1, 0.3, 0, 0},
+    {"smooth", "discs that fade out, as behind an apodizing filter", "disc", 0, 1, 0,
+     -1, -1, 0, 0, 0},
+    {"bubble", "discs with bright rims behind the focus", "disc", 0, 1, 0, 0.7, -0.7,
+     0.2, 0, 0},
+    {"ring", "rings, as of a mirror lens", "disc", 0, 1, 0.45, 0, 0, 0, 0, 0},
+    {"swirl", "cat's eyes that turn around the middle", "disc", 0, 1, 0, 0.35, -0.35,
+     0.65, 0, 0},
+    {"cine", "upright ovals, as of an anamorphic lens", "disc", 0, 0.55, 0, 0, 0, 0.2,
+     0, 0},
+    {"vintage", "six blades, bright rims, colour at the rims", "polygon:6:90", 0.25, 1,
+     0, 0.4, -0.4, 0.35, 0.08, 0},
+    {"heart", "hearts", "heart", 0, 1, 0, 0, 0, 0, 0, 0},
+    {"star", "five-pointed stars", "star", 0, 1, 0, 0, 0, 0, 0, 0},
+    {"sparkle", "spikes on lamps, as of a star filter", "disc", 0, 1, 0, 0, 0, 0, 0, 6},
+};
+
+const char *bokeh_preset_name(uint32_t index)
+{
+    return index < sizeof presets / sizeof *presets ? presets[index].name : NULL;
+}
+
+const char *bokeh_preset_summary(uint32_t index)
+{
+    return index < sizeof presets / sizeof *presets ? presets[index].summary : NULL;
+}
+
+static double or_else(double given, double otherwise)
+{
+    return isnan(given) ? otherwise : given;
+}
+
+static const char *shape_of(const struct bokeh_settings *settings, const char *shape)
+{
+    return shape ? shape : presets[settings->preset].aperture;
+}
+
+/* "polygon:6" or "polygon:6:15". */
+static int parse_polygon(const char *shape, struct refocus_aperture_params *params)
+{
+    double degrees = 0;
+    long blades;
+    char *end;
+
+    errno = 0;
+    blades = strtol(shape + strlen("polygon:"), &end, 10);
+    if (errno == 0 && end != shape + strlen("polygon:") && *end == ':') {
+        const char *number = end + 1;
+
+        degrees = number[strspn(number, "+-.0123456789")] == '\0' ? strtod(number, &end)
+                                                                  : NAN;
+        if (end == number)
+            degrees = NAN;
+    }
+    if (errno != 0 || *end != '\0' || blades < 3 || blades > 16 || !isfinite(degrees))
+        return report_failure(EXIT_WRONG, "--aperture",
+                              "'%s' cannot be used; give polygon:BLADES or "
+                              "polygon:BLADES:DEGREES with 3 to 16 blades",
+                              shape);
+    params->blades = (int32_t)blades;
+    params->rotation_deg = fmod(degrees, 360);
+    return EXIT_DONE;
+}
+
+/* "star" or "star:7". */
+static int parse_star(const char *shape, struct refocus_aperture_params *params)
+{
+    const char *number = shape + strlen("star");
+    char *end = NULL;
+    long points = 5;
+
+    if (*number == ':')
+        points = number[1 + strspn(number + 1, "0123456789")] == '\0'
+                     ? strtol(number + 1, &end, 10)
+                     : 0;
+    if (points < 3 || points > 16)
+        return report_failure(EXIT_WRONG, "--aperture",
+                              "'%s' cannot be used; give star, or star:POINTS with 3 "
+                              "to 16 points", shape);
+    params->figure = REFOCUS_FIGURE_STAR;
+    params->blades = (int32_t)points;
+    return EXIT_DONE;
+}
+
+/* A mask out of a greyscale picture, to be freed. */
+static int read_mask(const char *file, struct refocus_aperture_params *params)
+{
+    int width, height;
+    uint8_t *mask;
+
+    if (!strpbrk(file, "./") && access(file, F_OK) != 0)
+        return report_failure(EXIT_WRONG, "--aperture",
+                              "'%s' is not known; give disc, polygon:BLADES, "
+                              "polygon:BLADES:DEGREES, heart, star or a mask picture",
+                              file);
+    mask = papers_read_grey(file, &width, &height);
+    if (!mask)
+        return EXIT_FAILED;
+    params->mask = mask;
+    params->mask_width = width;
+    params->mask_height = height;
+    params->mask_stride = width;
+    if (width > REFOCUS_MAX_APERTURE_SIDE || height > REFOCUS_MAX_APERTURE_SIDE)
+        return report_failure(EXIT_FAILED, file,
+                              "%dx%d pixels are too many for an "
+                              "aperture; give at most %dx%d",
+                              width, height, REFOCUS_MAX_APERTURE_SIDE,
+                              REFOCUS_MAX_APERTURE_SIDE);
+    return EXIT_DONE;
+}
+
+static int parse_shape(const char *shape, struct refocus_aperture_params *params)
+{
+    if (strcmp(shape, "disc") == 0)
+        return EXIT_DONE;
+    if (strncmp(shape, "polygon:", strlen("polygon:")) == 0)
+        return parse_polygon(shape, params);
+    if (strcmp(shape, "star") == 0 || strncmp(shape, "star:", strlen("star:")) == 0)
+        return parse_star(shape, params);
+    if (strcmp(shape, "heart") != 0)
+        return read_mask(shape, params);
+    params->figure = REFOCUS_FIGURE_HEART;
+    return EXIT_DONE;
+}
+
+/* How far the iris is open, of 1: 0 where there is no barrel. */
+static int find_opening(const struct bokeh_settings *s, double *opening)
+{
+    *opening = 0;
+    if (isnan(s->open_f_number))
+        return EXIT_DONE;
+    if (isnan(s->f_number))
+        return report_failure(EXIT_WRONG, "--open-f-number",
+                              "it goes with --f-number; give that too");
+    if (s->f_number < s->open_f_number)
+        return report_failure(EXIT_WRONG, "--open-f-number",
+                              "f/%g is wider than that; give a number above 0, at most "
+                              "%g",
+                              s->f_number, s->f_number);
+    *opening = s->open_f_number / s->f_number;
+    return EXIT_DONE;
+}
+
+static int fill_params(const struct bokeh_settings *s,
+                       struct refocus_aperture_params *params)
+{
+    const struct preset *preset = &presets[s->preset];
+    const bool polygon = params->blades && !params->figure;
+    double opening;
+    const int status = find_opening(s, &opening);
+
+    if (status != EXIT_DONE)
+        return status;
+    if (!polygon && !isnan(s->curvature))
+        return report_failure(EXIT_WRONG, "--curvature",
+                              "it is of blades; give --aperture polygon:BLADES too");
+    if (!polygon && opening > 0)
+        return report_failure(EXIT_WRONG, "--open-f-number",
+                              "it is of blades; give --aperture polygon:BLADES too");
+    params->curvature = polygon ? or_else(s->curvature, preset->curvature) : 0;
+    params->opening = opening;
+    params->squeeze = or_else(s->squeeze, preset->squeeze);
+    params->hole = or_else(s->ring, preset->ring);
+    params->edge_behind = or_else(s->edge, preset->edge);
+    params->edge_before =
+        or_else(s->edge_before, isnan(s->edge) ? preset->edge_before : -s->edge);
+    return EXIT_DONE;
+}
+
+int bokeh_aperture(const struct bokeh_settings *settings, const char *shape,
+                   struct refocus_aperture **aperture)
+{
+    struct refocus_aperture_params params = refocus_aperture_params_default();
+    int status;
+
+    shape = shape_of(settings, shape);
+    status = parse_shape(shape, &params);
+    if (status == EXIT_DONE)
+        status = fill_params(settings, &params);
+    if (status == EXIT_DONE) {
+        const int made = refocus_aperture_create(aperture, &params);
+
+        if (made == REFOCUS_ERR_ARGUMENT && params.mask)
+            status = report_failure(EXIT_FAILED, shape, "no pixel of the aperture is "
+                                    "open; give white where light passes");
+        else if (made != REFOCUS_OK)
+            status =
+                report_failure(EXIT_FAILED, "--aperture", "%s", refocus_strerror(made));
+    }
+    free((void *)params.mask);
+    return status;
+}
+
+bool bokeh_has_sides(const struct bokeh_settings *s)
+{
+    const struct preset *preset = &presets[s->preset];
+    const double behind = or_else(s->edge, preset->edge);
+
+    return or_else(s->edge_before, isnan(s->edge) ? preset->edge_before : -s->edge) !=
+           behind;
+}
+
+bool bokeh_is_plain_disc(const struct bokeh_settings *s, const char *shape)
+{
+    const struct preset *preset = &presets[s->preset];
+
+    return strcmp(shape_of(s, shape), "disc") == 0 &&
+           or_else(s->squeeze, preset->squeeze) == 1 &&
+           or_else(s->ring, preset->ring) == 0 && or_else(s->edge, preset->edge) == 0 &&
+           !bokeh_has_sides(s);
+}
+
+int bokeh_apply(const struct bokeh_settings *s, bool highlights_given,
+                struct refocus_render_params *params)
+{
+    const struct preset *preset = &presets[s->preset];
+
+    if (!isnan(s->highlight_stops) && highlights_given)
+        return report_failure(EXIT_WRONG, "--highlight-stops",
+                              "the light of lamps is given twice; give --highlights or "
+                              "--highlight-stops");
+    params->cat_eye = (float)or_else(s->cat_eye, preset->cat_eye);
+    params->fringe = (float)or_else(s->fringe, preset->fringe);
+    params->grain = (float)or_else(s->grain, 0);
+    if (!isnan(s->highlight_stops))
+        params->highlight_gain = (float)exp2(s->highlight_stops);
+    if (preset->star && params->star_spikes == 0)
+        params->star_spikes = preset->star;
+    return EXIT_DONE;
+}
+
+/* The option of something that only sweep can do, or NULL. */
+static const char *of_sweep(const struct refocus_render_params *p, bool has_sides)
+{
+    if (p->cat_eye > 0)
+        return "--cat-eye";
+    if (p->fringe != 0)
+        return "--fringe";
+    if (has_sides)
+        return "--edge";
+    return p->star_spikes > 0 && p->method != REFOCUS_METHOD_SCATTER ? "--star" : NULL;
+}
+
+bool bokeh_suits_method(const struct refocus_render_params *p, bool has_sides)
+{
+    return p->method == REFOCUS_METHOD_SWEEP || !of_sweep(p, has_sides);
+}
+
+int bokeh_check_method(const struct refocus_render_params *p, bool has_sides)
+{
+    if (!bokeh_suits_method(p, has_sides))
+        return report_failure(EXIT_WRONG, of_sweep(p, has_sides),
+                              "it does not go with --method %s; give sweep, or leave "
+                              "it out",
+                              refocus_method_name(p->method));
+    if (has_sides && p->rays == REFOCUS_RAYS_FULL)
+        return report_failure(EXIT_WRONG, "--rays",
+                              "'full' does not go with discs that differ before and "
+                              "behind the focus; give a whole number from 1 to %d",
+                              REFOCUS_MAX_RAYS);
+    return EXIT_DONE;
+}

@@ -1,0 +1,255 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <refocus/platform/file.h>
+#include "shot/engine.h"
+#include "line/interrupt.h"
+
+static const struct {
+    const char *name, *summary;
+    int rays;
+    float highlight_gain, sigma;
+} qualities[] = {
+    {"preview", "32 rays, plain averages", 32, 4, 1e30f},
+    {"standard", "64 rays, bright samples count more (--sigma 400)", 64, 4, 400},
+    {"best", "128 rays and more light for lamps (--highlights 8)", 128, 8, 400}};
+
+static const struct {
+    const char *name, *summary;
+} blends[] = {
+    [REFOCUS_BLEND_LINEAR] = {"linear", "linear light by the sRGB curve"},
+    [REFOCUS_BLEND_STORED] = {"stored", "stored values, as in the paper"},
+    [REFOCUS_BLEND_GAMMA] = {"gamma", "gamma 2.2"},
+};
+
+const char *engine_quality_name(uint32_t index)
+{
+    return index < sizeof qualities / sizeof *qualities ? qualities[index].name : NULL;
+}
+
+const char *engine_quality_summary(uint32_t index)
+{
+    return index < sizeof qualities / sizeof *qualities ? qualities[index].summary
+                                                        : NULL;
+}
+
+const char *engine_blend_name(uint32_t index)
+{
+    return index < sizeof blends / sizeof *blends ? blends[index].name : NULL;
+}
+
+const char *engine_blend_summary(uint32_t index)
+{
+    return index < sizeof blends / sizeof *blends ? blends[index].summary : NULL;
+}
+
+/* Methods whose circles of confusion are circles. */
+static int check_aperture(uint32_t method, const struct engine_settings *settings)
+{
+    if (method < REFOCUS_METHOD_SCATTER ||
+        bokeh_is_plain_disc(&settings->bokeh, settings->aperture))
+        return EXIT_DONE;
+    return report_failure(EXIT_WRONG, "--aperture",
+                          "'%s' does not go with --method %s, which knows a disc "
+                          "alone; leave one of them out",
+                          settings->aperture && strcmp(settings->aperture, "disc")
+                              ? settings->aperture
+                              : "such a disc",
+                          refocus_method_name(method));
+}
+
+int engine_begin(struct engine *engine, const struct engine_settings *settings)
+{
+    struct refocus_render_params *params = &engine->params;
+    int status;
+
+    memset(engine, 0, sizeof *engine);
+    *params = refocus_render_params_default(0, 0);
+    params->method = (uint32_t)settings->method;
+    params->blend = (uint32_t)settings->blend;
+    params->rays = isnan(settings->rays) ? qualities[settings->quality].rays
+                                         : (int32_t)settings->rays;
+    if (!isnan(settings->iterations))
+        params->iterations = (int32_t)settings->iterations;
+    if (!isnan(settings->sigma))
+        params->sigma = (float)settings->sigma;
+    else if (params->method == REFOCUS_METHOD_SWEEP) /* the only one whose weights are
+                                                        quick */
+        params->sigma = qualities[settings->quality].sigma;
+    params->highlight_gain = isnan(settings->highlights)
+                                 ? qualities[settings->quality].highlight_gain
+                                 : (float)settings->highlights;
+    params->mirror = settings->mirror;
+    params->background = settings->background;
+    engine->methods = REFOCUS_METHOD_BIT(params->method);
+    engine->field_disparity = settings->papers.field_disparity;
+    engine->has_sides = bokeh_has_sides(&settings->bokeh);
+    status = bokeh_aperture(&settings->bokeh, settings->aperture, &engine->aperture);
+    params->aperture = engine->aperture;
+    if (status == EXIT_DONE)
+        status = check_aperture(params->method, settings);
+    if (status == EXIT_DONE)
+        status = papers_apply(&settings->papers, params, &engine->field_map);
+    if (status == EXIT_DONE)
+        status = controls_apply(&settings->controls, params, &engine->controls);
+    if (status == EXIT_DONE)
+        status = bokeh_apply(&settings->bokeh, !isnan(settings->highlights), params);
+    return status;
+}
+
+static int interrupted(const struct engine *engine)
+{
+    return report_failure(EXIT_FAILED, engine->name, "interrupted; nothing was "
+                                                     "written");
+}
+
+int engine_create(struct engine *engine, const struct engine_settings *settings,
+                  int width, int height, double blur)
+{
+    struct refocus_renderer_params params =
+        refocus_renderer_params_default(width, height, (float)blur);
+    const double start = report_clock_ms();
+    int status;
+
+    params.threads = (int32_t)settings->threads;
+    params.cpu = (uint32_t)settings->cpu;
+    params.methods = engine->methods;
+    engine->params.max_blur_radius = (float)blur;
+    status = refocus_renderer_create(&engine->renderer, &params);
+    engine->create_ms = report_clock_ms() - start;
+    if (status == REFOCUS_ERR_UNSUPPORTED)
+        return report_failure(EXIT_FAILED, "--cpu",
+                              "this processor or build has no %s; give auto",
+                              refocus_cpu_name(params.cpu));
+    if (status == REFOCUS_ERR_THREAD)
+        return report_failure(EXIT_FAILED, "--threads", "%s; give fewer",
+                              refocus_strerror(status));
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, engine->name,
+                              "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a "
+                              "smaller picture or less blur",
+                              refocus_strerror(status), width, height, blur,
+                              (double)refocus_renderer_memory(&params) / (1 << 20));
+    interrupt_watch(engine->renderer);
+    refocus_renderer_get_info(engine->renderer, &engine->info);
+    return papers_place(&settings->papers, &engine->params, width, height);
+}
+
+int engine_prepare(struct engine *engine, const struct refocus_image *photo,
+                   const struct refocus_disparity *disparity)
+{
+    const double start = report_clock_ms();
+    const int status = interrupt_came()
+                           ? REFOCUS_ERR_CANCELLED
+                           : refocus_prepare(engine->renderer, photo, disparity);
+
+    engine->prepare_ms = report_clock_ms() - start;
+    if (status == REFOCUS_ERR_CANCELLED)
+        return interrupted(engine);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, engine->name, "it cannot be prepared: %s",
+                              refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+/* Render whole, or, where that is slow and somebody watches, in strips of rows. The
+ * progress goes from begin by share. */
+static int render_once(struct engine *engine, const struct refocus_image *out,
+                       double begin, double share)
+{
+    enum { STRIPS = 20 };
+    const bool strips = report_is_watched() && out->height >= STRIPS &&
+                        engine->params.method == REFOCUS_METHOD_RAYTRACE;
+    const int count = strips ? STRIPS : 1;
+    int status = REFOCUS_OK;
+
+    for (int i = 0; i < count && status == REFOCUS_OK; i++) {
+        const int y0 = (int)((int64_t)out->height * i / count);
+        const int y1 = (int)((int64_t)out->height * (i + 1) / count);
+        struct refocus_render_params params = engine->params;
+        struct refocus_image strip = *out;
+
+        report_progress("rendering", begin + share * i / count);
+        if (interrupt_came())
+            return REFOCUS_ERR_CANCELLED;
+        params.region_y += y0;
+        params.region_width = strip.width;
+        params.region_height = strip.height = y1 - y0;
+        strip.plane[0] += y0 * strip.stride[0];
+        status = refocus_render(engine->renderer, &params, &strip);
+    }
+    return status;
+}
+
+int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
+{
+    const float focus = engine->params.focus_disparity;
+    const float beside = focus + (focus > 0.5f ? -2 : 2) / 65535.0f;
+    double *times, *cpu_times;
+    int status = controls_check_method(&engine->params);
+
+    if (status == EXIT_DONE)
+        status = bokeh_check_method(&engine->params, engine->has_sides);
+    if (status != EXIT_DONE)
+        return status;
+    times = malloc(2 * (size_t)repeat * sizeof *times);
+    if (!times)
+        return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
+    cpu_times = times + repeat;
+    engine->params.field_disparity = isnan(engine->field_disparity)
+                                         ? engine->params.focus_disparity
+                                         : (float)engine->field_disparity;
+    for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
+        const double start = report_clock_ms(), cpu_start = report_cpu_ms();
+
+        /* every other one is a step of disparity off, or all but rays would be kept */
+        engine->params.focus_disparity = (repeat - i) % 2 ? focus : beside;
+        status = render_once(engine, out, 0.3 + 0.6 * i / repeat, 0.6 / repeat);
+        cpu_times[i] = report_cpu_ms() - cpu_start;
+        times[i] = report_clock_ms() - start;
+    }
+    engine->params.focus_disparity = focus;
+    if (status == REFOCUS_OK) {
+        engine->render_ms = report_spread(times, repeat);
+        engine->cpu_ms = report_spread(cpu_times, repeat);
+    }
+    free(times);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return interrupted(engine);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, engine->name, "it cannot be rendered: %s",
+                              refocus_strerror(status));
+    return EXIT_DONE;
+}
+
+void engine_end(struct engine *engine)
+{
+    interrupt_watch(NULL);
+    refocus_renderer_destroy(&engine->renderer);
+    refocus_aperture_destroy(&engine->aperture);
+    free((void *)engine->field_map.samples);
+    controls_free(&engine->controls);
+}
+
+json_t *engine_json(const struct engine *engine)
+{
+    const struct refocus_render_params *params = &engine->params;
+    json_t *rays = params->rays == REFOCUS_RAYS_FULL ? json_string("full")
+                                                     : json_integer(params->rays);
+
+    return json_pack(
+        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
+        "s:I}",
+        "method", refocus_method_name(params->method), "rays", rays, "blend",
+        engine_blend_name(params->blend), "sigma",
+        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"),
+        "highlights", (double)params->highlight_gain, "iterations",
+        (int)params->iterations, "blur", (double)params->max_blur_radius, "focus",
+        (double)params->focus_disparity, "threads", (int)engine->info.threads, "cpu",
+        refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms,
+        "prepare_ms", engine->prepare_ms, "render_ms",
+        report_spread_json(engine->render_ms), "cpu_ms",
+        report_spread_json(engine->cpu_ms), "renderer_bytes",
+        (json_int_t)engine->info.memory, "peak_rss_kib",
+        (json_int_t)report_peak_rss_kib());
+}

@@ -1,0 +1,164 @@
+#include <stdlib.h>
+#include <string.h>
+#include <refocus/platform/file.h>
+#include "shot/papers.h"
+#include "line/report.h"
+
+const char *papers_spread_name(uint32_t index)
+{
+    static const char *const names[] = {"uniform", "lommel"};
+
+    return index < 2 ? names[index] : NULL;
+}
+
+const char *papers_field_name(uint32_t index)
+{
+    static const char *const names[] = {"lens",  "cylinder", "plus",
+                                        "plane", "sphere",   "picture"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+const char *papers_solver_name(uint32_t index)
+{
+    static const char *const names[] = {"series", "steps"};
+
+    return index < 2 ? names[index] : NULL;
+}
+
+uint8_t *papers_read_grey(const char *file, int *width, int *height)
+{
+    struct refocus_reason reason = {""};
+    struct refocus_photo *photo = NULL;
+    uint8_t *grey = NULL;
+    const int status = refocus_photo_read(&photo, file, NULL, &reason);
+
+    if (status != REFOCUS_OK || !photo->image.plane[0]) {
+        report_failure(EXIT_FAILED, file, "%s",
+                       reason.text[0] ? reason.text : "it is not a grey picture");
+        goto end;
+    }
+    const struct refocus_image *image = &photo->image;
+    *width = image->width;
+    *height = image->height;
+    grey = malloc((size_t)image->width * (size_t)image->height);
+    if (!grey) {
+        report_failure(EXIT_FAILED, file, "not enough memory");
+        goto end;
+    }
+    for (int y = 0; y < image->height; y++) {
+        const uint8_t *row = image->plane[0] + y * image->stride[0];
+
+        for (int x = 0; x < image->width; x++) /* luma, exact for grey pixels */
+            grey[(size_t)y * (size_t)image->width + (size_t)x] =
+                (uint8_t)((54 * row[3 * x] + 183 * row[3 * x + 1] +
+                           19 * row[3 * x + 2]) >>
+                          8);
+    }
+end:
+    refocus_photo_free(&photo);
+    return grey;
+}
+
+static void take(float *to, double from)
+{
+    if (!isnan(from))
+        *to = (float)from;
+}
+
+static int read_map(const struct paper_settings *settings,
+                    struct refocus_render_params *params, struct refocus_disparity *map)
+{
+    int width, height;
+    uint8_t *grey;
+
+    if (settings->field != REFOCUS_FIELD_PICTURE) {
+        if (settings->field_map)
+            return report_failure(EXIT_WRONG, "--field-map",
+                                  "it goes with --field picture; give that too");
+        return EXIT_DONE;
+    }
+    if (!settings->field_map)
+        return report_failure(EXIT_WRONG, "--field",
+                              "picture needs one; give a grey picture to --field-map");
+    grey = papers_read_grey(settings->field_map, &width, &height);
+    if (!grey)
+        return EXIT_FAILED;
+    if (width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE) {
+        free(grey);
+        return report_failure(EXIT_FAILED, settings->field_map,
+                              "%dx%d pixels are too many; give at most %d a side",
+                              width, height, (int)REFOCUS_MAX_SIDE);
+    }
+    *map = (struct refocus_disparity){8, width, height, grey, width};
+    params->field_map = map;
+    return EXIT_DONE;
+}
+
+int papers_apply(const struct paper_settings *settings,
+                 struct refocus_render_params *params, struct refocus_disparity *map)
+{
+    const struct paper_settings *s = settings;
+
+    if (s->star == 1)
+        return report_failure(EXIT_WRONG, "--star",
+                              "'1' cannot be used; give 0 for none, or 2 to 16 spikes");
+    if (s->middle_ratio == 1 || s->last_ratio == 1)
+        return report_failure(EXIT_WRONG,
+                              s->middle_ratio == 1 ? "--middle-ratio" : "--last-ratio",
+                              "'1' cannot be used; give a number above 1");
+    if (s->middle_ratio >= s->last_ratio)
+        return report_failure(EXIT_WRONG, "--middle-ratio",
+                              "%g is not below --last-ratio %g; give the smaller "
+                              "number to --middle-ratio",
+                              s->middle_ratio, s->last_ratio);
+    params->cell = isnan(s->cell) ? params->cell : (int32_t)s->cell;
+    params->seed = isnan(s->seed) ? params->seed : (uint32_t)s->seed;
+    params->spread = (uint32_t)s->spread;
+    take(&params->airy_radius, s->airy_radius);
+    take(&params->depth_ratio, s->depth_ratio);
+    params->star_spikes = isnan(s->star) ? 0 : (int32_t)s->star;
+    take(&params->star_length, s->star_length);
+    take(&params->star_angle, s->star_angle);
+    take(&params->star_strength, s->star_strength);
+    take(&params->sharp_radius, s->sharp_radius);
+    take(&params->middle_ratio, s->middle_ratio);
+    take(&params->last_ratio, s->last_ratio);
+    take(&params->attention_angle, s->attention_angle);
+    take(&params->picture_angle, s->picture_angle);
+    take(&params->attention_depth, s->attention_depth);
+    params->field = (uint32_t)s->field;
+    take(&params->field_radius, s->field_radius);
+    take(&params->field_falloff, s->field_falloff);
+    take(&params->field_angle, s->field_angle);
+    params->layers = isnan(s->layers) ? params->layers : (int32_t)s->layers;
+    params->solver = (uint32_t)s->solver;
+    take(&params->conductivity, s->conductivity);
+    return read_map(settings, params, map);
+}
+
+static int place(const char *name, const double at[2], int width, int height, float *x,
+                 float *y)
+{
+    if (isnan(at[0]))
+        return EXIT_DONE;
+    if (at[0] > width - 1 || at[1] > height - 1)
+        return report_failure(EXIT_WRONG, name,
+                              "%g,%g lies outside of the picture; give 0,0 to %d,%d",
+                              at[0], at[1], width - 1, height - 1);
+    *x = (float)(width > 1 ? at[0] / (width - 1) : 0.5);
+    *y = (float)(height > 1 ? at[1] / (height - 1) : 0.5);
+    return EXIT_DONE;
+}
+
+int papers_place(const struct paper_settings *settings,
+                 struct refocus_render_params *params, int width, int height)
+{
+    const int status = place("--attention", settings->attention, width, height,
+                             &params->attention_x, &params->attention_y);
+
+    if (status != EXIT_DONE)
+        return status;
+    return place("--field-at", settings->field_at, width, height, &params->field_x,
+                 &params->field_y);
+}

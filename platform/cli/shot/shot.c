@@ -1,0 +1,138 @@
+#include <stdlib.h>
+#include <string.h>
+#include "line/report.h"
+#include "shot/shot.h"
+
+int shot_aim(const struct input *input, const struct lens_settings *lens,
+             const struct controls *controls, const uint16_t *disparity,
+             struct refocus_render_params *params)
+{
+    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_disparity map = refocus_disparity16(
+        disparity, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
+    struct controls aimed = *controls;
+    double focus = 0;
+    const int status = input_focus(input, lens, disparity, &focus);
+
+    if (status != EXIT_DONE)
+        return status;
+    params->focus_disparity = (float)focus;
+    if (!isnan(lens->focus_at[0]))
+        controls_turn_about(&aimed, photo, lens->focus_at[1]);
+    return controls_aim(&aimed, params, &map);
+}
+
+static int choose_focus(struct shot *shot, const struct lens_settings *lens)
+{
+    const struct refocus_image *photo = &shot->input.photo->image;
+    const size_t pixels = (size_t)photo->width * (size_t)photo->height;
+    const ptrdiff_t stride = (ptrdiff_t)photo->width * 2;
+    uint16_t *prepared = malloc(pixels * sizeof *prepared);
+    int status;
+
+    if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
+                                      prepared, stride) != REFOCUS_OK) {
+        free(prepared);
+        return report_failure(EXIT_FAILED, shot->input.photo_name,
+                              "not enough memory to find the focus");
+    }
+    status = shot_aim(&shot->input, lens, &shot->engine.controls, prepared,
+                      &shot->engine.params);
+    free(prepared);
+    return status;
+}
+
+int shot_check(struct shot_settings *settings, bool own_focus)
+{
+    int status = input_check_depth(&settings->depth);
+
+    settings->engine.bokeh.f_number = settings->lens.f_number;
+    if (status == EXIT_DONE)
+        status = input_check_lens(&settings->lens);
+    if (status == EXIT_DONE)
+        status = controls_check(&settings->engine.controls,
+                                own_focus || input_focus_is_given(&settings->lens));
+    return status;
+}
+
+int shot_inputs(const struct shot_settings *settings, const char *photo,
+                const char *inputs[SHOT_INPUTS])
+{
+    int count = 0;
+
+    inputs[count++] = photo;
+    inputs[count++] = settings->depth.file;
+    inputs[count++] = settings->engine.aperture;
+    inputs[count++] = settings->engine.papers.field_map;
+    inputs[count++] = settings->engine.controls.focus_map;
+    inputs[count++] = settings->engine.controls.sharp_mask;
+    inputs[count++] = settings->load;
+    return count;
+}
+
+int shot_open(struct shot *shot, const char *photo,
+              const struct shot_settings *settings, double most_blur)
+{
+    struct refocus_disparity disparity;
+    const struct refocus_image *image;
+    double blur = 0;
+    int status;
+
+    memset(&shot->input, 0, sizeof shot->input);
+    status = engine_begin(&shot->engine, &settings->engine);
+    shot->engine.name = photo;
+    if (status == EXIT_DONE) {
+        report_progress("reading", 0);
+        status = input_read(&shot->input, photo, &settings->depth);
+    }
+    if (status == EXIT_DONE)
+        status = input_blur(&shot->input, &settings->lens, &blur);
+    if (status != EXIT_DONE)
+        return status;
+    image = &shot->input.photo->image;
+    disparity =
+        refocus_disparity16(shot->input.disparity, shot->input.width,
+                            shot->input.height, (ptrdiff_t)shot->input.width * 2);
+    report_progress("preparing", 0.15);
+    status = engine_create(&shot->engine, &settings->engine, image->width,
+                           image->height, fmax(blur, most_blur));
+    shot->engine.params.max_blur_radius = (float)blur;
+    if (status == EXIT_DONE)
+        status = engine_prepare(&shot->engine, image, &disparity);
+    return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
+}
+
+void shot_close(struct shot *shot)
+{
+    engine_end(&shot->engine);
+    input_free(&shot->input);
+}
+
+int shot_output(struct shot *shot, const double region[4], struct refocus_image *out)
+{
+    const struct refocus_image *photo = &shot->input.photo->image;
+    struct refocus_render_params *params = &shot->engine.params;
+    int width = photo->width, height = photo->height;
+
+    if (!isnan(region[0])) {
+        if (region[2] < 1 || region[3] < 1 || region[0] + region[2] > width ||
+            region[1] + region[3] > height)
+            return report_failure(EXIT_WRONG, "--region",
+                                  "%g,%g,%g,%g does not lie within the %dx%d pixels of "
+                                  "%s",
+                                  region[0], region[1], region[2], region[3], width,
+                                  height, shot->input.photo_name);
+        params->region_x = (int32_t)region[0];
+        params->region_y = (int32_t)region[1];
+        params->region_width = width = (int32_t)region[2];
+        params->region_height = height = (int32_t)region[3];
+    }
+    *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
+                                (ptrdiff_t)width * 3);
+    if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)
+        out->plane[0] = malloc((size_t)width * 3 * (size_t)height);
+    if (!out->plane[0])
+        return report_failure(EXIT_FAILED, shot->input.photo_name,
+                              "not enough memory for %dx%d pixels", width, height);
+    return EXIT_DONE;
+}

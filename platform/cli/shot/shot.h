@@ -1,0 +1,70 @@
+/* One photo on the table: read, prepared, with its lens setting in engine.params. */
+#ifndef RF_CLI_SHOT_H
+#define RF_CLI_SHOT_H
+
+#include "inputs/inputs.h"
+#include "line/settings.h"
+#include "shot/engine.h"
+
+/* What commands that make pictures of a photo take alike. */
+struct shot_settings {
+    struct depth_settings depth;
+    struct lens_settings lens;
+    struct engine_settings engine;
+    const char *load, *save; /* files of settings, or NULL */
+};
+
+#define SHOT_SETTINGS_NONE                                                             \
+    {.depth = DEPTH_SETTINGS_NONE, .lens = LENS_SETTINGS_NONE,                         \
+     .engine = ENGINE_SETTINGS_NONE(1)}
+
+/* Rows of tables of options, for settings with a member of that type. */
+#define SHOT_DEPTH_OPTIONS(type, member)                                               \
+    DEPTH_FILE_OPTION(type, member.depth), DEPTH_UNIT_OPTIONS(type, member.depth),     \
+    REPAIR_OPTIONS(type, member.depth)
+#define SHOT_LENS_OPTIONS(type, member)                                                \
+    {.kind = OPTION_HEADING, .help = "Focus and blur"},                                \
+    FOCUS_OPTIONS(type, member.lens), LENS_OPTIONS(type, member.lens),                 \
+    CONTROL_OPTIONS(type, member.engine.controls),                                     \
+    BOKEH_OPTIONS(type, member.engine.bokeh, member.engine.method)
+#define SHOT_METHOD_OPTIONS(type, member)                                              \
+    {.kind = OPTION_HEADING, .help = "Rendering"}, METHOD_OPTION(type, member.engine), \
+    METHOD_OPTIONS(type, member.engine)
+#define SHOT_PAPER_OPTIONS(type, member)                                               \
+    PAPER_OPTIONS(type, member.engine.papers, member.engine.method)
+
+struct shot {
+    struct input input;
+    struct engine engine;
+};
+
+/* These return exit codes and print why it is not EXIT_DONE. */
+
+/* Before a photo is read: settle what options take from each other, and refuse what
+ * does not go together. own_focus: each picture has a focus of its own, whatever the
+ * lens settings say. */
+int shot_check(struct shot_settings *settings, bool own_focus);
+
+/* The files that a picture is made of, some of which may be NULL, and their number: for
+ * checks that none of them is written over. */
+enum { SHOT_INPUTS = 7 };
+int shot_inputs(const struct shot_settings *settings, const char *photo,
+                const char *inputs[SHOT_INPUTS]);
+
+/* Focus by the settings and packed disparities of the photo's size, and the plane of
+ * focus through it. */
+int shot_aim(const struct input *input, const struct lens_settings *lens,
+             const struct controls *controls, const uint16_t *disparity,
+             struct refocus_render_params *params);
+
+/* most_blur: what the renderer is made for, where that is more than the settings' blur;
+ * 0: that. Ended by shot_close(), whatever it returned. */
+int shot_open(struct shot *shot, const char *photo,
+              const struct shot_settings *settings, double most_blur);
+void shot_close(struct shot *shot);
+
+/* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y,
+ * width and height in it; plane[0] is to be freed. */
+int shot_output(struct shot *shot, const double region[4], struct refocus_image *out);
+
+#endif
