@@ -465,6 +465,8 @@ rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_ligh
 rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
     rf_upsample_use_avx2;
 rf_kernels_use_fn rf_yuv_use_c, rf_yuv_use_neon, rf_yuv_use_sse41, rf_yuv_use_avx2;
+rf_kernels_use_fn rf_yuv_codes_use_c, rf_yuv_codes_use_neon, rf_yuv_codes_use_sse41,
+    rf_yuv_codes_use_avx2;
 rf_kernels_use_fn rf_sweep1_use_neon, rf_sweep1_use_sse41, rf_sweep1_use_avx2;
 rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
 rf_kernels_use_fn rf_search_use_neon, rf_search_use_sse41, rf_search_use_avx2;
