@@ -31,34 +31,36 @@ static struct row samples(const struct rf_frame *f, int i, int x, int y)
                         f->out->stride[plane]};
 }
 
-/* n codes of Y; the pixel that YUYV has more than an odd row is that beside it. */
-static void put_luma(uint8_t *restrict out, int step, const uint8_t *restrict code, int n)
-{
-    if (step == 1) {
-        memcpy(out, code, (size_t)n);
-        return;
-    }
-    for (int x = 0; x < n; x++)
-        out[2 * x] = code[x];
-    if (n % 2)
-        out[2 * n] = code[n - 1];
-}
-
-/* A row of a tile, of Y and of U and V at once. */
+/* n pixels; that beside an odd row repeats its last. */
 static void put_yuyv(uint8_t *restrict out, const uint8_t *restrict y,
-                     const uint8_t *restrict uv)
+                     const uint8_t *restrict uv, int n)
 {
-    for (int x = 0; x < RF_TILE; x++) {
+    const int even = n & ~1;
+
+    for (int x = 0; x < even; x++) {
         out[2 * x] = y[x];
         out[2 * x + 1] = uv[x];
     }
+    if (even < n) {
+        out[2 * even] = out[2 * n] = y[even];
+        out[2 * even + 1] = uv[even];
+        out[2 * n + 1] = uv[n];
+    }
+}
+
+static void put_luma(uint8_t *out, const uint8_t *code, int n)
+{
+    if (n == RF_TILE)
+        memcpy(out, code, RF_TILE);
+    else
+        memcpy(out, code, (size_t)n);
 }
 
 /* n pairs of U and V. */
 static void put_chroma(struct row u, struct row v, const uint8_t *restrict uv, int n)
 {
     if (u.step == 2 && v.first == u.first + 1) { /* NV12 */
-        memcpy(u.first, uv, 2 * (size_t)n);
+        put_luma(u.first, uv, 2 * n);
         return;
     }
     for (int i = 0; i < n; i++) {
@@ -82,14 +84,14 @@ static void put(const struct rf_frame *f, struct rf_rect rect, const struct code
 
     for (int y = 0; y < rect.y1 - rect.y0; y++) {
         const uint8_t *from = codes->y + y * codes->y_stride;
-        uint8_t *to = luma.first + y * f->out->stride[0];
+        uint8_t *to = luma.first + y * luma.stride;
 
-        if (yuyv && n == RF_TILE)
-            put_yuyv(to, from, codes->uv + y * codes->uv_stride);
+        if (yuyv)
+            put_yuyv(to, from, codes->uv + y * codes->uv_stride, n);
         else
-            put_luma(to, luma.step, from, n);
+            put_luma(to, from, n);
     }
-    if (yuyv && n == RF_TILE)
+    if (yuyv)
         return;
     for (int y = 0; y < (rect.y1 - rect.y0 + down) >> down; y++)
         put_chroma((struct row){u.first + y * u.stride, u.step, u.stride},

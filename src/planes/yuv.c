@@ -167,17 +167,28 @@ static void keep_420(const struct refocus_renderer *r, const struct refocus_imag
     }
 }
 
+static void split(uint8_t *restrict first, uint8_t *restrict second,
+                  const uint8_t *restrict pairs, int n)
+{
+    for (int x = 0; x < n; x++) {
+        first[x] = pairs[2 * x];
+        second[x] = pairs[2 * x + 1];
+    }
+}
+
 static void keep_422(const struct refocus_renderer *r, const struct refocus_image *photo,
                      uint8_t *scratch, int row)
 {
-    const int w = r->width;
+    const int w = r->width, even = w & ~1;
     uint8_t *y = r->yuv.y + row * r->yuv.y_stride, *uv = r->yuv.uv + row * r->yuv.uv_stride;
 
     memcpy(scratch, photo->plane[0] + row * photo->stride[0], 4 * (size_t)r->yuv.width);
-    for (int x = 0; x < w; x++)
-        y[x] = scratch[2 * x];
-    for (int x = 0; x < 2 * r->yuv.width; x++)
-        uv[x] = scratch[2 * x + 1];
+    split(y, uv, scratch, even);
+    if (even < w) {
+        y[even] = scratch[2 * even];
+        uv[even] = scratch[2 * even + 1];
+        uv[w] = scratch[2 * even + 3];
+    }
 }
 
 static void convert_chroma_rows(struct refocus_renderer *r, uint8_t *scratch, int c0, int c1)
