@@ -2,7 +2,7 @@
  *
  * What sweep.c does for three planes is done here for luma and, with the same slabs, for chroma,
  * whose samples lie two pixels apart: its rays are half as long across, and in 4:2:0 down,
- * and half as many of them lie as densely among its samples.
+ * and fewer of them lie as densely among its samples.
  */
 #include "methods/method.h"
 
@@ -106,6 +106,17 @@ static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
     memset(run, 0, LANES * sizeof run[0]);
 }
 
+/* Rays from `first` on that weigh the same, RF_RAY_CHUNK at the most. */
+static int chunk_of(const struct rf_ray_set *set, int first)
+{
+    const int most = set->count - first < RF_RAY_CHUNK ? set->count - first : RF_RAY_CHUNK;
+    int n = set->equal ? most : 1;
+
+    while (n < most && set->ray[first + n].weight == set->ray[first].weight)
+        n++;
+    return n;
+}
+
 /* As sweep_rays() of sweep.c: sums of rays of one weight in `run`, of others in `sum`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct plane *plane, int behind, uint32_t run[LANES],
@@ -118,10 +129,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        sight.rays = 1;
-        while (sight.rays < RF_RAY_CHUNK && n + sight.rays < set->count &&
-               ray[sight.rays].weight == ray->weight)
-            sight.rays++;
+        sight.rays = chunk_of(set, n);
         set_sight(&sight, f->r, plane, plan, ray, behind);
         sweep_tile(f->r, plan, plane, &sight, run);
         if (!set->equal &&
@@ -197,12 +205,12 @@ static void sweep_plane(const struct rf_frame *f, const struct rf_tile_plan *pla
         mean[i] = (uint16_t)((4 * sum[i] + weight[i] / 2) / weight[i]);
 }
 
-/* Half as many rays, or the smallest set. */
-static const struct rf_ray_set *half_of(const struct refocus_renderer *r,
-                                        const struct rf_ray_set *set)
+/* Three rays for eight, which still lie more densely among the samples, or the smallest set. */
+static const struct rf_ray_set *fewer_than(const struct refocus_renderer *r,
+                                           const struct rf_ray_set *set)
 {
     for (int i = 0; i < r->sets; i++)
-        if (2 * r->set[i].count >= set->count)
+        if (8 * r->set[i].count >= 3 * set->count)
             return &r->set[i];
     return set;
 }
@@ -249,7 +257,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         return;
     }
     luma.set = rf_rays_for(r, plan.reach, plan.lamp);
-    chroma.set = half_of(r, luma.set);
+    chroma.set = fewer_than(r, luma.set);
     sweep_plane(f, &plan, &luma, behind, means.luma);
     sweep_plane(f, &plan, &chroma, behind, means.chroma);
     rf_encode_yuv_means(f, tx, ty, rect, &means);

@@ -36,17 +36,13 @@ void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
 {
     struct refocus_renderer *r = f->r;
     const struct rf_yuv *yuv = &r->yuv;
-    const int i = f->prefilter_step, step = 1 << i;
+    const int i = f->prefilter_step;
     uint16_t *const luma[] = {r->front.light[0], r->smooth[0], r->behind.light[0]};
     uint16_t *const chroma[] = {yuv->light, yuv->smooth, yuv->behind};
     const int to = i == 1 ? 2 : 1;
-    /* half the rays, twice the pixels: sqrt 2 of the blur for the same gap among samples */
-    const int above = f->prefilter_above[i] < INT16_MAX ? f->prefilter_above[i] * 181 / 128
-                                                        : INT16_MAX;
 
-    rf_yuv_prefilter_luma(r, luma[to], luma[i], step, f->prefilter_above[i],
-                          rf_scratch(r, worker), band);
-    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], step,
-                            above < INT16_MAX ? above : INT16_MAX, rf_scratch(r, worker),
-                            band);
+    rf_yuv_prefilter_luma(r, luma[to], luma[i], f->prefilter_above, i, rf_scratch(r, worker),
+                          band);
+    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], f->prefilter_above, i,
+                            rf_scratch(r, worker), band);
 }
