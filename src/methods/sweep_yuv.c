@@ -205,16 +205,6 @@ static void sweep_plane(const struct rf_frame *f, const struct rf_tile_plan *pla
         mean[i] = (uint16_t)((4 * sum[i] + weight[i] / 2) / weight[i]);
 }
 
-/* Three rays for eight, which still lie more densely among the samples, or the smallest set. */
-static const struct rf_ray_set *fewer_than(const struct refocus_renderer *r,
-                                           const struct rf_ray_set *set)
-{
-    for (int i = 0; i < r->sets; i++)
-        if (8 * r->set[i].count >= 3 * set->count)
-            return &r->set[i];
-    return set;
-}
-
 void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                        int worker)
 {
@@ -257,7 +247,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         return;
     }
     luma.set = rf_rays_for(r, plan.reach, plan.lamp);
-    chroma.set = fewer_than(r, luma.set);
+    chroma.set = rf_chroma_rays(r, luma.set);
     sweep_plane(f, &plan, &luma, behind, means.luma);
     sweep_plane(f, &plan, &chroma, behind, means.chroma);
     rf_encode_yuv_means(f, tx, ty, rect, &means);

@@ -1,5 +1,7 @@
 #include "renderer/render_yuv.h"
 
+#include <math.h>
+
 #include "planes/format.h"
 #include "planes/yuv.h"
 
@@ -31,6 +33,20 @@ int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
     return REFOCUS_OK;
 }
 
+/* |s| that gaps between the rays of chroma, in its samples, are as wide at as those of luma. */
+static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_STEPS])
+{
+    const struct refocus_renderer *r = f->r;
+    const struct rf_ray_set *luma = &r->set[r->preset], *chroma = rf_chroma_rays(r, luma);
+    const double times = 2 * sqrt((double)chroma->count / luma->count);
+
+    for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
+        const double s = times * f->prefilter_above[i];
+
+        above[i] = s < INT16_MAX ? (int)s : INT16_MAX;
+    }
+}
+
 /* From the photo to r->smooth, and from there by way of the background's planes. */
 void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
 {
@@ -40,9 +56,11 @@ void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
     uint16_t *const luma[] = {r->front.light[0], r->smooth[0], r->behind.light[0]};
     uint16_t *const chroma[] = {yuv->light, yuv->smooth, yuv->behind};
     const int to = i == 1 ? 2 : 1;
+    int above[RF_PREFILTER_STEPS];
 
+    set_chroma_above(f, above);
     rf_yuv_prefilter_luma(r, luma[to], luma[i], f->prefilter_above, i, rf_scratch(r, worker),
                           band);
-    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], f->prefilter_above, i,
-                            rf_scratch(r, worker), band);
+    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], above, i, rf_scratch(r, worker),
+                            band);
 }
