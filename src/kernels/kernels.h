@@ -107,6 +107,7 @@ struct rf_sweep_job {
     const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
     enum rf_bright bright;
+    int lanes; /* of sweep and sweep_weighted: those of an even number of rows, of RF_STRIP at most */
 
     /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
     const uint16_t *weight;
@@ -196,6 +197,10 @@ typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uin
 /* luminance: Rec. 709 in Q11, (218 R + 732 G + 74 B) / 2048 half up. */
 typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t *green,
                              const uint16_t *blue, int n);
+
+/* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (methods/tile_rows.h), by
+ * the cubics through four of them, half up, never beyond the one before and the one after. */
+typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
 
 /* brightest: the largest value of any channel of a row. */
 typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
@@ -315,20 +320,23 @@ typedef void rf_settle_fn(uint8_t *settled, int32_t *offset, const uint32_t *ran
                           int32_t stride, int32_t cell_stride, int n);
 
 /*
- * sweep1: as sweep, of one plane and of `rows` rows. Light is at most 65535 / steps;
- * sums are exact. `last` of the rays is in that plane.
+ * sweep1: as sweep, of one plane and of some rows, row i of them row[i] elements after the first.
+ * Light is at most 65535 / steps; sums are exact. `last` of the rays is in that plane.
  */
 struct rf_sweep1_job {
     const int16_t *blur;
     const uint16_t *light;
-    ptrdiff_t stride; /* elements, of both */
-    int rows;         /* 4, 8 or 16 */
+    const ptrdiff_t *row;
+    int rows;         /* an even number, 16 at most */
     int steps;        /* values that a 16-bit sum holds, 4 to 16 */
     int slabs;
     const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
 };
 typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
+
+/* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
+typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);
 
 /* smooth1: smooth3, of one plane. */
 typedef void rf_smooth1_fn(uint16_t *out, const uint16_t *light, const int16_t *blur,
@@ -405,6 +413,7 @@ struct rf_kernels {
     rf_encode_fn *encode;
     rf_decode_fn *decode;
     rf_sweep1_fn *sweep1;
+    rf_between_chroma_fn *between_chroma;
     rf_smooth1_fn *smooth1;
     rf_aim_chroma_fn *aim_chroma;
     rf_sharpest4_fn *sharpest4;
@@ -431,6 +440,7 @@ struct rf_kernels {
     rf_means_fn *means;
     rf_weighted_means_fn *weighted_means;
     rf_luminance_fn *luminance;
+    rf_between_rows_fn *between_rows;
     rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
     rf_steps4_fn *steps4;
@@ -454,26 +464,15 @@ rf_pull_fn rf_pull_c;
 rf_pull_blur_fn rf_pull_blur_c;
 rf_sweep_weighted_fn rf_sweep_weighted_c;
 
-/* Each set overwrites what it does better. */
+/* Each set overwrites what it does better; rf_kernels_use() calls the others of its set. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
-rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
-rf_kernels_use_fn rf_surfaces_use_c, rf_surfaces_use_neon, rf_surfaces_use_sse41,
-    rf_surfaces_use_avx2;
-rf_kernels_use_fn rf_sweep_weighted_use_neon, rf_sweep_weighted_use_sse41,
-    rf_sweep_weighted_use_avx2;
-rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_light_use_avx2;
-rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
-    rf_upsample_use_avx2;
-rf_kernels_use_fn rf_yuv_use_c, rf_yuv_use_neon, rf_yuv_use_sse41, rf_yuv_use_avx2;
-rf_kernels_use_fn rf_yuv_codes_use_c, rf_yuv_codes_use_neon, rf_yuv_codes_use_sse41,
-    rf_yuv_codes_use_avx2;
-rf_kernels_use_fn rf_sweep1_use_neon, rf_sweep1_use_sse41, rf_sweep1_use_avx2;
-rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
-rf_kernels_use_fn rf_search_use_neon, rf_search_use_sse41, rf_search_use_avx2;
-rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;
-rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
-rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;
-rf_kernels_use_fn rf_series_use_c, rf_series_use_neon, rf_series_use_sse41,
-    rf_series_use_avx2;
+#define RF_VECTOR_SETS(use) use##_neon, use##_sse41, use##_avx2, use##_avx512
+#define RF_ALL_SETS(use) use##_c, RF_VECTOR_SETS(use)
+rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
+    RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
+    RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep_weighted_use);
+rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use),
+    RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use),
+    RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
 
 #endif
