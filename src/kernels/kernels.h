@@ -320,20 +320,23 @@ typedef void rf_settle_fn(uint8_t *settled, int32_t *offset, const uint32_t *ran
                           int32_t stride, int32_t cell_stride, int n);
 
 /*
- * sweep1: as sweep, of one plane and of `rows` rows. Light is at most 65535 / steps;
- * sums are exact. `last` of the rays is in that plane.
+ * sweep1: as sweep, of one plane and of some rows, row i of them row[i] elements after the first.
+ * Light is at most 65535 / steps; sums are exact. `last` of the rays is in that plane.
  */
 struct rf_sweep1_job {
     const int16_t *blur;
     const uint16_t *light;
-    ptrdiff_t stride; /* elements, of both */
-    int rows;         /* 4, 8 or 16 */
+    const ptrdiff_t *row;
+    int rows;         /* an even number, 16 at most */
     int steps;        /* values that a 16-bit sum holds, 4 to 16 */
     int slabs;
     const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
 };
 typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
+
+/* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
+typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);
 
 /* smooth1: smooth3, of one plane. */
 typedef void rf_smooth1_fn(uint16_t *out, const uint16_t *light, const int16_t *blur,
@@ -410,6 +413,7 @@ struct rf_kernels {
     rf_encode_fn *encode;
     rf_decode_fn *decode;
     rf_sweep1_fn *sweep1;
+    rf_between_chroma_fn *between_chroma;
     rf_smooth1_fn *smooth1;
     rf_aim_chroma_fn *aim_chroma;
     rf_sharpest4_fn *sharpest4;
@@ -469,6 +473,6 @@ rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep_weighted_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use),
     RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use),
-    RF_ALL_SETS(rf_yuv_use);
+    RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
 
 #endif

@@ -74,14 +74,17 @@ static void RF_VEC(rf_smooth1)(uint16_t *out, const uint16_t *light, const int16
                                ptrdiff_t apart, int least, int n)
 {
     const vec_u16 from = vec_u16_set((uint16_t)least);
-    int x = 0;
 
-    for (; x + (int)VEC_U16 <= n; x += VEC_U16) {
-        const struct use use = use_of(blur + x, apart, from);
-
-        vec_u16_store(out + x, mean(light + x, apart, &use));
+    if (n < (int)VEC_U16) {
+        rf_smooth1_c(out, light, blur, apart, least, n);
+        return;
     }
-    rf_smooth1_c(out + x, light + x, blur + x, apart, least, n - x);
+    for (int x = 0; x < n; x += VEC_U16) {
+        const int at = x + (int)VEC_U16 <= n ? x : n - (int)VEC_U16; /* some twice */
+        const struct use use = use_of(blur + at, apart, from);
+
+        vec_u16_store(out + at, mean(light + at, apart, &use));
+    }
 }
 
 void RF_VEC(rf_smooth_use)(struct rf_kernels *kernels)

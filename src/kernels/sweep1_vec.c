@@ -26,49 +26,60 @@ struct state {
     struct limits limits[RF_BINS];
 };
 
-static ALWAYS_INLINE void load(vec_u16 v[VECS], const uint16_t *at, ptrdiff_t stride)
+static ALWAYS_INLINE void load(vec_u16 v[VECS], const uint16_t *at,
+                               const ptrdiff_t place[VECS], const int vecs)
 {
-    for (int j = 0; j < VECS; j++)
-        v[j] = vec_u16_load(at + j / EACH * stride + j % EACH * (int)VEC_U16);
+    for (int j = 0; j < vecs; j++)
+        v[j] = vec_u16_load(at + place[j]);
 }
 
 /* Rays first .. end - 1, at most as many as 16-bit sums hold, all of `tests` tests, which is a
- * constant where it is small. */
-static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int tests)
+ * constant where it is small, at `vecs` vectors from vector i on. */
+static ALWAYS_INLINE void sweep_vectors(struct state *s, int first, int end, const int tests,
+                                        int i, const int vecs)
 {
     const struct rf_sorted_rays *rays = s->job->rays;
-    const ptrdiff_t stride = s->job->stride;
+    const uint16_t *const blur = (const uint16_t *)s->job->blur, *const light = s->job->light;
+    uint16_t *const to = &s->light[i * (int)VEC_U16];
+    ptrdiff_t place[VECS];
+    vec_u16 sum[VECS];
 
-    for (int i = 0; i < s->job->rows * RF_TILE; i += VECS * (int)VEC_U16) {
-        const ptrdiff_t p = i / RF_TILE * stride;
-        const uint16_t *const blur = (const uint16_t *)s->job->blur + p;
-        const uint16_t *const light = s->job->light + p;
-        vec_u16 sum[VECS];
-
-        for (int j = 0; j < VECS; j++)
-            sum[j] = vec_u16_load(&s->light[i + j * (int)VEC_U16]);
-        for (int n = first; n < end; n++) {
-            vec_u16 value[VECS];
-
-            load(value, rays->last[n] + p, stride);
-            for (int t = tests - 1; t >= 0; t--) {
-                const struct limits *l = &s->limits[rays->slab[t][n]];
-                const ptrdiff_t q = rays->offset[t][n];
-                vec_u16 seen[VECS], front[VECS];
-
-                load(seen, blur + q, stride);
-                load(front, light + q, stride);
-                for (int j = 0; j < VECS; j++)
-                    value[j] = vec_u16_select(
-                        vec_s16_less(vec_u16_sub(seen[j], l->from), l->to), front[j],
-                        value[j]);
-            }
-            for (int j = 0; j < VECS; j++)
-                sum[j] = vec_u16_add(sum[j], value[j]);
-        }
-        for (int j = 0; j < VECS; j++)
-            vec_u16_store(&s->light[i + j * (int)VEC_U16], sum[j]);
+    for (int j = 0; j < vecs; j++) {
+        place[j] = s->job->row[(i + j) / EACH] + (i + j) % EACH * (int)VEC_U16;
+        sum[j] = vec_u16_load(to + j * (int)VEC_U16);
     }
+    for (int n = first; n < end; n++) {
+        vec_u16 value[VECS];
+
+        load(value, rays->last[n], place, vecs);
+        for (int t = tests - 1; t >= 0; t--) {
+            const struct limits *l = &s->limits[rays->slab[t][n]];
+            const ptrdiff_t q = rays->offset[t][n];
+            vec_u16 seen[VECS], front[VECS];
+
+            load(seen, blur + q, place, vecs);
+            load(front, light + q, place, vecs);
+            for (int j = 0; j < vecs; j++)
+                value[j] = vec_mask_select(
+                    vec_mask_less(vec_mask_all(), vec_u16_sub(seen[j], l->from), l->to),
+                    front[j], value[j]);
+        }
+        for (int j = 0; j < vecs; j++)
+            sum[j] = vec_u16_add(sum[j], value[j]);
+    }
+    for (int j = 0; j < vecs; j++)
+        vec_u16_store(to + j * (int)VEC_U16, sum[j]);
+}
+
+static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int tests)
+{
+    const int vectors = s->job->rows * EACH;
+    int i = 0;
+
+    for (; i + VECS <= vectors; i += VECS)
+        sweep_vectors(s, first, end, tests, i, VECS);
+    if (i < vectors)
+        sweep_vectors(s, first, end, tests, i, VECS / 2);
 }
 
 static void sweep_some(struct state *s, int first, int end, int tests)

@@ -3,66 +3,64 @@
 
 #include <string.h>
 
-/* Where samples of a row of the result are. */
+/* Where samples of the result are. */
 struct row {
     uint8_t *first;
-    int step; /* bytes */
+    int step;         /* bytes, */
+    ptrdiff_t stride; /* also those of rows */
 };
 
-static uint8_t *row_of(const struct rf_frame *f, int plane, int row)
-{
-    return f->out->plane[plane] + row * f->out->stride[plane];
-}
-
-/* Of Y (i = 0), U or V from column x of the picture on. */
+/* Of Y (i = 0), U or V from pixel (x, y) on. */
 static struct row samples(const struct rf_frame *f, int i, int x, int y)
 {
-    const bool chroma = i > 0;
+    const bool chroma = i > 0, nv21 = f->out->format == REFOCUS_FORMAT_NV21;
     const int down = chroma ? f->r->yuv.down : 0;
     const int row = (y - f->region.y0) >> down, column = (x - f->region.x0) >> chroma;
+    int plane = i, step = 1, at = column;
 
-    switch (f->out->format) {
-    case REFOCUS_FORMAT_YUYV:
-        return (struct row){row_of(f, 0, row) + (chroma ? 4 * column + 2 * i - 1 : 2 * column),
-                            chroma ? 4 : 2};
-    case REFOCUS_FORMAT_I420:
-        return (struct row){row_of(f, i, row) + column, 1};
-    default:
-        if (!chroma)
-            return (struct row){row_of(f, 0, row) + column, 1};
-        return (struct row){row_of(f, 1, row) + 2 * column +
-                                ((i == 2) ^ (f->out->format == REFOCUS_FORMAT_NV21)),
-                            2};
+    if (f->out->format == REFOCUS_FORMAT_YUYV) {
+        plane = 0;
+        step = chroma ? 4 : 2;
+        at = step * column + (chroma ? 2 * i - 1 : 0);
+    } else if (chroma && f->out->format != REFOCUS_FORMAT_I420) {
+        plane = 1;
+        step = 2;
+        at = 2 * column + ((i == 2) ^ nv21);
+    }
+    return (struct row){f->out->plane[plane] + row * f->out->stride[plane] + at, step,
+                        f->out->stride[plane]};
+}
+
+/* n pixels; that beside an odd row repeats its last. */
+static void put_yuyv(uint8_t *restrict out, const uint8_t *restrict y,
+                     const uint8_t *restrict uv, int n)
+{
+    const int even = n & ~1;
+
+    for (int x = 0; x < even; x++) {
+        out[2 * x] = y[x];
+        out[2 * x + 1] = uv[x];
+    }
+    if (even < n) {
+        out[2 * even] = out[2 * n] = y[even];
+        out[2 * even + 1] = uv[even];
+        out[2 * n + 1] = uv[n];
     }
 }
 
-/* A row of the result from codes that follow each other. */
-static void put(struct row out, const uint8_t *code, int n)
+static void put_luma(uint8_t *out, const uint8_t *code, int n)
 {
-    if (out.step == 1)
-        memcpy(out.first, code, (size_t)n);
+    if (n == RF_TILE)
+        memcpy(out, code, RF_TILE);
     else
-        for (int x = 0; x < n; x++)
-            out.first[x * out.step] = code[x];
-}
-
-/* n codes of Y; the pixel that YUYV has more than an odd row is that beside it. */
-static void put_luma(const struct rf_frame *f, int x, int y, const uint8_t *code, int n)
-{
-    const struct row out = samples(f, 0, x, y);
-
-    put(out, code, n);
-    if (out.step == 2 && n % 2)
-        out.first[2 * n] = code[n - 1];
+        memcpy(out, code, (size_t)n);
 }
 
 /* n pairs of U and V. */
-static void put_chroma(const struct rf_frame *f, int x, int y, const uint8_t *uv, int n)
+static void put_chroma(struct row u, struct row v, const uint8_t *restrict uv, int n)
 {
-    const struct row u = samples(f, 1, x, y), v = samples(f, 2, x, y);
-
-    if (f->out->format == REFOCUS_FORMAT_NV12) {
-        memcpy(u.first, uv, 2 * (size_t)n);
+    if (u.step == 2 && v.first == u.first + 1) { /* NV12 */
+        put_luma(u.first, uv, 2 * n);
         return;
     }
     for (int i = 0; i < n; i++) {
@@ -71,16 +69,47 @@ static void put_chroma(const struct rf_frame *f, int x, int y, const uint8_t *uv
     }
 }
 
+/* Codes of a part of the picture. */
+struct codes {
+    const uint8_t *y, *uv; /* of its first pixel */
+    ptrdiff_t y_stride, uv_stride;
+};
+
+static void put(const struct rf_frame *f, struct rf_rect rect, const struct codes *codes)
+{
+    const int n = rect.x1 - rect.x0, down = f->r->yuv.down;
+    const bool yuyv = f->out->format == REFOCUS_FORMAT_YUYV;
+    const struct row luma = samples(f, 0, rect.x0, rect.y0);
+    const struct row u = samples(f, 1, rect.x0, rect.y0), v = samples(f, 2, rect.x0, rect.y0);
+
+    for (int y = 0; y < rect.y1 - rect.y0; y++) {
+        const uint8_t *from = codes->y + y * codes->y_stride;
+        uint8_t *to = luma.first + y * luma.stride;
+
+        if (yuyv)
+            put_yuyv(to, from, codes->uv + y * codes->uv_stride, n);
+        else
+            put_luma(to, from, n);
+    }
+    if (yuyv)
+        return;
+    for (int y = 0; y < (rect.y1 - rect.y0 + down) >> down; y++)
+        put_chroma((struct row){u.first + y * u.stride, u.step, u.stride},
+                   (struct row){v.first + y * v.stride, v.step, v.stride},
+                   codes->uv + y * codes->uv_stride, (n + 1) / 2);
+}
+
 void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect)
 {
     const struct rf_yuv *yuv = &f->r->yuv;
+    const struct codes codes = {
+        .y = yuv->y + rect.y0 * yuv->y_stride + rect.x0,
+        .uv = yuv->uv + (rect.y0 >> yuv->down) * yuv->uv_stride + rect.x0,
+        .y_stride = yuv->y_stride,
+        .uv_stride = yuv->uv_stride,
+    };
 
-    for (int y = rect.y0; y < rect.y1; y++)
-        put_luma(f, rect.x0, y, yuv->y + y * yuv->y_stride + rect.x0,
-                 rect.x1 - rect.x0);
-    for (int y = rect.y0; y < rect.y1; y += 1 << yuv->down)
-        put_chroma(f, rect.x0, y, yuv->uv + (y >> yuv->down) * yuv->uv_stride + rect.x0,
-                   (rect.x1 - rect.x0 + 1) / 2);
+    put(f, rect, &codes);
 }
 
 /* Repeat what is there over the pixel beside an odd edge, which shares its sample. */
@@ -92,6 +121,17 @@ static void repeat_edge(struct rf_decode_job *job, int w, int h)
     if (job->down && h % 2)
         memcpy(job->luma + h * RF_TILE, job->luma + (h - 1) * RF_TILE,
                RF_TILE * sizeof job->luma[0]);
+}
+
+/* Rows of codes, w long; whole ones by copies of a fixed size. */
+static void take(uint8_t *to, const uint8_t *from, ptrdiff_t stride, int w, int rows)
+{
+    for (int y = 0; y < rows; y++, to += RF_TILE, from += stride) {
+        if (w == RF_TILE)
+            memcpy(to, from, RF_TILE);
+        else
+            memcpy(to, from, (size_t)w);
+    }
 }
 
 void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
@@ -109,16 +149,12 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
     job->own_luma = r->smooth[0] + y0 * r->stride + x0;
     job->own_chroma = yuv->smooth + c0 * r->stride + x0;
     job->stride = r->stride;
-    for (int y = 0; y < h; y++)
-        memcpy(job->y + y * RF_TILE, yuv->y + (y0 + y) * yuv->y_stride + x0, (size_t)w);
-    for (int y = 0; y < rows; y++)
-        memcpy(job->uv + y * RF_TILE, yuv->uv + (c0 + y) * yuv->uv_stride + x0,
-               (size_t)(w + w % 2));
+    take(job->y, yuv->y + y0 * yuv->y_stride + x0, yuv->y_stride, w, h);
+    take(job->uv, yuv->uv + c0 * yuv->uv_stride + x0, yuv->uv_stride, w + w % 2, rows);
     repeat_edge(job, w, h);
     r->kernels.decode(job);
-    for (int y = rect.y0; y < rect.y1; y++)
-        put_luma(f, rect.x0, y, job->y + (y - y0) * RF_TILE + rect.x0 - x0, rect.x1 - rect.x0);
-    for (int y = rect.y0; y < rect.y1; y += 1 << yuv->down)
-        put_chroma(f, rect.x0, y, job->uv + ((y - y0) >> yuv->down) * RF_TILE + rect.x0 - x0,
-                   (rect.x1 - rect.x0 + 1) / 2);
+    put(f, rect,
+        &(struct codes){job->y + (rect.y0 - y0) * RF_TILE + rect.x0 - x0,
+                        job->uv + ((rect.y0 - y0) >> yuv->down) * RF_TILE + rect.x0 - x0,
+                        RF_TILE, RF_TILE});
 }

@@ -2,9 +2,10 @@
  *
  * What sweep.c does for three planes is done here for luma and, with the same slabs, for chroma,
  * whose samples lie two pixels apart: its rays are half as long across, and in 4:2:0 down,
- * and half as many of them lie as densely among its samples.
+ * and fewer of them lie as densely among its samples.
  */
 #include "methods/method.h"
+#include "methods/tile_rows.h"
 
 #include <string.h>
 
@@ -16,6 +17,8 @@ struct plane {
     const uint16_t *light, *behind;
     const uint16_t *weighing, *weighing_behind; /* luma of the tile, for eq. 5 */
     int rows, steps;
+    struct rf_tile_rows computed;
+    ptrdiff_t row[RF_TILE]; /* where those are, elements */
     int across, down; /* shifts from pixels to samples */
     const uint32_t *range; /* of the tile's first pixel */
     const struct rf_ray_set *set;
@@ -87,8 +90,8 @@ static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_pl
     const struct rf_sweep1_job job = {
         .blur = plane->blur,
         .light = plane->light,
-        .stride = r->stride,
-        .rows = plane->rows,
+        .row = plane->row,
+        .rows = plane->computed.count,
         .steps = plane->steps,
         .slabs = plan->slabs,
         .slab = plan->slab,
@@ -106,6 +109,17 @@ static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
     memset(run, 0, LANES * sizeof run[0]);
 }
 
+/* Rays from `first` on that weigh the same, RF_RAY_CHUNK at the most. */
+static int chunk_of(const struct rf_ray_set *set, int first)
+{
+    const int most = set->count - first < RF_RAY_CHUNK ? set->count - first : RF_RAY_CHUNK;
+    int n = set->equal ? most : 1;
+
+    while (n < most && set->ray[first + n].weight == set->ray[first].weight)
+        n++;
+    return n;
+}
+
 /* As sweep_rays() of sweep.c: sums of rays of one weight in `run`, of others in `sum`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct plane *plane, int behind, uint32_t run[LANES],
@@ -118,10 +132,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        sight.rays = 1;
-        while (sight.rays < RF_RAY_CHUNK && n + sight.rays < set->count &&
-               ray[sight.rays].weight == ray->weight)
-            sight.rays++;
+        sight.rays = chunk_of(set, n);
         set_sight(&sight, f->r, plane, plan, ray, behind);
         sweep_tile(f->r, plan, plane, &sight, run);
         if (!set->equal &&
@@ -170,19 +181,52 @@ static void weigh_ray(const struct rf_frame *f, const struct rf_tile_plan *plan,
     }
 }
 
-static void sweep_plane(const struct rf_frame *f, const struct rf_tile_plan *plan,
+/* Rows of the lower half lie one further down where they are two apart: 0 2 4 6 9 11 13 15, and
+ * 0 2 5 7 of chroma. */
+static void set_rows(struct plane *plane, struct rf_tile_rows rows, ptrdiff_t stride)
+{
+    const int half = rows.count / 2;
+
+    plane->computed = rows;
+    for (int i = 0; i < rows.count; i++)
+        plane->row[i] = (i * rows.step + (rows.step == 2 && i >= half)) * stride;
+}
+
+/* Means of rays that weigh the same, of some rows and then of those between. */
+static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
                         const struct plane *plane, int behind, uint16_t mean[LANES])
 {
+    const struct rf_kernels *kernels = &f->r->kernels;
+    const bool all = plane->computed.step == 1;
+    uint16_t computed[LANES];
+    uint32_t run[LANES];
+
+    sweep_rays(f, plan, plane, behind, run, NULL);
+    kernels->means(all ? mean : computed, run, rf_mean_scale((uint64_t)plane->set->count),
+                   plane->computed.count * RF_TILE);
+    if (!all && plane->rows == RF_TILE)
+        kernels->between_rows(mean, computed, plane->computed.step);
+    else if (!all)
+        kernels->between_chroma(mean, computed);
+}
+
+static void sweep_plane(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        struct plane *plane, int behind, uint16_t mean[LANES])
+{
     const struct rf_ray_set *set = plane->set;
+    const ptrdiff_t stride = f->r->stride;
     uint64_t sum[LANES], weight[LANES];
     uint32_t run[LANES];
 
     if (set->equal && !f->weighted) {
-        sweep_rays(f, plan, plane, behind, run, NULL);
-        f->r->kernels.means(mean, run, rf_mean_scale((uint64_t)set->count),
-                            plane->rows * RF_TILE);
+        set_rows(plane,
+                 plane->rows == RF_TILE ? rf_tile_rows(f, plan, behind)
+                                        : rf_chroma_rows(f, plan, behind),
+                 stride);
+        sweep_means(f, plan, plane, behind, mean);
         return;
     }
+    set_rows(plane, (struct rf_tile_rows){1, plane->rows}, stride);
     memset(sum, 0, sizeof sum);
     memset(weight, 0, sizeof weight);
     if (f->weighted) {
@@ -195,16 +239,6 @@ static void sweep_plane(const struct rf_frame *f, const struct rf_tile_plan *pla
     }
     for (int i = 0; i < plane->rows * RF_TILE; i++)
         mean[i] = (uint16_t)((4 * sum[i] + weight[i] / 2) / weight[i]);
-}
-
-/* Half as many rays, or the smallest set. */
-static const struct rf_ray_set *half_of(const struct refocus_renderer *r,
-                                        const struct rf_ray_set *set)
-{
-    for (int i = 0; i < r->sets; i++)
-        if (2 * r->set[i].count >= set->count)
-            return &r->set[i];
-    return set;
 }
 
 void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
@@ -249,7 +283,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         return;
     }
     luma.set = rf_rays_for(r, plan.reach, plan.lamp);
-    chroma.set = half_of(r, luma.set);
+    chroma.set = rf_chroma_rays(r, luma.set);
     sweep_plane(f, &plan, &luma, behind, means.luma);
     sweep_plane(f, &plan, &chroma, behind, means.chroma);
     rf_encode_yuv_means(f, tx, ty, rect, &means);

@@ -32,3 +32,13 @@ struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_
             return sparse[i];
     return (struct rf_tile_rows){1, RF_TILE};
 }
+
+struct rf_tile_rows rf_chroma_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                                   int behind)
+{
+    const int least = plan->least < abs(behind) ? plan->least : abs(behind);
+
+    if (f->row_gap && !plan->lamp && least / 4 >= f->row_gap)
+        return (struct rf_tile_rows){2, 4};
+    return (struct rf_tile_rows){1, RF_TILE / 2};
+}

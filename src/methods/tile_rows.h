@@ -25,4 +25,8 @@ int rf_row_gap(const struct rf_frame *f);
 struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
                                  int behind);
 
+/* Of the eight rows of chroma in 4:2:0, two pixels apart: rows 0 2 5 7, or all. */
+struct rf_tile_rows rf_chroma_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                                   int behind);
+
 #endif

@@ -52,9 +52,6 @@ static void smooth_run(const struct refocus_renderer *r, uint16_t *const out[3],
                        s + at, step, least, n);
 }
 
-/* What a step does with a tile. */
-enum task { SKIP, COPY, FILTER };
-
 static bool is_wide_near(const struct refocus_renderer *r, int tx, int ty, int least)
 {
     for (int y = ty - 1; y <= ty + 1; y++)
@@ -67,23 +64,24 @@ static bool is_wide_near(const struct refocus_renderer *r, int tx, int ty, int l
 
 /* Steps 1 and 2 are there and back between two planes, so that tiles that step 1 leaves alone need
  * not be moved at all, but where step 2 looks at them. */
-static enum task task_of(const struct refocus_renderer *r, const int above[], int step, int tx,
-                         int ty)
+enum rf_task rf_prefilter_task(const struct refocus_renderer *r, const int above[], int step,
+                               int tx, int ty)
 {
     if (is_wide(r, tx, ty, above[step]))
-        return FILTER;
+        return RF_FILTER;
     if (step == 0 || (step == 1 && is_wide_near(r, tx, ty, above[1])) ||
         (step == 2 && is_wide(r, tx, ty, above[1])))
-        return COPY;
-    return SKIP;
+        return RF_COPY;
+    return RF_SKIP;
 }
 
-static void do_task(const struct refocus_renderer *r, enum task task, uint16_t *const out[3],
-                    uint16_t *const in[3], ptrdiff_t at, int step, int least, int n)
+static void do_task(const struct refocus_renderer *r, enum rf_task task,
+                    uint16_t *const out[3], uint16_t *const in[3], ptrdiff_t at, int step,
+                    int least, int n)
 {
-    for (int x = 0; task == FILTER && x < n; x += RUN)
+    for (int x = 0; task == RF_FILTER && x < n; x += RUN)
         smooth_run(r, out, in, at + x, 1 << step, least, n - x < RUN ? n - x : RUN);
-    for (int c = 0; task == COPY && c < 3; c++)
+    for (int c = 0; task == RF_COPY && c < 3; c++)
         memcpy(out[c] + at, in[c] + at, (size_t)n * 2);
 }
 
@@ -94,11 +92,12 @@ void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
     const int y0 = ty * RF_TILE, y1 = y0 + RF_TILE < r->height ? y0 + RF_TILE : r->height;
 
     for (int tx = 0, end; tx < r->tiles_x; tx = end) {
-        const enum task task = task_of(r, above, step, tx, ty);
+        const enum rf_task task = rf_prefilter_task(r, above, step, tx, ty);
         const int x0 = tx * RF_TILE;
         int n;
 
-        for (end = tx + 1; end < r->tiles_x && task_of(r, above, step, end, ty) == task;)
+        for (end = tx + 1;
+             end < r->tiles_x && rf_prefilter_task(r, above, step, end, ty) == task;)
             end++;
         n = (end * RF_TILE < r->width ? end * RF_TILE : r->width) - x0;
         for (int y = y0; y < y1; y++)

@@ -38,6 +38,11 @@ void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
                        uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], int step,
                        int ty);
 
+/* What a step does with a tile. */
+enum rf_task { RF_SKIP, RF_COPY, RF_FILTER };
+enum rf_task rf_prefilter_task(const struct refocus_renderer *r, const int above[], int step,
+                               int tx, int ty);
+
 /* The background's blur in the middle of each tile of a row goes to its bins. */
 void rf_note_behind(struct refocus_renderer *r, int ty);
 

@@ -64,6 +64,17 @@ struct refocus_image rf_yuv_guide(const struct refocus_renderer *r)
                                 r->height, yuv->uv_stride);
 }
 
+/* A sample's two values n times. */
+static void repeat(uint16_t *to, const uint16_t *sample, int n)
+{
+    const uint16_t a = sample[0], b = sample[1];
+
+    for (int i = 0; i < n; i++) {
+        to[2 * i] = a;
+        to[2 * i + 1] = b;
+    }
+}
+
 void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int c1)
 {
     const int w = 2 * r->yuv.width, left = r->pad & ~1;
@@ -77,10 +88,8 @@ void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int
     for (int y = c0; y < c1; y++) {
         uint16_t *row = (uint16_t *)plane + y * r->stride;
 
-        for (int x = -left; x < 0; x++)
-            row[x] = row[x & 1];
-        for (int x = w; x < right; x++)
-            row[x] = row[w - 2 + (x & 1)];
+        repeat(row - left, row, left / 2);
+        repeat(row + w, row + w - 2, (right - w) / 2);
     }
     if (c0 == 0)
         for (int y = 1; y <= beyond; y++)
@@ -167,17 +176,28 @@ static void keep_420(const struct refocus_renderer *r, const struct refocus_imag
     }
 }
 
+static void split(uint8_t *restrict first, uint8_t *restrict second,
+                  const uint8_t *restrict pairs, int n)
+{
+    for (int x = 0; x < n; x++) {
+        first[x] = pairs[2 * x];
+        second[x] = pairs[2 * x + 1];
+    }
+}
+
 static void keep_422(const struct refocus_renderer *r, const struct refocus_image *photo,
                      uint8_t *scratch, int row)
 {
-    const int w = r->width;
+    const int w = r->width, even = w & ~1;
     uint8_t *y = r->yuv.y + row * r->yuv.y_stride, *uv = r->yuv.uv + row * r->yuv.uv_stride;
 
     memcpy(scratch, photo->plane[0] + row * photo->stride[0], 4 * (size_t)r->yuv.width);
-    for (int x = 0; x < w; x++)
-        y[x] = scratch[2 * x];
-    for (int x = 0; x < 2 * r->yuv.width; x++)
-        uv[x] = scratch[2 * x + 1];
+    split(y, uv, scratch, even);
+    if (even < w) {
+        y[even] = scratch[2 * even];
+        uv[even] = scratch[2 * even + 1];
+        uv[w] = scratch[2 * even + 3];
+    }
 }
 
 static void convert_chroma_rows(struct refocus_renderer *r, uint8_t *scratch, int c0, int c1)
@@ -230,21 +250,14 @@ void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)
     rf_extend_chroma(r, yuv->blur, c0, c1);
 }
 
-/* Whether a tile holds blurs above `least`. */
-static bool is_wide(const struct refocus_renderer *r, int tx, int ty, int least)
-{
-    const struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
-
-    return bins->most > least || -bins->least > least;
-}
-
 /* A plane and its blur, and how far apart neighbours are. */
 struct filter {
     uint16_t *out;
     const uint16_t *in;
     const int16_t *blur;
-    int across, down; /* elements and rows */
-    int least;        /* |s| that it begins at */
+    const int *above; /* |s| that the steps begin at */
+    int number;       /* of this one */
+    int across;       /* elements from neighbour to neighbour; rows are 1 << number */
     uint16_t *scratch;
 };
 
@@ -252,14 +265,14 @@ struct filter {
 static void smooth_run(const struct refocus_renderer *r, const struct filter *f, ptrdiff_t at,
                        int n)
 {
-    const int step = f->across;
-    const ptrdiff_t down = f->down * r->stride;
+    const int step = f->across, least = f->above[f->number];
+    const ptrdiff_t down = r->stride << f->number;
     const uint16_t *from = f->in + at - step;
     const int16_t *s = f->blur + at;
     uint16_t *const row = f->scratch + step;
 
-    r->kernels.smooth1(row - step, from, s - step, down, f->least, n + 2 * step);
-    r->kernels.smooth1(f->out + at, row, s, step, f->least, n);
+    r->kernels.smooth1(row - step, from, s - step, down, least, n + 2 * step);
+    r->kernels.smooth1(f->out + at, row, s, step, least, n);
 }
 
 /* Rows y0 to y1 - 1, as wide as w, of a row of tiles. */
@@ -267,17 +280,18 @@ static void smooth_rows(const struct refocus_renderer *r, const struct filter *f
                         int y1, int w)
 {
     for (int tx = 0, end; tx < r->tiles_x; tx = end) {
-        const bool wide = is_wide(r, tx, ty, f->least);
+        const enum rf_task task = rf_prefilter_task(r, f->above, f->number, tx, ty);
         const int x0 = tx * RF_TILE;
         int n;
 
-        for (end = tx + 1; end < r->tiles_x && is_wide(r, end, ty, f->least) == wide;)
+        for (end = tx + 1; end < r->tiles_x &&
+                           rf_prefilter_task(r, f->above, f->number, end, ty) == task;)
             end++;
         n = (end * RF_TILE < w ? end * RF_TILE : w) - x0;
-        for (int y = y0; y < y1; y++) {
+        for (int y = y0; y < y1 && task != RF_SKIP; y++) {
             const ptrdiff_t at = y * r->stride + x0;
 
-            if (wide)
+            if (task == RF_FILTER)
                 smooth_run(r, f, at, n);
             else
                 memcpy(f->out + at, f->in + at, (size_t)n * 2);
@@ -286,19 +300,20 @@ static void smooth_rows(const struct refocus_renderer *r, const struct filter *f
 }
 
 void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                           int step, int least, uint16_t *scratch, int ty)
+                           const int above[RF_PREFILTER_STEPS], int step, uint16_t *scratch,
+                           int ty)
 {
-    const struct filter filter = {out, in, r->front.blur, step, step, least, scratch};
+    const struct filter filter = {out, in, r->front.blur, above, step, 1 << step, scratch};
 
     smooth_rows(r, &filter, ty, rf_band_start(ty), rf_band_end(r, ty), r->width);
     rf_extend_rows(r, out, rf_band_start(ty), rf_band_end(r, ty));
 }
 
 void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                             int step, int least, uint16_t *scratch, int ty)
+                             const int above[RF_PREFILTER_STEPS], int step, uint16_t *scratch,
+                             int ty)
 {
-    const struct filter filter = {out,  in,      r->yuv.blur, 2 * step,
-                                  step, least, scratch};
+    const struct filter filter = {out, in, r->yuv.blur, above, step, 2 << step, scratch};
     const int c0 = rf_band_start(ty) >> r->yuv.down;
     const int c1 = rf_chroma_end(r, rf_band_end(r, ty));
 

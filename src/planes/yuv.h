@@ -34,12 +34,14 @@ void rf_yuv_reblend_rows(struct refocus_renderer *r, uint8_t *scratch, int y0, i
  * smeared. r->front.blur is final. */
 void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1);
 
-/* A step of the pre-filter, for a row of tiles, as rf_prefilter_rows(): of luma, and of chroma
- * by its own distances. `step` of chroma is in its samples. */
+/* A step of the pre-filter, for a row of tiles, as rf_prefilter_rows(): of luma, and of chroma,
+ * whose distances are in its samples. */
 void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                           int step, int least, uint16_t *scratch, int ty);
+                           const int above[RF_PREFILTER_STEPS], int step, uint16_t *scratch,
+                           int ty);
 void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                             int step, int least, uint16_t *scratch, int ty);
+                             const int above[RF_PREFILTER_STEPS], int step, uint16_t *scratch,
+                             int ty);
 
 /* rf_extend_rows() of rows c0 to c1 - 1 of a plane of chroma. */
 void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int c1);

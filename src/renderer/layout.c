@@ -23,8 +23,9 @@ ptrdiff_t rf_pitch_for(int width, int pad)
     const ptrdiff_t pitch =
         ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
 
-    return pitch % 512 ? pitch
-                       : pitch + 32; /* rows a page apart would share cache sets */
+    /* rows follow each other at RF_GROUP times this: an odd number of 32 elements spreads
+     * them evenly over the sets of a cache */
+    return pitch | 32;
 }
 
 int rf_threads_for(const struct refocus_renderer_params *params)

@@ -97,3 +97,12 @@ const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach
             return &r->set[i];
     return &r->set[last];
 }
+
+const struct rf_ray_set *rf_chroma_rays(const struct refocus_renderer *r,
+                                        const struct rf_ray_set *set)
+{
+    for (int i = 0; i < r->sets; i++)
+        if (8 * r->set[i].count >= 3 * set->count)
+            return &r->set[i];
+    return set;
+}

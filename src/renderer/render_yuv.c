@@ -1,5 +1,7 @@
 #include "renderer/render_yuv.h"
 
+#include <math.h>
+
 #include "planes/format.h"
 #include "planes/yuv.h"
 
@@ -31,22 +33,34 @@ int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
     return REFOCUS_OK;
 }
 
+/* |s| that gaps between the rays of chroma, in its samples, are as wide at as those of luma. */
+static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_STEPS])
+{
+    const struct refocus_renderer *r = f->r;
+    const struct rf_ray_set *luma = &r->set[r->preset], *chroma = rf_chroma_rays(r, luma);
+    const double times = 2 * sqrt((double)chroma->count / luma->count);
+
+    for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
+        const double s = times * f->prefilter_above[i];
+
+        above[i] = s < INT16_MAX ? (int)s : INT16_MAX;
+    }
+}
+
 /* From the photo to r->smooth, and from there by way of the background's planes. */
 void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
 {
     struct refocus_renderer *r = f->r;
     const struct rf_yuv *yuv = &r->yuv;
-    const int i = f->prefilter_step, step = 1 << i;
+    const int i = f->prefilter_step;
     uint16_t *const luma[] = {r->front.light[0], r->smooth[0], r->behind.light[0]};
     uint16_t *const chroma[] = {yuv->light, yuv->smooth, yuv->behind};
     const int to = i == 1 ? 2 : 1;
-    /* half the rays, twice the pixels: sqrt 2 of the blur for the same gap among samples */
-    const int above = f->prefilter_above[i] < INT16_MAX ? f->prefilter_above[i] * 181 / 128
-                                                        : INT16_MAX;
+    int above[RF_PREFILTER_STEPS];
 
-    rf_yuv_prefilter_luma(r, luma[to], luma[i], step, f->prefilter_above[i],
-                          rf_scratch(r, worker), band);
-    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], step,
-                            above < INT16_MAX ? above : INT16_MAX, rf_scratch(r, worker),
+    set_chroma_above(f, above);
+    rf_yuv_prefilter_luma(r, luma[to], luma[i], f->prefilter_above, i, rf_scratch(r, worker),
+                          band);
+    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], above, i, rf_scratch(r, worker),
                             band);
 }

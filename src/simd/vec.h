@@ -39,6 +39,7 @@
  *     vec_mask_less(m, a, b)  those of m where (int16_t)a < (int16_t)b
  *     vec_mask_without(m, n)  those of m that are off in n
  *     vec_u16_add_where(m, a, b)  m ? (uint16_t)(a + b) : a
+ *     vec_mask_select(m, a, b)    m ? a : b
  *     vec_u16_put_where(m, a, b)  m ? b : a, where a is 0 in the lanes of m
  *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.

@@ -32,4 +32,9 @@ static inline vec_u16 vec_u16_put_where(vec_mask mask, vec_u16 old, vec_u16 v)
     return _mm256_mask_mov_epi16(old, mask, v);
 }
 
+static inline vec_u16 vec_mask_select(vec_mask mask, vec_u16 a, vec_u16 b)
+{
+    return _mm256_mask_blend_epi16(mask, b, a);
+}
+
 #endif

@@ -30,4 +30,9 @@ static inline vec_u16 vec_u16_put_where(vec_mask mask, vec_u16 old, vec_u16 v)
     return vec_u16_or(old, vec_u16_and(v, mask));
 }
 
+static inline vec_u16 vec_mask_select(vec_mask mask, vec_u16 a, vec_u16 b)
+{
+    return vec_u16_select(mask, a, b);
+}
+
 #endif

@@ -196,6 +196,23 @@ class Live(unittest.TestCase):
         far = [abs(a - b) for y in range(48) for a, b in
                zip(data[y * 192:y * 192 + 60], fixed[y * 192:y * 192 + 60])]
         self.assertLess(max(far), 3)
+        # Y, U and V stay as they are; what the network sees of them is the same picture.
+        with open('photo.y4m', 'wb') as video:
+            video.write(b'YUV4MPEG2 W64 H48 F30:1 C420jpeg\n')
+            for _ in range(30):
+                video.write(b'FRAME\n' +
+                            (bytes([60, 60, 100, 100]) * 8 + bytes([100, 100, 140, 140]) * 8) * 48 +
+                            (bytes([100]) * 16 + bytes([80]) * 16) * 24 +
+                            (bytes([110]) * 16 + bytes([200]) * 16) * 24)
+        r = self.report('--camera', 'y4m:photo.y4m', *args[2:], '--depth', 'estimate:red.onnx',
+                        '--fast', '--frames-policy', 'every', '--out', 'y4m:out.y4m')
+        self.assertEqual((r['rendered_in'], r['depth']['frames'], r['frames_out']),
+                         ('YUV420', 30, 30))
+        start = content('out.y4m').index(b'FRAME\n') + 6
+        for y in range(0, 48, 5):
+            row = content('out.y4m')[start + 64 * y:start + 64 * (y + 1)]
+            self.assertLess(max(row[4:20]) - min(row[4:20]), 16)
+            self.assertGreater(max(row[44:60]) - min(row[44:60]), 32)
         # Running freely the newest depth serves, and no frame waits for it.
         r = self.report('--camera', 'replay::size 64x48;fps 60;frames 60', '--depth',
                         'estimate:red.onnx,every=5')

@@ -388,12 +388,12 @@ static int open_all(struct live *live)
     return EXIT_DONE;
 }
 
-/* Formats that the method, the network and the sink take without a detour by way of RGB. */
+/* Formats that the method and the sink take without a detour by way of RGB. */
 static uint32_t find_yuv_formats(struct live *live)
 {
     uint32_t formats = 0;
 
-    if (live->engine->params.method != REFOCUS_METHOD_SWEEP || live->estimator)
+    if (live->engine->params.method != REFOCUS_METHOD_SWEEP)
         return 0;
     for (uint32_t format = 0; format < 32; format++)
         if (refocus_format_is_yuv(format) && refocus_sink_takes(live->sink, format))

@@ -214,8 +214,10 @@ bool live_estimate_is_meant(const char *depth);
 int live_estimate_parse(struct live_estimate_settings *settings, const char *depth);
 int live_estimate_open(struct live *live);
 void live_estimate_close(struct live *live);
-/* Number the picture, and copy it for the network when its turn is. */
-void live_estimate_offer(struct live *live, struct live_picture *picture);
+/* Number the picture, and give the network what the frame looks like when its turn is. */
+int live_estimate_offer(struct live *live, struct live_picture *picture,
+                        const struct refocus_frame *frame,
+                        struct refocus_converter *converter, struct refocus_reason *reason);
 void *live_estimate_thread(void *live);
 
 /* live_commands.c: make the socket of the settings, where there is one; an exit code, and

@@ -203,6 +203,8 @@ static int deliver_colour(struct lane *lane, const struct refocus_frame *frame, 
     else
         status = refocus_convert_copy(lane->converter, frame, &picture->image, reason);
     live->rendered_format = format;
+    if (status == REFOCUS_OK && live->estimator)
+        status = live_estimate_offer(live, picture, frame, lane->converter, reason);
     if (status != REFOCUS_OK) {
         live_queue_return(&live->captured, picture);
         return status;
@@ -211,8 +213,6 @@ static int deliver_colour(struct lane *lane, const struct refocus_frame *frame, 
     picture->taken_ns = taken_at(frame, now_ns);
     picture->lens_dioptres = frame->lens_dioptres;
     picture->still = frame->flags & REFOCUS_FRAME_STILL;
-    if (live->estimator)
-        live_estimate_offer(live, picture);
     live_times_add(&lane->stage->times, (double)(live_now_ns() - begin) / 1e6);
     live_queue_put(&live->captured, picture);
     return REFOCUS_OK;

@@ -227,17 +227,44 @@ void *live_estimate_thread(void *live)
 }
 #endif
 
-void live_estimate_offer(struct live *live, struct live_picture *picture)
+/* The picture itself, or what the frame that it was copied from comes to in R, G and B: by way of
+ * the copy, as camera memory is slow to read. */
+static int copy_rgb(const struct live_picture *picture, const struct refocus_frame *frame,
+                    struct refocus_converter *converter, struct refocus_image *out,
+                    struct refocus_reason *reason)
 {
     const struct refocus_image *from = &picture->image;
-    struct live_picture *copy;
+    struct refocus_frame own = *frame;
+
+    if (from->format == REFOCUS_FORMAT_RGB8) {
+        memcpy(out->plane[0], from->plane[0],
+               (size_t)from->stride[0] * (size_t)from->height);
+        return REFOCUS_OK;
+    }
+    if (own.format == REFOCUS_FRAME_UYVY)
+        own.format = REFOCUS_FRAME_YUYV;
+    for (int i = 0; i < refocus_format_planes(from->format); i++) {
+        own.plane[i] = from->plane[i];
+        own.stride[i] = from->stride[i];
+    }
+    return refocus_convert_rgb8(converter, &own, out, reason);
+}
+
+int live_estimate_offer(struct live *live, struct live_picture *picture,
+                        const struct refocus_frame *frame,
+                        struct refocus_converter *converter, struct refocus_reason *reason)
+{
+    const struct refocus_image *from = &picture->image;
+    int status = REFOCUS_OK;
     bool memory;
 
     if (live->offered++ % live->settings->estimate.every == 0) {
-        copy = live_queue_fill(&live->to_estimate, from->format, from->width, from->height, &memory);
-        if (copy && memory) {
-            memcpy(copy->image.plane[0], from->plane[0],
-                   (size_t)from->stride[0] * (size_t)from->height);
+        struct live_picture *copy = live_queue_fill(
+            &live->to_estimate, REFOCUS_FORMAT_RGB8, from->width, from->height, &memory);
+
+        if (copy && memory)
+            status = copy_rgb(picture, frame, converter, &copy->image, reason);
+        if (copy && memory && status == REFOCUS_OK) {
             copy->key = ++live->key;
             live_queue_put(&live->to_estimate, copy);
         } else if (copy) {
@@ -245,4 +272,5 @@ void live_estimate_offer(struct live *live, struct live_picture *picture)
         }
     }
     picture->key = live->key;
+    return status;
 }
