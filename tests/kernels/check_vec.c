@@ -117,6 +117,40 @@ static uint16_t c_mul(uint16_t a, uint16_t b)
     return (uint16_t)((uint32_t)a * b);
 }
 
+/* Masks, among the lanes where a is even. */
+static vec_mask mask_of(vec_u16 a, vec_u16 b)
+{
+    const vec_u16 one = vec_u16_set(1), zero = vec_u16_set(0);
+    const vec_mask odd = vec_mask_less(vec_mask_all(), zero, vec_u16_and(a, one));
+
+    return vec_mask_less(vec_mask_without(vec_mask_all(), odd), a, b);
+}
+
+static bool c_mask_of(uint16_t a, uint16_t b)
+{
+    return a % 2 == 0 && (int16_t)a < (int16_t)b;
+}
+
+static vec_u16 add_where(vec_u16 a, vec_u16 b)
+{
+    return vec_u16_add_where(mask_of(a, b), a, b);
+}
+
+static uint16_t c_add_where(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(c_mask_of(a, b) ? a + b : a);
+}
+
+static vec_u16 put_where(vec_u16 a, vec_u16 b)
+{
+    return vec_u16_put_where(mask_of(a, b), vec_u16_set(0), b);
+}
+
+static uint16_t c_put_where(uint16_t a, uint16_t b)
+{
+    return c_mask_of(a, b) ? b : 0;
+}
+
 static const struct {
     const char *name;
     operation *run;
@@ -130,7 +164,8 @@ static const struct {
     {"equal", vec_u16_equal, c_equal},       {"offset", vec_u16_offset, c_offset},
     {"bytes", vec_u16_bytes, c_bytes},
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
-    {"mul", vec_u16_mul, c_mul},
+    {"mul", vec_u16_mul, c_mul},            {"add_where", add_where, c_add_where},
+    {"put_where", put_where, c_put_where},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)
