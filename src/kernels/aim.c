@@ -236,40 +236,44 @@ static void RF_VEC(rf_tolerances)(int32_t *restrict within, const int16_t *restr
         const int32_t square = u[i] * u[i] + v[i] * v[i];
         const double most = 4194304.0 / sqrt(square); /* 2^22 = half in Q23 */
 
-        within[i] = (int32_t)(most < 65535 ? most : 65535);
+        within[i] = (int32_t)(most < 32766 ? most : 32766);
     }
 }
 
 static void RF_VEC(rf_settle)(uint8_t *settled, int32_t *offset, const uint32_t *range,
-                              const int32_t *start, const struct rf_search_ray *ray,
-                              int32_t stride, int32_t cell_stride, int n)
+                              const int32_t *cell, const struct rf_search_rays *rays,
+                              int tests, int32_t stride, int32_t cell_stride)
 {
-    int32_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK], within[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
-    uint32_t guess[RF_RAY_CHUNK], seen[RF_RAY_CHUNK], same[RF_RAY_CHUNK];
+    const int32_t own = tests == 1 ? (int16_t)range[0] : INT16_MIN - 1;
+    const int16_t *restrict u = rays->u, *restrict v = rays->v;
+    const int32_t *restrict within = rays->within;
+    const int n = rays->rays;
+    uint32_t guess[RF_RAY_CHUNK], seen[RF_RAY_CHUNK];
+    int32_t there[RF_RAY_CHUNK];
+    int16_t x[RF_RAY_CHUNK], y[RF_RAY_CHUNK], same[RF_RAY_CHUNK];
 
+    for (int i = 0; i < n; i++)
+        guess[i] = range[cell[i]];
     for (int i = 0; i < n; i++) {
-        u[i] = ray[i].u;
-        v[i] = ray[i].v;
-        within[i] = ray[i].within;
-        guess[i] = range[start[i]];
+        const int16_t least = (int16_t)guess[i], most = (int16_t)(guess[i] >> 16);
+
+        x[i] = rounded(u[i], least);
+        y[i] = rounded(v[i], least);
+        same[i] = (x[i] == rounded(u[i], most)) & (y[i] == rounded(v[i], most));
     }
     for (int i = 0; i < n; i++) {
-        const int32_t least = (int16_t)guess[i], most = (int32_t)guess[i] >> 16;
-        const int32_t x = (u[i] * least + (1 << 22)) >> 23, x1 = (u[i] * most + (1 << 22)) >> 23;
-        const int32_t y = (v[i] * least + (1 << 22)) >> 23, y1 = (v[i] * most + (1 << 22)) >> 23;
-
-        same[i] = (uint32_t)((x == x1) & (y == y1));
-        offset[i] = x + y * stride;
-        cell[i] = (x >> 2) + (y >> 2) * cell_stride;
+        offset[i] = x[i] + y[i] * stride;
+        there[i] = (x[i] >> 2) + (y[i] >> 2) * cell_stride;
     }
     for (int i = 0; i < n; i++)
-        seen[i] = range[cell[i]];
+        seen[i] = range[there[i]];
     for (int i = 0; i < n; i++) {
         const int32_t least = (int16_t)guess[i], most = (int32_t)guess[i] >> 16;
         const int32_t low = (int16_t)seen[i], high = (int32_t)seen[i] >> 16;
 
-        settled[i] = (uint8_t)(same[i] & (high - least <= within[i]) &
-                               (most - low <= within[i]));
+        settled[i] = (uint8_t)(same[i] & (((high - least <= within[i]) &
+                                           (most - low <= within[i])) |
+                                          (high <= own)));
     }
 }
 

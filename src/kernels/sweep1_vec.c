@@ -60,7 +60,7 @@ static ALWAYS_INLINE void sweep_vectors(struct state *s, int first, int end, con
             load(seen, blur + q, place, vecs);
             load(front, light + q, place, vecs);
             for (int j = 0; j < vecs; j++)
-                value[j] = vec_mask_select(
+                value[j] = vec_u16_choose(
                     vec_mask_less(vec_mask_all(), vec_u16_sub(seen[j], l->from), l->to),
                     front[j], value[j]);
         }

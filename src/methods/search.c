@@ -1,12 +1,13 @@
 /* search.c: randomized intersection search, Yang et al. 2016, section "Randomized
  * Intersection Searching".
  *
- * A ray (u, v) of pixel p starts with the disparity found where it would meet the nearest
- * plane, d = 1: at p + (u, v) K (df - 1), the same offset for every pixel. A guess d leads to the
- * pixel q = p + (u, v) K (df - d) (eq. 4). If the disparity at q confirms the guess to half
- * a pixel, |u| K |d_q - d| <= 1/2, q is an intersection. If not, d_q is the next guess. After T
- * tests the last pixel looked at is taken, unless it is no intersection and farther than
- * p: then p itself is (or, by option, the mirrored pixel, or the background layer).
+ * A ray (u, v) of pixel p starts with the disparity found where it would meet the
+ * nearest plane, d = 1: at p + (u, v) K (df - 1), the same offset for every pixel. A
+ * guess d leads to the pixel q = p + (u, v) K (df - d) (eq. 4). If the disparity at q
+ * confirms the guess to half a pixel, |u| K |d_q - d| <= 1/2, q is an intersection. If
+ * not, d_q is the next guess. After T tests the last pixel looked at is taken, unless
+ * it is no intersection and farther than p: then p itself is (or, by option, the
+ * mirrored pixel, or the background layer).
  */
 #include "methods/method.h"
 #include "renderer/bands.h"
@@ -20,7 +21,8 @@ struct hit {
 };
 
 static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
-                         const struct refocus_ray *ray, ptrdiff_t start, int within, int tests)
+                         const struct refocus_ray *ray, ptrdiff_t start, int within,
+                         int tests)
 {
     const int16_t *s = r->front.blur;
     struct hit hit = {p, s[p + start], false};
@@ -30,7 +32,8 @@ static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
         int apart;
 
         hit.blur = next;
-        hit.at = p + rf_offset(ray->v, hit.blur) * r->stride + rf_offset(ray->u, hit.blur);
+        hit.at =
+            p + rf_offset(ray->v, hit.blur) * r->stride + rf_offset(ray->u, hit.blur);
         next = s[hit.at];
         apart = next - hit.blur;
         hit.valid = apart <= within && -apart <= within;
@@ -55,52 +58,52 @@ static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p,
         return p + rf_offset(ray->v, s) * r->stride + rf_offset(ray->u, s);
     }
     if (f->params->mirror)
-        return p - rf_offset(ray->v, hit.blur) * r->stride - rf_offset(ray->u, hit.blur);
+        return p - rf_offset(ray->v, hit.blur) * r->stride -
+               rf_offset(ray->u, hit.blur);
     return p;
 }
 
 /* s of the nearest plane, d = 1. */
 static int nearest_blur(const struct rf_frame *f)
 {
-    return -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >>
-                  16);
+    return -(
+        int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >>
+             16);
 }
 
-/* Some rays of equal weight, and where their first guesses lie, in pixels and in cells. */
+/* Some rays of equal weight, and the cells of their first guesses. */
 struct chunk {
-    int rays;
-    struct rf_search_ray ray[RF_RAY_CHUNK];
+    struct rf_search_rays rays;
     int32_t cell[RF_RAY_CHUNK];
 };
 
-static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struct refocus_ray *ray)
+static void set_chunk(struct chunk *chunk, const struct rf_frame *f,
+                      const struct refocus_ray *ray, int n)
 {
     const struct refocus_renderer *r = f->r;
-    const int nearest = nearest_blur(f);
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
-    int32_t start[RF_RAY_CHUNK], within[RF_RAY_CHUNK];
+    struct rf_search_rays *rays = &chunk->rays;
 
-    for (int n = 0; n < chunk->rays; n++) {
-        u[n] = ray[n].u;
-        v[n] = ray[n].v;
+    rays->rays = n;
+    for (int i = 0; i < n; i++) {
+        rays->u[i] = ray[i].u;
+        rays->v[i] = ray[i].v;
     }
-    r->kernels.aim(start, chunk->cell, u, v, nearest, (int32_t)r->stride,
-                   (int32_t)r->range_stride, chunk->rays);
-    r->kernels.tolerances(within, u, v, chunk->rays);
-    for (int n = 0; n < chunk->rays; n++)
-        chunk->ray[n] = (struct rf_search_ray){start[n], u[n], v[n], within[n]};
+    r->kernels.aim(rays->start, chunk->cell, rays->u, rays->v, nearest_blur(f),
+                   (int32_t)r->stride, (int32_t)r->range_stride, n);
+    r->kernels.tolerances(rays->within, rays->u, rays->v, n);
 }
 
-/* The paper's own rule, by kernels: rays that are settled for the strip as a whole are added as
- * those of the sweep that need no test, the others are searched. */
-static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx, int y,
-                         uint32_t *const sum[3])
+/* The paper's own rule, by kernels: rays that are settled for the strip as a whole are
+ * added as those of the sweep that need no test, the others are searched. */
+static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx,
+                         int y, uint32_t *const sum[3])
 {
     const struct refocus_renderer *r = f->r;
+    const struct rf_search_rays *rays = &chunk->rays;
     const ptrdiff_t at = y * r->stride + tx * RF_TILE;
     uint8_t settled[RF_RAY_CHUNK];
     int32_t offset[RF_RAY_CHUNK];
-    struct rf_search_ray left[RF_RAY_CHUNK];
+    struct rf_search_rays left;
     struct rf_sorted_rays sorted;
     const struct rf_sweep_job sweep = {
         .blur = r->front.blur + at,
@@ -109,51 +112,60 @@ static void search_strip(const struct rf_frame *f, const struct chunk *chunk, in
         .rays = &sorted,
         .lanes = RF_STRIP_LANES,
     };
-    struct rf_search_job search = {
+    const struct rf_search_job search = {
         .blur = r->front.blur + at,
-        .light = {r->front.light[0] + at, r->front.light[1] + at, r->front.light[2] + at},
+        .light = {r->front.light[0] + at, r->front.light[1] + at,
+                  r->front.light[2] + at},
         .stride = r->stride,
         .tests = f->params->iterations,
-        .ray = left,
+        .rays = &left,
     };
+    int add = 0, test = 0;
 
-    sorted.rays = 0;
     r->kernels.settle(settled, offset,
-                      r->range + y / RF_CELL * r->range_stride + tx * (RF_TILE / RF_CELL),
-                      chunk->cell, chunk->ray, (int32_t)r->stride, (int32_t)r->range_stride,
-                      chunk->rays);
-    for (int n = 0; n < chunk->rays; n++) {
-        left[search.rays] = chunk->ray[n];
-        sorted.tests[sorted.rays] = 0;
-        sorted.last[sorted.rays] = r->front.light[0] + at + offset[n];
-        search.rays += !settled[n];
-        sorted.rays += settled[n];
+                      r->range + y / RF_CELL * r->range_stride +
+                          tx * (RF_TILE / RF_CELL),
+                      chunk->cell, rays, f->params->iterations, (int32_t)r->stride,
+                      (int32_t)r->range_stride);
+    for (int n = 0; n < rays->rays; n++) {
+        left.start[test] = rays->start[n];
+        left.u[test] = rays->u[n];
+        left.v[test] = rays->v[n];
+        left.within[test] = rays->within[n];
+        sorted.tests[add] = 0;
+        sorted.last[add] = r->front.light[0] + at + offset[n];
+        test += !settled[n];
+        add += settled[n];
     }
-    r->kernels.sweep(sum, &sweep);
-    r->kernels.search(sum, &search);
+    left.rays = test;
+    sorted.rays = add;
+    if (add)
+        r->kernels.sweep(sum, &sweep);
+    if (test)
+        r->kernels.search(sum, &search);
 }
 
-static void search_runs(const struct rf_frame *f, int tx, int ty, const struct rf_ray_set *set,
-                        struct rf_sums *sums)
+static void search_runs(const struct rf_frame *f, int tx, int ty,
+                        const struct rf_ray_set *set, struct rf_sums *sums)
 {
     uint32_t run[3][RF_TILE * RF_TILE];
     struct chunk chunk;
 
     memset(run, 0, sizeof run);
-    for (int n = 0; n < set->count; n += chunk.rays) {
+    for (int n = 0, rays; n < set->count; n += rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
         if (rf_cancelled(f->r))
             return;
-        chunk.rays = 1;
-        while (chunk.rays < RF_RAY_CHUNK && n + chunk.rays < set->count &&
-               ray[chunk.rays].weight == ray->weight)
-            chunk.rays++;
-        set_chunk(&chunk, f, ray);
+        rays = 1;
+        while (rays < RF_RAY_CHUNK && n + rays < set->count &&
+               ray[rays].weight == ray->weight)
+            rays++;
+        set_chunk(&chunk, f, ray, rays);
         for (int i = 0; i < RF_TILE * RF_TILE; i += RF_STRIP_LANES)
             search_strip(f, &chunk, tx, ty * RF_TILE + i / RF_TILE,
                          (uint32_t *const[3]){run[0] + i, run[1] + i, run[2] + i});
-        if (n + chunk.rays < set->count && ray[chunk.rays].weight == ray->weight)
+        if (n + rays < set->count && ray[rays].weight == ray->weight)
             continue;
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < RF_TILE * RF_TILE; i++)
@@ -173,8 +185,8 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
 
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
-        const ptrdiff_t start = rf_offset(ray->v, nearest) * r->stride +
-                                rf_offset(ray->u, nearest);
+        const ptrdiff_t start =
+            rf_offset(ray->v, nearest) * r->stride + rf_offset(ray->u, nearest);
         int32_t within;
 
         if (rf_cancelled(f->r))
@@ -198,7 +210,8 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
     }
 }
 
-void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                    int worker)
 {
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
     struct rf_sums sums;

@@ -20,12 +20,10 @@ int rf_padding_for(float max_blur_radius)
 ptrdiff_t rf_pitch_for(int width, int pad)
 {
     const int tiles = (width + RF_TILE - 1) / RF_TILE;
-    const ptrdiff_t pitch =
-        ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) & ~(ptrdiff_t)31;
+    const ptrdiff_t pitch = ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) / 32;
 
-    /* rows follow each other at RF_GROUP times this: an odd number of 32 elements spreads
-     * them evenly over the sets of a cache */
-    return pitch | 32;
+    /* an odd number of cache lines: rows and planes then spread over all cache sets */
+    return 32 * (pitch | 1);
 }
 
 int rf_threads_for(const struct refocus_renderer_params *params)

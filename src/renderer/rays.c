@@ -26,6 +26,42 @@ static bool are_equal(const struct rf_ray_set *set)
     return true;
 }
 
+/* By weight, so that few runs of equal ones are left, then down and across. */
+static bool comes_before(const struct refocus_ray *a, const struct refocus_ray *b)
+{
+    if (a->weight != b->weight)
+        return a->weight < b->weight;
+    return a->v != b->v ? a->v < b->v : a->u < b->u;
+}
+
+static void sift_down(struct refocus_ray *ray, int root, int count)
+{
+    const struct refocus_ray moved = ray[root];
+
+    for (int child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && comes_before(&ray[child], &ray[child + 1]))
+            child++;
+        if (!comes_before(&moved, &ray[child]))
+            break;
+        ray[root] = ray[child];
+    }
+    ray[root] = moved;
+}
+
+/* A heap sort: in place. */
+static void sort_rays(struct refocus_ray *ray, int count)
+{
+    for (int root = count / 2 - 1; root >= 0; root--)
+        sift_down(ray, root, count);
+    for (int end = count - 1; end > 0; end--) {
+        const struct refocus_ray last = ray[end];
+
+        ray[end] = ray[0];
+        ray[0] = last;
+        sift_down(ray, 0, end);
+    }
+}
+
 void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
                   int rays, bool denser, float max_blur_radius)
 {
@@ -42,6 +78,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
         r->set[0].ray = next;
         r->set[0].count =
             rf_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, next, &r->run);
+        sort_rays(next, r->set[0].count);
         r->set[0].total_weight = total_weight(&r->set[0]);
         r->set[0].before = next;
         r->set[0].equal = are_equal(&r->set[0]);

@@ -31,15 +31,20 @@
  *     vec_u16_zip_high(a, b)  and of the upper ones
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
  *     vec_s16_less(a, b)      (int16_t)a < (int16_t)b ? 0xffff : 0
+ *     vec_s16_apart(a, b)     min(|a - b|, 32767) of signed lanes
  *     vec_u16_select(m, a, b) m ? a : b, for lanes of m that are 0xffff or 0
  *
  * A vec_mask has lanes that are on or off:
  *
  *     vec_mask_all()          all of them on
  *     vec_mask_less(m, a, b)  those of m where (int16_t)a < (int16_t)b
+ *     vec_mask_equal(m, a, b) those of m where a == b
  *     vec_mask_without(m, n)  those of m that are off in n
+ *     vec_mask_or(m, n)       those on in either
+ *     vec_mask_any(m)         whether any is on
+ *     vec_mask_first(m)       the number of the first that is on, of the last lane if none
  *     vec_u16_add_where(m, a, b)  m ? (uint16_t)(a + b) : a
- *     vec_mask_select(m, a, b)    m ? a : b
+ *     vec_u16_choose(m, a, b)     m ? a : b
  *     vec_u16_put_where(m, a, b)  m ? b : a, where a is 0 in the lanes of m
  *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.

@@ -157,6 +157,11 @@ static inline vec_u16 vec_s16_less(vec_u16 a, vec_u16 b)
     return _mm256_cmpgt_epi16(b, a);
 }
 
+static inline vec_u16 vec_s16_apart(vec_u16 a, vec_u16 b)
+{
+    return _mm256_max_epi16(_mm256_subs_epi16(a, b), _mm256_subs_epi16(b, a));
+}
+
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
 {
     return _mm256_blendv_epi8(b, a, m);

@@ -3,6 +3,8 @@
 #ifndef RF_VEC_AVX512_H
 #define RF_VEC_AVX512_H
 
+#include <stdbool.h>
+
 #include "simd/vec_avx2.h"
 
 typedef __mmask16 vec_mask;
@@ -15,6 +17,31 @@ static inline vec_mask vec_mask_all(void)
 static inline vec_mask vec_mask_less(vec_mask among, vec_u16 a, vec_u16 b)
 {
     return _mm256_mask_cmplt_epi16_mask(among, a, b);
+}
+
+static inline vec_mask vec_mask_equal(vec_mask among, vec_u16 a, vec_u16 b)
+{
+    return _mm256_mask_cmpeq_epi16_mask(among, a, b);
+}
+
+static inline vec_mask vec_mask_or(vec_mask a, vec_mask b)
+{
+    return _kor_mask16(a, b);
+}
+
+static inline bool vec_mask_any(vec_mask m)
+{
+    return m != 0;
+}
+
+static inline int vec_mask_first(vec_mask m)
+{
+    return __builtin_ctz(m | 0x8000);
+}
+
+static inline vec_u16 vec_u16_choose(vec_mask mask, vec_u16 a, vec_u16 b)
+{
+    return _mm256_mask_mov_epi16(b, mask, a);
 }
 
 static inline vec_mask vec_mask_without(vec_mask a, vec_mask b)
@@ -30,11 +57,6 @@ static inline vec_u16 vec_u16_add_where(vec_mask mask, vec_u16 sum, vec_u16 v)
 static inline vec_u16 vec_u16_put_where(vec_mask mask, vec_u16 old, vec_u16 v)
 {
     return _mm256_mask_mov_epi16(old, mask, v);
-}
-
-static inline vec_u16 vec_mask_select(vec_mask mask, vec_u16 a, vec_u16 b)
-{
-    return _mm256_mask_blend_epi16(mask, b, a);
 }
 
 #endif

@@ -153,6 +153,12 @@ static inline vec_u16 vec_s16_less(vec_u16 a, vec_u16 b)
     return vcltq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b));
 }
 
+static inline vec_u16 vec_s16_apart(vec_u16 a, vec_u16 b)
+{
+    return vreinterpretq_u16_s16(
+        vqabsq_s16(vqsubq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b))));
+}
+
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
 {
     return vbslq_u16(m, a, b);

@@ -150,6 +150,11 @@ static inline vec_u16 vec_s16_less(vec_u16 a, vec_u16 b)
     return _mm_cmpgt_epi16(b, a);
 }
 
+static inline vec_u16 vec_s16_apart(vec_u16 a, vec_u16 b)
+{
+    return _mm_max_epi16(_mm_subs_epi16(a, b), _mm_subs_epi16(b, a));
+}
+
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
 {
     return _mm_blendv_epi8(b, a, m);

@@ -2,53 +2,200 @@
 
 #include <refocus/status.h>
 
-static void take_items(struct rf_pool *pool, int worker)
-{
-    while (!rf_run_cancelled(pool->run)) {
-        const int item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
+#include <stdint.h>
+#include <time.h>
+#include <unistd.h>
 
-        if (item >= pool->count)
-            return;
-        pool->work(pool->context, item, worker);
-    }
+enum {
+    WORKERS = 0xff, /* bits of pool->state */
+    OPEN = 0x100,
+    LOOP = 0x200,
+};
+
+enum {
+    SPIN_NS = 150 * 1000, /* longer than what is done between two loops of a picture */
+    SPINS = 32,           /* pauses between two looks at the clock */
+    SHARES = 4,           /* of each thread in what is left */
+};
+
+/* Items that lie side by side share cache lines of what they write, so they are taken
+ * in runs, long ones first, which get shorter as less is left. */
+static int take_run(struct rf_pool *pool, int *end)
+{
+    const int shares = SHARES * pool->threads;
+    int first = atomic_load_explicit(&pool->next, memory_order_relaxed), n;
+
+    do {
+        const int left = pool->count - first;
+
+        if (left <= 0)
+            return *end = pool->count;
+        n = left > shares ? left / shares : 1;
+    } while (!atomic_compare_exchange_weak_explicit(
+        &pool->next, &first, first + n, memory_order_relaxed, memory_order_relaxed));
+    *end = first + n;
+    return first;
 }
 
-/* The items of the caller's loop are our workers: each has scratch memory of its own, and takes
- * items of ours until there are none. */
+static void take_items(struct rf_pool *pool, int worker)
+{
+    const int count = pool->count;
+    int item, end;
+
+    while ((item = take_run(pool, &end)) < count)
+        for (; item < end; item++) {
+            if (rf_run_cancelled(pool->run))
+                return;
+            pool->work(pool->context, item, worker);
+        }
+}
+
+/* The items of the caller's loop are our workers: each has scratch memory of its own,
+ * and takes items of ours until there are none. */
 static void caller_item(void *context, int32_t worker)
 {
     take_items(context, worker);
 }
 
+static inline void pause_briefly(void)
+{
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__) || (defined(__arm__) && __ARM_ARCH >= 7)
+    __asm__ volatile("yield");
+#endif
+}
+
+static int64_t now_ns(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+/* Whether there is a loop to join other than the one last seen. */
+static bool is_new(unsigned state, unsigned seen)
+{
+    return state & OPEN && (state & ~WORKERS) != seen;
+}
+
+static bool nobody_in(unsigned state)
+{
+    return !(state & WORKERS);
+}
+
+/* To be woken takes 50 us and more, about as long as a small loop: stay awake for a
+ * while. */
+static bool spin(struct rf_pool *pool,
+                 bool (*is_over)(struct rf_pool *pool, unsigned seen), unsigned seen)
+{
+    int64_t end;
+
+    if (!pool->spins)
+        return false;
+    end = now_ns() + SPIN_NS;
+    do {
+        for (int i = 0; i < SPINS; i++) {
+            if (is_over(pool, seen))
+                return true;
+            pause_briefly();
+        }
+    } while (now_ns() < end);
+    return false;
+}
+
+static bool is_called(struct rf_pool *pool, unsigned seen)
+{
+    return is_new(atomic_load(&pool->state), seen) || atomic_load(&pool->quit);
+}
+
+static bool is_left(struct rf_pool *pool, unsigned seen)
+{
+    (void)seen;
+    return nobody_in(atomic_load(&pool->state));
+}
+
+/* Either sleepers is seen by whoever opens a loop, or the loop by the sleeper. */
+static void wait_for_loop(struct rf_pool *pool, unsigned seen)
+{
+    if (spin(pool, is_called, seen))
+        return;
+    pthread_mutex_lock(&pool->lock);
+    atomic_fetch_add(&pool->sleepers, 1);
+    while (!is_called(pool, seen))
+        pthread_cond_wait(&pool->wake, &pool->lock);
+    atomic_fetch_sub(&pool->sleepers, 1);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+/* A loop that is closed is not waited for by those who come too late, nor they by it.
+ */
+static bool join_loop(struct rf_pool *pool, unsigned *seen)
+{
+    unsigned state = atomic_load(&pool->state);
+
+    while (is_new(state, *seen))
+        if (atomic_compare_exchange_weak(&pool->state, &state, state + 1)) {
+            *seen = state & ~WORKERS;
+            return true;
+        }
+    return false;
+}
+
+static void leave_loop(struct rf_pool *pool)
+{
+    if ((atomic_fetch_sub(&pool->state, 1) & (WORKERS | OPEN)) == 1 &&
+        atomic_load(&pool->waits)) {
+        pthread_mutex_lock(&pool->lock);
+        pthread_cond_signal(&pool->done);
+        pthread_mutex_unlock(&pool->lock);
+    }
+}
+
 static void *thread_main(void *argument)
 {
     struct rf_pool *pool = argument;
+    const int worker = 1 + atomic_fetch_add(&pool->started, 1);
     unsigned seen = 0;
-    int worker;
 
-    pthread_mutex_lock(&pool->lock);
-    worker = ++pool->started;
-    pthread_cond_signal(&pool->done);
-    for (;;) {
-        while (pool->generation == seen && !pool->quit)
-            pthread_cond_wait(&pool->wake, &pool->lock);
-        if (pool->quit)
-            break;
-        seen = pool->generation;
-        pthread_mutex_unlock(&pool->lock);
-        take_items(pool, worker);
-        pthread_mutex_lock(&pool->lock);
-        if (--pool->busy == 0)
-            pthread_cond_signal(&pool->done);
+    while (!atomic_load(&pool->quit)) {
+        wait_for_loop(pool, seen);
+        if (join_loop(pool, &seen)) {
+            take_items(pool, worker);
+            leave_loop(pool);
+        }
     }
-    pthread_mutex_unlock(&pool->lock);
     return NULL;
+}
+
+static void open_loop(struct rf_pool *pool)
+{
+    atomic_store(&pool->state, ((atomic_load(&pool->state) & ~OPEN) + LOOP) | OPEN);
+    if (atomic_load(&pool->sleepers) > 0) {
+        pthread_mutex_lock(&pool->lock);
+        pthread_cond_broadcast(&pool->wake);
+        pthread_mutex_unlock(&pool->lock);
+    }
+}
+
+static void close_loop(struct rf_pool *pool)
+{
+    if (nobody_in(atomic_fetch_and(&pool->state, ~(unsigned)OPEN)) ||
+        spin(pool, is_left, 0))
+        return;
+    pthread_mutex_lock(&pool->lock);
+    atomic_store(&pool->waits, true);
+    while (!is_left(pool, 0))
+        pthread_cond_wait(&pool->done, &pool->lock);
+    atomic_store(&pool->waits, false);
+    pthread_mutex_unlock(&pool->lock);
 }
 
 static void join(struct rf_pool *pool, int created)
 {
     pthread_mutex_lock(&pool->lock);
-    pool->quit = true;
+    atomic_store(&pool->quit, true);
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
     for (int i = 0; i < created; i++)
@@ -58,12 +205,13 @@ static void join(struct rf_pool *pool, int created)
     pthread_mutex_destroy(&pool->lock);
 }
 
-int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parallel *parallel,
-                  struct rf_run *run)
+int rf_pool_start(struct rf_pool *pool, int threads,
+                  const struct refocus_parallel *parallel, struct rf_run *run)
 {
     int created = 0;
 
     *pool = (struct rf_pool){.threads = threads, .run = run};
+    pool->spins = threads <= sysconf(_SC_NPROCESSORS_ONLN);
     if (parallel && parallel->parallel_for) {
         pool->parallel = *parallel;
         return REFOCUS_OK;
@@ -81,11 +229,6 @@ int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parall
         }
         created++;
     }
-    /* Wait until all have their worker numbers: a loop may not begin before. */
-    pthread_mutex_lock(&pool->lock);
-    while (pool->started < created)
-        pthread_cond_wait(&pool->done, &pool->lock);
-    pthread_mutex_unlock(&pool->lock);
     return REFOCUS_OK;
 
 no_done:
@@ -114,15 +257,8 @@ void rf_pool_run(struct rf_pool *pool, rf_work_fn *work, void *context, int coun
         pool->parallel.parallel_for(pool->parallel.user, caller_item, pool,
                                     count < pool->threads ? count : pool->threads);
     } else {
-        pthread_mutex_lock(&pool->lock);
-        pool->busy = pool->threads - 1;
-        pool->generation++;
-        pthread_cond_broadcast(&pool->wake);
-        pthread_mutex_unlock(&pool->lock);
+        open_loop(pool);
         take_items(pool, 0);
-        pthread_mutex_lock(&pool->lock);
-        while (pool->busy > 0)
-            pthread_cond_wait(&pool->done, &pool->lock);
-        pthread_mutex_unlock(&pool->lock);
+        close_loop(pool);
     }
 }

@@ -1,8 +1,9 @@
 /* pool.h: threads that share out the items of a loop.
  *
  * rf_pool_run() calls work(context, item, worker) once for each item in 0 .. count - 1,
- * from the calling thread and the pool's. Which thread takes which item is left open, so
- * an item's result must not depend on it. worker, 0 .. threads - 1, picks scratch memory.
+ * from the calling thread and the pool's. Which thread takes which item is left open,
+ * so an item's result must not depend on it. worker, 0 .. threads - 1, picks scratch
+ * memory.
  */
 #ifndef RF_POOL_H
 #define RF_POOL_H
@@ -20,12 +21,13 @@ enum { RF_MAX_THREADS = 64 };
 enum rf_run_state { RF_RUN_IDLE, RF_RUN_RUNNING, RF_RUN_CANCELLED };
 
 struct rf_run {
-    atomic_int state;             /* enum rf_run_state */
+    atomic_int state;              /* enum rf_run_state */
     void (*looked_at)(void *user); /* tests only, else NULL: called by whoever asks */
     void *user;
 };
 
-/* Asked by everything that takes long, at least once a millisecond or two. NULL: never. */
+/* Asked by everything that takes long, at least once a millisecond or two. NULL:
+ * never. */
 static inline bool rf_run_cancelled(struct rf_run *run)
 {
     if (!run)
@@ -39,25 +41,32 @@ typedef void rf_work_fn(void *context, int item, int worker);
 
 struct rf_pool {
     int threads; /* with the calling one; or the most that the caller's may be */
-    int started;
+    bool spins;  /* there is a processor for each */
     struct refocus_parallel parallel; /* the caller's, or parallel_for == NULL */
     pthread_t thread[RF_MAX_THREADS];
-    pthread_mutex_t lock;
+    pthread_mutex_t lock; /* only for those that sleep, and to wake them */
     pthread_cond_t wake, done;
-    unsigned generation; /* of the loop being run; guarded by lock */
-    int busy;            /* pool threads still in that loop; guarded by lock */
-    bool quit;           /* guarded by lock */
+    atomic_bool quit;
+    atomic_bool waits; /* the caller sleeps until all have left */
+    atomic_int started;
+    atomic_int sleepers; /* pool threads */
+    struct rf_run *run;  /* CANCELLED: hand out no more items */
+
+    /* The loop: set before it is opened, kept until the last worker has left. */
     rf_work_fn *work;
     void *context;
     int count;
-    atomic_int next;
-    struct rf_run *run; /* CANCELLED: hand out no more items */
+    atomic_uint state; /* pool threads in it, whether it is open to more, its number */
+    char apart[64];    /* a cache line of its own for what all change */
+    atomic_int next;   /* item */
+    char apart_too[64];
 };
 
-/* Starts threads of its own, or none where the caller's parallel_for is to be used (NULL or
- * empty: it is not). Returns REFOCUS_OK or REFOCUS_ERR_THREAD, then with nothing left behind. */
-int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parallel *parallel,
-                  struct rf_run *run);
+/* Starts threads of its own, or none where the caller's parallel_for is to be used
+ * (NULL or empty: it is not). Returns REFOCUS_OK or REFOCUS_ERR_THREAD, then with
+ * nothing left behind. */
+int rf_pool_start(struct rf_pool *pool, int threads,
+                  const struct refocus_parallel *parallel, struct rf_run *run);
 void rf_pool_end(struct rf_pool *pool);
 
 /* Returns when all items are done, or those under way once the run is cancelled. */

@@ -16,7 +16,7 @@ enum {
 
 struct stage {
     struct guarded plane[4]; /* blur, light */
-    struct rf_search_ray ray[RF_RAY_CHUNK];
+    struct rf_search_rays rays;
     struct rf_search_job job;
     uint32_t sum[3][LANES], expected[3][LANES];
 };
@@ -29,20 +29,21 @@ static int rounded(int u, int blur)
     return (int)(x >= 0 ? x / (1 << 23) : -((-x + (1 << 23) - 1) / (1 << 23)));
 }
 
-static void follow(struct stage *s, int pixel, const struct rf_search_ray *ray)
+static void follow(struct stage *s, int pixel, int n)
 {
     const struct rf_search_job *job = &s->job;
+    const struct rf_search_rays *rays = &s->rays;
     const ptrdiff_t p = pixel / RF_TILE * SIDE + pixel % RF_TILE;
-    int guess = job->blur[p + ray->start], tests = job->tests;
+    int guess = job->blur[p + rays->start[n]], tests = job->tests;
     ptrdiff_t q;
 
     for (;;) {
         int apart;
 
-        q = p + rounded(ray->v, guess) * SIDE + rounded(ray->u, guess);
+        q = p + rounded(rays->v[n], guess) * SIDE + rounded(rays->u[n], guess);
         apart = job->blur[q] - guess;
         apart = apart < 0 ? -apart : apart;
-        if (apart <= ray->within)
+        if (apart <= rays->within[n])
             break;
         if (--tests == 0) {
             if (job->blur[q] > job->blur[p])
@@ -74,15 +75,15 @@ static void make_blurs(int16_t *blur, uint32_t *seed)
 static void make_stage(struct stage *s, enum place place, uint32_t seed)
 {
     static const int counts[] = {0, 1, 2, 7, RF_RAY_CHUNK};
-    static const int within[] = {0, 1, 128, 300, 65535};
+    static const int within[] = {0, 1, 128, 300, 32766};
     const size_t bytes = (size_t)SIDE * SIDE * 2;
 
     s->job = (struct rf_search_job){
         .stride = SIDE,
         .tests = noise_between(&seed, 1, 5),
-        .rays = counts[noise(&seed) % 5],
-        .ray = s->ray,
+        .rays = &s->rays,
     };
+    s->rays.rays = counts[noise(&seed) % 5];
     for (int i = 0; i < 4; i++) {
         uint16_t *plane = guarded_place(&s->plane[i], bytes, 2, place, noise(&seed) % 8);
 
@@ -99,12 +100,10 @@ static void make_stage(struct stage *s, enum place place, uint32_t seed)
         const int dx = noise_between(&seed, -PAD, PAD), dy = noise_between(&seed, -PAD, PAD);
         const int corner = n < 2 ? (n ? 32767 : -32767) : 0;
 
-        s->ray[n] = (struct rf_search_ray){
-            .start = dy * SIDE + dx,
-            .u = (int16_t)(corner ? corner : noise_between(&seed, -32767, 32767)),
-            .v = (int16_t)(corner ? corner : noise_between(&seed, -32767, 32767)),
-            .within = within[noise(&seed) % 5],
-        };
+        s->rays.start[n] = dy * SIDE + dx;
+        s->rays.u[n] = (int16_t)(corner ? corner : noise_between(&seed, -32767, 32767));
+        s->rays.v[n] = (int16_t)(corner ? corner : noise_between(&seed, -32767, 32767));
+        s->rays.within[n] = within[noise(&seed) % 5];
     }
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++)
@@ -116,8 +115,8 @@ static bool check_case(const struct subject *subject, struct stage *s, enum plac
 {
     make_stage(s, place, seed);
     for (int i = 0; i < LANES; i++)
-        for (int n = 0; n < s->job.rays; n++)
-            follow(s, i, &s->ray[n]);
+        for (int n = 0; n < s->rays.rays; n++)
+            follow(s, i, n);
     subject->kernels.search((uint32_t *const[3]){s->sum[0], s->sum[1], s->sum[2]}, &s->job);
     for (int i = 0; i < 4; i++) {
         if (!guarded_intact(&s->plane[i])) {
@@ -131,7 +130,7 @@ static bool check_case(const struct subject *subject, struct stage *s, enum plac
             if (s->sum[c][i] == s->expected[c][i])
                 continue;
             printf("FAIL  %-12s %-6s seed %u, %d rays, %d tests: channel %d of (%d, %d) is "
-                   "%u, should be %u\n", "search", subject->cpu, (unsigned)seed, s->job.rays,
+                   "%u, should be %u\n", "search", subject->cpu, (unsigned)seed, s->rays.rays,
                    s->job.tests, c, i % RF_TILE, i / RF_TILE, (unsigned)s->sum[c][i],
                    (unsigned)s->expected[c][i]);
             return false;
@@ -186,8 +185,8 @@ static void bench_case(const struct subject *subject, struct stage *s, bool edge
     for (int i = 0; i < SIDE * SIDE; i++)
         blur[i] = edge && i % SIDE + i / SIDE / 3 < PAD + RF_TILE / 2 ? -1500 : 700;
     for (int n = 0; n < RF_RAY_CHUNK; n++)
-        s->ray[n].within = 128;
-    s->job.rays = RF_RAY_CHUNK;
+        s->rays.within[n] = 128;
+    s->rays.rays = RF_RAY_CHUNK;
     s->job.tests = 2;
     plain = best_time(call, &b);
     b.search = subject->kernels.search;

@@ -88,6 +88,18 @@ static uint16_t c_bytes(uint16_t a, uint16_t b)
     return (uint16_t)((a & 0xff) | b << 8);
 }
 
+static uint16_t c_less(uint16_t a, uint16_t b)
+{
+    return (int16_t)a < (int16_t)b ? 0xffff : 0;
+}
+
+static uint16_t c_apart(uint16_t a, uint16_t b)
+{
+    const int d = abs((int16_t)a - (int16_t)b);
+
+    return (uint16_t)(d < 32767 ? d : 32767);
+}
+
 static vec_u16 half(vec_u16 a, vec_u16 b)
 {
     (void)b;
@@ -151,6 +163,56 @@ static uint16_t c_put_where(uint16_t a, uint16_t b)
     return c_mask_of(a, b) ? b : 0;
 }
 
+static vec_u16 choose(vec_u16 a, vec_u16 b)
+{
+    return vec_u16_choose(mask_of(a, b), a, b);
+}
+
+static uint16_t c_choose(uint16_t a, uint16_t b)
+{
+    return c_mask_of(a, b) ? a : b;
+}
+
+/* Equal lanes, but only where the mask is on, and those where it is on and b is not 1. */
+static vec_u16 among(vec_u16 a, vec_u16 b)
+{
+    const vec_mask mask = mask_of(a, b), all = vec_mask_all();
+    const vec_mask equal = vec_mask_equal(all, vec_u16_half(a), vec_u16_half(b));
+    const vec_mask both = vec_mask_or(
+        vec_mask_equal(mask, vec_u16_or(b, vec_u16_set(1)), b), equal);
+
+    return vec_u16_choose(both, vec_u16_set(1), vec_u16_set(0));
+}
+
+static uint16_t c_among(uint16_t a, uint16_t b)
+{
+    return (c_mask_of(a, b) && b % 2) || a / 2 == b / 2;
+}
+
+/* The first lane where a lane differs from lane 0, in all lanes: its value is what counts. */
+static vec_u16 first_on(vec_u16 a, vec_u16 b)
+{
+    const vec_mask others =
+        vec_mask_without(vec_mask_all(), vec_mask_equal(vec_mask_all(), b, vec_u16_spread(b)));
+    uint16_t lanes[MOST_LANES];
+
+    (void)a;
+    vec_u16_store(lanes, b);
+    if (vec_mask_any(others) != (lanes[vec_mask_first(others)] != lanes[0]))
+        return vec_u16_set(0);
+    for (int i = 0; i < vec_mask_first(others); i++)
+        if (i < (int)VEC_U16 - 1 && lanes[i] != lanes[0])
+            return vec_u16_set(0);
+    return vec_u16_set(1);
+}
+
+static uint16_t c_first_on(uint16_t a, uint16_t b)
+{
+    (void)a;
+    (void)b;
+    return 1;
+}
+
 static const struct {
     const char *name;
     operation *run;
@@ -166,6 +228,9 @@ static const struct {
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
     {"mul", vec_u16_mul, c_mul},            {"add_where", add_where, c_add_where},
     {"put_where", put_where, c_put_where},
+    {"choose", choose, c_choose},            {"among", among, c_among},
+    {"first", first_on, c_first_on},         {"less", vec_s16_less, c_less},
+    {"apart", vec_s16_apart, c_apart},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)
