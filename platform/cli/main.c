@@ -55,8 +55,20 @@ static int unknown(const char *argument)
                           "unknown subcommand; 'refocus --help' lists them");
 }
 
+/* The stack grows page by page, and where memory is short that is no failed allocation but a
+ * signal. So it grows before anything else takes memory. */
+static void grow_stack(void)
+{
+    enum { NEEDED = 1 << 20, PAGE = 4096 };
+    volatile char stack[NEEDED];
+
+    for (size_t i = 0; i < NEEDED; i += PAGE)
+        stack[NEEDED - 1 - i] = 0;
+}
+
 int main(int argc, char **argv)
 {
+    grow_stack();
     if (argc < 2)
         return report_failure(EXIT_WRONG, "subcommand",
                               "none is given; 'refocus --help' lists them");

@@ -167,6 +167,8 @@ static int compare(struct scene *s, struct refocus_renderer *r, uint32_t method,
     params.method = method;
     params.iterations = tests;
     params.prefilter = 0;
+    if (method == REFOCUS_METHOD_SWEEP)
+        params.rays = 128; /* then all rows are computed: the others are the twin's part */
     params.sigma = INFINITY;
     if (refocus_render(r, &params, &out))
         return 1;
