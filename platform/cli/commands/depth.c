@@ -35,8 +35,7 @@ static const char *view_summary(uint32_t index)
 {
     static const char *const words[] = {"the disparities as they are",
                                         "their picture, bright = near",
-                                        "white where it was measured, black where "
-                                        "filled"};
+                                        "white where measured, black where filled"};
 
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
