@@ -7,12 +7,10 @@
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
-/* Where a pixel lies among the samples of its row or column. */
-struct rf_taps {
-    int32_t first;           /* of four samples, -2 to samples - 2 */
-    uint16_t share[RF_TAPS]; /* Q16, of sum 1 */
-    uint16_t near_by[RF_TAPS]; /* Q16, for the choice of a surface */
-    int16_t middle;          /* where it lies between the second and the third, -1/2 to 1/2 in Q15 */
+/* The columns of pixels between the same columns of samples, up to those of the next one. */
+struct rf_span {
+    int32_t begin;
+    int32_t alike; /* the first one whose pixels lie the same way */
 };
 
 /*
@@ -37,7 +35,7 @@ struct rf_upsampler {
 
     uint16_t *coarse; /* samples */
     ptrdiff_t coarse_stride;
-    uint8_t *colour[3]; /* of the photo at the samples, halved */
+    uint8_t *colour[3]; /* of the photo at the samples, quartered */
     uint8_t *trust;     /* confidence of the samples; not used without */
     ptrdiff_t colour_stride, trust_stride;
     uint16_t *wide; /* rows x width: each row of samples as long as the photo's */
@@ -47,10 +45,7 @@ struct rf_upsampler {
     uint8_t *sure; /* height x width: not 0 where the median is left out */
     ptrdiff_t sure_stride;
     struct rf_taps *across, *down; /* width and height of them */
-    uint16_t *near_by[RF_TAPS]; /* of columns, width + RF_BATCH_SPARE each: how near they are */
-    int16_t *middle; /* and where they lie between their second and third sample */
-    uint16_t *(*scratch)(void *context, int worker); /* 2 (columns + 8) elements */
-    void *context;
+    struct rf_span *span;          /* columns + 2 of them */
     struct rf_run *run;
 
     uint16_t *out;

@@ -55,12 +55,14 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_yuv_use_c(kernels);
     rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
+    rf_choose_use_c(kernels);
     rf_series_use_c(kernels);
     rf_surfaces_use_c(kernels);
 #if defined(RF_WITH_NEON)
     if (*cpu == REFOCUS_CPU_NEON) {
         rf_kernels_use_neon(kernels);
         rf_upsample_use_neon(kernels);
+        rf_choose_use_neon(kernels);
         rf_yuv_use_neon(kernels);
         rf_sweep1_use_neon(kernels);
         rf_series_use_neon(kernels);
@@ -71,6 +73,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     if (*cpu == REFOCUS_CPU_SSE41) {
         rf_kernels_use_sse41(kernels);
         rf_upsample_use_sse41(kernels);
+        rf_choose_use_sse41(kernels);
         rf_yuv_use_sse41(kernels);
         rf_sweep1_use_sse41(kernels);
         rf_series_use_sse41(kernels);
@@ -81,6 +84,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     if (*cpu == REFOCUS_CPU_AVX2) {
         rf_kernels_use_avx2(kernels);
         rf_upsample_use_avx2(kernels);
+        rf_choose_use_avx2(kernels);
         rf_yuv_use_avx2(kernels);
         rf_sweep1_use_avx2(kernels);
         rf_series_use_avx2(kernels);
