@@ -8,7 +8,7 @@ enum {
     STEP = 65535 / 24,    /* largest one within a surface */
     BAND = 16,            /* rows of a work item */
     RUN = 8,              /* most columns and rows of pixels that are looked at together */
-    CHUNK = 256,          /* pixels that are looked at together for a median */
+    CHUNK = 256,          /* pixels that are settled together */
     SLICE = 128,          /* pixels whose colours are taken together */
     QUARTER = 2,          /* shift of colours: sums of three differences then fit */
     KINDS = 8,            /* of spans that are remembered */
@@ -330,7 +330,7 @@ static void fill_rows(void *context, int item, int worker)
     }
 }
 
-static void median_rows(void *context, int item, int worker)
+static void settle_rows(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
     const int width = up->photo->width, last = up->photo->height - 1;
@@ -347,7 +347,7 @@ static void median_rows(void *context, int item, int worker)
             const int n = width - x < CHUNK ? width - x : CHUNK;
 
             if (memchr(sure + x, 0, (size_t)n))
-                up->kernels->median3(out + x, before + x, row + x, after + x, sure + x, n);
+                up->kernels->lean3(out + x, before + x, row + x, after + x, sure + x, n);
             else
                 memcpy(out + x, row + x, (size_t)n * sizeof *out);
         }
@@ -400,5 +400,5 @@ void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
     rf_pool_run(pool, load_row, up, up->rows + 2 * PAD);
     rf_pool_run(pool, widen_row, up, up->rows);
     rf_pool_run(pool, fill_rows, up, up->rows + 1);
-    rf_pool_run(pool, median_rows, up, (height + BAND - 1) / BAND);
+    rf_pool_run(pool, settle_rows, up, (height + BAND - 1) / BAND);
 }

@@ -19,7 +19,8 @@ struct rf_span {
  * and the 8 x 8 samples around show what each looks like in the photo: the pixel goes to the
  * surface with the most of nearness times likeness (Bayes' rule: nearness is what is expected
  * before looking), and takes the plane through its samples. So no disparity between two surfaces
- * is invented. A median of 3 x 3 follows where that choice was a close one. A map that has more
+ * is invented. Where that choice was a close one, the sixth of 3 x 3 follows, a median that leans to
+ * the near: what is thin is in front, and most of it lies between samples. A map that has more
  * columns or rows than the photo is sampled first.
  *
  * All the memory is the caller's. Elements -2 to samples + 1 of rows -2 to samples + 1 of
@@ -40,9 +41,9 @@ struct rf_upsampler {
     ptrdiff_t colour_stride, trust_stride;
     uint16_t *wide; /* rows x width: each row of samples as long as the photo's */
     ptrdiff_t wide_stride;
-    uint16_t *raw; /* height x width: before the median */
+    uint16_t *raw; /* height x width: before the sixth of 3 x 3 */
     ptrdiff_t raw_stride;
-    uint8_t *sure; /* height x width: not 0 where the median is left out */
+    uint8_t *sure; /* height x width: not 0 where that is left out */
     ptrdiff_t sure_stride;
     struct rf_taps *across, *down; /* width and height of them */
     struct rf_span *span;          /* columns + 2 of them */

@@ -310,9 +310,9 @@ typedef void rf_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
 /* quarter: colours of n pixels of 3 or 4 bytes, of which the first three, in steps of four codes. */
 typedef void rf_quarter_fn(uint8_t *const out[3], const uint8_t *pixels, int bytes, int n);
 
-/* median3: medians of 3 x 3 where `sure` is 0, the row itself elsewhere; elements -1 and n are
- * read of the rows. */
-typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
+/* lean3: the sixth of 3 x 3 in ascending order where `sure` is 0, the row itself elsewhere; elements
+ * -1 and n are read of the rows. A median that leans to the near: what is thin is in front. */
+typedef void rf_lean3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
                            const uint16_t *after, const uint8_t *sure, int n);
 
 /*
@@ -479,7 +479,7 @@ struct rf_kernels {
     rf_quarter_fn *quarter;
     rf_find_surfaces_fn *find_surfaces;
     rf_surface_fn *surface;
-    rf_median3_fn *median3;
+    rf_lean3_fn *lean3;
     rf_series_row_fn *series_row;
 };
 

@@ -113,32 +113,27 @@ static inline void order(uint16_t *restrict a, uint16_t *restrict b)
     *b = high;
 }
 
-/* Columns sorted, the median is that of: the greatest low, the middle of the middles, the
- * least high. */
-static void RF_VEC(rf_median3)(uint16_t *restrict out, const uint16_t *restrict before,
-                               const uint16_t *restrict row, const uint16_t *restrict after,
-                               const uint8_t *restrict sure, int n)
+/* What of a network that sorts nine the sixth depends on. */
+static void RF_VEC(rf_lean3)(uint16_t *restrict out, const uint16_t *restrict before,
+                             const uint16_t *restrict row, const uint16_t *restrict after,
+                             const uint8_t *restrict sure, int n)
 {
     for (int x = 0; x < n; x++) {
-        uint16_t l[3], m[3], h[3];
+        uint16_t v[9];
 
         for (int i = 0; i < 3; i++) {
-            l[i] = before[x + i - 1];
-            m[i] = row[x + i - 1];
-            h[i] = after[x + i - 1];
-            order(&l[i], &m[i]);
-            order(&m[i], &h[i]);
-            order(&l[i], &m[i]);
+            v[i] = before[x + i - 1];
+            v[i + 3] = row[x + i - 1];
+            v[i + 6] = after[x + i - 1];
         }
-        l[0] = most(most(l[0], l[1]), l[2]);
-        h[0] = least(least(h[0], h[1]), h[2]);
-        order(&m[0], &m[1]);
-        order(&m[1], &m[2]);
-        order(&m[0], &m[1]);
-        order(&l[0], &m[1]);
-        order(&m[1], &h[0]);
-        order(&l[0], &m[1]);
-        out[x] = sure[x] ? row[x] : m[1];
+        order(&v[0], &v[3]), order(&v[1], &v[7]), order(&v[2], &v[5]), order(&v[4], &v[8]);
+        order(&v[0], &v[7]), order(&v[2], &v[4]), order(&v[3], &v[8]), order(&v[5], &v[6]);
+        order(&v[0], &v[2]), order(&v[1], &v[3]), order(&v[4], &v[5]), order(&v[7], &v[8]);
+        order(&v[1], &v[4]), order(&v[3], &v[6]), order(&v[5], &v[7]);
+        order(&v[2], &v[4]), order(&v[3], &v[5]), order(&v[6], &v[8]);
+        order(&v[4], &v[5]), order(&v[6], &v[7]);
+        order(&v[5], &v[6]);
+        out[x] = sure[x] ? row[x] : v[5];
     }
 }
 
@@ -148,5 +143,5 @@ void RF_VEC(rf_upsample_use)(struct rf_kernels *kernels)
     kernels->widen4 = RF_VEC(rf_widen4);
     kernels->rough = RF_VEC(rf_rough);
     kernels->quarter = RF_VEC(rf_quarter);
-    kernels->median3 = RF_VEC(rf_median3);
+    kernels->lean3 = RF_VEC(rf_lean3);
 }

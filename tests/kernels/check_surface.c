@@ -281,6 +281,37 @@ static int check_widen(const struct subject *subject, int round, uint32_t *seed)
     return 0;
 }
 
+/* The sixth of nine, or what it was. */
+static int check_lean(const struct subject *subject, int round, uint32_t *seed)
+{
+    enum { MOST = 40 };
+    uint16_t row[3][MOST + 2], out[MOST + BEYOND];
+    uint8_t sure[MOST];
+    const int n = round % (MOST + 1);
+
+    for (int i = 0; i < 3 * (MOST + 2); i++)
+        row[i / (MOST + 2)][i % (MOST + 2)] = (uint16_t)(round % 2 ? noise(seed) : noise(seed) % 3 * 32767);
+    for (int x = 0; x < MOST; x++)
+        sure[x] = noise(seed) % 3 ? 0 : 255;
+    memset(out, 0xa5, sizeof out);
+    subject->kernels.lean3(out, row[0] + 1, row[1] + 1, row[2] + 1, sure, n);
+    for (int x = 0; x < MOST + BEYOND; x++) {
+        uint16_t nine[9], should = 0xa5a5;
+
+        if (x < n) {
+            for (int i = 0; i < 9; i++)
+                nine[i] = row[i / 3][x + i % 3];
+            qsort(nine, 9, sizeof *nine, compare);
+            should = sure[x] ? row[1][x + 1] : nine[5];
+        }
+        if (out[x] != should) {
+            printf("FAIL  lean3 %s: round %d, pixel %d of %d\n", subject->cpu, round, x, n);
+            return 1;
+        }
+    }
+    return 0;
+}
+
 int check_surface(const struct subject *subject)
 {
     uint32_t seed = 11;
@@ -293,7 +324,7 @@ int check_surface(const struct subject *subject)
             memset(samples.trust, 3, sizeof samples.trust);
         make_pixels(&seed);
         if (check_cells(subject, round, &seed) || check_pixels(subject, round) ||
-            check_widen(subject, round, &seed))
+            check_widen(subject, round, &seed) || check_lean(subject, round, &seed))
             return 1;
     }
     printf("ok    %-12s %-6s %d cells\n", "surface", subject->cpu, ROUNDS);
