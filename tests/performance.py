@@ -3,10 +3,12 @@
 
 usage: performance.py BUILD_DIR [--repeat N] [--out FILE]
 
-BUILD_DIR holds a release build. The picture is the shipped scene, 720x540, K = 20.
+BUILD_DIR holds a release build. The picture is the shipped scene, 720x540, K = 20; the table of
+qualities takes the scenes in $REFOCUS_SCENES, or in ../shared/scenes beside the source tree.
 """
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -69,6 +71,69 @@ def methods(refocus, repeat_most):
         "the median.\n", machine() + "\n",
         sections.table(["method", "options", "threads", "cpu", "frames", "prepare ms",
                         "render ms, best", "median", "peak memory MiB"], rows)])
+
+
+def scene_rows(scenes):
+    """Frames that the table of qualities has: scene, K, quality."""
+    small = sorted(scenes.glob("*/disparity.png")) if scenes.is_dir() else []
+    names = [p.parent for p in small] or [SCENE]
+    for path in names:
+        focus = json.loads((path / "scene.json").read_text(encoding="utf-8"))["gt"][0]["df"] \
+            if (path / "scene.json").is_file() else 0.689
+        for quality in ("preview", "standard", "best"):
+            for blur in (20, 40) if path.name.endswith("1080") else (20,):
+                yield path, focus, blur, quality
+
+
+def qualities(refocus, scenes, repeat, rounds=6):
+    """Qualities by turns with the instruction sets and threads, the best of all rounds."""
+    columns = [("avx2", 1), ("avx2", 2), ("sse41", 1), ("auto", 1), ("auto", 2)]
+    best, used = {}, "auto"
+    frames_of = list(scene_rows(scenes))
+    for turn in range(rounds):
+        for frame in frames_of:
+            path, focus, blur, quality = frame
+            for cpu, threads in columns:
+                with tempfile.TemporaryDirectory() as work:
+                    done = subprocess.run(
+                        [refocus, "render", path / "allfocus.png", "--depth",
+                         path / "disparity.png", "--focus", f"{focus:.4f}", "--blur", str(blur),
+                         "--quality", quality, "--cpu", cpu, "--threads", str(threads),
+                         "--repeat", str(repeat), "--json", "-o", Path(work) / "out.png"],
+                        stdout=subprocess.PIPE, check=False)
+                if done.returncode:
+                    continue  # a set that this processor lacks
+                report = json.loads(done.stdout)
+                size = f"{report['width']}x{report['height']}"
+                used = report["cpu"] if cpu == "auto" else used
+                key = frame, cpu, threads
+                best[key] = min(best.get(key, (1e9,)), (report["render_ms"]["min"], size))
+        print(f"qualities: round {turn + 1} of {rounds}", file=sys.stderr)
+    rows = [[f[0].name, best[f, "auto", 1][1], f[2], f[3]]
+            + [f"{best[f, c, n][0]:.1f}" if (f, c, n) in best else "-" for c, n in columns]
+            for f in frames_of]
+    return "\n".join([
+        "## Qualities\n",
+        f"Whole frames of the path-traced scenes in ms, the best of {rounds} rounds of {repeat} "
+        f"by turns; `auto` is {used} here.\n", machine() + "\n",
+        sections.table(["scene", "size", "K", "quality"]
+                       + [f"{c}, {n} thread{'s' * (n > 1)}" for c, n in columns], rows)])
+
+
+def large(refocus, repeat):
+    """Twelve megapixels at the largest blur that is asked for."""
+    rows = []
+    for threads in (1, 2):
+        done = subprocess.run([refocus, "bench", "--size", "4000x3000", "--blur", "100",
+                               "--quality", "best", "--threads", str(threads), "--repeat",
+                               str(repeat), "--json"], stdout=subprocess.PIPE, check=True)
+        report = json.loads(done.stdout)
+        rows.append([threads, f"{report['prepare_ms']['min']:.0f}",
+                     f"{report['render_ms']['min']:.0f}"])
+    return "\n".join(["## Twelve megapixels\n",
+                      f"`refocus bench --size 4000x3000 --blur 100 --quality best`, the best of "
+                      f"{repeat}.\n",
+                      sections.table(["threads", "prepare ms", "render ms"], rows)])
 
 
 def frames(refocus, repeat):
@@ -162,7 +227,12 @@ def main():
     args = parser.parse_args()
     refocus = args.build / "platform" / "cli" / "refocus"
 
+    scenes = Path(os.environ.get("REFOCUS_SCENES", SOURCE.parent / "shared" / "scenes"))
+
     sections.put(args.out, "methods", "tests/performance.py", methods(refocus, args.repeat))
+    sections.put(args.out, "qualities", "tests/performance.py",
+                 qualities(refocus, scenes, args.repeat))
+    sections.put(args.out, "large", "tests/performance.py", large(refocus, 5))
     sections.put(args.out, "frames", "tests/performance.py", frames(refocus, args.repeat))
     sections.put(args.out, "interactive", "tests/performance.py", interactive(args.build))
     sections.put(args.out, "formats", "tests/performance.py",

@@ -67,6 +67,7 @@ enum refocus_cpu {
     REFOCUS_CPU_NEON = 2,
     REFOCUS_CPU_SSE41 = 3,
     REFOCUS_CPU_AVX2 = 4,
+    REFOCUS_CPU_AVX512 = 5, /**< 256-bit vectors with the masks of AVX-512 (BW, VL, VNNI) */
 };
 
 /** What a renderer can do at most. Start from refocus_renderer_params_default(). */
@@ -492,7 +493,7 @@ struct refocus_renderer_info {
 REFOCUS_API void refocus_renderer_get_info(const struct refocus_renderer *renderer,
                                            struct refocus_renderer_info *info);
 
-/** "c", "neon", "sse41", "avx2" or "auto"; NULL for an unknown one. Thread-safe. */
+/** "c", "neon", "sse41", "avx2", "avx512" or "auto"; NULL for an unknown one. Thread-safe. */
 REFOCUS_API const char *refocus_cpu_name(uint32_t cpu);
 
 #ifdef __cplusplus

@@ -239,6 +239,7 @@ int refocus_aperture_create(struct refocus_aperture **aperture,
         status = create(aperture, RF_SHAPE_OUTLINE);
         if (status == REFOCUS_OK) {
             rf_outline_make(*aperture, p);
+            (*aperture)->figure = p->figure != REFOCUS_FIGURE_NONE;
             (*aperture)->id = hash(4, (*aperture)->vertex_x, sizeof (*aperture)->vertex_x);
             (*aperture)->id = hash((*aperture)->id, (*aperture)->vertex_y,
                                    sizeof (*aperture)->vertex_y);

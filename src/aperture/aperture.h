@@ -33,6 +33,7 @@ struct refocus_aperture {
     double area[RF_OUTLINE + 1]; /* of the triangles before a vertex, 1 = all */
     double squeeze_x, squeeze_y; /* factors of what is drawn */
     struct rf_profile behind, before; /* the focus */
+    bool figure;                      /* an outline that no iris has */
 };
 
 /* Whether rays before the focus differ from those behind it. */
@@ -48,6 +49,13 @@ double rf_profile_density(const struct rf_profile *profile, double square);
 static inline bool rf_profile_is_even(const struct rf_profile *profile)
 {
     return profile->hole == 0 && profile->edge == 0;
+}
+
+/* Whether it has structure much finer than itself, which a blur by it still shows. */
+static inline bool rf_aperture_is_fine(const struct refocus_aperture *a)
+{
+    return a->shape == RF_SHAPE_MASK || a->figure || a->behind.hole > 0 || a->before.hole > 0 ||
+           a->behind.edge > 0 || a->before.edge > 0;
 }
 
 /* The outline of an iris or a figure, and its triangles' areas. */

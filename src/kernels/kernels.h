@@ -107,6 +107,7 @@ struct rf_sweep_job {
     const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
     enum rf_bright bright;
+    int lanes; /* of sweep and sweep_weighted: those of an even number of rows, of RF_STRIP at most */
 
     /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
     const uint16_t *weight;
@@ -196,6 +197,10 @@ typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uin
 /* luminance: Rec. 709 in Q11, (218 R + 732 G + 74 B) / 2048 half up. */
 typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t *green,
                              const uint16_t *blue, int n);
+
+/* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (methods/tile_rows.h), by
+ * the cubics through four of them, half up, never beyond the one before and the one after. */
+typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
 
 /* brightest: the largest value of any channel of a row. */
 typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
@@ -471,6 +476,7 @@ struct rf_kernels {
     rf_means_fn *means;
     rf_weighted_means_fn *weighted_means;
     rf_luminance_fn *luminance;
+    rf_between_rows_fn *between_rows;
     rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
     rf_widen4_fn *widen4;
@@ -497,25 +503,15 @@ rf_pull_fn rf_pull_c;
 rf_pull_blur_fn rf_pull_blur_c;
 rf_sweep_weighted_fn rf_sweep_weighted_c;
 
-/* Each set overwrites what it does better. */
+/* Each set overwrites what it does better; rf_kernels_use() calls the others of its set. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
-rf_kernels_use_fn rf_kernels_use_neon, rf_kernels_use_sse41, rf_kernels_use_avx2;
-rf_kernels_use_fn rf_surfaces_use_c, rf_surfaces_use_neon, rf_surfaces_use_sse41,
-    rf_surfaces_use_avx2;
-rf_kernels_use_fn rf_sweep_weighted_use_neon, rf_sweep_weighted_use_sse41,
-    rf_sweep_weighted_use_avx2;
-rf_kernels_use_fn rf_light_use_c, rf_light_use_neon, rf_light_use_sse41, rf_light_use_avx2;
-rf_kernels_use_fn rf_upsample_use_c, rf_upsample_use_neon, rf_upsample_use_sse41,
-    rf_upsample_use_avx2;
-rf_kernels_use_fn rf_choose_use_c, rf_choose_use_neon, rf_choose_use_sse41, rf_choose_use_avx2;
-rf_kernels_use_fn rf_yuv_use_c, rf_yuv_use_neon, rf_yuv_use_sse41, rf_yuv_use_avx2;
-rf_kernels_use_fn rf_sweep1_use_neon, rf_sweep1_use_sse41, rf_sweep1_use_avx2;
-rf_kernels_use_fn rf_rows_use_c, rf_rows_use_neon, rf_rows_use_sse41, rf_rows_use_avx2;
-rf_kernels_use_fn rf_search_use_neon, rf_search_use_sse41, rf_search_use_avx2;
-rf_kernels_use_fn rf_fill_use_neon, rf_fill_use_sse41, rf_fill_use_avx2;
-rf_kernels_use_fn rf_smooth_use_neon, rf_smooth_use_sse41, rf_smooth_use_avx2;
-rf_kernels_use_fn rf_aim_use_c, rf_aim_use_neon, rf_aim_use_sse41, rf_aim_use_avx2;
-rf_kernels_use_fn rf_series_use_c, rf_series_use_neon, rf_series_use_sse41,
-    rf_series_use_avx2;
+#define RF_VECTOR_SETS(use) use##_neon, use##_sse41, use##_avx2, use##_avx512
+#define RF_ALL_SETS(use) use##_c, RF_VECTOR_SETS(use)
+rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
+    RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
+    RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep_weighted_use);
+rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use),
+    RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use),
+    RF_ALL_SETS(rf_yuv_use);
 
 #endif

@@ -32,6 +32,92 @@ static void RF_VEC(rf_weighted_means)(uint16_t *restrict mean, const uint64_t *r
         mean[i] = (uint16_t)(int32_t)(4 * s[i] / w[i] + 0.5);
 }
 
+/* Rows between those that are computed, by the cubic through the four nearest: Lagrange's shares
+ * in Q14, of rows from `first` on; not beyond the rows before and after, so that an edge
+ * does not ring. */
+static const struct between {
+    uint8_t before, first;
+    int16_t share[4];
+} between[3][RF_TILE] = {
+    { /* 2 */
+        {0, 0, {16384, 0, 0, 0}},
+        {0, 0, {5120, 15360, -5120, 1024}},
+        {1, 0, {0, 16384, 0, 0}},
+        {1, 0, {-1024, 9216, 9216, -1024}},
+        {2, 1, {0, 16384, 0, 0}},
+        {2, 1, {-1170, 9830, 8192, -468}},
+        {3, 2, {0, 16384, 0, 0}},
+        {3, 2, {-1872, 13106, 6554, -1404}},
+        {3, 2, {-1404, 6554, 13106, -1872}},
+        {4, 3, {0, 16384, 0, 0}},
+        {4, 3, {-468, 8192, 9830, -1170}},
+        {5, 4, {0, 16384, 0, 0}},
+        {5, 4, {-1024, 9216, 9216, -1024}},
+        {6, 4, {0, 0, 16384, 0}},
+        {6, 4, {1024, -5120, 15360, 5120}},
+        {6, 4, {0, 0, 0, 16384}},
+    },
+    { /* 3 */
+        {0, 0, {16384, 0, 0, 0}},
+        {0, 0, {8091, 12137, -4855, 1011}},
+        {0, 0, {2832, 16991, -4248, 809}},
+        {1, 0, {0, 16384, 0, 0}},
+        {1, 0, {-1011, 12136, 6068, -809}},
+        {1, 0, {-809, 6068, 12136, -1011}},
+        {2, 1, {0, 16384, 0, 0}},
+        {2, 1, {-1011, 12136, 6068, -809}},
+        {2, 1, {-809, 6068, 12136, -1011}},
+        {3, 2, {0, 16384, 0, 0}},
+        {3, 2, {-1011, 12136, 6068, -809}},
+        {3, 2, {-809, 6068, 12136, -1011}},
+        {4, 2, {0, 0, 16384, 0}},
+        {4, 2, {809, -4248, 16991, 2832}},
+        {4, 2, {1011, -4855, 12137, 8091}},
+        {4, 2, {0, 0, 0, 16384}},
+    },
+    { /* 5 */
+        {0, 0, {16384, 0, 0, 0}},
+        {0, 0, {11010, 8258, -3670, 786}},
+        {0, 0, {6816, 13631, -5112, 1049}},
+        {0, 0, {3670, 16515, -4719, 918}},
+        {0, 0, {1442, 17302, -2884, 524}},
+        {1, 0, {0, 16384, 0, 0}},
+        {1, 0, {-786, 14155, 3539, -524}},
+        {1, 0, {-1049, 11011, 7340, -918}},
+        {1, 0, {-918, 7340, 11011, -1049}},
+        {1, 0, {-524, 3539, 14155, -786}},
+        {2, 0, {0, 0, 16384, 0}},
+        {2, 0, {524, -2884, 17302, 1442}},
+        {2, 0, {918, -4719, 16515, 3670}},
+        {2, 0, {1049, -5112, 13631, 6816}},
+        {2, 0, {786, -3670, 8258, 11010}},
+        {2, 0, {0, 0, 0, 16384}},
+    },
+};
+
+static void RF_VEC(rf_between_rows)(uint16_t *restrict mean, const uint16_t *restrict computed,
+                                    int step)
+{
+    for (int y = 0; y < RF_TILE; y++) {
+        const struct between *row = &between[(step - 1) / 2][y];
+        const uint16_t *restrict a = computed + row->first * RF_TILE;
+        const uint16_t *restrict before = computed + row->before * RF_TILE;
+        const uint16_t *restrict after = before + RF_TILE;
+        const int32_t s0 = row->share[0], s1 = row->share[1], s2 = row->share[2],
+                      s3 = row->share[3];
+
+        for (int x = 0; x < RF_TILE; x++) {
+            const int32_t v = (s0 * a[x] + s1 * a[x + RF_TILE] + s2 * a[x + 2 * RF_TILE] +
+                               s3 * a[x + 3 * RF_TILE] + 8192) >> 14;
+
+            const int32_t low = before[x] < after[x] ? before[x] : after[x];
+            const int32_t high = before[x] < after[x] ? after[x] : before[x];
+
+            mean[y * RF_TILE + x] = (uint16_t)(v < low ? low : v > high ? high : v);
+        }
+    }
+}
+
 static void RF_VEC(rf_luminance)(uint16_t *restrict out, const uint16_t *restrict red,
                                  const uint16_t *restrict green,
                                  const uint16_t *restrict blue, int n)
@@ -59,6 +145,7 @@ static uint16_t RF_VEC(rf_brightest)(const uint16_t *restrict red,
 void RF_VEC(rf_light_use)(struct rf_kernels *kernels)
 {
     kernels->luminance = RF_VEC(rf_luminance);
+    kernels->between_rows = RF_VEC(rf_between_rows);
     kernels->brightest = RF_VEC(rf_brightest);
     kernels->weighted_means = RF_VEC(rf_weighted_means);
 }

@@ -117,6 +117,7 @@ static void sweep(const struct rf_kernels *k, struct rows *r)
     const ptrdiff_t stride = 4 * ROW, pitch = ROW;
     uint16_t *strip = r->plane[RF_TILE] + MARGIN;
     const struct rf_sweep_job job = {.blur = (const int16_t *)strip,
+                                     .lanes = RF_STRIP_LANES,
                                      .stride = stride,
                                      .pitch = pitch,
                                      .slabs = 1,
@@ -212,7 +213,7 @@ int refocus_measure_kernel(uint32_t index, uint32_t cpu, struct refocus_kernel_t
     uint32_t c = REFOCUS_CPU_C;
     struct rows *rows;
 
-    if (index >= sizeof measured / sizeof *measured || cpu > REFOCUS_CPU_AVX2 || !time)
+    if (index >= sizeof measured / sizeof *measured || cpu > REFOCUS_CPU_AVX512 || !time)
         return REFOCUS_ERR_ARGUMENT;
     if (!rf_kernels_select(&own, &cpu) || !rf_kernels_select(&plain, &c))
         return REFOCUS_ERR_UNSUPPORTED;

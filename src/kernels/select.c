@@ -27,14 +27,20 @@ static bool has(uint32_t cpu)
     case REFOCUS_CPU_AVX2:
         return __builtin_cpu_supports("avx2");
 #endif
+#if defined(RF_WITH_AVX512)
+    case REFOCUS_CPU_AVX512:
+        return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+               __builtin_cpu_supports("avx512vnni");
+#endif
     }
     return false;
 }
 
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
 {
-    static const uint32_t best_first[] = {REFOCUS_CPU_AVX2, REFOCUS_CPU_SSE41,
-                                          REFOCUS_CPU_NEON, REFOCUS_CPU_C};
+    static const uint32_t best_first[] = {REFOCUS_CPU_AVX512, REFOCUS_CPU_AVX2,
+                                          REFOCUS_CPU_SSE41, REFOCUS_CPU_NEON,
+                                          REFOCUS_CPU_C};
 
     for (int i = 0; *cpu == REFOCUS_CPU_AUTO; i++)
         if (has(best_first[i]))
@@ -59,37 +65,20 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_series_use_c(kernels);
     rf_surfaces_use_c(kernels);
 #if defined(RF_WITH_NEON)
-    if (*cpu == REFOCUS_CPU_NEON) {
+    if (*cpu == REFOCUS_CPU_NEON)
         rf_kernels_use_neon(kernels);
-        rf_upsample_use_neon(kernels);
-        rf_choose_use_neon(kernels);
-        rf_yuv_use_neon(kernels);
-        rf_sweep1_use_neon(kernels);
-        rf_series_use_neon(kernels);
-        rf_surfaces_use_neon(kernels);
-    }
 #endif
 #if defined(RF_WITH_SSE41)
-    if (*cpu == REFOCUS_CPU_SSE41) {
+    if (*cpu == REFOCUS_CPU_SSE41)
         rf_kernels_use_sse41(kernels);
-        rf_upsample_use_sse41(kernels);
-        rf_choose_use_sse41(kernels);
-        rf_yuv_use_sse41(kernels);
-        rf_sweep1_use_sse41(kernels);
-        rf_series_use_sse41(kernels);
-        rf_surfaces_use_sse41(kernels);
-    }
 #endif
 #if defined(RF_WITH_AVX2)
-    if (*cpu == REFOCUS_CPU_AVX2) {
+    if (*cpu == REFOCUS_CPU_AVX2)
         rf_kernels_use_avx2(kernels);
-        rf_upsample_use_avx2(kernels);
-        rf_choose_use_avx2(kernels);
-        rf_yuv_use_avx2(kernels);
-        rf_sweep1_use_avx2(kernels);
-        rf_series_use_avx2(kernels);
-        rf_surfaces_use_avx2(kernels);
-    }
+#endif
+#if defined(RF_WITH_AVX512)
+    if (*cpu == REFOCUS_CPU_AVX512)
+        rf_kernels_use_avx512(kernels);
 #endif
     return true;
 }

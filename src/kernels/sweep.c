@@ -12,7 +12,7 @@ static void add(uint32_t *const sum[3], const uint16_t *light, ptrdiff_t pitch, 
 static void add_slab(uint32_t *const sum[3], uint16_t *is_free, const struct rf_sweep_job *job,
                      const struct rf_slab *slab, ptrdiff_t offset)
 {
-    for (int i = 0; i < RF_STRIP_LANES; i++) {
+    for (int i = 0; i < job->lanes; i++) {
         const int16_t *q = job->blur + i / RF_TILE * job->stride + i % RF_TILE + offset;
         const uint16_t above = (uint16_t)(*q - slab->low);
 
@@ -32,7 +32,7 @@ void rf_sweep_c(uint32_t *const sum[3], const struct rf_sweep_job *job)
         memset(is_free, 0xff, sizeof is_free);
         for (int t = 0; t < rays->tests[n]; t++)
             add_slab(sum, is_free, job, &job->slab[rays->slab[t][n]], rays->offset[t][n]);
-        for (int i = 0; i < RF_STRIP_LANES; i++)
+        for (int i = 0; i < job->lanes; i++)
             if (is_free[i])
                 add(sum, rays->last[n] + i / RF_TILE * job->stride + i % RF_TILE, job->pitch,
                     i);

@@ -18,9 +18,9 @@ static const uint8_t steps_of[] = {
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
-/* A slab's limits in all lanes. */
+/* 0 <= s - low <= width as one signed comparison, s - from < to, in all lanes. */
 struct limits {
-    vec_u16 low, width;
+    vec_u16 from, to;
 };
 
 struct state {
@@ -37,15 +37,14 @@ static ALWAYS_INLINE const char *vector_at(const char *first, ptrdiff_t stride, 
 
 /* Adds a ray's light where `mask` is set; NULL: everywhere. */
 static ALWAYS_INLINE void add_light(vec_u16 sum[3][MOST_VECS], const char *q, ptrdiff_t stride,
-                                    ptrdiff_t plane, const vec_u16 *mask, const int vecs)
+                                    ptrdiff_t plane, const vec_mask *mask, const int vecs)
 {
     for (int c = 0; c < 3; c++, q += plane) {
         for (int j = 0; j < vecs; j++) {
-            vec_u16 light = vec_u16_load(vector_at(q, stride, j));
+            const vec_u16 light = vec_u16_load(vector_at(q, stride, j));
 
-            if (mask)
-                light = vec_u16_and(light, mask[j]);
-            sum[c][j] = vec_u16_add(sum[c][j], light);
+            sum[c][j] = mask ? vec_u16_add_where(mask[j], sum[c][j], light)
+                             : vec_u16_add(sum[c][j], light);
         }
     }
 }
@@ -56,23 +55,20 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[3][MOST_VECS], const struct stat
 {
     const ptrdiff_t stride = 2 * s->job->stride, plane = 2 * s->job->pitch;
     const struct rf_sorted_rays *rays = s->job->rays;
-    vec_u16 is_free[MOST_VECS];
+    vec_mask is_free[MOST_VECS];
 
     for (int t = 0; t < tests; t++) {
         const char *q = (const char *)s->job->blur + at + 2 * (ptrdiff_t)rays->offset[t][n];
         const struct limits *l = &s->limits[rays->slab[t][n]];
-        vec_u16 hit[MOST_VECS];
+        vec_mask hit[MOST_VECS];
 
         for (int j = 0; j < vecs; j++) {
             const vec_u16 blur = vec_u16_load(vector_at(q, stride, j));
 
-            hit[j] = vec_u16_at_most(vec_u16_sub(blur, l->low), l->width);
-            if (t > 0) {
-                hit[j] = vec_u16_and(hit[j], is_free[j]);
-                is_free[j] = vec_u16_without(is_free[j], hit[j]);
-            } else {
-                is_free[j] = vec_u16_without(vec_u16_set(0xffff), hit[j]);
-            }
+            if (t == 0)
+                is_free[j] = vec_mask_all();
+            hit[j] = vec_mask_less(is_free[j], vec_u16_sub(blur, l->from), l->to);
+            is_free[j] = vec_mask_without(is_free[j], hit[j]);
         }
         add_light(sum, q + plane, stride, plane, hit, vecs);
     }
@@ -84,7 +80,7 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[3][MOST_VECS], const struct stat
 static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int vecs,
                                      const int tests)
 {
-    for (int i = 0; i < RF_STRIP_LANES; i += vecs * VEC_U16) {
+    for (int i = 0; i < s->job->lanes; i += vecs * (int)VEC_U16) {
         const ptrdiff_t at = 2 * (i / RF_TILE * s->job->stride + i % RF_TILE);
         vec_u16 sum[3][MOST_VECS];
 
@@ -103,7 +99,10 @@ static void sweep_some(struct state *s, int first, int end, int tests)
 {
     switch (tests) {
     case 0:
-        sweep_rays(s, first, end, ALONE_VECS, 0);
+        if (s->job->lanes % (ALONE_VECS * (int)VEC_U16) == 0)
+            sweep_rays(s, first, end, ALONE_VECS, 0);
+        else
+            sweep_rays(s, first, end, TEST_VECS, 0);
         break;
     case 1:
         sweep_rays(s, first, end, TEST_VECS, 1);
@@ -122,7 +121,7 @@ static void sweep_some(struct state *s, int first, int end, int tests)
 static void flush(uint32_t *const sum[3], struct state *s)
 {
     for (int c = 0; c < 3; c++)
-        for (int i = 0; i < RF_STRIP_LANES; i += VEC_U16)
+        for (int i = 0; i < s->job->lanes; i += VEC_U16)
             vec_u16_add_to(sum[c] + i, vec_u16_load(&s->light[c][i]));
     memset(s->light, 0, sizeof s->light);
 }
@@ -137,8 +136,9 @@ static void RF_VEC(rf_sweep)(uint32_t *const sum[3], const struct rf_sweep_job *
     s.job = job;
     memset(s.light, 0, sizeof s.light);
     for (int k = 0; k < job->slabs; k++)
-        s.limits[k] = (struct limits){vec_u16_set((uint16_t)job->slab[k].low),
-                                      vec_u16_set(job->slab[k].width)};
+        /* adding 2^15 makes an unsigned comparison of a signed one */
+        s.limits[k] = (struct limits){vec_u16_set((uint16_t)(job->slab[k].low ^ 0x8000)),
+                                      vec_u16_set((uint16_t)((job->slab[k].width + 1) ^ 0x8000))};
     for (int n = 0, end; n < rays->rays; n = end) {
         end = n + 1;
         while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)
@@ -164,4 +164,10 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
     RF_VEC(rf_light_use)(kernels);
     RF_VEC(rf_rows_use)(kernels);
     RF_VEC(rf_search_use)(kernels);
+    RF_VEC(rf_series_use)(kernels);
+    RF_VEC(rf_surfaces_use)(kernels);
+    RF_VEC(rf_sweep1_use)(kernels);
+    RF_VEC(rf_upsample_use)(kernels);
+    RF_VEC(rf_choose_use)(kernels);
+    RF_VEC(rf_yuv_use)(kernels);
 }

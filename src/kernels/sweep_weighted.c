@@ -30,7 +30,7 @@ void rf_sweep_weighted_c(uint64_t *const sum[4], const struct rf_sweep_job *job)
     for (int n = 0; n < rays->rays; n++) {
         const ptrdiff_t stride = rays->last_behind[n] ? job->stride : job->weight_stride;
 
-        for (int i = 0; i < RF_STRIP_LANES; i++) {
+        for (int i = 0; i < job->lanes; i++) {
             const ptrdiff_t x = i % RF_TILE, y = i / RF_TILE;
             int t = 0;
 

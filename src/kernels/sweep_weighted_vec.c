@@ -3,11 +3,13 @@
 #include "simd/vec.h"
 
 enum {
-    STEPS = 16, /* rays that a 32-bit sum holds: 16 * 4095 * 32767 < 2^31 */
+    STEPS = 32, /* rays that a 32-bit sum holds: 32 * 4095 * 32767 < 2^32 */
 };
 
-/* Rays that it holds of light 4 and 8 times as bright: 2 * 8 * 4095 * 32767 < 2^31. */
-static const uint8_t steps_of[] = {[RF_WHITE] = STEPS, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 2};
+/* Rays that it holds of light 4 and 8 times as bright. Products of two are added signed:
+ * 2 * 8 * 4095 * 32767 < 2^31. */
+static const uint8_t steps_of[] = {
+    [RF_WHITE] = STEPS, [RF_BRIGHT] = STEPS / 4, [RF_BRIGHTER] = STEPS / 8};
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
@@ -22,17 +24,17 @@ static ALWAYS_INLINE vec_u16 load(const void *base, ptrdiff_t bytes)
 }
 
 static ALWAYS_INLINE void take(struct met *met, vec_u16 red, vec_u16 green, vec_u16 blue,
-                               vec_u16 weight, vec_u16 where)
+                               vec_u16 weight, vec_mask where)
 {
-    met->light[0] = vec_u16_or(met->light[0], vec_u16_and(red, where));
-    met->light[1] = vec_u16_or(met->light[1], vec_u16_and(green, where));
-    met->light[2] = vec_u16_or(met->light[2], vec_u16_and(blue, where));
-    met->weight = vec_u16_or(met->weight, vec_u16_and(weight, where));
+    met->light[0] = vec_u16_put_where(where, met->light[0], red);
+    met->light[1] = vec_u16_put_where(where, met->light[1], green);
+    met->light[2] = vec_u16_put_where(where, met->light[2], blue);
+    met->weight = vec_u16_put_where(where, met->weight, weight);
 }
 
-/* A slab's limits in all lanes. */
+/* 0 <= s - low <= width as one signed comparison, s - from < to, in all lanes. */
 struct limits {
-    vec_u16 low, width;
+    vec_u16 from, to;
 };
 
 /* Where a vector lies: pixel (x, y) of the strip, in bytes of the planes. */
@@ -52,7 +54,7 @@ static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct pl
 {
     const struct rf_sorted_rays *rays = job->rays;
     const ptrdiff_t plane = 2 * job->pitch;
-    vec_u16 is_free = vec_u16_set(0xffff);
+    vec_mask is_free = vec_mask_all();
     struct met met = {{vec_u16_set(0), vec_u16_set(0), vec_u16_set(0)}, vec_u16_set(0)};
 
     for (int t = 0; t < rays->tests[n]; t++) {
@@ -60,10 +62,10 @@ static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct pl
         const ptrdiff_t q = p.at + 2 * (ptrdiff_t)rays->offset[t][n];
         const vec_u16 weight =
             load(job->weight, p.weight_at + 2 * (ptrdiff_t)rays->weight_offset[t][n]);
-        const vec_u16 hit = vec_u16_and(
-            is_free, vec_u16_at_most(vec_u16_sub(load(job->blur, q), l->low), l->width));
+        const vec_mask hit =
+            vec_mask_less(is_free, vec_u16_sub(load(job->blur, q), l->from), l->to);
 
-        is_free = vec_u16_without(is_free, hit);
+        is_free = vec_mask_without(is_free, hit);
         take(&met, load(job->blur, q + plane), load(job->blur, q + 2 * plane),
              load(job->blur, q + 3 * plane), weight, hit);
     }
@@ -109,9 +111,11 @@ static void RF_VEC(rf_sweep_weighted)(uint64_t *const sum[4], const struct rf_sw
     struct limits limits[RF_BINS];
 
     for (int k = 0; k < job->slabs; k++)
-        limits[k] = (struct limits){vec_u16_set((uint16_t)job->slab[k].low),
-                                    vec_u16_set(job->slab[k].width)};
-    for (int i = 0; i < RF_STRIP_LANES; i += VEC_U16)
+        /* adding 2^15 makes an unsigned comparison of a signed one */
+        limits[k] = (struct limits){
+            vec_u16_set((uint16_t)(job->slab[k].low ^ 0x8000)),
+            vec_u16_set((uint16_t)((job->slab[k].width + 1) ^ 0x8000))};
+    for (int i = 0; i < job->lanes; i += VEC_U16)
         sweep_vector(sum, i, job, limits);
 }
 

@@ -31,6 +31,7 @@ struct rf_frame {
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
     int prefilter_step;     /* the one that is being made */
     bool weighted;          /* eq. 5 weights differ from 1 */
+    int row_gap;            /* see methods/tile_rows.h */
     bool stars, grain;      /* lamps have spikes; blur has grain */
     bool finish_ready;      /* both are found out */
     enum rf_bright bright;  /* light was given back to lamps: it exceeds RF_LIGHT_MAX */

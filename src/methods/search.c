@@ -107,6 +107,7 @@ static void search_strip(const struct rf_frame *f, const struct chunk *chunk, in
         .stride = r->stride,
         .pitch = r->pitch,
         .rays = &sorted,
+        .lanes = RF_STRIP_LANES,
     };
     struct rf_search_job search = {
         .blur = r->front.blur + at,

@@ -12,6 +12,7 @@
  */
 #include "methods/method.h"
 #include "methods/tile_rays.h"
+#include "methods/tile_rows.h"
 #include "renderer/bands.h"
 
 #include <string.h>
@@ -65,26 +66,42 @@ static void set_sight(struct sight *sight, const struct rf_frame *f,
     }
 }
 
+/* One blur of the background for the tile, that of its middle, keeps the offsets of a ray
+ * constant; looking it up for each pixel measured no better. */
+static int behind_of(const struct refocus_renderer *r, int tx, int ty)
+{
+    return r->bins[(size_t)ty * r->tiles_x + tx].behind;
+}
+
 /* What is summed of a tile: plainly, or light times weight and weights. */
 union tally {
     uint32_t plain[3][LANES];
     uint64_t weighted[4][LANES];
 };
 
-/* Strip i of the tile at (tx, ty). */
+/* Rows of a tile that are computed together. */
+struct strip {
+    int y, step, rows; /* y in the tile */
+    int first;         /* lane of the tally */
+};
+
 static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct sight *sight, int tx, int ty, int i, union tally *run)
+                        const struct sight *sight, int tx, int ty, struct strip strip,
+                        union tally *run)
 {
     enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
     const struct refocus_renderer *r = f->r;
-    const int first = i * RF_STRIP_LANES, y = ty * RF_TILE + i * RF_STRIP, x = tx * RF_TILE;
+    const int first = strip.first, y = ty * RF_TILE + strip.y, x = tx * RF_TILE;
     const ptrdiff_t at = y * r->stride + x, weight_at = y * r->weight_stride + x;
+    const uint32_t *range =
+        r->range + (ty * CELLS + strip.y / RF_CELL) * r->range_stride + tx * CELLS;
     /* the vectors of sweep_weighted hold 8 times white at the most */
     rf_sweep_weighted_fn *const weighted =
         f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : r->kernels.sweep_weighted;
     struct rf_sorted_rays sorted;
     const struct rf_sort_job sort = {
-        .range = r->range + (ty * CELLS + i * STRIP_CELLS) * r->range_stride + tx * CELLS,
+        .range = range,
+        .below = strip.step > 2 ? range + STRIP_CELLS * r->range_stride : NULL,
         .front = r->smooth[0] + at,
         .behind = r->behind.light[0] + at,
         .weight = f->weighted ? r->weight + weight_at : NULL,
@@ -98,14 +115,15 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     };
     const struct rf_sweep_job job = {
         .blur = r->front.blur + at,
-        .stride = r->stride,
+        .stride = strip.step * r->stride,
         .pitch = r->pitch,
         .slabs = plan->slabs,
         .slab = plan->slab,
         .rays = &sorted,
         .bright = f->bright,
+        .lanes = strip.rows * RF_TILE,
         .weight = r->weight + weight_at,
-        .weight_stride = r->weight_stride,
+        .weight_stride = strip.step * r->weight_stride,
     };
 
     r->kernels.sort_rays(&sorted, &sort);
@@ -116,6 +134,19 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     else
         r->kernels.sweep((uint32_t *const[3]){run->plain[0] + first, run->plain[1] + first,
                                               run->plain[2] + first}, &job);
+}
+
+/* All computed rows of a tile. */
+static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                         const struct sight *sight, int tx, int ty, struct rf_tile_rows rows,
+                         union tally *run)
+{
+    const int halves = rows.step <= 2 ? 2 : 1, count = rows.count / halves;
+    const int second = rows.step == 2 ? 9 : RF_STRIP;
+
+    for (int i = 0; i < halves; i++)
+        sweep_strip(f, plan, sight, tx, ty,
+                    (struct strip){i * second, rows.step, count, i * count * RF_TILE}, run);
 }
 
 /* A run of rays of equal weight is at its end: it counts that often. */
@@ -146,13 +177,11 @@ static int chunk_of(const struct rf_ray_set *set, int first)
  * rays is left in `run`; others are added up in `sums`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct rf_tile_rays *tile_rays, int tx, int ty,
-                       union tally *run, struct rf_sums *sums)
+                       struct rf_tile_rows rows, union tally *run, struct rf_sums *sums)
 {
     const struct refocus_renderer *r = f->r;
     const struct rf_ray_set *set = tile_rays->set;
-    /* One blur of the background for the tile, that of its middle, keeps the offsets of a
-     * ray constant; looking it up for each pixel measured no better. */
-    const int behind = r->bins[(size_t)ty * r->tiles_x + tx].behind;
+    const int behind = behind_of(r, tx, ty);
     struct sight sight;
     const size_t used = f->weighted ? sizeof run->weighted : sizeof run->plain;
     int rays = 0; /* in this run */
@@ -166,8 +195,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
         sight.rays = chunk_of(set, n);
         rays += sight.rays;
         set_sight(&sight, f, plan, tile_rays, n, behind);
-        for (int i = 0; i < RF_TILE / RF_STRIP; i++)
-            sweep_strip(f, plan, &sight, tx, ty, i, run);
+        sweep_strips(f, plan, &sight, tx, ty, rows, run);
         if (!set->equal &&
             (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight)) {
             add_run(f, run, ray->weight, (uint64_t)rays, sums);
@@ -196,23 +224,30 @@ static void limit(union tally *run, bool weighted, uint32_t rays)
 
 /* Means of channels `from` to `to` - 1 of a tile through an opening. */
 static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct rf_tile_rays *rays, int tx, int ty,
+                        const struct rf_tile_rays *tile_rays, int tx, int ty,
                         uint16_t mean[3][LANES], int from, int to)
 {
     const struct refocus_renderer *r = f->r;
-    const uint32_t count = (uint32_t)rays->set->count;
+    const uint32_t count = (uint32_t)tile_rays->set->count;
+    const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind_of(r, tx, ty));
+    const int lanes = rows.count * RF_TILE;
+    uint16_t computed[LANES];
     union tally run;
 
-    sweep_rays(f, plan, rays, tx, ty, &run, NULL);
+    sweep_rays(f, plan, tile_rays, tx, ty, rows, &run, NULL);
     if (rf_cancelled(r))
         return;
     if (f->bright > RF_BRIGHT)
         limit(&run, f->weighted, count);
     for (int c = from; c < to; c++) {
+        uint16_t *out = rows.step > 1 ? computed : mean[c];
+
         if (f->weighted)
-            r->kernels.weighted_means(mean[c], run.weighted[c], run.weighted[3], LANES);
+            r->kernels.weighted_means(out, run.weighted[c], run.weighted[3], lanes);
         else
-            r->kernels.means(mean[c], run.plain[c], rf_mean_scale(count), LANES);
+            r->kernels.means(out, run.plain[c], rf_mean_scale(count), lanes);
+        if (rows.step > 1)
+            r->kernels.between_rows(mean[c], computed, rows.step);
     }
 }
 
@@ -226,7 +261,7 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
     union tally run;
 
     memset(&sums, 0, sizeof sums);
-    sweep_rays(f, plan, rays, tx, ty, &run, &sums);
+    sweep_rays(f, plan, rays, tx, ty, (struct rf_tile_rows){1, RF_TILE}, &run, &sums);
     if (rf_cancelled(f->r)) /* else no weights */
         return;
     for (int c = from; c < to; c++) {

@@ -36,7 +36,7 @@ static bool read_params(struct refocus_renderer_params *own,
            own->max_height >= 1 && own->max_height <= REFOCUS_MAX_SIDE &&
            own->max_blur_radius >= 0 &&
            own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
-           own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX2 &&
+           own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX512 &&
            (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 &&
            own->previews <= 1 && own->in_place <= 1 &&
            !(own->in_place && (own->previews || (own->methods & FRAME_METHODS))) &&
@@ -137,7 +137,8 @@ void refocus_renderer_get_info(const struct refocus_renderer *renderer,
 
 const char *refocus_cpu_name(uint32_t cpu)
 {
-    static const char *const name[] = {"auto", "c", "neon", "sse41", "avx2"};
+    static const char *const name[] = {"auto", "c", "neon", "sse41", "avx2",
+                                       "avx512"};
 
     return cpu < sizeof name / sizeof *name ? name[cpu] : NULL;
 }

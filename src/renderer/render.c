@@ -8,6 +8,7 @@
 #include "renderer/bands.h"
 #include "renderer/params.h"
 #include "renderer/passes.h"
+#include "methods/tile_rows.h"
 #include "renderer/rays.h"
 #include "renderer/render_yuv.h"
 
@@ -178,6 +179,7 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
         rf_cat_eye_make(&r->cat_eye);
     if (rf_cancelled(r))
         return;
+    f->row_gap = pinhole ? 0 : rf_row_gap(f);
     if (r->in_place.on) {
         rf_run_blocks(f, region, need, run_tiles);
         return;

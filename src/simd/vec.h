@@ -42,11 +42,20 @@
  *                             (sum of (p[i][k] - 2^15) * share[i][k] + 2^14) >> 15, shares not
  *                             negative and of sum 2^15
  *
+ * A vec_mask has lanes that are on or off:
+ *
+ *     vec_mask_all()          all of them on
+ *     vec_mask_less(m, a, b)  those of m where (int16_t)a < (int16_t)b
+ *     vec_mask_without(m, n)  those of m that are off in n
+ *     vec_u16_add_where(m, a, b)  m ? (uint16_t)(a + b) : a
+ *     vec_u16_put_where(m, a, b)  m ? b : a, where a is 0 in the lanes of m
+ *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.
  *
  *     vec_u32_zero()          every lane = 0
  *     vec_u32_add_products(sum, a, b, c, d)
- *                             sum + a * b + c * d, factors below 2^15
+ *                             sum + a * b + c * d, factors below 2^15;
+ *                             sums below 2^32
  *     vec_u32_add_to(to, v)   to[i] += v[i], 64-bit sums
  *
  * and VEC_U8 = 2 VEC_U16 lanes of bytes:
@@ -75,16 +84,21 @@
 #define RF_VEC_EXPAND(name, set) RF_VEC_PASTE(name, set)
 #define RF_VEC(name)             RF_VEC_EXPAND(name, RF_VEC_SET)
 
-#if defined(RF_VEC_AVX2) || defined(RF_VEC_SSE41) || defined(RF_VEC_NEON)
+#if defined(RF_VEC_AVX512) || defined(RF_VEC_AVX2) || defined(RF_VEC_SSE41) || defined(RF_VEC_NEON)
 #define RF_VECTORS /* not plain C */
 #endif
 
-#if defined(RF_VEC_AVX2)
+#if defined(RF_VEC_AVX512)
+#include "simd/vec_avx512.h"
+#elif defined(RF_VEC_AVX2)
 #include "simd/vec_avx2.h"
 #elif defined(RF_VEC_SSE41)
 #include "simd/vec_sse41.h"
 #elif defined(RF_VEC_NEON)
 #include "simd/vec_neon.h"
+#endif
+#if defined(RF_VECTORS) && !defined(RF_VEC_AVX512)
+#include "simd/vec_mask.h"
 #endif
 
 #endif

@@ -331,13 +331,23 @@ static inline vec_u32 vec_u32_zero(void)
     return (vec_u32){_mm256_setzero_si256(), _mm256_setzero_si256()};
 }
 
+/* sum + the products of both halves of 32-bit lanes. */
+static inline __m256i vec_s32_add_pairs(__m256i sum, __m256i a, __m256i b)
+{
+#if defined(__AVX512VNNI__) && defined(__AVX512VL__)
+    return _mm256_dpwssd_epi32(sum, a, b);
+#else
+    return _mm256_add_epi32(sum, _mm256_madd_epi16(a, b));
+#endif
+}
+
 static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
                                            vec_u16 d)
 {
-    sum.low = _mm256_add_epi32(sum.low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a, c),
-                                                          _mm256_unpacklo_epi16(b, d)));
-    sum.high = _mm256_add_epi32(sum.high, _mm256_madd_epi16(_mm256_unpackhi_epi16(a, c),
-                                                            _mm256_unpackhi_epi16(b, d)));
+    sum.low = vec_s32_add_pairs(sum.low, _mm256_unpacklo_epi16(a, c),
+                                _mm256_unpacklo_epi16(b, d));
+    sum.high = vec_s32_add_pairs(sum.high, _mm256_unpackhi_epi16(a, c),
+                                 _mm256_unpackhi_epi16(b, d));
     return sum;
 }
 

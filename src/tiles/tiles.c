@@ -187,6 +187,7 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
 
     plan->slabs = 0;
     plan->reach = 0;
+    plan->least = INT16_MAX;
     plan->sharp = true;
     for (int bin = 0; bin < RF_BINS;) {
         int end = bin + pixel, last = bin, low, high, centre;
@@ -197,6 +198,7 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
         }
         if (bin >= scale.focus && bin < focus_end) {
             plan->slab[plan->slabs++] = (struct rf_slab){-HALF, 2 * HALF - 1, 0};
+            plan->least = 0;
             bin = focus_end;
             continue;
         }
@@ -217,6 +219,10 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             plan->reach = -low;
         if (high > plan->reach)
             plan->reach = high;
+        if (low > 0 && low < plan->least)
+            plan->least = low;
+        if (high < 0 && -high < plan->least)
+            plan->least = -high;
         low -= OVERLAP;
         high += OVERLAP;
         if (centre < 0 && high >= -HALF)

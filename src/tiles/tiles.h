@@ -21,7 +21,8 @@ enum { RF_MAX_SLABS = RF_BINS };
 
 struct rf_tile_plan {
     int slabs;
-    int reach; /* largest |s| that reaches the tile, Q7.8 */
+    int reach; /* largest |s| that reaches the tile, Q7.8, */
+    int least; /* and the least */
     bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
     bool lamp;    /* a highlight is in reach */
     struct rf_slab slab[RF_MAX_SLABS];

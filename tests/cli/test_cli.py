@@ -241,7 +241,7 @@ class Results(Case):
         self.assertTrue(0 < times['min'] <= times['median'] <= times['max'])
         self.assertGreater(report['prepare_ms'], 0)
         self.assertGreater(report['peak_rss_kib'], 500)
-        self.assertIn(report['cpu'], ('c', 'neon', 'sse41', 'avx2'))
+        self.assertIn(report['cpu'], ('c', 'neon', 'sse41', 'avx2', 'avx512'))
         depth = report['depth']
         self.assertEqual((depth['unknown'], depth['clamped'], depth['near_m'], depth['far_m'],
                           depth['width'], depth['height']), (0, 0, None, None, W, H))
@@ -749,7 +749,7 @@ class Failures(Case):
 
     def test_cpu(self):
         states = [self.run_it(*self.render('--cpu', name)) for name in
-                  ('c', 'neon', 'sse41', 'avx2', 'auto')]
+                  ('c', 'neon', 'sse41', 'avx2', 'avx512', 'auto')]
         self.assertEqual((states[0].returncode, states[4].returncode), (0, 0))
         for state in states:
             self.assertIn(state.returncode, (0, 1))

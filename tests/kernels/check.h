@@ -48,6 +48,6 @@ void bench_sweep(const struct subject *subject);
 double best_time(void (*call)(void *context), void *context);
 
 /* Operations of simd/vec.h, by check_vec.c of an instruction set. */
-int check_vec_sse41(void), check_vec_avx2(void), check_vec_neon(void);
+int check_vec_sse41(void), check_vec_avx2(void), check_vec_avx512(void), check_vec_neon(void);
 
 #endif

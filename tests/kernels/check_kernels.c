@@ -43,6 +43,10 @@ static int check_vec(uint32_t cpu)
     case REFOCUS_CPU_AVX2:
         return check_vec_avx2();
 #endif
+#if defined(RF_WITH_AVX512)
+    case REFOCUS_CPU_AVX512:
+        return check_vec_avx512();
+#endif
 #if defined(RF_WITH_NEON)
     case REFOCUS_CPU_NEON:
         return check_vec_neon();
@@ -62,7 +66,7 @@ int main(int argc, char **argv)
     }
     if (!bench)
         failures += check_focus();
-    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++) {
+    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++) {
         struct subject subject = {.cpu = refocus_cpu_name(cpu)};
         uint32_t plain = REFOCUS_CPU_C, own = cpu;
 

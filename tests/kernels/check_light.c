@@ -1,6 +1,7 @@
 /* Means of weighted sums, and the brightest of a row. */
 #include "check.h"
 
+#include <math.h>
 #include <stdio.h>
 
 enum { LANES = RF_TILE * RF_TILE, WHITE = 4 * 4095 };
@@ -93,11 +94,62 @@ static int check_brightest(const struct subject *subject)
     return 0;
 }
 
+/* The cubic through four of the computed rows, by Lagrange; its shares are rounded to Q14. */
+static double cubic(const uint16_t *computed, const int *at, int rows, int x, int y)
+{
+    int first = 0;
+    double v = 0;
+
+    while (first + 4 < rows && at[first + 2] <= y)
+        first++;
+    for (int k = first; k < first + 4; k++) {
+        double share = 1;
+
+        for (int j = first; j < first + 4; j++)
+            if (j != k)
+                share *= (double)(y - at[j]) / (at[k] - at[j]);
+        v += share * computed[k * RF_TILE + x];
+    }
+    for (int k = 0; k + 1 < rows; k++) {
+        const double a = computed[k * RF_TILE + x], b = computed[(k + 1) * RF_TILE + x];
+
+        if (at[k] <= y && y <= at[k + 1])
+            return fmin(fmax(v, fmin(a, b)), fmax(a, b));
+    }
+    return -1;
+}
+
+static int check_between(const struct subject *subject)
+{
+    static const int at[3][8] = {{0, 2, 4, 6, 9, 11, 13, 15}, {0, 3, 6, 9, 12, 15}, {0, 5, 10, 15}};
+    static const int rows[] = {8, 6, 4}, steps[] = {2, 3, 5};
+    uint32_t seed = 14;
+
+    for (int round = 0; round < 300; round++) {
+        const int i = round % 3;
+        uint16_t computed[LANES], mean[LANES];
+
+        for (int k = 0; k < rows[i] * RF_TILE; k++)
+            computed[k] = (uint16_t)(k % RF_TILE == 0 ? round * 217 : (int)noise(&seed) % 65536);
+        subject->kernels.between_rows(mean, computed, steps[i]);
+        for (int k = 0; k < LANES; k++) {
+            const double should =
+                cubic(computed, at[i], rows[i], k % RF_TILE, k / RF_TILE);
+            const double off = mean[k] - should;
+
+            if (k % RF_TILE == 0 ? mean[k] != computed[0] : off > 8 || off < -8)
+                return wrong(subject, "between_rows", "a pixel", mean[k], should);
+        }
+    }
+    return 0;
+}
+
 int check_light(const struct subject *subject)
 {
-    const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject);
+    const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject) +
+                         check_between(subject);
 
     if (!failures)
-        printf("ok    %-12s %-6s weighted means, brightest\n", "light", subject->cpu);
+        printf("ok    %-12s %-6s weighted means, brightest, rows between\n", "light", subject->cpu);
     return failures;
 }

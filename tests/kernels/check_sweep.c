@@ -158,6 +158,7 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
         .slab = s->slab,
         .rays = &s->rays,
         .weight_stride = WEIGHT_STRIDE,
+        .lanes = (int)(2 + 2 * (seed % 4)) * RF_TILE,
     };
     make_slabs(s, &seed);
     extreme = noise(&seed) % 4 == 0;
@@ -207,7 +208,7 @@ static bool check_case(const struct subject *subject, struct stage *s, int tests
                        enum place place, uint32_t seed)
 {
     make_stage(s, tests, same, place, seed);
-    for (int i = 0; i < LANES; i++)
+    for (int i = 0; i < s->job.lanes; i++)
         for (int n = 0; n < s->rays.rays; n++)
             follow(s, i, n);
     run(&subject->kernels, s, false);

@@ -138,6 +138,40 @@ static uint16_t c_s16_scale_bound(uint16_t a, uint16_t b)
     return c_s16_scale(a, c_s16_max(b, 0x8001));
 }
 
+/* Masks, among the lanes where a is even. */
+static vec_mask mask_of(vec_u16 a, vec_u16 b)
+{
+    const vec_u16 one = vec_u16_set(1), zero = vec_u16_set(0);
+    const vec_mask odd = vec_mask_less(vec_mask_all(), zero, vec_u16_and(a, one));
+
+    return vec_mask_less(vec_mask_without(vec_mask_all(), odd), a, b);
+}
+
+static bool c_mask_of(uint16_t a, uint16_t b)
+{
+    return a % 2 == 0 && (int16_t)a < (int16_t)b;
+}
+
+static vec_u16 add_where(vec_u16 a, vec_u16 b)
+{
+    return vec_u16_add_where(mask_of(a, b), a, b);
+}
+
+static uint16_t c_add_where(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(c_mask_of(a, b) ? a + b : a);
+}
+
+static vec_u16 put_where(vec_u16 a, vec_u16 b)
+{
+    return vec_u16_put_where(mask_of(a, b), vec_u16_set(0), b);
+}
+
+static uint16_t c_put_where(uint16_t a, uint16_t b)
+{
+    return c_mask_of(a, b) ? b : 0;
+}
+
 static const struct {
     const char *name;
     operation *run;
@@ -153,6 +187,8 @@ static const struct {
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
     {"mul", vec_u16_mul, c_mul},             {"s16_max", vec_s16_max, c_s16_max},
     {"s16_scale", s16_scale, c_s16_scale_bound},
+    {"add_where", add_where, c_add_where},
+    {"put_where", put_where, c_put_where},
 };
 
 static uint16_t pick(int round, int lane, int which, uint32_t *seed)

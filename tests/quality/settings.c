@@ -22,6 +22,7 @@ static const struct name cpu_names[] = {{"auto", REFOCUS_CPU_AUTO},
                                         {"neon", REFOCUS_CPU_NEON},
                                         {"sse41", REFOCUS_CPU_SSE41},
                                         {"avx2", REFOCUS_CPU_AVX2},
+                                        {"avx512", REFOCUS_CPU_AVX512},
                                         {0}};
 
 static const struct name format_names[] = {{"rgb", 0},

@@ -187,7 +187,7 @@ static void pictures(void **state)
         uint64_t plain[64] = {0};
 
         assert_true(hash_view(view, &p, REFOCUS_CPU_C, 1, REFOCUS_METHOD_COUNT, plain));
-        for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++)
+        for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++)
             check_same(view, &p, cpu, 2, REFOCUS_METHOD_RAYTRACE, plain);
         check_same(view, &p, REFOCUS_CPU_AUTO, 1, REFOCUS_METHOD_RAYTRACE, plain);
         check_same(view, &p, REFOCUS_CPU_AUTO, 3, REFOCUS_METHOD_COUNT, plain);
@@ -284,7 +284,7 @@ static void yuv_views_same(void **state)
         uint32_t cpu;
         int threads;
     } ways[] = {{REFOCUS_CPU_NEON, 1}, {REFOCUS_CPU_SSE41, 2}, {REFOCUS_CPU_AVX2, 1},
-                {REFOCUS_CPU_AUTO, 3}, {REFOCUS_CPU_AUTO, 8}};
+                {REFOCUS_CPU_AVX512, 2}, {REFOCUS_CPU_AUTO, 3}, {REFOCUS_CPU_AUTO, 8}};
 
     (void)state;
     for (int v = 0; v < (int)(sizeof yuv_views / sizeof yuv_views[0]); v++) {
@@ -347,7 +347,7 @@ static void effects(void **state)
     const char *name;
 
     (void)state;
-    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX2; cpu++) {
+    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++) {
         struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, blur);
         struct refocus_renderer *renderer;
 

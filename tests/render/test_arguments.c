@@ -46,7 +46,7 @@ static void bad_limits(void **state)
         BAD(refocus_renderer_params, max_height, INT32_MAX), BAD(refocus_renderer_params, max_blur_radius, -0.001f),
         BAD(refocus_renderer_params, max_blur_radius, 127.001f), BAD(refocus_renderer_params, max_blur_radius, NAN),
         BAD(refocus_renderer_params, max_blur_radius, INFINITY), BAD(refocus_renderer_params, threads, -1),
-        BAD(refocus_renderer_params, threads, 65), BAD(refocus_renderer_params, cpu, 5), BAD(refocus_renderer_params, cpu, UINT32_MAX),
+        BAD(refocus_renderer_params, threads, 65), BAD(refocus_renderer_params, cpu, 6), BAD(refocus_renderer_params, cpu, UINT32_MAX),
         BAD(refocus_renderer_params, methods, 1u << 10), BAD(refocus_renderer_params, reserved, 1),
         BAD(refocus_renderer_params, allocator.allocate, some_allocate),
         BAD(refocus_renderer_params, allocator.release, some_release)};
@@ -331,7 +331,8 @@ static void names(void **state)
     assert_null(refocus_method_name(REFOCUS_METHOD_COUNT));
     assert_null(refocus_method_summary(UINT32_MAX));
     assert_string_equal(refocus_cpu_name(REFOCUS_CPU_AVX2), "avx2");
-    assert_null(refocus_cpu_name(REFOCUS_CPU_AVX2 + 1));
+    assert_string_equal(refocus_cpu_name(REFOCUS_CPU_AVX512), "avx512");
+    assert_null(refocus_cpu_name(REFOCUS_CPU_AVX512 + 1));
     assert_string_equal(refocus_version(), REFOCUS_VERSION_STRING);
     for (int i = -20; i < 3; i++)
         assert_true(strlen(refocus_strerror(i)) > 0);
@@ -382,7 +383,7 @@ static void kernels(void **state)
 
     (void)state;
     assert_int_equal(refocus_measure_kernel(1000, REFOCUS_CPU_C, &time), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_measure_kernel(0, 5, &time), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_measure_kernel(0, 6, &time), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_measure_kernel(0, REFOCUS_CPU_C, NULL), REFOCUS_ERR_ARGUMENT);
     assert_string_equal(time.name, "untouched");
     assert_int_equal(refocus_measure_kernel(0, REFOCUS_CPU_C, &time), REFOCUS_OK);

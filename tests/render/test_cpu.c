@@ -39,7 +39,7 @@ static void same_as_c(void **state)
         uint8_t *expected = malloc(3 * 150 * 90), *out = malloc(3 * 150 * 90);
 
         assert_true(plain && expected && out);
-        for (uint32_t cpu = 0; cpu <= REFOCUS_CPU_AVX2; cpu++) {
+        for (uint32_t cpu = 0; cpu <= REFOCUS_CPU_AVX512; cpu++) {
             struct refocus_renderer *renderer = with_cpu(&p, blurs[s], cpu);
 
             for (int i = 0; i < style_count && renderer; i++) {

@@ -14,6 +14,7 @@ struct bins {
 
 struct slab {
     double low, high, centre; /* met if low <= s <= high */
+    double least, most;       /* of the blurs that it is for */
 };
 
 struct plan {
@@ -104,9 +105,11 @@ static struct bins reach_of_tile(const struct twin *t, const struct bins *tiles,
 static struct slab slab_over(const struct bins *bins, double width, int bin, int last)
 {
     struct slab slab = {fmax(edge_of(width, bin), bins->least),
-                        fmin(edge_of(width, last + 1), bins->most), 0};
+                        fmin(edge_of(width, last + 1), bins->most), 0, 0, 0};
 
     slab.centre = (slab.low + slab.high) / 2;
+    slab.least = slab.low;
+    slab.most = slab.high;
     return slab;
 }
 
@@ -127,7 +130,7 @@ static struct plan cover(const struct bins *bins, double width)
             continue;
         }
         if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel) {
-            plan.slab[plan.slabs++] = (struct slab){-0.5, nextafter(0.5, 0), 0};
+            plan.slab[plan.slabs++] = (struct slab){-0.5, nextafter(0.5, 0), 0, 0, 0};
             bin = FOCUS_BIN + pixel;
             continue;
         }
@@ -194,21 +197,102 @@ static void trace(const struct twin *t, const struct plan *plan, int x, int y,
     twin_add(t, sum, t->behind, twin_meets(t, x, y, ray, behind), ray.weight);
 }
 
+/* Rows that are computed: see src/methods/tile_rows.h. */
+struct rows {
+    int count, at[TWIN_TILE];
+};
+
+static struct rows rows_of(const struct twin *t, const struct plan *plan,
+                           const struct sets *sets, double behind)
+{
+    static const struct rows sparse[] = {
+        {4, {0, 5, 10, 15}}, {6, {0, 3, 6, 9, 12, 15}}, {8, {0, 2, 4, 6, 9, 11, 13, 15}}};
+    static const double step[] = {5, 3, 2};
+    struct rows all = {TWIN_TILE, {0}};
+    double height = 0, least = fabs(behind);
+
+    for (int y = 0; y < TWIN_TILE; y++)
+        all.at[y] = y;
+    if (t->params->rays == REFOCUS_RAYS_FULL || t->params->rays > 64)
+        return all;
+    for (int n = 0; n < sets->count[sets->sets - 1]; n++)
+        height = fmax(height, abs(sets->ray[sets->sets - 1][n].v) / 32768.0);
+    for (int i = 0; i < plan->slabs; i++)
+        least = fmin(least, plan->slab[i].centre == 0  ? 0
+                            : plan->slab[i].centre > 0 ? plan->slab[i].least
+                                                       : -plan->slab[i].most);
+    for (int i = 0; i < 3; i++)
+        if (least * height >= 1.5 * step[i])
+            return sparse[i];
+    return all;
+}
+
+/* The cubic through four rows, by Lagrange, not beyond the rows before and after. */
+static void between(const struct rows *rows, const struct twin_sum *row[TWIN_TILE], int y,
+                    struct twin_sum *sum)
+{
+    int first = 0;
+
+    *sum = (struct twin_sum){{0}, 1};
+    while (first + 4 < rows->count && rows->at[first + 2] <= y)
+        first++;
+    for (int k = first; k < first + 4; k++) {
+        double share = 1;
+
+        for (int j = first; j < first + 4; j++)
+            if (j != k)
+                share *= (double)(y - rows->at[j]) / (rows->at[k] - rows->at[j]);
+        for (int c = 0; c < 3; c++)
+            sum->light[c] += share * row[k]->light[c] / row[k]->weight;
+    }
+    for (int k = 0; k + 1 < rows->count; k++) {
+        for (int c = 0; c < 3 && rows->at[k] <= y && y <= rows->at[k + 1]; c++) {
+            const double a = row[k]->light[c] / row[k]->weight;
+            const double b = row[k + 1]->light[c] / row[k + 1]->weight;
+
+            sum->light[c] = fmin(fmax(sum->light[c], fmin(a, b)), fmax(a, b));
+        }
+    }
+}
+
+static void sweep_column(const struct twin *t, const struct plan *plan,
+                         const struct sets *sets, double behind, const struct rows *rows,
+                         int x, int y0, uint8_t *rgb)
+{
+    const int set = set_for(sets, plan->reach);
+    struct twin_sum sum[TWIN_TILE];
+    const struct twin_sum *row[TWIN_TILE];
+
+    for (int k = 0; k < rows->count; k++) {
+        sum[k] = (struct twin_sum){{0}, 0};
+        row[k] = &sum[k];
+        for (int n = 0; n < sets->count[set]; n++)
+            trace(t, plan, x, y0 + rows->at[k], sets->ray[set][n], behind, &sum[k]);
+    }
+    for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
+        struct twin_sum own = sum[y];
+
+        if (rows->count < TWIN_TILE)
+            between(rows, row, y, &own);
+        twin_encode(t, &own, rgb + 3 * ((y0 + y) * t->width + x));
+    }
+}
+
 static void sweep_tile(const struct twin *t, const struct plan *plan, const struct sets *sets,
                        int tx, int ty, uint8_t *rgb)
 {
     const double behind = t->behind_blur[twin_at(t, tx * TWIN_TILE + TWIN_TILE / 2,
                                                  ty * TWIN_TILE + TWIN_TILE / 2)];
-    const int set = set_for(sets, plan->reach);
+    const struct rows rows = rows_of(t, plan, sets, behind);
 
-    for (int y = ty * TWIN_TILE; y < (ty + 1) * TWIN_TILE && y < t->height; y++) {
-        for (int x = tx * TWIN_TILE; x < (tx + 1) * TWIN_TILE && x < t->width; x++) {
+    for (int x = tx * TWIN_TILE; x < (tx + 1) * TWIN_TILE && x < t->width; x++) {
+        if (!plan->sharp)
+            sweep_column(t, plan, sets, behind, &rows, x, ty * TWIN_TILE, rgb);
+        for (int y = ty * TWIN_TILE; plan->sharp && y < (ty + 1) * TWIN_TILE && y < t->height;
+             y++) {
             struct twin_sum sum = {{0}, 0};
 
-            if (plan->sharp)
-                twin_add(t, &sum, t->light, y * t->width + x, 1);
-            for (int n = 0; !plan->sharp && n < sets->count[set]; n++)
-                trace(t, plan, x, y, sets->ray[set][n], behind, &sum);
+            twin_add(t, &sum, t->light, y * t->width + x, 1);
             twin_encode(t, &sum, rgb + 3 * (y * t->width + x));
         }
     }

@@ -1,0 +1,34 @@
+#include "methods/tile_rows.h"
+
+#include <stdlib.h>
+
+enum {
+    ROW_BLUR = 384, /* 1.5 pixels of blur, Q7.8, for rows a pixel apart */
+    MOST_RAYS = 64, /* more are for those who want the best */
+};
+
+int rf_row_gap(const struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+    const struct rf_ray_set *set = &f->r->set[f->r->preset];
+    int height = 1; /* half the opening's, Q15 */
+
+    if (p->rays == REFOCUS_RAYS_FULL || p->rays > MOST_RAYS || p->cat_eye > 0 ||
+        p->fringe != 0 || rf_aperture_is_fine(f->aperture))
+        return 0;
+    for (int n = 0; n < set->count; n++)
+        height = abs(set->ray[n].v) > height ? abs(set->ray[n].v) : height;
+    return (ROW_BLUR << 15) / height;
+}
+
+struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                                 int behind)
+{
+    static const struct rf_tile_rows sparse[] = {{5, 4}, {3, 6}, {2, 8}};
+    const int least = plan->least < abs(behind) ? plan->least : abs(behind);
+
+    for (int i = 0; f->row_gap && !plan->lamp && i < 3; i++)
+        if (least / sparse[i].step >= f->row_gap)
+            return sparse[i];
+    return (struct rf_tile_rows){1, RF_TILE};
+}

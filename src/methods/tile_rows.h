@@ -1,0 +1,28 @@
+/* tile_rows.h: which rows of a tile are computed.
+ *
+ * Where everything in reach is blurred, a picture has no detail as fine as its rows, and some
+ * of them are as good as all: a disc of radius s passes less than 0.15 of what changes faster
+ * than every 4/3 s pixels. The rows between are put in along cubics. The first and the last row
+ * are always computed, so that tiles meet without a seam and depend on no other.
+ */
+#ifndef RF_TILE_ROWS_H
+#define RF_TILE_ROWS_H
+
+#include "methods/method.h"
+
+enum { RF_ROW_STEPS = 4 };
+
+/* Rows `step` apart; of 2, 0 2 4 6 9 11 13 15. */
+struct rf_tile_rows {
+    int step, count;
+};
+
+/* The blur, Q7.8, that asks for a row a pixel apart and less than two; 0: every row is asked for,
+ * by the settings or by an opening with fine structure. */
+int rf_row_gap(const struct rf_frame *f);
+
+/* For a tile; the background's blur there is `behind`. */
+struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                                 int behind);
+
+#endif
