@@ -156,7 +156,7 @@ static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *
     }
     for (int c = 0; c < 3; c++) { /* copies of 8 cost less than copies of n */
         for (int j = 0; j < rows; j++)
-            memcpy(colour[c] + j * n, patch->colour[c][j] + x - patch->from, RUN);
+            memcpy(colour[c] + j * n, &patch->colour[c][j][x - patch->from], RUN);
         memset(colour[c] + rows * n, colour[c][0], RF_BATCH_SPARE);
     }
 }
