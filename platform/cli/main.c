@@ -60,10 +60,11 @@ static int unknown(const char *argument)
 static void grow_stack(void)
 {
     enum { NEEDED = 1 << 20, PAGE = 4096 };
-    volatile char stack[NEEDED];
+    char stack[NEEDED];
+    volatile char *byte = stack;
 
     for (size_t i = 0; i < NEEDED; i += PAGE)
-        stack[NEEDED - 1 - i] = 0;
+        byte[NEEDED - 1 - i] = 0;
 }
 
 int main(int argc, char **argv)

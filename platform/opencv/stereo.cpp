@@ -218,13 +218,15 @@ int stereo(const refocus_image *left, const refocus_image *right,
     if (params->method == REFOCUS_STEREO_PLAIN)
         disparity = raw;
     if (params->method == REFOCUS_STEREO_WLS) {
-        cv::Mat photo;
+        cv::Mat photo, filled = disparity.clone();
 
         cv::resize(refocus_cv::view(left), photo, a.size(), 0, 0, cv::INTER_AREA);
         if (contrib->wls(photo.data, raw.ptr<float>(), back.ptr<float>(),
-                         disparity.ptr<float>(), a.cols, a.rows))
+                         filled.ptr<float>(), a.cols, a.rows))
             return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED, "OpenCV gave up");
-        disparity.setTo(none, (disparity < s.least) | (disparity > s.least + s.count));
+        /* It smooths over edges: what has been confirmed stays. */
+        filled.copyTo(disparity, ~(disparity == disparity) & (filled >= s.least) &
+                                     (filled <= s.least + s.count));
     }
     disparity *= scale;
     cv::resize(disparity, full, cv::Size(left->width, left->height), 0, 0, cv::INTER_NEAREST);

@@ -46,17 +46,24 @@ int try_smooth(uint32_t filter, const uint8_t *rgb, float *depth, int width, int
     }
 }
 
-/* Disparities as SGBM gives them: 1/16 pixel, what is unknown below all others. */
+/* Disparities as SGBM gives them: 1/16 pixel, what is unknown a pixel below all others. The filter
+ * takes confidence from how much they vary: much farther below, and few would be left around. */
 cv::Mat fixed(const float *d, int width, int height)
 {
     cv::Mat out(height, width, CV_16S);
+    float least = 0;
+
+    for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+        least = d[i] < least ? d[i] : least;
+
+    const short unknown = cv::saturate_cast<short>(least * 16 - 16);
 
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const float v = d[(size_t)y * (size_t)width + (size_t)x];
 
             out.at<short>(y, x) =
-                std::isnan(v) ? (short)-16000 : cv::saturate_cast<short>(v * 16);
+                std::isnan(v) ? unknown : cv::saturate_cast<short>(v * 16);
         }
     return out;
 }

@@ -7,9 +7,11 @@ enum {
     PAD = 2,              /* samples beyond the map's border, repeated */
     STEP = 65535 / 24,    /* largest one within a surface */
     BAND = 16,            /* rows of a work item */
-    RUN = 8,              /* pixels that are collected together */
-    CHUNK = 256,          /* pixels that are looked at together for a median */
-    HALF = 1,             /* shift of colours: sums of three differences then fit */
+    RUN = 8,              /* most columns and rows of pixels that are looked at together */
+    CHUNK = 256,          /* pixels that are settled together */
+    SLICE = 128,          /* pixels whose colours are taken together */
+    QUARTER = 2,          /* shift of colours: sums of three differences then fit */
+    KINDS = 8,            /* of spans that are remembered */
 };
 
 /* Cubic B-spline, for means: it smooths noise, and keeps slopes. t in Q8, result in Q24 / 6. */
@@ -42,7 +44,7 @@ static struct rf_taps taps_at(int x, int size, int samples)
 {
     const int64_t at = position(x, size, samples);
     struct rf_taps taps = {.first = (int32_t)((at + 256) >> 8) - 2};
-    int weight[RF_TAPS], sum = 0, left = 65536, greatest = 0;
+    int weight[RF_TAPS], sum = 0, left = 32768, greatest = 0;
 
     for (int i = 0; i < RF_TAPS; i++) {
         weight[i] = mean_weight((int)(at - ((int64_t)taps.first + i) * 256));
@@ -51,11 +53,11 @@ static struct rf_taps taps_at(int x, int size, int samples)
     }
     taps.middle = (int16_t)((at - ((int64_t)taps.first + 1) * 256 - 128) * 128);
     for (int i = 0; i < RF_TAPS; i++) {
-        taps.share[i] = (uint16_t)(((int64_t)weight[i] << 16) / sum);
+        taps.share[i] = (int16_t)(((int64_t)weight[i] << 15) / sum);
         left -= taps.share[i];
         greatest = taps.share[i] > taps.share[greatest] ? i : greatest;
     }
-    taps.share[greatest] = (uint16_t)(taps.share[greatest] + left);
+    taps.share[greatest] = (int16_t)(taps.share[greatest] + left);
     return taps;
 }
 
@@ -89,7 +91,7 @@ static void load_row(void *context, int item, int worker)
 
         out[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[i] : in[i] * 257);
         for (int c = 0; c < 3; c++)
-            up->colour[c][y * up->colour_stride + x] = (uint8_t)(p[c] >> HALF);
+            up->colour[c][y * up->colour_stride + x] = (uint8_t)(p[c] >> QUARTER);
     }
     if (up->confidence) {
         const uint8_t *sure =
@@ -103,146 +105,174 @@ static void load_row(void *context, int item, int worker)
 static void widen_row(void *context, int y, int worker)
 {
     const struct rf_upsampler *up = context;
-    const uint16_t *in = up->coarse + y * up->coarse_stride;
-    uint16_t *out = up->wide + y * up->wide_stride;
-    const int width = up->photo->width;
 
     (void)worker;
-    for (int x = 0; x < width; x++) {
-        const struct rf_taps *taps = &up->across[x];
-        const uint16_t *d = in + taps->first;
-
-        out[x] = (uint16_t)(((uint32_t)d[0] * taps->share[0] + (uint32_t)d[1] * taps->share[1] +
-                             (uint32_t)d[2] * taps->share[2] + (uint32_t)d[3] * taps->share[3] +
-                             (1 << 15)) >> 16);
-    }
+    up->kernels->widen4(up->wide + y * up->wide_stride, up->coarse + y * up->coarse_stride,
+                        up->across, up->photo->width);
 }
 
-/* Eight elements of one or two bytes from the x-th of a row on, which is repeated at its ends. */
-static inline void copy8(void *to, const void *row, int x, int columns, size_t size)
-{
-    if (x >= -PAD && x + RF_AROUND <= columns + PAD) {
-        memcpy(to, (const char *)row + x * (ptrdiff_t)size, RF_AROUND * size);
-        return;
-    }
-    for (int i = 0; i < RF_AROUND; i++)
-        memcpy((char *)to + (size_t)i * size,
-               (const char *)row + (size_t)clamp(x + i, columns - 1) * size, size);
-}
-
-/* What the photo and the sensor say about the samples around those from (x, y) on. */
-static void look(struct rf_cell *cell, const struct rf_upsampler *up, int x, int y)
-{
-    uint16_t disparity[RF_SAMPLES];
-    uint8_t trust[RF_SAMPLES];
-
-    for (int j = 0; j < RF_AROUND; j++) {
-        const ptrdiff_t row = clamp(y - 2 + j, up->rows - 1);
-
-        copy8(disparity + j * RF_AROUND, up->coarse + row * up->coarse_stride, x - 2,
-              up->columns, sizeof *disparity);
-        for (int c = 0; c < 3; c++)
-            copy8(cell->colour[c] + j * RF_AROUND, up->colour[c] + row * up->colour_stride,
-                  x - 2, up->columns, 1);
-        if (up->confidence)
-            copy8(trust + j * RF_AROUND, up->trust + row * up->trust_stride, x - 2,
-                  up->columns, 1);
-    }
-    up->kernels->find_surfaces(cell, disparity, up->confidence ? trust : NULL);
-}
-
-/* Whether the 4 x 4 samples from (x, y) are of one surface that is known everywhere. */
-static bool is_smooth(const struct rf_upsampler *up, const uint16_t *across,
-                      const uint16_t *down, int x, int y)
-{
-    for (int i = 0; i < RF_TAPS; i++)
-        if (down[x + i] > STEP || (i < RF_TAPS - 1 && across[x + i] > STEP))
-            return false;
-    if (!up->confidence)
-        return true;
-    for (int i = 0; i < RF_TAPS; i++)
-        for (int j = 0; j < RF_TAPS; j++)
-            if (up->trust[(y + i) * up->trust_stride + x + j] != 255)
-                return false;
-    return true;
-}
-
-/* Rows of pixels between the same samples that are worked out together. */
-struct pending {
-    struct rf_cell cell;
-    struct rf_batch batch;
-    uint16_t result[RF_BATCH];
-    uint8_t sure[RF_BATCH];
-    int x[RF_BATCH], y[RF_BATCH], length[RF_BATCH], runs, pixels;
+/* Where pixels of a span lie among the samples, for those that have been looked at last. */
+struct lies {
+    struct rf_lie lie[KINDS];
+    int alike[KINDS], x[KINDS];
 };
 
-static void flush(const struct rf_upsampler *up, struct pending *pending)
+/* What a worker needs for rows of pixels between the same samples. */
+struct patch {
+    const struct rf_upsampler *up;
+    int row;    /* the first of the taps */
+    int y0, y1; /* rows of pixels, at most RUN */
+    int bytes;  /* of a pixel */
+    int ready;  /* colours of the columns before are in `colour` */
+    int from;   /* the first of them */
+    uint8_t colour[3][RUN][SLICE + RUN];
+    struct rf_parts parts;
+    struct rf_cell cell;
+    struct lies lies;
+    uint16_t near_disparity[RF_AROUND][RF_AROUND]; /* for windows at the border */
+    uint8_t near_colour[3][RF_AROUND][RF_AROUND], near_trust[RF_AROUND][RF_AROUND];
+};
+
+/* The colours of n pixels from column x on, a row after the other. */
+static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *patch, int x, int n)
 {
-    int from = 0;
+    const struct refocus_image *photo = patch->up->photo;
+    const int rows = patch->y1 - patch->y0;
 
-    if (pending->pixels)
-        up->kernels->surface(pending->result, pending->sure, &pending->cell, &pending->batch,
-                             pending->pixels);
-    for (int i = 0; i < pending->runs; i++) {
-        uint16_t *to = up->raw + pending->y[i] * up->raw_stride + pending->x[i];
-        uint8_t *sure = up->sure + pending->y[i] * up->sure_stride + pending->x[i];
+    if (x < patch->from || x + n > patch->ready) {
+        const int left = photo->width - x;
 
-        for (int x = 0; x < pending->length[i]; x++) {
-            to[x] = pending->result[from + x];
-            sure[x] = pending->sure[from + x];
-        }
-        from += pending->length[i];
-    }
-    pending->runs = pending->pixels = 0;
-}
+        patch->from = x;
+        patch->ready = x + (left < SLICE ? left : SLICE);
+        for (int y = patch->y0; y < patch->y1; y++) {
+            uint8_t *const out[3] = {patch->colour[0][y - patch->y0],
+                                     patch->colour[1][y - patch->y0],
+                                     patch->colour[2][y - patch->y0]};
 
-/* n pixels from (x, y) on, at most 8: copies of 8 cost less than copies of n. */
-static void collect(const struct rf_upsampler *up, struct pending *pending, int x, int y, int n,
-                    const struct rf_taps *down, int bytes)
-{
-    struct rf_batch *batch = &pending->batch;
-    const int at = pending->pixels;
-    const uint8_t *p =
-        up->photo->plane[0] + y * up->photo->stride[0] + (ptrdiff_t)x * bytes;
-
-    for (int i = 0; i < RF_TAPS; i++) {
-        memcpy(batch->across[i] + at, up->near_by[i] + x, RUN * sizeof(uint16_t));
-        for (int k = 0; k < RUN; k++)
-            batch->down[i][at + k] = down->near_by[i];
-    }
-    memcpy(batch->x + at, up->middle + x, RUN * sizeof(int16_t));
-    for (int k = 0; k < RUN; k++)
-        batch->y[at + k] = down->middle;
-    for (int k = 0; k < n; k++, p += bytes) {
-        batch->colour[0][at + k] = (uint8_t)(p[0] >> HALF);
-        batch->colour[1][at + k] = (uint8_t)(p[1] >> HALF);
-        batch->colour[2][at + k] = (uint8_t)(p[2] >> HALF);
-    }
-    pending->x[pending->runs] = x;
-    pending->y[pending->runs] = y;
-    pending->length[pending->runs++] = n;
-    pending->pixels += n;
-}
-
-/* Pixels x0 to x1 - 1 of rows y0 to y1 - 1, which lie between the same samples. */
-static void fill_cell(const struct rf_upsampler *up, struct pending *pending, int x0, int x1,
-                      int y0, int y1)
-{
-    const int bytes = refocus_format_bytes(up->photo->format);
-
-    look(&pending->cell, up, up->across[x0].first, up->down[y0].first);
-    for (int y = y0; y < y1; y++) {
-        if (rf_run_cancelled(up->run))
-            return;
-        for (int x = x0; x < x1; x += RUN) {
-            const int n = x1 - x < RUN ? x1 - x : RUN;
-
-            if (pending->pixels + n > RF_BATCH)
-                flush(up, pending);
-            collect(up, pending, x, y, n, &up->down[y], bytes);
+            patch->up->kernels->quarter(
+                out, photo->plane[0] + y * photo->stride[0] + (ptrdiff_t)x * patch->bytes,
+                patch->bytes, patch->ready - x);
         }
     }
-    flush(up, pending);
+    for (int c = 0; c < 3; c++) { /* copies of 8 cost less than copies of n */
+        for (int j = 0; j < rows; j++)
+            memcpy(colour[c] + j * n, &patch->colour[c][j][x - patch->from], RUN);
+        memset(colour[c] + rows * n, colour[c][0], RF_BATCH_SPARE);
+    }
+}
+
+static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
+{
+    const struct rf_upsampler *up = patch->up;
+    const struct rf_span *span = &up->span[cell];
+    const int kind = span->alike % KINDS, off = x - span->begin;
+    struct rf_lie *lie = &patch->lies.lie[kind];
+
+    if (patch->lies.alike[kind] == span->alike && patch->lies.x[kind] == off)
+        return lie;
+    patch->lies.alike[kind] = span->alike;
+    patch->lies.x[kind] = off;
+    for (int y = patch->y0, at = 0; y < patch->y1; y++)
+        for (int i = 0; i < n; i++, at++) {
+            for (int t = 0; t < RF_TAP_COUNT; t++)
+                lie->near_by[t][at] =
+                    (uint16_t)((uint32_t)up->across[x + i].near_by[t % RF_TAPS] *
+                                   up->down[y].near_by[t / RF_TAPS] >> 16);
+            lie->x[at] = up->across[x + i].middle;
+            lie->y[at] = up->down[y].middle;
+        }
+    return lie;
+}
+
+/* n elements of one or two bytes, at most 8 and often 4 or more. */
+static inline void put(void *to, const void *from, int n, int size)
+{
+    if (n >= 4) {
+        memcpy(to, from, 4 * (size_t)size);
+        memcpy((char *)to + (n - 4) * size, (const char *)from + (n - 4) * size,
+               4 * (size_t)size);
+    } else {
+        memcpy(to, from, (size_t)(n * size));
+    }
+}
+
+/* The 8 x 8 samples around those from (x, y) on; at the border they are repeated. */
+static struct rf_window window_at(struct patch *patch, int x, int y)
+{
+    const struct rf_upsampler *up = patch->up;
+    struct rf_window window = {.stride = RF_AROUND, .colour_stride = RF_AROUND,
+                               .trust_stride = RF_AROUND};
+
+    if (x >= 0 && x + RF_TAPS <= up->columns && y >= 0 && y + RF_TAPS <= up->rows) {
+        window.stride = up->coarse_stride;
+        window.colour_stride = up->colour_stride;
+        window.trust_stride = up->trust_stride;
+        window.disparity = up->coarse + (y - 2) * up->coarse_stride + x - 2;
+        for (int c = 0; c < 3; c++)
+            window.colour[c] = up->colour[c] + (y - 2) * up->colour_stride + x - 2;
+        if (up->confidence)
+            window.trust = up->trust + (y - 2) * up->trust_stride + x - 2;
+        return window;
+    }
+    for (int j = 0; j < RF_AROUND; j++)
+        for (int i = 0; i < RF_AROUND; i++) {
+            const int u = clamp(x - 2 + i, up->columns - 1), v = clamp(y - 2 + j, up->rows - 1);
+
+            patch->near_disparity[j][i] = up->coarse[v * up->coarse_stride + u];
+            for (int c = 0; c < 3; c++)
+                patch->near_colour[c][j][i] = up->colour[c][v * up->colour_stride + u];
+            if (up->confidence)
+                patch->near_trust[j][i] = up->trust[v * up->trust_stride + u];
+        }
+    window.disparity = patch->near_disparity[0];
+    for (int c = 0; c < 3; c++)
+        window.colour[c] = patch->near_colour[c][0];
+    window.trust = up->confidence ? patch->near_trust[0] : NULL;
+    return window;
+}
+
+/* Pixels of a cell, whose taps are in column `at` of the parts. */
+static void fill_cell(struct patch *patch, int cell, int at)
+{
+    const struct rf_upsampler *up = patch->up;
+    const struct rf_window window = window_at(patch, cell - PAD, patch->row);
+    const int x1 = up->span[cell + 1].begin, rows = patch->y1 - patch->y0;
+
+    up->kernels->find_surfaces(&patch->cell, &window, &patch->parts, at);
+    for (int x = up->span[cell].begin; x < x1; x += RUN) {
+        const int n = x1 - x < RUN ? x1 - x : RUN;
+        uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], sure[RF_BATCH];
+        uint16_t result[RF_BATCH];
+
+        collect(colour, patch, x, n);
+        up->kernels->surface(result, sure, &patch->cell, &window, lie_of(patch, cell, x, n),
+                             colour, rows * n);
+        for (int j = 0; j < rows; j++) {
+            put(up->raw + (patch->y0 + j) * up->raw_stride + x, result + j * n, n, 2);
+            put(up->sure + (patch->y0 + j) * up->sure_stride + x, sure + j * n, n, 1);
+        }
+    }
+}
+
+/* The rough cells among the n from the first-th on. */
+static void fill_cells(struct patch *patch, int first, int n)
+{
+    const struct rf_upsampler *up = patch->up;
+    const uint16_t *row[RF_TAPS];
+    const uint8_t *trust[RF_TAPS] = {NULL};
+    uint8_t rough[RF_CELLS];
+
+    for (int j = 0; j < RF_TAPS; j++) {
+        row[j] = up->coarse + (patch->row + j) * up->coarse_stride + first - PAD;
+        if (up->confidence)
+            trust[j] = up->trust + (patch->row + j) * up->trust_stride + first - PAD;
+    }
+    if (!up->kernels->rough(rough, row, trust, STEP, n))
+        return;
+    up->kernels->part(&patch->parts, row, n);
+    for (int i = 0; i < n; i++)
+        if (rough[i] && up->span[first + i].begin < up->span[first + i + 1].begin)
+            fill_cell(patch, first + i, i);
 }
 
 /* The first row whose taps begin at `first` or later. */
@@ -265,31 +295,32 @@ static int row_of(const struct rf_upsampler *up, int first)
 static void fill_rows(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int first = item - PAD, width = up->photo->width;
+    const int first = item - PAD, width = up->photo->width, cells = up->columns + 1;
     const int y0 = row_of(up, first), y1 = row_of(up, first + 1);
-    uint16_t *across = up->scratch(up->context, worker) + PAD;
-    uint16_t *down = across + up->columns + 8;
-    const uint16_t *coarse[RF_TAPS], *wide[RF_TAPS];
-    struct pending pending;
+    const uint16_t *wide[RF_TAPS];
+    struct patch patch;
 
-    if (y0 == y1)
-        return;
-    memset(&pending, 0, sizeof pending);
-    for (int i = 0; i < RF_TAPS; i++) {
-        coarse[i] = up->coarse + (first + i) * up->coarse_stride - PAD;
+    (void)worker;
+    patch.up = up;
+    patch.row = first;
+    patch.bytes = refocus_format_bytes(up->photo->format);
+    for (int i = 0; i < RF_TAPS; i++)
         wide[i] = up->wide + clamp(first + i, up->rows - 1) * up->wide_stride;
-    }
-    up->kernels->steps4(across - PAD, down - PAD, coarse, up->columns + 2 * PAD - 1);
-    down[up->columns + PAD - 1] = down[up->columns + PAD - 2];
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
-        up->kernels->blend4(up->raw + y * up->raw_stride, wide, up->down[y].share, width);
+        uint16_t share[RF_TAPS];
+
+        for (int i = 0; i < RF_TAPS; i++)
+            share[i] = (uint16_t)(2 * up->down[y].share[i]);
+        up->kernels->blend4(up->raw + y * up->raw_stride, wide, share, width);
         memset(up->sure + y * up->sure_stride, 255, (size_t)width);
     }
-    for (int x0 = 0, x1; x0 < width; x0 = x1) {
-        for (x1 = x0 + 1; x1 < width && up->across[x1].first == up->across[x0].first;)
-            x1++;
-        if (!is_smooth(up, across, down, up->across[x0].first, first))
-            fill_cell(up, &pending, x0, x1, y0, y1);
+    for (patch.y0 = y0; patch.y0 < y1; patch.y0 = patch.y1) {
+        patch.y1 = patch.y0 + RUN < y1 ? patch.y0 + RUN : y1;
+        patch.from = patch.ready = 0;
+        for (int i = 0; i < KINDS; i++)
+            patch.lies.alike[i] = -1;
+        for (int i = 0; i < cells && !rf_run_cancelled(up->run); i += RF_CELLS)
+            fill_cells(&patch, i, cells - i < RF_CELLS ? cells - i : RF_CELLS);
     }
     for (int y = y0; y < y1; y++) {
         uint16_t *row = up->raw + y * up->raw_stride;
@@ -299,7 +330,7 @@ static void fill_rows(void *context, int item, int worker)
     }
 }
 
-static void median_rows(void *context, int item, int worker)
+static void settle_rows(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
     const int width = up->photo->width, last = up->photo->height - 1;
@@ -316,9 +347,42 @@ static void median_rows(void *context, int item, int worker)
             const int n = width - x < CHUNK ? width - x : CHUNK;
 
             if (memchr(sure + x, 0, (size_t)n))
-                up->kernels->median3(out + x, before + x, row + x, after + x, sure + x, n);
+                up->kernels->lean3(out + x, before + x, row + x, after + x, sure + x, n);
             else
                 memcpy(out + x, row + x, (size_t)n * sizeof *out);
+        }
+    }
+}
+
+static bool lie_alike(const struct rf_upsampler *up, int a, int b)
+{
+    const int from = up->span[a].begin, n = up->span[a + 1].begin - from;
+
+    if (up->span[b + 1].begin - up->span[b].begin != n)
+        return false;
+    for (int i = 0; i < n; i++)
+        if (up->across[from + i].middle != up->across[up->span[b].begin + i].middle)
+            return false;
+    return true;
+}
+
+/* Spans whose pixels lie the same way are told to have the first one's: of the last few. */
+static void find_spans(struct rf_upsampler *up)
+{
+    int x = 0;
+
+    for (int i = 0; i < up->columns + 2; i++) {
+        while (x < up->photo->width && up->across[x].first < i - PAD)
+            x++;
+        up->span[i].begin = x;
+    }
+    for (int i = 0; i <= up->columns; i++) {
+        up->span[i].alike = i;
+        for (int k = i - 1; k >= 0 && k >= i - KINDS; k--) {
+            if (lie_alike(up, k, i)) {
+                up->span[i].alike = up->span[k].alike;
+                break;
+            }
         }
     }
 }
@@ -328,19 +392,13 @@ void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
     const int width = up->photo->width, height = up->photo->height;
 
     up->run = pool->run;
-    for (int x = 0; x < width; x++) {
+    for (int x = 0; x < width; x++)
         up->across[x] = taps_at(x, width, up->columns);
-        for (int i = 0; i < RF_TAPS; i++)
-            up->near_by[i][x] = up->across[x].near_by[i];
-        up->middle[x] = up->across[x].middle;
-    }
-    memset(up->middle + width, 0, RF_BATCH_SPARE * sizeof(int16_t));
-    for (int i = 0; i < RF_TAPS; i++)
-        memset(up->near_by[i] + width, 0, RF_BATCH_SPARE * sizeof(uint16_t));
+    find_spans(up);
     for (int y = 0; y < height; y++)
         up->down[y] = taps_at(y, height, up->rows);
     rf_pool_run(pool, load_row, up, up->rows + 2 * PAD);
     rf_pool_run(pool, widen_row, up, up->rows);
     rf_pool_run(pool, fill_rows, up, up->rows + 1);
-    rf_pool_run(pool, median_rows, up, (height + BAND - 1) / BAND);
+    rf_pool_run(pool, settle_rows, up, (height + BAND - 1) / BAND);
 }

@@ -7,12 +7,10 @@
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
-/* Where a pixel lies among the samples of its row or column. */
-struct rf_taps {
-    int32_t first;           /* of four samples, -2 to samples - 2 */
-    uint16_t share[RF_TAPS]; /* Q16, of sum 1 */
-    uint16_t near_by[RF_TAPS]; /* Q16, for the choice of a surface */
-    int16_t middle;          /* where it lies between the second and the third, -1/2 to 1/2 in Q15 */
+/* The columns of pixels between the same columns of samples, up to those of the next one. */
+struct rf_span {
+    int32_t begin;
+    int32_t alike; /* the first one whose pixels lie the same way */
 };
 
 /*
@@ -21,7 +19,8 @@ struct rf_taps {
  * and the 8 x 8 samples around show what each looks like in the photo: the pixel goes to the
  * surface with the most of nearness times likeness (Bayes' rule: nearness is what is expected
  * before looking), and takes the plane through its samples. So no disparity between two surfaces
- * is invented. A median of 3 x 3 follows where that choice was a close one. A map that has more
+ * is invented. Where that choice was a close one, the sixth of 3 x 3 follows, a median that leans to
+ * the near: what is thin is in front, and most of it lies between samples. A map that has more
  * columns or rows than the photo is sampled first.
  *
  * All the memory is the caller's. Elements -2 to samples + 1 of rows -2 to samples + 1 of
@@ -37,20 +36,17 @@ struct rf_upsampler {
 
     uint16_t *coarse; /* samples */
     ptrdiff_t coarse_stride;
-    uint8_t *colour[3]; /* of the photo at the samples, halved */
+    uint8_t *colour[3]; /* of the photo at the samples, quartered */
     uint8_t *trust;     /* confidence of the samples; not used without */
     ptrdiff_t colour_stride, trust_stride;
     uint16_t *wide; /* rows x width: each row of samples as long as the photo's */
     ptrdiff_t wide_stride;
-    uint16_t *raw; /* height x width: before the median */
+    uint16_t *raw; /* height x width: before the sixth of 3 x 3 */
     ptrdiff_t raw_stride;
-    uint8_t *sure; /* height x width: not 0 where the median is left out */
+    uint8_t *sure; /* height x width: not 0 where that is left out */
     ptrdiff_t sure_stride;
     struct rf_taps *across, *down; /* width and height of them */
-    uint16_t *near_by[RF_TAPS]; /* of columns, width + RF_BATCH_SPARE each: how near they are */
-    int16_t *middle; /* and where they lie between their second and third sample */
-    uint16_t *(*scratch)(void *context, int worker); /* 2 (columns + 8) elements */
-    void *context;
+    struct rf_span *span;          /* columns + 2 of them */
     struct rf_run *run;
 
     uint16_t *out;

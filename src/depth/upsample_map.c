@@ -9,21 +9,8 @@
 #include "renderer/params.h"
 #include "support/arena.h"
 
-struct scratch {
-    uint16_t *rows;
-    size_t size;
-};
-
-static uint16_t *scratch_of(void *context, int worker)
-{
-    const struct scratch *scratch = context;
-
-    return scratch->rows + (size_t)worker * scratch->size;
-}
-
 /* Sets the pointers, or with arena->base == NULL only counts. */
-static void lay_out(struct rf_upsampler *up, struct scratch *scratch, int threads,
-                    struct rf_arena *arena)
+static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
 {
     const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
     const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
@@ -36,9 +23,7 @@ static void lay_out(struct rf_upsampler *up, struct scratch *scratch, int thread
     up->raw = rf_arena_take(arena, (width + 2) * height, 2);
     up->across = rf_arena_take(arena, width, sizeof *up->across);
     up->down = rf_arena_take(arena, height, sizeof *up->down);
-    for (int i = 0; i < RF_TAPS; i++)
-        up->near_by[i] = rf_arena_take(arena, width + RF_BATCH_SPARE, 2);
-    up->middle = rf_arena_take(arena, width + RF_BATCH_SPARE, sizeof *up->middle);
+    up->span = rf_arena_take(arena, columns + 2, sizeof *up->span);
     up->colour_stride = up->trust_stride = up->coarse_stride;
     for (int c = 0; c < 3; c++)
         up->colour[c] = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
@@ -46,8 +31,6 @@ static void lay_out(struct rf_upsampler *up, struct scratch *scratch, int thread
         up->trust = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
     up->sure_stride = up->photo->width;
     up->sure = rf_arena_take(arena, width * height, 1);
-    scratch->size = 2 * (size_t)(columns + 8);
-    scratch->rows = rf_arena_take(arena, (uint64_t)threads * scratch->size, 2);
     if (arena->base) {
         up->coarse += 2 * up->coarse_stride + 2;
         up->raw += 1;
@@ -85,7 +68,6 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     struct refocus_renderer_params threads = refocus_renderer_params_default(1, 1, 0);
     struct rf_arena arena = {NULL, RF_ARENA_ALIGN};
     struct rf_kernels kernels;
-    struct scratch scratch;
     struct rf_pool pool;
     struct rf_run run = {.looked_at = NULL};
     void *block;
@@ -111,12 +93,10 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         .confidence_stride = params->confidence_stride,
         .columns = rf_upsample_samples(map->width, photo->width),
         .rows = rf_upsample_samples(map->height, photo->height),
-        .scratch = scratch_of,
-        .context = &scratch,
         .out = out,
         .out_stride = stride / 2,
     };
-    lay_out(&up, &scratch, rf_threads_for(&threads), &arena);
+    lay_out(&up, &arena);
     if (arena.used > PTRDIFF_MAX)
         return REFOCUS_ERR_SIZE;
     block = malloc((size_t)arena.used);
@@ -124,7 +104,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         return REFOCUS_ERR_MEMORY;
     arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
     arena.used = 0;
-    lay_out(&up, &scratch, rf_threads_for(&threads), &arena);
+    lay_out(&up, &arena);
     atomic_init(&run.state, RF_RUN_RUNNING);
     status = rf_pool_start(&pool, rf_threads_for(&threads), NULL, &run);
     if (status == REFOCUS_OK) {

@@ -210,74 +210,114 @@ typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
 typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
                           const uint16_t weight[4], int n);
 
-/* steps4: the largest step to the right and the largest one down within four rows, whose
- * element n is read. */
-typedef void rf_steps4_fn(uint16_t *across, uint16_t *down, const uint16_t *const row[4],
-                          int n);
+/* Where a pixel lies among the samples of its row or column. */
+enum { RF_TAPS = 4 };
+struct rf_taps {
+    int32_t first;             /* of four samples, -2 to samples - 2 */
+    int16_t share[RF_TAPS];    /* Q15, of sum 1, for means */
+    uint16_t near_by[RF_TAPS]; /* Q16, for the choice of a surface */
+    int16_t middle; /* where it lies between the second and the third, -1/2 to 1/2 in Q15 */
+};
+
+/* widen4: n pixels of a row out of samples, 2^15 + sum of share[k] (in[first + k] - 2^15), half
+ * up. */
+typedef void rf_widen4_fn(uint16_t *out, const uint16_t *in, const struct rf_taps *taps, int n);
 
 /*
- * surface: disparities of n pixels that lie between the same samples, of which surfaces were
- * made. A pixel weighs surface k by how near its 4 x 4 samples are and by how much the photo
- * here looks like the photo at all its samples,
+ * Cells, the pixels between the same samples, for the depth upsampler. The 4 x 4 samples around
+ * a cell are its taps, and it is rough where two neighbours among them are more than `step`
+ * apart or where one is trusted less than wholly (255).
  *
- *     prior = sum over its taps t of across[t % 4] down[t / 4] trust[t]
- *     alike = sum over its samples i of rf_likeness[max(0, 31 - |colour - colour[i]|) / 2]
- *     score = prior (4 (alike grow scale) + RF_UNLIKE)
- *
- * with 1-norms of colours in steps of two codes, and takes the plane of the one that scores
- * most, the first of equal ones, between its low and high. All are Q16, products are rounded
- * down. sure = 255 where it scores more than four times the second, else 0.
- *
- * n is at most RF_BATCH and is rounded up to 32: out and sure are written so far.
+ * rough: which of n cells side by side are, 1 or 0, and whether any is. Element i of row[j] is a
+ * tap of cells i - 3 to i; elements to n + 2 are read. trust[0] == NULL: all are sure.
  */
-enum { RF_TAPS = 4, RF_SAMPLES = 64, RF_SURFACES = RF_TAPS * RF_TAPS, RF_UNLIKE = 64,
-       RF_BATCH = 64, RF_BATCH_SPARE = 16 };
-static const uint8_t rf_likeness[16] = {0,  0,  0,  0,  1,  3,  6,   12, /* (2 i + 1)^4 / 2^12 */
-                                        20, 31, 47, 68, 95, 129, 172, 225};
+enum { RF_TAP_COUNT = RF_TAPS * RF_TAPS, RF_AROUND = 8, RF_CELLS = 32,
+       RF_UNLIKE = 64, RF_BATCH = 64, RF_BATCH_SPARE = 32 };
+typedef bool rf_rough_fn(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
+                         const uint8_t *const trust[RF_TAPS], int step, int n);
+
+/*
+ * part: the taps of n cells side by side, ascending, and where they are parted: where one is more
+ * than 1/44 of the range above the last, or more than 1/8 above the first of its surface. Rows as
+ * for rough; all RF_CELLS columns of `parts` are written.
+ */
+struct rf_parts {
+    uint16_t sorted[RF_TAP_COUNT][RF_CELLS];
+    uint16_t starts[RF_CELLS]; /* bit i: sorted[i] is the first of a surface */
+};
+typedef void rf_part_fn(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n);
+
+/* The 8 x 8 samples around a cell, of which the middle ones are its taps. */
+struct rf_window {
+    const uint16_t *disparity;
+    const uint8_t *colour[3]; /* quartered */
+    const uint8_t *trust;     /* 255 = sure, or NULL: all are */
+    ptrdiff_t stride, colour_stride, trust_stride; /* elements */
+};
 
 struct rf_surface {
-    int samples;                  /* that are listed, 0 to RF_SAMPLES */
-    uint8_t sample[RF_SAMPLES];
-    int taps;                     /* 1 to 16 */
-    uint8_t tap[RF_SURFACES];
-    uint16_t trust[RF_SURFACES];
-    uint16_t grow, scale;         /* samples grow <= 127; grow whole, scale Q16 */
-    int32_t mean;                 /* at the middle of the cell */
-    int16_t right, below;         /* a sample on from there; |.| < 2^14 */
-    uint16_t low, high;
+    uint64_t samples;     /* bit 8 j + i: that of column i and row j shows what it looks like */
+    uint16_t taps;        /* bit 4 j + i */
+    uint16_t low, range;  /* disparities from low to low + range */
+    uint16_t grow, scale; /* grow whole: samples times it are at most 127; scale Q16 */
+    int16_t mean;         /* at the middle of the cell, above low; |.| < 2^14 */
+    int16_t right, below; /* a sample on from there; |.| < 2^14 */
 };
 
 struct rf_cell {
-    uint8_t colour[3][RF_SAMPLES]; /* halved */
-    int surfaces;                  /* at least 1 */
-    struct rf_surface surface[RF_SURFACES];
+    int surfaces;                 /* at least 1 */
+    bool sure;                    /* every tap is trusted wholly */
+    uint16_t trust[RF_TAP_COUNT]; /* Q16 */
+    struct rf_surface surface[RF_TAP_COUNT];
 };
 
 /*
- * find_surfaces: fill cell->surface with the surfaces of the samples around a cell, 8 x 8, of
- * which the middle 4 x 4 are its taps. The taps' disparities are sorted and parted where one is
- * more than 1/44 of the range above the last, or more than 1/8 above the first of its surface;
- * the samples around belong to what they continue, at most 1/88 beyond it. Those that are
- * trusted less than half (255 = sure) say nothing about colour; a cell that has only such taps
- * is taken as sure. `trust` is of the samples; NULL = all sure.
+ * find_surfaces: the surfaces of a cell, whose taps `part` put in column `at` of `parts`. Samples
+ * belong to the surfaces that they continue, at most 1/88 beyond. Those that are trusted less than
+ * half say nothing about colour; a cell that has only such taps is taken as sure. Of more than 40
+ * samples, those of a checkerboard are taken.
  */
-enum { RF_AROUND = 8 };
-typedef void rf_find_surfaces_fn(struct rf_cell *cell, const uint16_t disparity[RF_SAMPLES],
-                                 const uint8_t *trust);
+typedef void rf_find_surfaces_fn(struct rf_cell *cell, const struct rf_window *window,
+                                 const struct rf_parts *parts, int at);
 
-struct rf_batch {
-    uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE]; /* halved */
-    uint16_t across[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
-    uint16_t down[RF_TAPS][RF_BATCH + RF_BATCH_SPARE];
-    int16_t x[RF_BATCH + RF_BATCH_SPARE]; /* from the middle of the cell, samples in Q15 */
-    int16_t y[RF_BATCH + RF_BATCH_SPARE];
+/* How pixels that are looked at together lie among the taps of their cell. */
+struct rf_lie {
+    uint16_t near_by[RF_TAP_COUNT][RF_BATCH]; /* Q16, of sum < 1 */
+    int16_t x[RF_BATCH], y[RF_BATCH]; /* from the cell's middle, samples in Q15, |.| <= 1/2 */
 };
-typedef void rf_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
-                           const struct rf_cell *cell, const struct rf_batch *batch, int n);
 
-/* median3: medians of 3 x 3 where `sure` is 0, the row itself elsewhere; elements -1 and n are
- * read of the rows. */
-typedef void rf_median3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
+/*
+ * surface: disparities of n pixels of a cell. A pixel weighs each surface by how near its taps
+ * are and by how much the photo here looks like the photo at all its samples,
+ *
+ *     prior = sum over its taps t of near_by[t] (trust[t], unless the cell is sure)
+ *     alike = sum over its samples i of rf_likeness[|colour - colour[i]|], from 16 on of 0
+ *     score = prior (4 (alike grow scale) + RF_UNLIKE)
+ *
+ * with 1-norms of colours in steps of four codes, and takes the plane of the one that scores
+ * most, the first of equal ones,
+ *
+ *     low + min(max(mean + right x + below y, 0), range)
+ *
+ * All are Q16, products of weights are rounded down, those of the plane half up. sure = 255 where
+ * it scores more than four times the second, else 0.
+ *
+ * n is at most RF_BATCH and is rounded up to 32: out and sure may be written so far. Colours
+ * are read so far, too: it is quickest if there is none that no pixel has.
+ */
+static const uint8_t rf_likeness[16] = {225, 172, 129, 95, 68, 47, 31, 20, /* (31 - 2 i)^4 / 2^12 */
+                                        12,  6,   3,   1,  0,  0,  0,  0};
+typedef void rf_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
+                           const struct rf_cell *cell, const struct rf_window *window,
+                           const struct rf_lie *lie,
+                           uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n);
+
+/* quarter: colours of n pixels of 3 or 4 bytes, of which the first three, in steps of four codes. */
+typedef void rf_quarter_fn(uint8_t *const out[3], const uint8_t *pixels, int bytes, int n);
+
+/* lean3: the sixth of 3 x 3 in ascending order where `sure` is 0, the row itself elsewhere; elements
+ * -1 and n are read of the rows. A median that leans to the near: what is thin is in front. */
+typedef void rf_lean3_fn(uint16_t *out, const uint16_t *before, const uint16_t *row,
                            const uint16_t *after, const uint8_t *sure, int n);
 
 /*
@@ -445,10 +485,13 @@ struct rf_kernels {
     rf_between_rows_fn *between_rows;
     rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
-    rf_steps4_fn *steps4;
+    rf_widen4_fn *widen4;
+    rf_rough_fn *rough;
+    rf_part_fn *part;
+    rf_quarter_fn *quarter;
     rf_find_surfaces_fn *find_surfaces;
     rf_surface_fn *surface;
-    rf_median3_fn *median3;
+    rf_lean3_fn *lean3;
     rf_series_row_fn *series_row;
 };
 
@@ -473,7 +516,7 @@ typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
     RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep_weighted_use);
-rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use),
+rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use),
     RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use),
     RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
 

@@ -91,9 +91,9 @@ static void blend4(const struct rf_kernels *k, struct rows *r)
     k->blend4(r->shorts[6], row, (const uint16_t[4]){8000, 24000, 25000, 8535}, N);
 }
 
-static void median3(const struct rf_kernels *k, struct rows *r)
+static void lean3(const struct rf_kernels *k, struct rows *r)
 {
-    k->median3(r->shorts[6] + MARGIN, r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
+    k->lean3(r->shorts[6] + MARGIN, r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
                r->shorts[2] + MARGIN, r->unsure, N);
 }
 
@@ -153,7 +153,7 @@ static const struct {
     {"weighted_means", "pixel", weighted_means, N},
     {"luminance", "pixel", luminance, N},
     {"blend4", "pixel", blend4, N},
-    {"median3", "pixel", median3, N},
+    {"lean3", "pixel", lean3, N},
     {"series_row", "pixel", series_row, N},
 };
 

@@ -5,11 +5,11 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 enum {
-    TAPS = RF_TAPS * RF_TAPS,
+    TAPS = RF_TAP_COUNT,
+    SAMPLES = RF_AROUND * RF_AROUND,
     GAP = 65535 / 44,  /* largest one between neighbouring disparities of a surface */
     WIDEST = 65535 / 8,
     TRUSTED = 128,
@@ -22,96 +22,144 @@ enum {
 /* Bits of every other of 8 x 8 samples, those of a checkerboard. */
 #define CHECKERED UINT64_C(0xaa55aa55aa55aa55)
 
-/* The tap at (i % 4, i / 4) among 8 x 8 samples. */
-static int sample_of(int tap)
+static inline uint16_t least(uint16_t a, uint16_t b)
 {
-    return (tap / RF_TAPS + 2) * RF_AROUND + tap % RF_TAPS + 2;
+    return a < b ? a : b;
 }
 
-/* Disparities with their tap in the lowest 4 bits, ascending. */
-static void sort(int32_t sorted[TAPS], const uint16_t disparity[RF_SAMPLES])
+static inline uint16_t most(uint16_t a, uint16_t b)
 {
-    int32_t key[TAPS], rank[TAPS] = {0};
-
-    for (int i = 0; i < TAPS; i++)
-        key[i] = disparity[sample_of(i)] << 4 | i;
-    for (int j = 0; j < TAPS; j++) /* counts what is less: no branch to be guessed wrong */
-        for (int i = 0; i < TAPS; i++)
-            rank[i] += key[j] < key[i];
-    for (int i = 0; i < TAPS; i++)
-        sorted[rank[i]] = key[i];
+    return a > b ? a : b;
 }
 
-static void part(struct rf_cell *cell, const int32_t sorted[TAPS])
+/* Cells side by side: a tap of them all lies in a row. */
+static inline void order(uint16_t *restrict low, uint16_t *restrict high)
 {
-    struct rf_surface *surface = cell->surface;
-    int last = 0;
+    for (int i = 0; i < RF_CELLS; i++) {
+        const uint16_t a = low[i], b = high[i];
 
-    cell->surfaces = 0;
-    for (int i = 0; i < TAPS; i++) {
-        const int d = sorted[i] >> 4;
-
-        if (i == 0 || d - last > GAP || d - surface->low > WIDEST) {
-            surface = &cell->surface[cell->surfaces++];
-            surface->low = (uint16_t)d;
-            surface->taps = 0;
-        }
-        surface->high = (uint16_t)d;
-        surface->tap[surface->taps++] = (uint8_t)(sorted[i] & 15);
-        last = d;
+        low[i] = least(a, b);
+        high[i] = most(a, b);
     }
 }
 
-/* Bit k of eight bytes of 0 or 1. */
-static uint64_t bits_of(const uint8_t byte[8])
+/* Batcher's odd-even merges of runs of 1, 2, 4 and 8. */
+static const uint8_t exchange[63][2] = {
+    {0, 1}, {2, 3}, {4, 5}, {6, 7}, {8, 9}, {10, 11}, {12, 13}, {14, 15}, {0, 2},
+    {1, 3}, {4, 6}, {5, 7}, {8, 10}, {9, 11}, {12, 14}, {13, 15}, {1, 2}, {5, 6},
+    {9, 10}, {13, 14}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {8, 12}, {9, 13}, {10, 14},
+    {11, 15}, {2, 4}, {3, 5}, {10, 12}, {11, 13}, {1, 2}, {3, 4}, {5, 6}, {9, 10},
+    {11, 12}, {13, 14}, {0, 8}, {1, 9}, {2, 10}, {3, 11}, {4, 12}, {5, 13}, {6, 14},
+    {7, 15}, {4, 8}, {5, 9}, {6, 10}, {7, 11}, {2, 4}, {3, 5}, {6, 8}, {7, 9}, {10,
+    12}, {11, 13}, {1, 2}, {3, 4}, {5, 6}, {7, 8}, {9, 10}, {11, 12}, {13, 14}};
+
+static void sort(uint16_t sorted[TAPS][RF_CELLS])
+{
+    for (size_t i = 0; i < sizeof exchange / sizeof *exchange; i++)
+        order(sorted[exchange[i][0]], sorted[exchange[i][1]]);
+}
+
+static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
+{
+    uint16_t low[RF_CELLS], starts[RF_CELLS];
+
+    for (int t = 0; t < TAPS; t++) {
+        memset(parts->sorted[t], 0, sizeof parts->sorted[t]);
+        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS, (size_t)n * sizeof(uint16_t));
+    }
+    sort(parts->sorted);
+    for (int i = 0; i < RF_CELLS; i++) {
+        low[i] = parts->sorted[0][i];
+        starts[i] = 1;
+    }
+    for (int t = 1; t < TAPS; t++) {
+        const uint16_t *restrict last = parts->sorted[t - 1], *restrict d = parts->sorted[t];
+
+        for (int i = 0; i < RF_CELLS; i++) {
+            const uint16_t far_off = (uint16_t)((d[i] - last[i] > GAP) | (d[i] - low[i] > WIDEST));
+
+            starts[i] = (uint16_t)(starts[i] | far_off << t);
+            low[i] = far_off ? d[i] : low[i];
+        }
+    }
+    memcpy(parts->starts, starts, sizeof starts);
+}
+
+/* Bits of 16 elements from low to low + width. */
+static inline uint64_t within16(const uint16_t *p, uint16_t low, uint16_t width)
+{
+#if defined(RF_VECTORS)
+    return vec_within16(p, low, width);
+#else
+    uint64_t bits = 0;
+
+    for (int i = 0; i < 16; i++)
+        bits |= (uint64_t)((uint16_t)(p[i] - low) <= width) << i;
+    return bits;
+#endif
+}
+
+/* Bits of those of eight bytes whose highest bit is set. */
+static uint64_t high_bits(const uint8_t byte[8])
 {
     uint64_t bits = 0;
 
     for (int k = 0; k < 8; k++)
-        bits |= (uint64_t)byte[k] << (8 * k);
+        bits |= (uint64_t)(byte[k] >> 7) << (8 * k);
     return bits * UINT64_C(0x0102040810204080) >> 56;
 }
 
-/* The samples that show what a surface looks like; of many, every other one is enough. */
-static void list_samples(struct rf_surface *s, const uint16_t *restrict disparity,
-                         const uint8_t *restrict trust)
+static int count(uint64_t bits)
+{
+    bits -= bits >> 1 & UINT64_C(0x5555555555555555);
+    bits = (bits & UINT64_C(0x3333333333333333)) + (bits >> 2 & UINT64_C(0x3333333333333333));
+    bits = (bits + (bits >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
+    return (int)(bits * UINT64_C(0x0101010101010101) >> 56);
+}
+
+/* The samples that show what a surface looks like; of many, every other one is enough. How many. */
+static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES], uint64_t trusted)
 {
     const int under = s->low > GAP / 2 ? s->low - GAP / 2 : 0;
-    const int over = s->high < 65535 - GAP / 2 ? s->high + GAP / 2 : 65535;
-    const uint16_t low = (uint16_t)under, width = (uint16_t)(over - under);
-    uint8_t own[RF_SAMPLES];
+    const int high = s->low + s->range;
+    const int over = high < 65535 - GAP / 2 ? high + GAP / 2 : 65535;
     uint64_t members = 0;
-    int n = 0;
 
-    for (int i = 0; i < RF_SAMPLES; i++)
-        own[i] = (uint16_t)(disparity[i] - low) <= width;
-    if (trust)
-        for (int i = 0; i < RF_SAMPLES; i++)
-            own[i] &= trust[i] >> 7; /* TRUSTED */
-    for (int j = 0; j < RF_AROUND; j++)
-        members |= bits_of(own + j * RF_AROUND) << (RF_AROUND * j);
-    if (__builtin_popcountll(members) > MANY)
-        members &= CHECKERED;
-    for (; members; members &= members - 1)
-        s->sample[n++] = (uint8_t)__builtin_ctzll(members);
-    s->samples = n;
+    for (int i = 0; i < SAMPLES; i += 16)
+        members |= within16(disparity + i, (uint16_t)under, (uint16_t)(over - under)) << i;
+    s->samples = members & trusted;
+    if (count(s->samples) > MANY)
+        s->samples &= CHECKERED;
+    return count(s->samples);
 }
 
 /* 64 / (n grow), and of equal evidence the nearer surface is up to a fifth better: what is thin
  * is in front. */
-static void set_scale(struct rf_surface *s)
+static void set_scale(struct rf_surface *s, int n)
 {
-    int n = s->samples;
     uint64_t scale;
 
-    s->grow = 1;
-    s->scale = 0;
-    if (n == 0)
+    if (n == 0) {
+        s->grow = s->scale = 0;
         return;
-    for (; n < 64; n *= 2)
-        s->grow = (uint16_t)(2 * s->grow);
-    scale = (uint64_t)(65536 * 64 / n) * (5 * 65535u + s->low) * (65536 / 6 + 1) >> 32;
+    }
+    s->grow = (uint16_t)(1 << (__builtin_clz((unsigned)n) - 25));
+    scale = (uint64_t)(65536u * 64 / ((unsigned)n * s->grow)) * (5 * 65535u + s->low) *
+            (65536 / 6 + 1) >> 32;
     s->scale = (uint16_t)(scale > 65535 ? 65535 : scale);
+}
+
+static inline int dot(const int16_t *restrict p, const int16_t *restrict q)
+{
+#if defined(RF_VECTORS)
+    return vec_dot16(p, q);
+#else
+    int sum = 0;
+
+    for (int i = 0; i < TAPS; i++)
+        sum += p[i] * q[i];
+    return sum;
+#endif
 }
 
 static int slope(int along, int spread, int weight)
@@ -121,67 +169,125 @@ static int slope(int along, int spread, int weight)
     return d < -STEEPEST ? -STEEPEST : d > STEEPEST ? STEEPEST : d;
 }
 
-/* A plane by least squares over the taps, those in the middle counting most. Weights add up to
- * 64 * 255 at the most, heights are at most WIDEST: all sums fit 32 bits. */
-static void fit(struct rf_surface *s, const uint16_t disparity[RF_SAMPLES])
+/* Twice how far a tap is from the middle, and how much it counts there. */
+static const int16_t one[TAPS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+static const int16_t across[TAPS] = {-3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3};
+static const int16_t down[TAPS] = {-3, -3, -3, -3, -1, -1, -1, -1, 1, 1, 1, 1, 3, 3, 3, 3};
+static const int16_t middle[TAPS] = {256, 768,  768,  256, 768, 2304, 2304, 768,
+                                     768, 2304, 2304, 768, 256, 768,  768,  256};
+
+/* Weights and heights of the taps of a surface, 0 of the others. */
+static inline void take_taps(int16_t q[TAPS], int16_t e[TAPS], const struct rf_surface *s,
+                             const uint16_t tap[TAPS], const int16_t weight[TAPS])
 {
-    static const int weight[RF_TAPS] = {1, 3, 3, 1};
-    int w = 0, x = 0, y = 0, d = 0, xx = 0, yy = 0, xd = 0, yd = 0;
+#if defined(RF_VECTORS)
+    for (int i = 0; i < TAPS; i += VEC_U16) {
+        const vec_u16 above = vec_u16_sub(vec_u16_load(tap + i), vec_u16_set(s->low));
+        const vec_u16 own = vec_u16_at_most(above, vec_u16_set(s->range));
 
-    for (int k = 0; k < s->taps; k++) {
-        const int tap = s->tap[k], u = tap % RF_TAPS, v = tap / RF_TAPS;
-        const int q = weight[u] * weight[v] * ((s->trust[k] >> 8) + 1);
-        const int tx = 2 * u - 3, ty = 2 * v - 3; /* half samples from the middle */
-        const int e = disparity[sample_of(tap)] - s->low;
-
-        w += q;
-        x += q * tx;
-        y += q * ty;
-        d += q * e;
-        xx += q * tx * tx;
-        yy += q * ty * ty;
-        xd += q * tx * e;
-        yd += q * ty * e;
+        vec_u16_store(e + i, vec_u16_and(above, own));
+        vec_u16_store(q + i, vec_u16_and(vec_u16_load(weight + i), own));
     }
-    const int mean = d / w;
+#else
+    for (int i = 0; i < TAPS; i++) {
+        const uint16_t above = (uint16_t)(tap[i] - s->low);
 
-    s->mean = s->low + mean;
+        e[i] = (int16_t)(above <= s->range ? above : 0);
+        q[i] = (int16_t)(above <= s->range ? weight[i] : 0);
+    }
+#endif
+}
+
+/* A plane by least squares over the taps, those in the middle counting most. Weights q add up to
+ * 64 * 256 at the most and heights e above the surface's low are at most WIDEST: sums fit 32 bits. */
+static void fit(struct rf_surface *s, const uint16_t tap[TAPS], const int16_t weight[TAPS])
+{
+    int16_t q[TAPS], e[TAPS], qx[TAPS], qy[TAPS];
+
+    take_taps(q, e, s, tap, weight);
+    const int w = dot(q, one);
+    int mean = dot(q, e) / w;
+
+    s->mean = (int16_t)mean;
     s->right = s->below = 0;
-    if (s->high - s->low < EVEN)
+    if (s->range < EVEN)
         return;
-    const int gx = slope(2 * (xd - x * mean), xx - (int)((int64_t)x * x / w), 4 * w);
-    const int gy = slope(2 * (yd - y * mean), yy - (int)((int64_t)y * y / w), 4 * w);
-    s->mean -= (int)(((int64_t)gx * x + (int64_t)gy * y) / (2 * w));
+    for (int i = 0; i < TAPS; i++) {
+        qx[i] = (int16_t)(q[i] * across[i]);
+        qy[i] = (int16_t)(q[i] * down[i]);
+    }
+    const int x = dot(qx, one), y = dot(qy, one);
+    const uint32_t u = (uint32_t)(x < 0 ? -x : x), v = (uint32_t)(y < 0 ? -y : y);
+    const int gx = slope(2 * (dot(qx, e) - x * mean),
+                         dot(qx, across) - (int)(u * u / (uint32_t)w), 4 * w);
+    const int gy = slope(2 * (dot(qy, e) - y * mean),
+                         dot(qy, down) - (int)(v * v / (uint32_t)w), 4 * w);
+
+    mean -= (gx * x + gy * y) / (2 * w);
+    s->mean = (int16_t)(mean < -STEEPEST ? -STEEPEST : mean > STEEPEST ? STEEPEST : mean);
     s->right = (int16_t)gx;
     s->below = (int16_t)gy;
 }
 
-static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell,
-                                     const uint16_t disparity[RF_SAMPLES],
-                                     const uint8_t *trust)
+/* Trust of the taps, their weights in a plane, and of all samples whether they are trusted. */
+static uint64_t take_trust(struct rf_cell *cell, int16_t weight[TAPS],
+                           const struct rf_window *window)
 {
-    int32_t sorted[TAPS];
-    bool any = !trust;
+    uint64_t trusted = 0;
+    uint8_t trust[TAPS];
+    bool any = false, sure = true;
 
-    sort(sorted, disparity);
-    part(cell, sorted);
-    for (int i = 0; i < TAPS && !any; i++)
-        any = trust[sample_of(i)] >= TRUSTED;
-    for (int k = 0; k < cell->surfaces; k++) {
-        struct rf_surface *s = &cell->surface[k];
+    cell->sure = true;
+    memcpy(weight, middle, sizeof middle);
+    if (!window->trust)
+        return ~UINT64_C(0);
+    for (int j = 0; j < RF_AROUND; j++)
+        trusted |= high_bits(window->trust + j * window->trust_stride) << (RF_AROUND * j);
+    for (int i = 0; i < TAPS; i++) {
+        trust[i] = window->trust[(i / RF_TAPS + 2) * window->trust_stride + i % RF_TAPS + 2];
+        any |= trust[i] >= TRUSTED;
+        sure &= trust[i] == 255;
+    }
+    if (sure || !any)
+        return trusted;
+    cell->sure = false;
+    for (int i = 0; i < TAPS; i++) {
+        cell->trust[i] = (uint16_t)(trust[i] < 1 ? 16 : trust[i] * 257);
+        weight[i] = (int16_t)((middle[i] >> 8) * (trust[i] + 1));
+    }
+    return trusted;
+}
 
-        for (int i = 0; i < s->taps; i++) {
-            const int sure = trust && any ? trust[sample_of(s->tap[i])] : 255;
+static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell, const struct rf_window *window,
+                                     const struct rf_parts *parts, int at)
+{
+    int16_t weight[TAPS];
+    uint16_t around[SAMPLES], tap[TAPS];
+    const uint64_t trusted = take_trust(cell, weight, window);
+    unsigned starts = parts->starts[at];
 
-            s->trust[i] = (uint16_t)(sure < 1 ? 16 : sure * 257);
-        }
-        list_samples(s, disparity, trust);
-        set_scale(s);
-        fit(s, disparity);
+    for (int j = 0; j < RF_AROUND; j++)
+        memcpy(around + j * RF_AROUND, window->disparity + j * window->stride,
+               RF_AROUND * sizeof *around);
+    for (int j = 0; j < RF_TAPS; j++)
+        memcpy(tap + j * RF_TAPS, around + (j + 2) * RF_AROUND + 2, RF_TAPS * sizeof *tap);
+    cell->surfaces = 0;
+    while (starts) {
+        struct rf_surface *s = &cell->surface[cell->surfaces++];
+        const int first = __builtin_ctz(starts);
+
+        starts &= starts - 1;
+        s->low = parts->sorted[first][at];
+        s->range = (uint16_t)(parts->sorted[starts ? __builtin_ctz(starts) - 1 : TAPS - 1][at] -
+                              s->low);
+        s->taps = (uint16_t)within16(tap, s->low, s->range);
+        set_scale(s, find_samples(s, around, trusted));
+        fit(s, tap, weight);
     }
 }
 
 void RF_VEC(rf_surfaces_use)(struct rf_kernels *kernels)
 {
+    kernels->part = RF_VEC(rf_part);
     kernels->find_surfaces = RF_VEC(rf_find_surfaces);
 }

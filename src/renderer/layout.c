@@ -295,7 +295,7 @@ static void lay_out(struct refocus_renderer *r,
     if (params->in_place)
         return;
     r->taps = rf_arena_take(arena, (uint64_t)w + h, sizeof *r->taps);
-    r->near_by = rf_arena_take(arena, (RF_TAPS + 1) * ((uint64_t)w + RF_BATCH_SPARE), 2);
+    r->spans = rf_arena_take(arena, (uint64_t)w + 2, sizeof *r->spans);
     r->work = rf_arena_take(arena, work_bytes(params), 1);
 }
 

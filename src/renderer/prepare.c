@@ -12,17 +12,11 @@
 #include "renderer/params.h"
 #include "renderer/reduce.h"
 
-static uint16_t *scratch_of(void *context, int worker)
-{
-    return rf_scratch(context, worker);
-}
-
 /* The planes of blurs, of pre-filtered light and of the background layer are free until
  * something is rendered. */
 static void upsample(struct refocus_renderer *r, const struct refocus_image *photo,
                      const struct refocus_disparity *map)
 {
-    const ptrdiff_t row = r->width + RF_BATCH_SPARE;
     struct rf_upsampler up = {
         .kernels = &r->kernels,
         .photo = photo,
@@ -42,11 +36,7 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
         .colour_stride = r->stride * (ptrdiff_t)sizeof *r->smooth[0],
         .sure = (uint8_t *)r->front.blur,
         .sure_stride = r->stride * (ptrdiff_t)sizeof *r->front.blur,
-        .near_by = {r->near_by, r->near_by + row, r->near_by + 2 * row,
-                    r->near_by + 3 * row},
-        .middle = (int16_t *)r->near_by + 4 * row,
-        .scratch = scratch_of,
-        .context = r,
+        .span = r->spans,
         .out = r->disparity,
         .out_stride = r->stride,
     };

@@ -209,7 +209,7 @@ struct refocus_renderer {
     struct rf_bins *bins; /* of each tile */
 
     struct rf_taps *taps; /* of the depth upsampler: of columns, then of rows */
-    uint16_t *near_by;    /* how near its samples are, four rows, and where between, one */
+    struct rf_span *spans; /* and its spans */
     uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];

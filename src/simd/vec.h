@@ -32,7 +32,16 @@
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
  *     vec_s16_less(a, b)      (int16_t)a < (int16_t)b ? 0xffff : 0
  *     vec_s16_apart(a, b)     min(|a - b|, 32767) of signed lanes
+ *     vec_s16_max(a, b)       the greater of signed lanes
+ *     vec_s16_scale(a, b)     of signed lanes: (a * b + 2^14) >> 15; not both are -2^15
  *     vec_u16_select(m, a, b) m ? a : b, for lanes of m that are 0xffff or 0
+ *     vec_within16(p, low, width)
+ *                             bit i: (uint16_t)(p[i] - low) <= width, of 16 elements
+ *     vec_dot16(p, q)         sum of p[i] * q[i] of 16 signed elements, of 32 bits
+ *     vec_dots4(out, p, share)
+ *                             of four groups of four elements: out[i] = 2^15 +
+ *                             (sum of (p[i][k] - 2^15) * share[i][k] + 2^14) >> 15, shares not
+ *                             negative and of sum 2^15
  *
  * A vec_mask has lanes that are on or off:
  *
@@ -58,13 +67,19 @@
  * and VEC_U8 = 2 VEC_U16 lanes of bytes:
  *
  *     vec_u8_load(p)          lane i = p[i]
+ *     vec_u8_store(p, v)      p[i] = lane i
  *     vec_u8_set(x)           every lane = x
  *     vec_u8_absdiff(a, b)    |a - b|
+ *     vec_u8_apart(a, b)      the same where both are below 128
  *     vec_u8_adds(a, b)       min(a + b, 255)
  *     vec_u8_subs(a, b)       max(a - b, 0)
  *     vec_u8_half(v)          v >> 1
  *     vec_u8_table(p)         the table p[0] to p[15]
  *     vec_u8_lookup(table, v) table[v]; every v is below 16
+ *     vec_u8_lookup_or_0(table, v)  v < 16 ? table[v] : 0, v any
+ *     vec_u8_of_masks(a, b)   0 or 255 for lanes of a and then of b that are 0 or 0xffff
+ *     vec_u8_least(v), vec_u8_most(v)  of all lanes
+ *     vec_u8_bits_at_most(a, b)  bit i: a[i] <= b[i]
  *     vec_u8_add_wide(sum, v) two vectors of 16-bit sums, in an order of their own, += v
  *     vec_u8_store_wide(p, sum)  p[i] = the sum of lane i
  */

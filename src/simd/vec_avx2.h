@@ -162,6 +162,62 @@ static inline vec_u16 vec_s16_apart(vec_u16 a, vec_u16 b)
     return _mm256_max_epi16(_mm256_subs_epi16(a, b), _mm256_subs_epi16(b, a));
 }
 
+static inline vec_u16 vec_s16_scale(vec_u16 a, vec_u16 b)
+{
+    return _mm256_mulhrs_epi16(a, b);
+}
+
+static inline vec_u16 vec_s16_max(vec_u16 a, vec_u16 b)
+{
+    return _mm256_max_epi16(a, b);
+}
+
+static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
+{
+    const __m256i sum = _mm256_madd_epi16(vec_u16_load(p), vec_u16_load(q));
+    __m128i s = _mm_add_epi32(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
+
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4e));
+    return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
+}
+
+/* Two groups of four elements, 2^15 less. */
+static inline __m128i vec_two_fours(const uint16_t *a, const uint16_t *b)
+{
+    const __m128i pair = _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i *)a),
+                                            _mm_loadl_epi64((const __m128i *)b));
+
+    return _mm_xor_si128(pair, _mm_set1_epi16(-32768));
+}
+
+static inline void vec_dots4(uint16_t out[4], const uint16_t *const p[4],
+                             const int16_t *const share[4])
+{
+    const __m128i a = _mm_madd_epi16(
+        vec_two_fours(p[0], p[1]),
+        _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i *)share[0]),
+                           _mm_loadl_epi64((const __m128i *)share[1])));
+    const __m128i b = _mm_madd_epi16(
+        vec_two_fours(p[2], p[3]),
+        _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i *)share[2]),
+                           _mm_loadl_epi64((const __m128i *)share[3])));
+    const __m128i sum = _mm_srai_epi32(
+        _mm_add_epi32(_mm_hadd_epi32(a, b), _mm_set1_epi32(1 << 14)), 15);
+
+    _mm_storel_epi64((__m128i *)out,
+                     _mm_xor_si128(_mm_packs_epi32(sum, sum), _mm_set1_epi16(-32768)));
+}
+
+static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
+{
+    const __m256i above = _mm256_sub_epi16(vec_u16_load(p), vec_u16_set(low));
+    const __m256i within =
+        _mm256_cmpeq_epi16(_mm256_subs_epu16(above, vec_u16_set(width)), _mm256_setzero_si256());
+
+    return (uint32_t)_mm_movemask_epi8(_mm_packs_epi16(_mm256_castsi256_si128(within),
+                                                       _mm256_extracti128_si256(within, 1)));
+}
+
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
 {
     return _mm256_blendv_epi8(b, a, m);
@@ -190,6 +246,11 @@ static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
     return _mm256_or_si256(_mm256_subs_epu8(a, b), _mm256_subs_epu8(b, a));
 }
 
+static inline vec_u8 vec_u8_apart(vec_u8 a, vec_u8 b)
+{
+    return _mm256_abs_epi8(_mm256_sub_epi8(a, b));
+}
+
 static inline vec_u8 vec_u8_adds(vec_u8 a, vec_u8 b)
 {
     return _mm256_adds_epu8(a, b);
@@ -215,19 +276,54 @@ static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
     return _mm256_shuffle_epi8(table, v);
 }
 
-/* Sums in the order of the two unpacks: 0-7 and 16-23, 8-15 and 24-31. */
+/* A lane whose highest bit is set is shuffled to 0. */
+static inline vec_u8 vec_u8_lookup_or_0(vec_u8 table, vec_u8 v)
+{
+    return _mm256_shuffle_epi8(table, _mm256_adds_epu8(v, _mm256_set1_epi8(112)));
+}
+
+/* Sums of even lanes + 2^8 odd ones, and of odd ones. */
 static inline void vec_u8_add_wide(vec_u16 sum[2], vec_u8 v)
 {
-    const __m256i zero = _mm256_setzero_si256();
+    sum[0] = _mm256_add_epi16(sum[0], v);
+    sum[1] = _mm256_add_epi16(sum[1], _mm256_srli_epi16(v, 8));
+}
 
-    sum[0] = _mm256_add_epi16(sum[0], _mm256_unpacklo_epi8(v, zero));
-    sum[1] = _mm256_add_epi16(sum[1], _mm256_unpackhi_epi8(v, zero));
+static inline void vec_u8_store(void *p, vec_u8 v)
+{
+    _mm256_storeu_si256((__m256i *)p, v);
 }
 
 static inline void vec_u8_store_wide(uint16_t *p, const vec_u16 sum[2])
 {
-    vec_u16_store(p, _mm256_permute2x128_si256(sum[0], sum[1], 0x20));
-    vec_u16_store(p + 16, _mm256_permute2x128_si256(sum[0], sum[1], 0x31));
+    const __m256i even = _mm256_sub_epi16(sum[0], _mm256_slli_epi16(sum[1], 8));
+    const __m256i low = _mm256_unpacklo_epi16(even, sum[1]);
+    const __m256i high = _mm256_unpackhi_epi16(even, sum[1]);
+
+    vec_u16_store(p, _mm256_permute2x128_si256(low, high, 0x20));
+    vec_u16_store(p + 16, _mm256_permute2x128_si256(low, high, 0x31));
+}
+
+static inline vec_u8 vec_u8_of_masks(vec_u16 a, vec_u16 b)
+{
+    return _mm256_permute4x64_epi64(_mm256_packs_epi16(a, b), 0xd8);
+}
+
+static inline uint8_t vec_u8_least(vec_u8 v)
+{
+    const __m128i m = _mm_min_epu8(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
+
+    return (uint8_t)_mm_cvtsi128_si32(_mm_minpos_epu16(_mm_min_epu8(m, _mm_srli_epi16(m, 8))));
+}
+
+static inline uint8_t vec_u8_most(vec_u8 v)
+{
+    return (uint8_t)~vec_u8_least(_mm256_xor_si256(v, _mm256_set1_epi8(-1)));
+}
+
+static inline uint64_t vec_u8_bits_at_most(vec_u8 a, vec_u8 b)
+{
+    return (uint32_t)_mm256_movemask_epi8(_mm256_cmpeq_epi8(_mm256_min_epu8(a, b), a));
 }
 
 /* Lanes 0-3 and 8-11, and 4-7 and 12-15: as unpacking leaves them. */

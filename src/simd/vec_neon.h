@@ -159,6 +159,62 @@ static inline vec_u16 vec_s16_apart(vec_u16 a, vec_u16 b)
         vqabsq_s16(vqsubq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b))));
 }
 
+static inline vec_u16 vec_s16_scale(vec_u16 a, vec_u16 b)
+{
+    return vreinterpretq_u16_s16(
+        vqrdmulhq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b)));
+}
+
+static inline vec_u16 vec_s16_max(vec_u16 a, vec_u16 b)
+{
+    return vreinterpretq_u16_s16(vmaxq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b)));
+}
+
+static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
+{
+    int32x4_t sum = vmull_s16(vld1_s16(p), vld1_s16(q));
+
+    for (int i = 4; i < 16; i += 4)
+        sum = vmlal_s16(sum, vld1_s16(p + i), vld1_s16(q + i));
+#if defined(__aarch64__)
+    return vaddvq_s32(sum);
+#else
+    int32x2_t half = vadd_s32(vget_low_s32(sum), vget_high_s32(sum));
+
+    return vget_lane_s32(vpadd_s32(half, half), 0);
+#endif
+}
+
+static inline void vec_dots4(uint16_t out[4], const uint16_t *const p[4],
+                             const int16_t *const share[4])
+{
+    const uint16x4_t sign = vdup_n_u16(32768);
+    int32x2_t sum[4];
+
+    for (int i = 0; i < 4; i++) {
+        const int16x4_t d = vreinterpret_s16_u16(veor_u16(vld1_u16(p[i]), sign));
+        const int32x4_t products = vmull_s16(d, vld1_s16(share[i]));
+
+        sum[i] = vadd_s32(vget_low_s32(products), vget_high_s32(products));
+    }
+    const int32x4_t sums = vcombine_s32(vpadd_s32(sum[0], sum[1]), vpadd_s32(sum[2], sum[3]));
+
+    vst1_u16(out, veor_u16(vreinterpret_u16_s16(vqrshrn_n_s32(sums, 15)), sign));
+}
+
+static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
+{
+    static const uint8_t bits[16] = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+    const uint16x8_t a = vcleq_u16(vsubq_u16(vld1q_u16(p), vdupq_n_u16(low)), vdupq_n_u16(width));
+    const uint16x8_t b =
+        vcleq_u16(vsubq_u16(vld1q_u16(p + 8), vdupq_n_u16(low)), vdupq_n_u16(width));
+    const uint8x16_t m = vandq_u8(vcombine_u8(vmovn_u16(a), vmovn_u16(b)), vld1q_u8(bits));
+    uint8x8_t sum = vpadd_u8(vget_low_u8(m), vget_high_u8(m));
+
+    sum = vpadd_u8(sum, sum);
+    return vget_lane_u16(vreinterpret_u16_u8(vpadd_u8(sum, sum)), 0);
+}
+
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
 {
     return vbslq_u16(m, a, b);
@@ -183,6 +239,11 @@ static inline vec_u8 vec_u8_set(uint8_t x)
 }
 
 static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
+{
+    return vabdq_u8(a, b);
+}
+
+static inline vec_u8 vec_u8_apart(vec_u8 a, vec_u8 b)
 {
     return vabdq_u8(a, b);
 }
@@ -218,16 +279,60 @@ static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
 #endif
 }
 
+/* A table has 16 entries, and there is nothing beyond. */
+static inline vec_u8 vec_u8_lookup_or_0(vec_u8 table, vec_u8 v)
+{
+    return vec_u8_lookup(table, v);
+}
+
 static inline void vec_u8_add_wide(vec_u16 sum[2], vec_u8 v)
 {
     sum[0] = vaddw_u8(sum[0], vget_low_u8(v));
     sum[1] = vaddw_u8(sum[1], vget_high_u8(v));
 }
 
+static inline void vec_u8_store(void *p, vec_u8 v)
+{
+    vst1q_u8((uint8_t *)p, v);
+}
+
 static inline void vec_u8_store_wide(uint16_t *p, const vec_u16 sum[2])
 {
     vec_u16_store(p, sum[0]);
     vec_u16_store(p + 8, sum[1]);
+}
+
+static inline vec_u8 vec_u8_of_masks(vec_u16 a, vec_u16 b)
+{
+    return vcombine_u8(vmovn_u16(a), vmovn_u16(b));
+}
+
+static inline uint8_t vec_u8_least(vec_u8 v)
+{
+#if defined(__aarch64__)
+    return vminvq_u8(v);
+#else
+    uint8x8_t m = vpmin_u8(vget_low_u8(v), vget_high_u8(v));
+
+    m = vpmin_u8(m, m);
+    m = vpmin_u8(m, m);
+    return vget_lane_u8(vpmin_u8(m, m), 0);
+#endif
+}
+
+static inline uint8_t vec_u8_most(vec_u8 v)
+{
+    return (uint8_t)~vec_u8_least(vmvnq_u8(v));
+}
+
+static inline uint64_t vec_u8_bits_at_most(vec_u8 a, vec_u8 b)
+{
+    static const uint8_t bits[16] = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+    const uint8x16_t m = vandq_u8(vcleq_u8(a, b), vld1q_u8(bits));
+    uint8x8_t sum = vpadd_u8(vget_low_u8(m), vget_high_u8(m));
+
+    sum = vpadd_u8(sum, sum);
+    return vget_lane_u16(vreinterpret_u16_u8(vpadd_u8(sum, sum)), 0);
 }
 
 typedef struct {

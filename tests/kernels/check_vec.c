@@ -129,6 +129,27 @@ static uint16_t c_mul(uint16_t a, uint16_t b)
     return (uint16_t)((uint32_t)a * b);
 }
 
+static uint16_t c_s16_max(uint16_t a, uint16_t b)
+{
+    return (int16_t)a > (int16_t)b ? a : b;
+}
+
+static uint16_t c_s16_scale(uint16_t a, uint16_t b)
+{
+    return (uint16_t)(((int16_t)a * (int16_t)b + (1 << 14)) >> 15);
+}
+
+/* Not both -2^15. */
+static vec_u16 s16_scale(vec_u16 a, vec_u16 b)
+{
+    return vec_s16_scale(a, vec_s16_max(b, vec_u16_set(0x8001)));
+}
+
+static uint16_t c_s16_scale_bound(uint16_t a, uint16_t b)
+{
+    return c_s16_scale(a, c_s16_max(b, 0x8001));
+}
+
 /* Masks, among the lanes where a is even. */
 static vec_mask mask_of(vec_u16 a, vec_u16 b)
 {
@@ -226,7 +247,9 @@ static const struct {
     {"equal", vec_u16_equal, c_equal},       {"offset", vec_u16_offset, c_offset},
     {"bytes", vec_u16_bytes, c_bytes},
     {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
-    {"mul", vec_u16_mul, c_mul},            {"add_where", add_where, c_add_where},
+    {"mul", vec_u16_mul, c_mul},             {"s16_max", vec_s16_max, c_s16_max},
+    {"s16_scale", s16_scale, c_s16_scale_bound},
+    {"add_where", add_where, c_add_where},
     {"put_where", put_where, c_put_where},
     {"choose", choose, c_choose},            {"among", among, c_among},
     {"first", first_on, c_first_on},         {"less", vec_s16_less, c_less},
@@ -357,9 +380,11 @@ static int check_add_to(void)
 /* Every pair of bytes, at odd addresses. */
 static int check_bytes(void)
 {
-    static const char *const names[] = {"absdiff", "adds", "subs", "half", "lookup", "wide"};
+    enum { BYTES = 7 };
+    static const char *const names[] = {"absdiff", "adds", "subs", "half", "lookup",
+                                        "lookup_or_0", "apart", "wide"};
     const uint8_t codes[16] = {7, 255, 0, 128, 1, 2, 3, 4, 90, 91, 92, 93, 250, 251, 252, 253};
-    uint8_t a[VEC_U8 + 1], out[5][VEC_U8 + 1];
+    uint8_t a[VEC_U8 + 1], out[BYTES][VEC_U8 + 1];
     uint16_t wide[VEC_U8 + 1];
 
     for (int pair = 0; pair < 65536; pair++) {
@@ -369,26 +394,115 @@ static int check_bytes(void)
         for (int i = 0; i < (int)VEC_U8; i++)
             a[1 + i] = (uint8_t)(pair + 37 * i);
         const vec_u8 v = vec_u8_load(a + 1), w = vec_u8_set(y);
-        const vec_u8 result[5] = {vec_u8_absdiff(v, w), vec_u8_adds(v, w), vec_u8_subs(v, w),
+        const vec_u8 result[BYTES] = {vec_u8_absdiff(v, w), vec_u8_adds(v, w), vec_u8_subs(v, w),
                                   vec_u8_half(v),
                                   vec_u8_lookup(vec_u8_table(codes),
                                                 vec_u8_half(vec_u8_half(vec_u8_half(
-                                                    vec_u8_half(v)))))};
-        for (int k = 0; k < 5; k++)
-            memcpy(out[k], &result[k], VEC_U8);
+                                                    vec_u8_half(v))))),
+                                  vec_u8_lookup_or_0(vec_u8_table(codes), v),
+                                  vec_u8_apart(vec_u8_half(v), vec_u8_half(w))};
+        for (int k = 0; k < BYTES; k++)
+            vec_u8_store(out[k], result[k]);
         vec_u8_add_wide(sum, v);
         vec_u8_store_wide(wide + 1, sum);
         for (int i = 0; i < (int)VEC_U8; i++) {
             const int x = a[1 + i];
-            const int should[6] = {abs(x - y), x + y > 255 ? 255 : x + y, x > y ? x - y : 0, x / 2,
-                                   codes[x / 16], 0xff00 + x};
+            const int should[BYTES + 1] = {abs(x - y), x + y > 255 ? 255 : x + y,
+                                           x > y ? x - y : 0, x / 2, codes[x / 16],
+                                           x < 16 ? codes[x] : 0, abs(x / 2 - y / 2), 0xff00 + x};
 
-            for (int k = 0; k < 6; k++)
-                if ((k < 5 ? out[k][i] : wide[1 + i]) != should[k]) {
+            for (int k = 0; k <= BYTES; k++)
+                if ((k < BYTES ? out[k][i] : wide[1 + i]) != should[k]) {
                     printf("FAIL  vec_u8_%s, %s: lane %d of %d, %d should be %d\n", names[k],
                            TEXT(RF_VEC_SET), i, x, y, should[k]);
                     return 1;
                 }
+        }
+    }
+    return 0;
+}
+
+/* What all bytes say together. */
+static int check_together(void)
+{
+    uint32_t seed = 12;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint8_t a[MOST_LANES], b[MOST_LANES], bytes[MOST_LANES], least = 255, most = 0;
+        uint16_t mask[MOST_LANES];
+        uint64_t at_most = 0;
+        bool same = true;
+
+        for (int i = 0; i < (int)VEC_U8; i++) {
+            const uint32_t some = noise(&seed);
+
+            a[i] = (uint8_t)(round % 2 ? some : 100 + some % 3);
+            b[i] = (uint8_t)(round % 2 ? some >> 8 : 100 + (some >> 8) % 3);
+            mask[i] = some >> 16 & 1 ? 0xffff : 0;
+            least = a[i] < least ? a[i] : least;
+            most = a[i] > most ? a[i] : most;
+            at_most |= (uint64_t)(a[i] <= b[i]) << i;
+        }
+        const vec_u8 v = vec_u8_load(a);
+
+        vec_u8_store(bytes,
+                     vec_u8_of_masks(vec_u16_load(mask), vec_u16_load(mask + VEC_U16)));
+        for (int i = 0; i < (int)VEC_U8; i++)
+            same = same && bytes[i] == (uint8_t)mask[i];
+        if (vec_u8_least(v) != least || vec_u8_most(v) != most || !same ||
+            vec_u8_bits_at_most(v, vec_u8_load(b)) != at_most) {
+            printf("FAIL  vec_u8_least, most, bits_at_most or of_masks, %s: round %d\n",
+                   TEXT(RF_VEC_SET), round);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Operations on 16 elements. */
+static int check_sixteen(void)
+{
+    uint32_t seed = 13;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t p[17], out[4];
+        int16_t a[17], b[17], share[4][4];
+        const uint16_t low = (uint16_t)noise(&seed), width = (uint16_t)(noise(&seed) >> round % 17);
+        uint32_t within = 0;
+        int32_t dot = 0;
+
+        for (int i = 1; i <= 16; i++) { /* products as large as kernels have them */
+            p[i] = round % 2 ? pick(round / 2, i, 0, &seed) : (uint16_t)(low + noise(&seed) % 999);
+            a[i] = (int16_t)noise_between(&seed, -6912, 6912);
+            b[i] = (int16_t)noise_between(&seed, -8191, 8191);
+            within |= (uint32_t)((uint16_t)(p[i] - low) <= width) << (i - 1);
+            dot += a[i] * b[i];
+        }
+        if (vec_within16(p + 1, low, width) != within || vec_dot16(a + 1, b + 1) != dot) {
+            printf("FAIL  vec_within16 or dot16, %s: round %d\n", TEXT(RF_VEC_SET), round);
+            return 1;
+        }
+        const uint16_t *const from[4] = {p + 1, p + 4, p + 9, p + 13};
+        const int16_t *const shares[4] = {share[0], share[1], share[2], share[3]};
+
+        for (int i = 0; i < 4; i++) {
+            const int some = noise_between(&seed, 1, 32767);
+
+            for (int k = 0; k < 4; k++)
+                share[i][k] = (int16_t)(k == i ? some : k == (i + round) % 4 ? 32768 - some : 0);
+            share[i][i] = (int16_t)(round % 4 ? some : 32767);
+            share[i][(i + 1) % 4] = (int16_t)(round % 4 ? share[i][(i + 1) % 4] : 1);
+        }
+        vec_dots4(out, from, shares);
+        for (int i = 0; i < 4; i++) {
+            int sum = 1 << 14;
+
+            for (int k = 0; k < 4; k++)
+                sum += (from[i][k] - 32768) * share[i][k];
+            if (out[i] != (uint16_t)((sum >> 15) + 32768)) {
+                printf("FAIL  vec_dots4, %s: round %d\n", TEXT(RF_VEC_SET), round);
+                return 1;
+            }
         }
     }
     return 0;
@@ -431,12 +545,12 @@ int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
     int failures = check_set() + check_order() + check_add_to() + check_products() +
-                   check_bytes();
+                   check_bytes() + check_together() + check_sixteen();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
         printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 5, (int)VEC_U16);
+               count + 7, (int)VEC_U16);
     return failures;
 }
