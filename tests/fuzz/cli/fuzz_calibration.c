@@ -8,13 +8,6 @@
 
 enum { MOST_SIDE = 64 };
 
-int report_failure(int exit_code, const char *what, const char *format, ...)
-{
-    (void)what;
-    (void)format;
-    return exit_code;
-}
-
 static void use(const struct refocus_calibration *c)
 {
     static uint16_t samples[MOST_SIDE * MOST_SIDE], out[MOST_SIDE * MOST_SIDE];

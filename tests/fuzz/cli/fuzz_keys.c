@@ -5,25 +5,6 @@
 #include "line/options.h"
 #include "line/report.h"
 
-int report_failure(int exit_code, const char *what, const char *format, ...)
-{
-    (void)what;
-    (void)format;
-    return exit_code;
-}
-
-int report_end_output(void)
-{
-    return EXIT_DONE;
-}
-
-void report_clean(char *clean, size_t size, const char *text)
-{
-    (void)text;
-    if (size > 0)
-        clean[0] = 0;
-}
-
 const char *options_nearest(const char *text, const char *(*word)(const void *list, int i),
                             const void *list)
 {

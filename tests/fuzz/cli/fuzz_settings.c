@@ -44,24 +44,6 @@ static const struct option options[] = {
 };
 static const struct command command = {.name = "fuzz", .usage = "", .options = options};
 
-int report_failure(int exit_code, const char *what, const char *format, ...)
-{
-    (void)what;
-    (void)format;
-    return exit_code;
-}
-
-int report_end_output(void)
-{
-    return EXIT_DONE;
-}
-
-void report_clean(char *clean, size_t size, const char *text)
-{
-    strncpy(clean, text, size - 1);
-    clean[size - 1] = '\0';
-}
-
 int output_check(const char *path, const char *const *endings, const char *const *inputs,
                  int input_count)
 {

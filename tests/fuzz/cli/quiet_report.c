@@ -1,0 +1,22 @@
+/* line/report.h where nothing is printed. */
+#include "line/report.h"
+
+#include <string.h>
+
+int report_failure(int exit_code, const char *what, const char *format, ...)
+{
+    (void)what;
+    (void)format;
+    return exit_code;
+}
+
+int report_end_output(void)
+{
+    return EXIT_DONE;
+}
+
+void report_clean(char *clean, size_t size, const char *text)
+{
+    strncpy(clean, text, size - 1);
+    clean[size - 1] = '\0';
+}
