@@ -257,9 +257,11 @@ static void RF_VEC(rf_settle)(uint8_t *settled, int32_t *offset, const uint32_t 
     for (int i = 0; i < n; i++) {
         const int16_t least = (int16_t)guess[i], most = (int16_t)(guess[i] >> 16);
 
+        const int16_t far_x = rounded(u[i], most), far_y = rounded(v[i], most);
+
         x[i] = rounded(u[i], least);
         y[i] = rounded(v[i], least);
-        same[i] = (x[i] == rounded(u[i], most)) & (y[i] == rounded(v[i], most));
+        same[i] = (x[i] == far_x) & (y[i] == far_y);
     }
     for (int i = 0; i < n; i++) {
         offset[i] = x[i] + y[i] * stride;

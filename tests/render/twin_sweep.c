@@ -209,49 +209,59 @@ static struct rows rows_of(const struct twin *t, const struct plan *plan,
         {4, {0, 5, 10, 15}}, {6, {0, 3, 6, 9, 12, 15}}, {8, {0, 2, 4, 6, 9, 11, 13, 15}}};
     static const double step[] = {5, 3, 2};
     struct rows all = {TWIN_TILE, {0}};
-    double height = 0, least = fabs(behind);
+    double least = fabs(behind);
+    int tallest = 0; /* Q15 */
 
     for (int y = 0; y < TWIN_TILE; y++)
         all.at[y] = y;
     if (t->params->rays == REFOCUS_RAYS_FULL || t->params->rays > 64)
         return all;
     for (int n = 0; n < sets->count[sets->sets - 1]; n++)
-        height = fmax(height, abs(sets->ray[sets->sets - 1][n].v) / 32768.0);
-    for (int i = 0; i < plan->slabs; i++)
-        least = fmin(least, plan->slab[i].centre == 0  ? 0
-                            : plan->slab[i].centre > 0 ? plan->slab[i].least
-                                                       : -plan->slab[i].most);
+        if (abs(sets->ray[sets->sets - 1][n].v) > tallest)
+            tallest = abs(sets->ray[sets->sets - 1][n].v);
+    for (int i = 0; i < plan->slabs; i++) {
+        const struct slab *slab = &plan->slab[i];
+
+        if (slab->centre == 0)
+            return all;
+        least = fmin(least, slab->centre > 0 ? slab->least : -slab->most);
+    }
     for (int i = 0; i < 3; i++)
-        if (least * height >= 1.5 * step[i])
+        if (least * tallest / 32768 >= 1.5 * step[i])
             return sparse[i];
     return all;
 }
 
-/* The cubic through four rows, by Lagrange, not beyond the rows before and after. */
-static void between(const struct rows *rows, const struct twin_sum *row[TWIN_TILE], int y,
+/* Lagrange's share of row k in the cubic through rows first to first + 3. */
+static double share_of(const struct rows *rows, int first, int k, int y)
+{
+    double share = 1;
+
+    for (int j = first; j < first + 4; j++)
+        if (j != k)
+            share *= (double)(y - rows->at[j]) / (rows->at[k] - rows->at[j]);
+    return share;
+}
+
+/* The cubic through four rows, not beyond the rows before and after. */
+static void between(const struct rows *rows, const struct twin_sum row[TWIN_TILE], int y,
                     struct twin_sum *sum)
 {
-    int first = 0;
+    int first = 0, before = 0;
 
-    *sum = (struct twin_sum){{0}, 1};
     while (first + 4 < rows->count && rows->at[first + 2] <= y)
         first++;
-    for (int k = first; k < first + 4; k++) {
-        double share = 1;
+    while (before + 2 < rows->count && rows->at[before + 1] <= y)
+        before++;
+    sum->weight = 1;
+    for (int c = 0; c < 3; c++) {
+        const double a = row[before].light[c] / row[before].weight;
+        const double b = row[before + 1].light[c] / row[before + 1].weight;
+        double light = 0;
 
-        for (int j = first; j < first + 4; j++)
-            if (j != k)
-                share *= (double)(y - rows->at[j]) / (rows->at[k] - rows->at[j]);
-        for (int c = 0; c < 3; c++)
-            sum->light[c] += share * row[k]->light[c] / row[k]->weight;
-    }
-    for (int k = 0; k + 1 < rows->count; k++) {
-        for (int c = 0; c < 3 && rows->at[k] <= y && y <= rows->at[k + 1]; c++) {
-            const double a = row[k]->light[c] / row[k]->weight;
-            const double b = row[k + 1]->light[c] / row[k + 1]->weight;
-
-            sum->light[c] = fmin(fmax(sum->light[c], fmin(a, b)), fmax(a, b));
-        }
+        for (int k = first; k < first + 4; k++)
+            light += share_of(rows, first, k, y) * row[k].light[c] / row[k].weight;
+        sum->light[c] = fmin(fmax(light, fmin(a, b)), fmax(a, b));
     }
 }
 
@@ -261,19 +271,19 @@ static void sweep_column(const struct twin *t, const struct plan *plan,
 {
     const int set = set_for(sets, plan->reach);
     struct twin_sum sum[TWIN_TILE];
-    const struct twin_sum *row[TWIN_TILE];
 
     for (int k = 0; k < rows->count; k++) {
         sum[k] = (struct twin_sum){{0}, 0};
-        row[k] = &sum[k];
         for (int n = 0; n < sets->count[set]; n++)
             trace(t, plan, x, y0 + rows->at[k], sets->ray[set][n], behind, &sum[k]);
     }
     for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
-        struct twin_sum own = sum[y];
+        struct twin_sum own;
 
         if (rows->count < TWIN_TILE)
-            between(rows, row, y, &own);
+            between(rows, sum, y, &own);
+        else
+            own = sum[y];
         twin_encode(t, &own, rgb + 3 * ((y0 + y) * t->width + x));
     }
 }
