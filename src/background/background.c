@@ -31,14 +31,12 @@ void rf_background_dilate(struct refocus_renderer *r, bool upwards)
     }
 }
 
-void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0,
-                             int y1)
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach,
+                             int y0, int y1)
 {
     const int w = r->width;
     uint16_t *row = scratch + RF_SPREAD_MARGIN;
     uint16_t *spare = row + w + 2 * RF_SPREAD_MARGIN;
-    const int reach = 2 * r->pad; /* blurs differ by K at most, the cone by half a
-                                     pixel */
 
     for (int y = y0; y < y1; y++) {
         const ptrdiff_t at = y * r->stride;

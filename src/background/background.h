@@ -24,9 +24,9 @@
  * directions may run at once. Uses the planes r->behind.light[0] and [1]. */
 void rf_background_dilate(struct refocus_renderer *r, bool upwards);
 
-/* The steps along rows, and the mark; copies r->smooth. */
-void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0,
-                             int y1);
+/* The steps along rows, `reach` of them at the most, and the mark; copies r->smooth. */
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach,
+                             int y0, int y1);
 
 /* Fill: up the pyramid from a level to another, and down again; level 0 with its
  * border. All of it is 0 to r->levels. */
@@ -50,8 +50,8 @@ bool rf_all_known(const int16_t *blur, int n);
  * pyramid and is filled from there on; a sample is known if any of its pixels is. That
  * of 4:2:2 is made as small for it: the background has half its rows.
  */
-void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int y0,
-                                 int y1);
+void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch,
+                                 int reach, int y0, int y1);
 void rf_background_yuv_fill(struct refocus_renderer *r);
 
 #endif

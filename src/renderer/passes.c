@@ -141,15 +141,25 @@ static void dilate_item(void *context, int upwards, int worker)
     rf_background_dilate(f->r, upwards);
 }
 
+/* How many steps the mark's cone takes: it falls by half a pixel of blur a pixel, and blurs
+ * of a lens differ by K at most, those of tilts and fields by twice that. */
+static int mark_reach(const struct rf_frame *f)
+{
+    const int steps = (f->plan.plain ? 2 : 4) * f->r->pad;
+
+    return steps < 2 * RF_SPREAD_MARGIN - 1 ? steps : 2 * RF_SPREAD_MARGIN - 1;
+}
+
 static void mark_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
+    uint16_t *scratch = rf_scratch(f->r, worker);
 
     if (f->r->yuv.on)
-        rf_background_yuv_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+        rf_background_yuv_mark_rows(f->r, scratch, mark_reach(f), rf_band_start(band),
                                     rf_band_end(f->r, band));
     else
-        rf_background_mark_rows(f->r, rf_scratch(f->r, worker), rf_band_start(band),
+        rf_background_mark_rows(f->r, scratch, mark_reach(f), rf_band_start(band),
                                 rf_band_end(f->r, band));
 }
 

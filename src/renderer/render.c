@@ -186,7 +186,8 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
         rf_run_blocks(f, region, need, run_tiles);
         return;
     }
-    rf_run_passes(f, number, region, need, method->frame != NULL || r->yuv.on);
+    rf_run_passes(f, number, region, need,
+                  method->frame != NULL || r->yuv.on || (layers && !f->plan.plain));
     if (rf_cancelled(r))
         return;
     if (!method->frame || pinhole) {
