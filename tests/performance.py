@@ -200,7 +200,7 @@ def live_rows(refocus, seconds):
     """Frames of the replay source at 30 a second, from the camera to the sink."""
     yield "\n## Live\n"
     yield (f"`refocus live` with the replay source, 30 frames a second for {seconds} s, depth of "
-           "the same size, K = 20, `--out null`; milliseconds.\n")
+           "the same size, K = 20, `--sigma off --out null`; milliseconds.\n")
     yield ("| camera | rendered in | frames a second | latency, median | 99 % | prepare | render "
            "| outside rendering | peak memory MiB |")
     yield "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
@@ -209,7 +209,8 @@ def live_rows(refocus, seconds):
             done = subprocess.run(
                 [refocus, "live", "--camera", f"replay::format {form};size {size};fps 30",
                  "--depth", f"replay::format Z16;size {size};fps 30", "--focus", "0.5",
-                 "--blur", "20", "--duration", str(seconds), "--no-commands", "--json"],
+                 "--blur", "20", "--sigma", "off", "--duration", str(seconds), "--no-commands",
+                 "--json"],
                 stdout=subprocess.PIPE, check=True)
             r = json.loads(done.stdout)
             stage = r["stages_ms"]

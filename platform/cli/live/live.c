@@ -500,8 +500,6 @@ static int run(int argc, char **argv)
     live_focus_init(&live->focus, &settings);
     live->focus.blur = settings.lens.blur;
     live->focus.blur_most = settings.blur_most;
-    if (isnan(settings.engine.sigma)) /* frames are Y, U and V, whose weights are slow */
-        settings.engine.sigma = INFINITY;
     status = engine_begin(&engine, &settings.engine);
     if (status == EXIT_DONE)
         status = run_live(live);
