@@ -93,8 +93,10 @@ struct refocus_renderer_params {
                                   which are of its size, are not copied: they stay as they are and
                                   where they are until the next refocus_prepare() or the
                                   renderer's end. Rendering goes through them twice, block by
-                                  block, and takes longer; the bytes are the same. For sweep,
-                                  search, raytrace, jittered and blur; not with `previews` */
+                                  block, and takes longer; the bytes are the same, but that tilts and
+                                  fields whose K is more than half of max_blur_radius may change
+                                  single pixels by a code. For sweep, search, raytrace, jittered
+                                  and blur; not with `previews` */
 };
 
 static inline struct refocus_renderer_params

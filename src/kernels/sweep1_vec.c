@@ -4,6 +4,7 @@
  * it is hit, so that one addition a ray is left.
  */
 #include "kernels/kernels.h"
+#include "kernels/slab_vec.h"
 #include "simd/vec.h"
 
 #include <string.h>
@@ -15,15 +16,10 @@ enum {
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
-/* 0 <= s - low <= width as one signed comparison, s - from < to, in all lanes. */
-struct limits {
-    vec_u16 from, to;
-};
-
 struct state {
     const struct rf_sweep1_job *job;
     uint16_t light[RF_TILE * RF_TILE]; /* sums of the last rays */
-    struct limits limits[RF_BINS];
+    struct rf_limits limits[RF_BINS];
 };
 
 static ALWAYS_INLINE void load(vec_u16 v[VECS], const uint16_t *at,
@@ -53,16 +49,15 @@ static ALWAYS_INLINE void sweep_vectors(struct state *s, int first, int end, con
 
         load(value, rays->last[n], place, vecs);
         for (int t = tests - 1; t >= 0; t--) {
-            const struct limits *l = &s->limits[rays->slab[t][n]];
+            const struct rf_limits *l = &s->limits[rays->slab[t][n]];
             const ptrdiff_t q = rays->offset[t][n];
             vec_u16 seen[VECS], front[VECS];
 
             load(seen, blur + q, place, vecs);
             load(front, light + q, place, vecs);
             for (int j = 0; j < vecs; j++)
-                value[j] = vec_u16_choose(
-                    vec_mask_less(vec_mask_all(), vec_u16_sub(seen[j], l->from), l->to),
-                    front[j], value[j]);
+                value[j] = vec_u16_choose(rf_in_limits(vec_mask_all(), l, seen[j]),
+                                          front[j], value[j]);
         }
         for (int j = 0; j < vecs; j++)
             sum[j] = vec_u16_add(sum[j], value[j]);
@@ -119,11 +114,7 @@ static void RF_VEC(rf_sweep1)(uint32_t *sum, const struct rf_sweep1_job *job)
 
     s.job = job;
     memset(s.light, 0, (size_t)job->rows * RF_TILE * sizeof s.light[0]);
-    for (int k = 0; k < job->slabs; k++) {
-        /* adding 2^15 makes an unsigned comparison of a signed one */
-        s.limits[k].from = vec_u16_set((uint16_t)(job->slab[k].low ^ 0x8000));
-        s.limits[k].to = vec_u16_set((uint16_t)((job->slab[k].width + 1) ^ 0x8000));
-    }
+    rf_set_limits(s.limits, job->slab, job->slabs);
     for (int n = 0, end; n < rays->rays; n = end) {
         end = n + 1;
         while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)

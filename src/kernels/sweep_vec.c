@@ -1,5 +1,6 @@
 /* sweep_vec.c: the sweep, a few vectors of pixels at a time, sums in registers over 16 rays. */
 #include "kernels/kernels.h"
+#include "kernels/slab_vec.h"
 #include "simd/vec.h"
 
 #include <string.h>
@@ -18,15 +19,10 @@ static const uint8_t steps_of[] = {
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
-/* 0 <= s - low <= width as one signed comparison, s - from < to, in all lanes. */
-struct limits {
-    vec_u16 from, to;
-};
-
 struct state {
     const struct rf_sweep_job *job;
     uint16_t light[3][RF_STRIP_LANES]; /* sums of the last rays */
-    struct limits limits[RF_BINS];
+    struct rf_limits limits[RF_BINS];
 };
 
 /* Vector j from `first` on; bytes. */
@@ -59,7 +55,7 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[3][MOST_VECS], const struct stat
 
     for (int t = 0; t < tests; t++) {
         const char *q = (const char *)s->job->blur + at + 2 * (ptrdiff_t)rays->offset[t][n];
-        const struct limits *l = &s->limits[rays->slab[t][n]];
+        const struct rf_limits *l = &s->limits[rays->slab[t][n]];
         vec_mask hit[MOST_VECS];
 
         for (int j = 0; j < vecs; j++) {
@@ -67,7 +63,7 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[3][MOST_VECS], const struct stat
 
             if (t == 0)
                 is_free[j] = vec_mask_all();
-            hit[j] = vec_mask_less(is_free[j], vec_u16_sub(blur, l->from), l->to);
+            hit[j] = rf_in_limits(is_free[j], l, blur);
             is_free[j] = vec_mask_without(is_free[j], hit[j]);
         }
         add_light(sum, q + plane, stride, plane, hit, vecs);
@@ -135,10 +131,7 @@ static void RF_VEC(rf_sweep)(uint32_t *const sum[3], const struct rf_sweep_job *
 
     s.job = job;
     memset(s.light, 0, sizeof s.light);
-    for (int k = 0; k < job->slabs; k++)
-        /* adding 2^15 makes an unsigned comparison of a signed one */
-        s.limits[k] = (struct limits){vec_u16_set((uint16_t)(job->slab[k].low ^ 0x8000)),
-                                      vec_u16_set((uint16_t)((job->slab[k].width + 1) ^ 0x8000))};
+    rf_set_limits(s.limits, job->slab, job->slabs);
     for (int n = 0, end; n < rays->rays; n = end) {
         end = n + 1;
         while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)

@@ -1,5 +1,6 @@
 /* sweep_weighted_vec.c: the sweep with weights, one vector at a time, two rays at once. */
 #include "kernels/kernels.h"
+#include "kernels/slab_vec.h"
 #include "simd/vec.h"
 
 enum {
@@ -32,11 +33,6 @@ static ALWAYS_INLINE void take(struct met *met, vec_u16 red, vec_u16 green, vec_
     met->weight = vec_u16_put_where(where, met->weight, weight);
 }
 
-/* 0 <= s - low <= width as one signed comparison, s - from < to, in all lanes. */
-struct limits {
-    vec_u16 from, to;
-};
-
 /* Where a vector lies: pixel (x, y) of the strip, in bytes of the planes. */
 struct place {
     ptrdiff_t at, weight_at;
@@ -50,7 +46,7 @@ static ALWAYS_INLINE struct place place_of(const struct rf_sweep_job *job, int i
 }
 
 static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct place p,
-                                       const struct limits *limits, int n)
+                                       const struct rf_limits *limits, int n)
 {
     const struct rf_sorted_rays *rays = job->rays;
     const ptrdiff_t plane = 2 * job->pitch;
@@ -58,12 +54,11 @@ static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct pl
     struct met met = {{vec_u16_set(0), vec_u16_set(0), vec_u16_set(0)}, vec_u16_set(0)};
 
     for (int t = 0; t < rays->tests[n]; t++) {
-        const struct limits *l = &limits[rays->slab[t][n]];
+        const struct rf_limits *l = &limits[rays->slab[t][n]];
         const ptrdiff_t q = p.at + 2 * (ptrdiff_t)rays->offset[t][n];
         const vec_u16 weight =
             load(job->weight, p.weight_at + 2 * (ptrdiff_t)rays->weight_offset[t][n]);
-        const vec_mask hit =
-            vec_mask_less(is_free, vec_u16_sub(load(job->blur, q), l->from), l->to);
+        const vec_mask hit = rf_in_limits(is_free, l, load(job->blur, q));
 
         is_free = vec_mask_without(is_free, hit);
         take(&met, load(job->blur, q + plane), load(job->blur, q + 2 * plane),
@@ -77,7 +72,7 @@ static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct pl
 
 static ALWAYS_INLINE void sweep_vector(uint64_t *const sum[4], int i,
                                        const struct rf_sweep_job *job,
-                                       const struct limits *limits)
+                                       const struct rf_limits *limits)
 {
     const struct place p = place_of(job, i);
     const vec_u16 one = vec_u16_set(1), zero = vec_u16_set(0);
@@ -108,13 +103,9 @@ static ALWAYS_INLINE void sweep_vector(uint64_t *const sum[4], int i,
 
 static void RF_VEC(rf_sweep_weighted)(uint64_t *const sum[4], const struct rf_sweep_job *job)
 {
-    struct limits limits[RF_BINS];
+    struct rf_limits limits[RF_BINS];
 
-    for (int k = 0; k < job->slabs; k++)
-        /* adding 2^15 makes an unsigned comparison of a signed one */
-        limits[k] = (struct limits){
-            vec_u16_set((uint16_t)(job->slab[k].low ^ 0x8000)),
-            vec_u16_set((uint16_t)((job->slab[k].width + 1) ^ 0x8000))};
+    rf_set_limits(limits, job->slab, job->slabs);
     for (int i = 0; i < job->lanes; i += VEC_U16)
         sweep_vector(sum, i, job, limits);
 }

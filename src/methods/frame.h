@@ -60,15 +60,4 @@ static inline void rf_write_real(const struct rf_frame *f, int x, int y,
     rf_write_pixel(f, x, y, rgb);
 }
 
-/* Signed blur of the nearest and the farthest plane, Q7.8. */
-static inline int rf_nearest_blur(const struct rf_frame *f)
-{
-    return -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >> 16);
-}
-
-static inline int rf_farthest_blur(const struct rf_frame *f)
-{
-    return (int)(((uint32_t)f->focus.disparity * f->focus.radius + (1 << 15)) >> 16);
-}
-
 #endif

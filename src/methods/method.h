@@ -67,6 +67,20 @@ static inline int rf_offset(int u, int s)
     return (u * s + (1 << 22)) >> 23;
 }
 
+/* Signed blur of the nearest and the farthest plane, Q7.8. */
+static inline int rf_nearest_blur(const struct rf_frame *f)
+{
+    return -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >> 16);
+}
+
+static inline int rf_farthest_blur(const struct rf_frame *f)
+{
+    return (int)(((uint32_t)f->focus.disparity * f->focus.radius + (1 << 15)) >> 16);
+}
+
+/* How many rays from `first` on weigh the same, RF_RAY_CHUNK at the most. */
+int rf_rays_alike(const struct rf_ray_set *set, int first);
+
 /* The ray set for a reach (Q7.8): enough rays for it, at most the preset, or a denser one where
  * a highlight is in reach. */
 const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach, bool lamp);

@@ -63,14 +63,6 @@ static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p,
     return p;
 }
 
-/* s of the nearest plane, d = 1. */
-static int nearest_blur(const struct rf_frame *f)
-{
-    return -(
-        int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >>
-             16);
-}
-
 /* Some rays of equal weight, and the cells of their first guesses. */
 struct chunk {
     struct rf_search_rays rays;
@@ -88,7 +80,7 @@ static void set_chunk(struct chunk *chunk, const struct rf_frame *f,
         rays->u[i] = ray[i].u;
         rays->v[i] = ray[i].v;
     }
-    r->kernels.aim(rays->start, chunk->cell, rays->u, rays->v, nearest_blur(f),
+    r->kernels.aim(rays->start, chunk->cell, rays->u, rays->v, rf_nearest_blur(f),
                    (int32_t)r->stride, (int32_t)r->range_stride, n);
     r->kernels.tolerances(rays->within, rays->u, rays->v, n);
 }
@@ -157,10 +149,7 @@ static void search_runs(const struct rf_frame *f, int tx, int ty,
 
         if (rf_cancelled(f->r))
             return;
-        rays = 1;
-        while (rays < RF_RAY_CHUNK && n + rays < set->count &&
-               ray[rays].weight == ray->weight)
-            rays++;
+        rays = rf_rays_alike(set, n);
         set_chunk(&chunk, f, ray, rays);
         for (int i = 0; i < RF_TILE * RF_TILE; i += RF_STRIP_LANES)
             search_strip(f, &chunk, tx, ty * RF_TILE + i / RF_TILE,
@@ -181,7 +170,7 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
                           const struct rf_ray_set *set, struct rf_sums *sums)
 {
     const struct refocus_renderer *r = f->r;
-    const int nearest = nearest_blur(f);
+    const int nearest = rf_nearest_blur(f);
 
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];

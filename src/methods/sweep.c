@@ -141,12 +141,11 @@ static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *pl
                          const struct sight *sight, int tx, int ty, struct rf_tile_rows rows,
                          union tally *run)
 {
-    const int halves = rows.step <= 2 ? 2 : 1, count = rows.count / halves;
-    const int second = rows.step == 2 ? 9 : RF_STRIP;
+    const int count = rows.step <= 2 ? rows.count / 2 : rows.count;
 
-    for (int i = 0; i < halves; i++)
+    for (int i = 0; i < rows.count; i += count)
         sweep_strip(f, plan, sight, tx, ty,
-                    (struct strip){i * second, rows.step, count, i * count * RF_TILE}, run);
+                    (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE}, run);
 }
 
 /* A run of rays of equal weight is at its end: it counts that often. */
@@ -159,17 +158,6 @@ static void add_run(const struct rf_frame *f, const union tally *run, uint64_t r
                 ray_weight * (f->weighted ? run->weighted[c][i] : run->plain[c][i]);
         sums->weight[i] += ray_weight * (f->weighted ? run->weighted[3][i] : rays);
     }
-}
-
-/* Rays from `first` on that weigh the same, RF_RAY_CHUNK at the most. */
-static int chunk_of(const struct rf_ray_set *set, int first)
-{
-    int n = 1;
-
-    while (n < RF_RAY_CHUNK && first + n < set->count &&
-           set->ray[first + n].weight == set->ray[first].weight)
-        n++;
-    return n;
 }
 
 /* Rays come in runs of equal weight; a run is summed plainly and counts as often as it weighs.
@@ -192,7 +180,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
 
         if (rf_cancelled(r))
             return;
-        sight.rays = chunk_of(set, n);
+        sight.rays = rf_rays_alike(set, n);
         rays += sight.rays;
         set_sight(&sight, f, plan, tile_rays, n, behind);
         sweep_strips(f, plan, &sight, tx, ty, rows, run);

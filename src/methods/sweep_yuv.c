@@ -109,17 +109,6 @@ static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
     memset(run, 0, LANES * sizeof run[0]);
 }
 
-/* Rays from `first` on that weigh the same, RF_RAY_CHUNK at the most. */
-static int chunk_of(const struct rf_ray_set *set, int first)
-{
-    const int most = set->count - first < RF_RAY_CHUNK ? set->count - first : RF_RAY_CHUNK;
-    int n = set->equal ? most : 1;
-
-    while (n < most && set->ray[first + n].weight == set->ray[first].weight)
-        n++;
-    return n;
-}
-
 /* As sweep_rays() of sweep.c: sums of rays of one weight in `run`, of others in `sum`. */
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct plane *plane, int behind, uint32_t run[LANES],
@@ -132,7 +121,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        sight.rays = chunk_of(set, n);
+        sight.rays = rf_rays_alike(set, n);
         set_sight(&sight, f->r, plane, plan, ray, behind);
         sweep_tile(f->r, plan, plane, &sight, run);
         if (!set->equal &&
@@ -181,15 +170,11 @@ static void weigh_ray(const struct rf_frame *f, const struct rf_tile_plan *plan,
     }
 }
 
-/* Rows of the lower half lie one further down where they are two apart: 0 2 4 6 9 11 13 15, and
- * 0 2 5 7 of chroma. */
 static void set_rows(struct plane *plane, struct rf_tile_rows rows, ptrdiff_t stride)
 {
-    const int half = rows.count / 2;
-
     plane->computed = rows;
     for (int i = 0; i < rows.count; i++)
-        plane->row[i] = (i * rows.step + (rows.step == 2 && i >= half)) * stride;
+        plane->row[i] = rf_row_at(rows, i) * stride;
 }
 
 /* Means of rays that weigh the same, of some rows and then of those between. */

@@ -10,12 +10,16 @@
 
 #include "methods/method.h"
 
-enum { RF_ROW_STEPS = 4 };
-
-/* Rows `step` apart; of 2, 0 2 4 6 9 11 13 15. */
+/* Rows `step` apart; those of the lower half lie one further down where they are two apart:
+ * 0 2 4 6 9 11 13 15. */
 struct rf_tile_rows {
     int step, count;
 };
+
+static inline int rf_row_at(struct rf_tile_rows rows, int i)
+{
+    return i * rows.step + (rows.step == 2 && i >= rows.count / 2);
+}
 
 /* The blur, Q7.8, that asks for a row a pixel apart and less than two; 0: every row is asked for,
  * by the settings or by an opening with fine structure. */

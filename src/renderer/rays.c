@@ -135,6 +135,16 @@ const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach
     return &r->set[last];
 }
 
+int rf_rays_alike(const struct rf_ray_set *set, int first)
+{
+    const int most = set->count - first < RF_RAY_CHUNK ? set->count - first : RF_RAY_CHUNK;
+    int n = set->equal ? most : 1;
+
+    while (n < most && set->ray[first + n].weight == set->ray[first].weight)
+        n++;
+    return n;
+}
+
 const struct rf_ray_set *rf_chroma_rays(const struct refocus_renderer *r,
                                         const struct rf_ray_set *set)
 {

@@ -3,12 +3,12 @@
 #include <math.h>
 
 #include "methods/frame.h"
+#include "methods/tile_rows.h"
 #include "planes/format.h"
 #include "planes/planes.h"
 #include "renderer/bands.h"
 #include "renderer/params.h"
 #include "renderer/passes.h"
-#include "methods/tile_rows.h"
 #include "renderer/rays.h"
 #include "renderer/render_yuv.h"
 

@@ -5,6 +5,8 @@
 #include <smmintrin.h>
 #include <stdint.h>
 
+#include "simd/vec_x86.h"
+
 enum { VEC_U16 = 8, VEC_BITS = 2 };
 typedef __m128i vec_u16;
 
@@ -172,33 +174,6 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
 
     s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4e));
     return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
-}
-
-/* Two groups of four elements, 2^15 less. */
-static inline __m128i vec_two_fours(const uint16_t *a, const uint16_t *b)
-{
-    const __m128i pair = _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i *)a),
-                                            _mm_loadl_epi64((const __m128i *)b));
-
-    return _mm_xor_si128(pair, _mm_set1_epi16(-32768));
-}
-
-static inline void vec_dots4(uint16_t out[4], const uint16_t *const p[4],
-                             const int16_t *const share[4])
-{
-    const __m128i a = _mm_madd_epi16(
-        vec_two_fours(p[0], p[1]),
-        _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i *)share[0]),
-                           _mm_loadl_epi64((const __m128i *)share[1])));
-    const __m128i b = _mm_madd_epi16(
-        vec_two_fours(p[2], p[3]),
-        _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i *)share[2]),
-                           _mm_loadl_epi64((const __m128i *)share[3])));
-    const __m128i sum = _mm_srai_epi32(
-        _mm_add_epi32(_mm_hadd_epi32(a, b), _mm_set1_epi32(1 << 14)), 15);
-
-    _mm_storel_epi64((__m128i *)out,
-                     _mm_xor_si128(_mm_packs_epi32(sum, sum), _mm_set1_epi16(-32768)));
 }
 
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)

@@ -225,19 +225,29 @@ static void lay_over(const struct refocus_image *image,
     }
 }
 
+/* A picture and the colours of 65536 values, or neither. */
+static struct refocus_image begin(int width, int height, int *scale, struct colour **colours)
+{
+    struct refocus_image image = make_picture(width, height, scale);
+
+    *colours = image.plane[0] ? malloc(65536 * sizeof **colours) : NULL;
+    if (!*colours) {
+        free(image.plane[0]);
+        image.plane[0] = NULL;
+    }
+    return image;
+}
+
 struct refocus_image falsecolour_depth(const uint16_t *values, int width, int height,
                                        const struct refocus_depth_range *range,
                                        const struct refocus_image *photo)
 {
-    struct colour *colours = malloc(65536 * sizeof *colours);
+    struct colour *colours;
     int scale;
-    struct refocus_image image = make_picture(width, height, &scale);
+    struct refocus_image image = begin(width, height, &scale, &colours);
 
-    if (!colours || !image.plane[0]) {
-        free(image.plane[0]);
-        image.plane[0] = NULL;
-        goto end;
-    }
+    if (!colours)
+        return image;
     for (int v = 0; v < 65536; v++)
         colours[v] = colour_at(v / 65535.0);
     paint(&image, values, height, colours);
@@ -245,7 +255,6 @@ struct refocus_image falsecolour_depth(const uint16_t *values, int width, int he
         lay_over(&image, photo);
     if (scale > 0)
         draw_depth_legend(&image, height, scale, range);
-end:
     free(colours);
     return image;
 }
@@ -255,22 +264,18 @@ struct refocus_image falsecolour_blur(const uint16_t *values, const uint16_t *di
                                       const struct refocus_depth_range *range,
                                       const struct blur_limits *limits)
 {
-    struct colour *colours = malloc(65536 * sizeof *colours);
+    struct colour *colours;
     int scale;
-    struct refocus_image image = make_picture(width, height, &scale);
+    struct refocus_image image = begin(width, height, &scale, &colours);
 
-    if (!colours || !image.plane[0]) {
-        free(image.plane[0]);
-        image.plane[0] = NULL;
-        goto end;
-    }
+    if (!colours)
+        return image;
     for (int v = 0; v < 65536; v++)
         colours[v] = v < 128 || greatest <= 0 ? sharp : colour_at(v / 256.0 / greatest);
     paint(&image, values, height, colours);
     draw_limits(&image, values, disparity, height, scale > 1 ? scale : 1);
     if (scale > 0)
         draw_blur_legend(&image, height, scale, greatest, range, limits);
-end:
     free(colours);
     return image;
 }
