@@ -101,40 +101,55 @@ static void RF_VEC(rf_aim)(int32_t *restrict offset, int32_t *restrict cell,
     }
 }
 
-enum { BITS = 32, BLOCKS = RF_BINS / BITS };
+enum { BITS = RF_JOIN_BLOCK, BLOCKS = RF_BINS / BITS };
 
 /* Of all rays at once: */
 struct state {
-    uint32_t need[BLOCKS][RF_RAY_CHUNK]; /* bit k % 32 of block k / 32: test slab k */
+    uint32_t first[BLOCKS][RF_RAY_CHUNK];  /* bit k % 32 of block k / 32: test slab k, */
+    uint32_t joined[BLOCKS][RF_RAY_CHUNK]; /* or with the one before */
     uint32_t open[RF_RAY_CHUNK];         /* ~0: no slab so far takes all */
     uint32_t tests[RF_RAY_CHUNK];
     uint32_t last[RF_RAY_CHUNK];         /* slab, or their number: the background */
 };
 
 /* Returns whether any ray is still open. */
-static bool meet_slab(struct state *restrict s, uint32_t *restrict need,
-                      const uint32_t *restrict seen, const struct rf_slab *slab, int k,
-                      int rays)
+static bool meet_slab(struct state *restrict s, const uint32_t *restrict seen,
+                      const struct rf_sort_job *job, int k)
 {
-    const int32_t low = slab->low, high = slab->low + slab->width;
+    const int32_t low = job->slab[k].low, high = low + job->slab[k].width;
+    const bool inner = k % BITS > 0;
+    const int32_t *restrict at = job->offset[k], *restrict before = job->offset[k - inner];
     const uint32_t bit = UINT32_C(1) << k % BITS;
+    const uint32_t bit_before = inner ? bit >> 1 : 0, may_join = job->joined[k] ? bit : 0;
+    uint32_t *restrict first = s->first[k / BITS], *restrict joined = s->joined[k / BITS];
     uint32_t *restrict open = s->open, *restrict tests = s->tests, *restrict last = s->last;
     uint32_t any = 0;
 
-    for (int n = 0; n < rays; n++) {
+    for (int n = 0; n < job->rays; n++) {
         const int32_t least = (int16_t)seen[n], most = (int32_t)seen[n] >> 16;
         const uint32_t outside = (uint32_t)-((most < low) | (least > high));
         const uint32_t inside = (uint32_t)-((least >= low) & (most <= high));
         const uint32_t test = open[n] & ~(outside | inside);
         const uint32_t all = open[n] & inside;
+        /* the slab before is tested, and seen at the same place */
+        const uint32_t beside = (uint32_t)-(((first[n] | joined[n]) & bit_before) != 0) &
+                                (uint32_t)-(at[n] == before[n]);
+        const uint32_t join = test & beside & may_join;
 
-        need[n] |= test & bit;
-        tests[n] -= test;
+        joined[n] |= join;
+        first[n] |= test & ~join & bit;
+        tests[n] += (all & beside) - (test & ~(uint32_t)-(join != 0)); /* -1 is true */
         last[n] = (all & (uint32_t)k) | (~all & last[n]);
         open[n] &= ~inside;
         any |= open[n];
     }
     return any != 0;
+}
+
+/* How many slabs are joined to that of a bit. */
+static inline int joined_to(uint32_t joined, int bit)
+{
+    return __builtin_ctz(~(joined >> bit >> 1));
 }
 
 /* Ray n becomes the m-th. */
@@ -143,16 +158,19 @@ static inline void place(struct rf_sorted_rays *restrict sorted,
                          const struct state *restrict s, int n, int m, const bool weighted)
 {
     const int tests = (int)s->tests[n], last = (int)s->last[n];
-    uint32_t need = s->need[0][n];
+    uint32_t need = s->first[0][n];
 
     for (int t = 0, block = 0; t < tests; t++) {
-        int k;
+        int k, bit;
 
         while (!need)
-            need = s->need[++block][n];
-        k = block * BITS + __builtin_ctz(need);
+            need = s->first[++block][n];
+        bit = __builtin_ctz(need);
+        k = block * BITS + bit;
         need &= need - 1;
-        sorted->slab[t][m] = (uint8_t)k;
+        sorted->from[t][m] = rf_range_from(&job->slab[k]);
+        sorted->to[t][m] =
+            rf_range_to(&job->slab[k], &job->slab[k + joined_to(s->joined[block][n], bit)]);
         sorted->offset[t][m] = job->offset[k][n];
         if (weighted)
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
@@ -213,12 +231,13 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
         uint32_t seen[RF_RAY_CHUNK];
 
         if (k % BITS == 0)
-            memset(s.need[k / BITS], 0, sizeof s.need[0]);
+            for (int n = 0; n < rays; n++)
+                s.first[k / BITS][n] = s.joined[k / BITS][n] = 0;
         for (int n = 0; n < rays; n++)
             seen[n] = job->range[cell[n]];
         for (int n = 0; job->below && n < rays; n++)
             seen[n] = both(seen[n], job->below[cell[n]]);
-        if (!meet_slab(&s, s.need[k / BITS], seen, &job->slab[k], k, rays))
+        if (!meet_slab(&s, seen, job, k))
             break;
     }
     sorted->rays = rays;

@@ -52,11 +52,16 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
  *             else:                              test slab k at offset[k][n]
  *         the last is the background at offset[slabs][n]
  *
+ * Slabs k - 1 and k that are both to be tested at one offset are one test of all from the
+ * former's low to the latter's end, where the slabs overlap or touch (joined[k]); and the last
+ * test is left out where a slab's light is the last and it was tested in slab k - 1 at the same
+ * offset. This does not go across multiples of RF_JOIN_BLOCK.
+ *
  * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
- * otherwise in their order. Nothing is lost by this: tests that are left out could not hit, or
- * would all hit.
+ * otherwise in their order. Nothing is lost by all this: tests that are left out could not hit,
+ * would all hit, or lead to the same light.
  */
-enum { RF_SORTED_TESTS = 8 };
+enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 32 };
 
 struct rf_sort_job {
     const uint32_t *range; /* at the strip's first pixel, */
@@ -65,6 +70,7 @@ struct rf_sort_job {
     const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
     const struct rf_slab *slab;
+    const bool *joined; /* [slabs]: slab k to k - 1 */
     const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
     const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
 };
@@ -72,8 +78,9 @@ struct rf_sort_job {
 struct rf_sorted_rays {
     int rays;
     uint8_t tests[RF_RAY_CHUNK];
-    uint8_t slab[RF_BINS][RF_RAY_CHUNK]; /* of test t, nearest first, */
-    int32_t offset[RF_BINS][RF_RAY_CHUNK]; /* at this offset */
+    /* Test t, nearest first, at offset[t], hits where rf_in_range(from[t], to[t], blur). */
+    int32_t offset[RF_BINS][RF_RAY_CHUNK];
+    uint16_t from[RF_BINS][RF_RAY_CHUNK], to[RF_BINS][RF_RAY_CHUNK];
     const uint16_t *last[RF_RAY_CHUNK]; /* first of three planes, for the strip's first pixel */
 
     /* Only with weights: as `offset` and `last`, of the weights. */
@@ -88,14 +95,13 @@ typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort
  *
  *     for each ray n and pixel p of the strip:
  *         for t = 0 .. tests[n] - 1:
- *             q = p + offset[t][n], k = slab[t][n]
- *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
+ *             q = p + offset[t][n]
+ *             if rf_in_range(from[t][n], to[t][n], blur[q]):
  *                 sum += light[q]; next ray
  *         sum += last[n][p]
  *
  * Light is Q12, at most 4095, or 4, 8 or 16 times that as `bright` says; sums are exact.
- * Pointers are to the strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480
- * (Q7.8).
+ * Pointers are to the strip's first pixel.
  */
 /* Light that highlights reach: white, 4, 8 or 16 times that. */
 enum rf_bright { RF_WHITE, RF_BRIGHT, RF_BRIGHTER, RF_BRIGHTEST };
@@ -103,8 +109,6 @@ enum rf_bright { RF_WHITE, RF_BRIGHT, RF_BRIGHTER, RF_BRIGHTEST };
 struct rf_sweep_job {
     const int16_t *blur;     /* light is in the three planes after it, pitch apart */
     ptrdiff_t stride, pitch; /* elements */
-    int slabs;
-    const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
     enum rf_bright bright;
     int lanes; /* of sweep and sweep_weighted: those of an even number of rows, of RF_STRIP at most */
@@ -371,8 +375,6 @@ struct rf_sweep1_job {
     const ptrdiff_t *row;
     int rows;         /* an even number, 16 at most */
     int steps;        /* values that a 16-bit sum holds, 4 to 16 */
-    int slabs;
-    const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
 };
 typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);

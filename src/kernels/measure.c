@@ -120,14 +120,13 @@ static void sweep(const struct rf_kernels *k, struct rows *r)
                                      .lanes = RF_STRIP_LANES,
                                      .stride = stride,
                                      .pitch = pitch,
-                                     .slabs = 1,
-                                     .slab = &slab,
                                      .rays = &r->rays};
     uint32_t *const sum[3] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2]};
 
     for (int n = 0; n < RF_RAY_CHUNK; n++) {
         r->rays.tests[n] = 1;
-        r->rays.slab[0][n] = 0;
+        r->rays.from[0][n] = rf_range_from(&slab);
+        r->rays.to[0][n] = rf_range_to(&slab, &slab);
         r->rays.offset[0][n] = (int32_t)((n / 8 - 4) * stride + (n % 8 - 4) * 5);
         r->rays.last[n] = strip + pitch + n % 5;
     }

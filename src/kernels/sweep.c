@@ -8,15 +8,17 @@ static void add(uint32_t *const sum[3], const uint16_t *light, ptrdiff_t pitch, 
         sum[c][i] += light[c * pitch];
 }
 
-/* One test of a ray; pixels that hit are free no more. */
-static void add_slab(uint32_t *const sum[3], uint16_t *is_free, const struct rf_sweep_job *job,
-                     const struct rf_slab *slab, ptrdiff_t offset)
+/* Test t of ray n; pixels that hit are free no more. */
+static void add_test(uint32_t *const sum[3], uint16_t *is_free, const struct rf_sweep_job *job,
+                     int t, int n)
 {
-    for (int i = 0; i < job->lanes; i++) {
-        const int16_t *q = job->blur + i / RF_TILE * job->stride + i % RF_TILE + offset;
-        const uint16_t above = (uint16_t)(*q - slab->low);
+    const struct rf_sorted_rays *rays = job->rays;
 
-        if (!is_free[i] || above > slab->width)
+    for (int i = 0; i < job->lanes; i++) {
+        const int16_t *q = job->blur + i / RF_TILE * job->stride + i % RF_TILE +
+                           rays->offset[t][n];
+
+        if (!is_free[i] || !rf_in_range(rays->from[t][n], rays->to[t][n], *q))
             continue;
         is_free[i] = 0;
         add(sum, (const uint16_t *)q + job->pitch, job->pitch, i);
@@ -31,7 +33,7 @@ void rf_sweep_c(uint32_t *const sum[3], const struct rf_sweep_job *job)
     for (int n = 0; n < rays->rays; n++) {
         memset(is_free, 0xff, sizeof is_free);
         for (int t = 0; t < rays->tests[n]; t++)
-            add_slab(sum, is_free, job, &job->slab[rays->slab[t][n]], rays->offset[t][n]);
+            add_test(sum, is_free, job, t, n);
         for (int i = 0; i < job->lanes; i++)
             if (is_free[i])
                 add(sum, rays->last[n] + i / RF_TILE * job->stride + i % RF_TILE, job->pitch,

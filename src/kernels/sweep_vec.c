@@ -22,7 +22,6 @@ static const uint8_t steps_of[] = {
 struct state {
     const struct rf_sweep_job *job;
     uint16_t light[3][RF_STRIP_LANES]; /* sums of the last rays */
-    struct rf_limits limits[RF_BINS];
 };
 
 /* Vector j from `first` on; bytes. */
@@ -55,7 +54,7 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[3][MOST_VECS], const struct stat
 
     for (int t = 0; t < tests; t++) {
         const char *q = (const char *)s->job->blur + at + 2 * (ptrdiff_t)rays->offset[t][n];
-        const struct rf_limits *l = &s->limits[rays->slab[t][n]];
+        const struct rf_limits l = rf_limits_of(rays, t, n);
         vec_mask hit[MOST_VECS];
 
         for (int j = 0; j < vecs; j++) {
@@ -131,7 +130,6 @@ static void RF_VEC(rf_sweep)(uint32_t *const sum[3], const struct rf_sweep_job *
 
     s.job = job;
     memset(s.light, 0, sizeof s.light);
-    rf_set_limits(s.limits, job->slab, job->slabs);
     for (int n = 0, end; n < rays->rays; n = end) {
         end = n + 1;
         while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)

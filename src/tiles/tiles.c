@@ -176,6 +176,17 @@ static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_
     return sum;
 }
 
+/* Blurs of up to 63.5 pixels differ by less than 2^15, so that a range of any width is told from
+ * what lies outside modulo 2^16; up to 127 pixels one slab is as much as can be. */
+static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struct rf_slab slab)
+{
+    const struct rf_slab *before = &plan->slab[plan->slabs - 1];
+
+    plan->joined[plan->slabs] = plan->slabs > 0 && scale.shift < 8 &&
+                                slab.low <= before->low + before->width + 1;
+    plan->slab[plan->slabs++] = slab;
+}
+
 /* Cover the occupied bins from the near side. Slabs are a pixel wide, and half of that
  * where the blur is small and a pixel would show. The blurs below half a pixel are a slab
  * of their own with offset 0, which nothing else may take: they stay as they are. */
@@ -197,7 +208,7 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             continue;
         }
         if (bin >= scale.focus && bin < focus_end) {
-            plan->slab[plan->slabs++] = (struct rf_slab){-HALF, 2 * HALF - 1, 0};
+            add_slab(plan, scale, (struct rf_slab){-HALF, 2 * HALF - 1, 0});
             plan->least = 0;
             bin = focus_end;
             continue;
@@ -229,8 +240,8 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             high = -HALF - 1;
         if (centre > 0 && low < HALF)
             low = HALF;
-        plan->slab[plan->slabs++] =
-            (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre};
+        add_slab(plan, scale,
+                 (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
         bin = last + 1;
     }
 }

@@ -21,6 +21,7 @@ struct stage {
     struct guarded weight;        /* of the front */
     struct rf_slab slab[MOST_SLABS];
     struct rf_sorted_rays rays;
+    uint8_t tested[MOST_SLABS][RF_RAY_CHUNK]; /* slab of a test */
     struct rf_sweep_job job;
     uint32_t sum[3][LANES], expected[3][LANES];
     uint64_t weighted[4][LANES], expected_weighted[4][LANES];
@@ -42,7 +43,7 @@ static void follow(struct stage *s, int pixel, int ray)
     const ptrdiff_t w = pixel / RF_TILE * WEIGHT_STRIDE + pixel % RF_TILE;
 
     for (int t = 0; t < s->rays.tests[ray]; t++) {
-        const struct rf_slab *slab = &s->slab[s->rays.slab[t][ray]];
+        const struct rf_slab *slab = &s->slab[s->tested[t][ray]];
         const ptrdiff_t q = p + s->rays.offset[t][ray];
         const int above = job->blur[q] - slab->low;
 
@@ -82,7 +83,11 @@ static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *be
 
         rays->tests[n] = (uint8_t)(same ? tests : noise_between(seed, 0, tests));
         for (int t = 0; t < rays->tests[n]; t++) {
-            rays->slab[t][n] = (uint8_t)noise_between(seed, 0, MOST_SLABS - 1);
+            const int k = noise_between(seed, 0, MOST_SLABS - 1);
+
+            s->tested[t][n] = (uint8_t)k;
+            rays->from[t][n] = rf_range_from(&s->slab[k]);
+            rays->to[t][n] = rf_range_to(&s->slab[k], &s->slab[k]);
             rays->offset[t][n] = make_offset(n, &rays->weight_offset[t][n], seed);
         }
         offset = make_offset(n, &weight_offset, seed);
@@ -154,8 +159,6 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
     s->job = (struct rf_sweep_job){
         .stride = STRIDE,
         .pitch = PITCH,
-        .slabs = MOST_SLABS,
-        .slab = s->slab,
         .rays = &s->rays,
         .weight_stride = WEIGHT_STRIDE,
         .lanes = (int)(2 + 2 * (seed % 4)) * RF_TILE,
@@ -288,7 +291,8 @@ static void fill_chunk(struct rf_sorted_rays *rays)
         rays->last_weight[n] = rays->last_weight[like];
         rays->last_behind[n] = rays->last_behind[like];
         for (int t = 0; t < rays->tests[n]; t++) {
-            rays->slab[t][n] = rays->slab[t][like];
+            rays->from[t][n] = rays->from[t][like];
+            rays->to[t][n] = rays->to[t][like];
             rays->offset[t][n] = rays->offset[t][like];
             rays->weight_offset[t][n] = rays->weight_offset[t][like];
         }
