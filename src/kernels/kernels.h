@@ -61,7 +61,7 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
  * otherwise in their order. Nothing is lost by all this: tests that are left out could not hit,
  * would all hit, or lead to the same light.
  */
-enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 32 };
+enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 
 struct rf_sort_job {
     const uint32_t *range; /* at the strip's first pixel, */

@@ -24,10 +24,15 @@ static inline uint16_t rf_range_from(const struct rf_slab *slab)
     return (uint16_t)(slab->low ^ 0x8000);
 }
 
+static inline uint16_t rf_range_until(const struct rf_slab *slab)
+{
+    return (uint16_t)(slab->low + slab->width + 1);
+}
+
 /* Of all from the first slab's low to the last one's end. */
 static inline uint16_t rf_range_to(const struct rf_slab *first, const struct rf_slab *last)
 {
-    return (uint16_t)((last->low - first->low + last->width + 1) ^ 0x8000);
+    return (uint16_t)(rf_range_until(last) - rf_range_from(first));
 }
 
 static inline bool rf_in_range(uint16_t from, uint16_t to, int16_t blur)
