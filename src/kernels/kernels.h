@@ -366,17 +366,24 @@ typedef void rf_settle_fn(uint8_t *settled, int32_t *offset, const uint32_t *ran
                           int32_t stride, int32_t cell_stride);
 
 /*
- * sweep1: as sweep, of one plane and of some rows, row i of them row[i] elements after the first.
+ * sweep1: as sweep, of one plane and of some rows of a tile: those of the first half `apart`
+ * elements apart, those of the second as far, from `half` elements after the first row on.
  * Light is at most 65535 / steps; sums are exact. `last` of the rays is in that plane.
  */
 struct rf_sweep1_job {
     const int16_t *blur;
     const uint16_t *light;
-    const ptrdiff_t *row;
+    ptrdiff_t apart, half;
     int rows;         /* an even number, 16 at most */
     int steps;        /* values that a 16-bit sum holds, 4 to 16 */
     const struct rf_sorted_rays *rays;
 };
+static inline ptrdiff_t rf_sweep1_row(const struct rf_sweep1_job *job, int i)
+{
+    const int n = job->rows / 2;
+
+    return i < n ? i * job->apart : job->half + (i - n) * job->apart;
+}
 typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
 
 /* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */

@@ -15,7 +15,9 @@ static inline int16_t sharper(int16_t a, int16_t b)
 static void RF_VEC(rf_sharpest4)(int16_t *restrict out, const int16_t *restrict upper,
                                  const int16_t *restrict lower, int n)
 {
-    for (int x = 0; x < n; x++) {
+    for (int x = 0; upper == lower && x < n; x++)
+        out[2 * x] = out[2 * x + 1] = sharper(upper[2 * x], upper[2 * x + 1]);
+    for (int x = 0; upper != lower && x < n; x++) {
         const int16_t s = sharper(sharper(upper[2 * x], upper[2 * x + 1]),
                                   sharper(lower[2 * x], lower[2 * x + 1]));
 

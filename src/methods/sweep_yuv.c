@@ -18,7 +18,6 @@ struct plane {
     const uint16_t *weighing, *weighing_behind; /* luma of the tile, for eq. 5 */
     int rows, steps;
     struct rf_tile_rows computed;
-    ptrdiff_t row[RF_TILE]; /* where those are, elements */
     int across, down; /* shifts from pixels to samples */
     const uint32_t *range; /* of the tile's first pixel */
     const struct rf_ray_set *set;
@@ -49,14 +48,16 @@ struct sight {
 };
 
 static void set_sight(struct sight *sight, const struct refocus_renderer *r,
-                      const struct plane *plane, const struct rf_tile_plan *plan,
-                      const struct refocus_ray *ray, int behind)
+                      const struct plane *plane, const struct rf_tile_plan *plan, int first,
+                      int behind)
 {
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    const struct rf_ray_set *set = plane->set;
+    int16_t own_u[RF_RAY_CHUNK], own_v[RF_RAY_CHUNK];
+    const int16_t *u = set->u ? set->u + first : own_u, *v = set->u ? set->v + first : own_v;
 
-    for (int n = 0; n < sight->rays; n++) {
-        u[n] = ray[n].u;
-        v[n] = ray[n].v;
+    for (int n = 0; !set->u && n < sight->rays; n++) {
+        own_u[n] = set->ray[first + n].u;
+        own_v[n] = set->ray[first + n].v;
     }
     for (int k = 0; k <= plan->slabs; k++) {
         const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
@@ -78,7 +79,6 @@ static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_pl
     struct rf_sorted_rays sorted;
     const struct rf_sort_job sort = {
         .range = plane->range,
-        .below = plane->range + RF_STRIP / RF_CELL * r->range_stride,
         .front = plane->light,
         .behind = plane->behind,
         .rays = sight->rays,
@@ -91,7 +91,8 @@ static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_pl
     const struct rf_sweep1_job job = {
         .blur = plane->blur,
         .light = plane->light,
-        .row = plane->row,
+        .apart = rf_row_at(plane->computed, 1) * r->stride,
+        .half = rf_row_at(plane->computed, plane->computed.count / 2) * r->stride,
         .rows = plane->computed.count,
         .steps = plane->steps,
         .rays = &sorted,
@@ -101,11 +102,11 @@ static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_pl
     r->kernels.sweep1(run, &job);
 }
 
-static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
+static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES], int lanes)
 {
-    for (int i = 0; i < LANES; i++)
+    for (int i = 0; i < lanes; i++)
         sum[i] += weight * run[i];
-    memset(run, 0, LANES * sizeof run[0]);
+    memset(run, 0, (size_t)lanes * sizeof run[0]);
 }
 
 /* As sweep_rays() of sweep.c: sums of rays of one weight in `run`, of others in `sum`. */
@@ -116,16 +117,16 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     const struct rf_ray_set *set = plane->set;
     struct sight sight;
 
-    memset(run, 0, LANES * sizeof run[0]);
+    memset(run, 0, (size_t)plane->computed.count * RF_TILE * sizeof run[0]);
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
         sight.rays = rf_rays_alike(set, n);
-        set_sight(&sight, f->r, plane, plan, ray, behind);
+        set_sight(&sight, f->r, plane, plan, n, behind);
         sweep_tile(f->r, plan, plane, &sight, run);
         if (!set->equal &&
             (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight))
-            add_run(run, ray->weight, sum);
+            add_run(run, ray->weight, sum, plane->computed.count * RF_TILE);
     }
 }
 
@@ -169,13 +170,6 @@ static void weigh_ray(const struct rf_frame *f, const struct rf_tile_plan *plan,
     }
 }
 
-static void set_rows(struct plane *plane, struct rf_tile_rows rows, ptrdiff_t stride)
-{
-    plane->computed = rows;
-    for (int i = 0; i < rows.count; i++)
-        plane->row[i] = rf_row_at(rows, i) * stride;
-}
-
 /* Means of rays that weigh the same, of some rows and then of those between. */
 static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
                         const struct plane *plane, int behind, uint16_t mean[LANES])
@@ -198,19 +192,16 @@ static void sweep_plane(const struct rf_frame *f, const struct rf_tile_plan *pla
                         struct plane *plane, int behind, uint16_t mean[LANES])
 {
     const struct rf_ray_set *set = plane->set;
-    const ptrdiff_t stride = f->r->stride;
     uint64_t sum[LANES], weight[LANES];
     uint32_t run[LANES];
 
     if (set->equal && !f->weighted) {
-        set_rows(plane,
-                 plane->rows == RF_TILE ? rf_tile_rows(f, plan, behind)
-                                        : rf_chroma_rows(f, plan, behind),
-                 stride);
+        plane->computed = plane->rows == RF_TILE ? rf_tile_rows(f, plan, behind)
+                                                 : rf_chroma_rows(f, plan, behind);
         sweep_means(f, plan, plane, behind, mean);
         return;
     }
-    set_rows(plane, (struct rf_tile_rows){1, plane->rows}, stride);
+    plane->computed = (struct rf_tile_rows){1, plane->rows};
     memset(sum, 0, sizeof sum);
     memset(weight, 0, sizeof weight);
     if (f->weighted) {

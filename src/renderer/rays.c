@@ -5,9 +5,10 @@
 #include "renderer/rays.h"
 
 /* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
- * that a highlight reaches, whose disc would show the single rays, at most twice that. */
-static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
-enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
+ * that a highlight reaches, whose disc would show the single rays, at most twice that. Those below
+ * LEAST are for chroma alone. */
+static const int class_rays[] = {9, 12, 18, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
+enum { CLASSES = sizeof class_rays / sizeof *class_rays, LEAST = 24, DENSER = 2 };
 
 static uint64_t total_weight(const struct rf_ray_set *set)
 {
@@ -62,6 +63,21 @@ static void sort_rays(struct refocus_ray *ray, int count)
     }
 }
 
+/* Coordinates of a set's rays apart from each other; returns where memory goes on. */
+static struct refocus_ray *part_coordinates(struct rf_ray_set *set, struct refocus_ray *next)
+{
+    enum { EACH = sizeof *next / sizeof(int16_t) };
+    int16_t *const u = (int16_t *)(void *)next, *const v = u + set->count;
+
+    for (int i = 0; i < set->count; i++) {
+        u[i] = set->ray[i].u;
+        v[i] = set->ray[i].v;
+    }
+    set->u = u;
+    set->v = v;
+    return next + (2 * set->count + EACH - 1) / EACH;
+}
+
 void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
                   int rays, bool denser, float max_blur_radius)
 {
@@ -82,6 +98,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
         r->set[0].total_weight = total_weight(&r->set[0]);
         r->set[0].before = next;
         r->set[0].equal = are_equal(&r->set[0]);
+        r->set[0].u = r->set[0].v = NULL;
         sets = 1;
         r->preset = 0;
     } else {
@@ -98,6 +115,8 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
                 r->preset = sets;
             } else if (own && (!denser || count > DENSER * rays)) {
                 break;
+            } else if (own && count < LEAST) {
+                continue;
             }
             set->ray = next;
             set->count = count;
@@ -111,6 +130,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
                 set->before = next;
                 next += count;
             }
+            next = part_coordinates(set, next);
             sets++;
         }
     }
@@ -130,7 +150,7 @@ const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach
     const int last = lamp ? r->sets - 1 : r->preset;
 
     for (int i = 0; i < last; i++)
-        if ((int64_t)r->set[i].count << 16 >= need)
+        if (r->set[i].count >= LEAST && (int64_t)r->set[i].count << 16 >= need)
             return &r->set[i];
     return &r->set[last];
 }

@@ -23,7 +23,7 @@
 enum {
     RF_GROUP = 4,     /* planes that lie together */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
-    RF_RAY_CLASSES = 12, /* a preset's own set and smaller ones; denser ones for lamps */
+    RF_RAY_CLASSES = 15, /* a preset's own set and smaller ones; denser ones for lamps */
     RF_FULL_RAYS = 255 * 255,
 };
 
@@ -33,6 +33,7 @@ enum {
 struct rf_ray_set {
     struct refocus_ray *ray;
     struct refocus_ray *before; /* those before the focus: the same, or as many others */
+    const int16_t *u, *v; /* of those behind, by themselves; NULL of a full mask */
     int count;
     uint64_t total_weight;
     bool equal; /* all rays weigh the same */

@@ -54,6 +54,7 @@
  *     vec_mask_first(m)       the number of the first that is on, of the last lane if none
  *     vec_u16_add_where(m, a, b)  m ? (uint16_t)(a + b) : a
  *     vec_u16_choose(m, a, b)     m ? a : b
+ *     vec_u16_load_where(m, a, p) m ? p[i] : a; whole vectors of p are there
  *     vec_u16_put_where(m, a, b)  m ? b : a, where a is 0 in the lanes of m
  *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.

@@ -192,7 +192,6 @@ struct stage {
     struct rf_slab slab[RF_BINS];
     struct rf_sorted_rays rays;
     struct rf_sweep1_job job;
-    ptrdiff_t row[RF_TILE];
     uint32_t sum[LANES], expected[LANES];
 };
 
@@ -214,22 +213,21 @@ static int offset_in(uint32_t *state)
 
 static void make_stage(struct stage *s, uint32_t seed, enum place place)
 {
-    static const int steps[] = {4, 8, 16}, row_counts[] = {4, 6, 8, 16};
+    static const int steps[] = {4, 8, 16}, row_counts[] = {2, 4, 6, 8, 10, 12, 14, 16};
     uint32_t state = seed;
-    const int step = steps[seed % 3], rows = row_counts[seed / 3 % 4];
+    const int step = steps[seed % 3], rows = row_counts[seed / 3 % 8];
     const int slabs = 1 + (int)(seed % 7), jump = (int)(seed / 5 % 2);
     const uint16_t *light;
 
     for (int k = 0; k < slabs; k++)
         s->slab[k] = (struct rf_slab){(int16_t)noise_between(&state, -3000, 3000),
                                       (uint16_t)noise_between(&state, 0, 479), 0};
-    for (int i = 0; i < rows; i++) /* one is left out in the middle, or none */
-        s->row[i] = (i + (i >= rows / 2 ? jump : 0)) * STRIDE;
     light = make_plane(&s->light, place, rows + jump, &state, 0, 65535 / step, seed % 4 == 0);
     s->job = (struct rf_sweep1_job){
         .blur = (const int16_t *)make_plane(&s->blur, place, rows + jump, &state, 0, 0, false),
         .light = light,
-        .row = s->row,
+        .apart = STRIDE,
+        .half = (rows / 2 + jump) * STRIDE, /* a row is left out in the middle, or none */
         .rows = rows,
         .steps = step,
         .rays = &s->rays,
@@ -257,7 +255,8 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
 
 static void follow(struct stage *s, int i, int n)
 {
-    const ptrdiff_t p = s->row[i / RF_TILE] + i % RF_TILE;
+    const int y = i / RF_TILE, half = s->job.rows / 2;
+    const ptrdiff_t p = (y < half ? y * STRIDE : s->job.half + (y - half) * STRIDE) + i % RF_TILE;
 
     for (int t = 0; t < s->rays.tests[n]; t++) {
         const struct rf_slab *slab = &s->slab[t];
