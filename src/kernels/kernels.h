@@ -73,11 +73,20 @@ struct rf_sort_job {
     const bool *joined; /* [slabs]: slab k to k - 1 */
     const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
     const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
+
+    /* Not with weights: rays 0 to shared - 1 are those of chroma, too, with planes and offsets of
+     * its own. What a ray of luma need not look for in a whole tile, chroma need not, either:
+     * round(u s / 2) samples are at most a pixel from round(u s), and ranges are of whole
+     * cells, which begin at even pixels. */
+    int shared;
+    const int32_t (*chroma_offset)[RF_RAY_CHUNK]; /* [slabs + 1] */
+    const uint16_t *chroma_front, *chroma_behind;
 };
 
 struct rf_sorted_rays {
     int rays;
     uint8_t tests[RF_RAY_CHUNK];
+    uint8_t begin[RF_SORTED_TESTS + 1]; /* ray that those of so many tests begin at; `rays` */
     /* Test t, nearest first, at offset[t], hits where rf_in_range(from[t], to[t], blur). */
     int32_t offset[RF_BINS][RF_RAY_CHUNK];
     uint16_t from[RF_BINS][RF_RAY_CHUNK], to[RF_BINS][RF_RAY_CHUNK];
@@ -87,6 +96,12 @@ struct rf_sorted_rays {
     int32_t weight_offset[RF_BINS][RF_RAY_CHUNK];
     const uint16_t *last_weight[RF_RAY_CHUNK];
     bool last_behind[RF_RAY_CHUNK]; /* which plane last_weight is in */
+
+    /* How many of those with so many tests are shared: the first ones, for which, as `offset` and
+     * `last`, of chroma: */
+    uint8_t shared[RF_SORTED_TESTS];
+    int32_t chroma_offset[RF_BINS][RF_RAY_CHUNK];
+    const uint16_t *chroma_last[RF_RAY_CHUNK];
 };
 typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort_job *job);
 
@@ -368,7 +383,8 @@ typedef void rf_settle_fn(uint8_t *settled, int32_t *offset, const uint32_t *ran
 /*
  * sweep1: as sweep, of one plane and of some rows of a tile: those of the first half `apart`
  * elements apart, those of the second as far, from `half` elements after the first row on.
- * Light is at most 65535 / steps; sums are exact. `last` of the rays is in that plane.
+ * Light is at most 65535 / steps; sums are exact. `last` of the rays is in that plane. Of chroma
+ * only rays that are shared count, with its offsets and its last.
  */
 struct rf_sweep1_job {
     const int16_t *blur;
@@ -376,14 +392,9 @@ struct rf_sweep1_job {
     ptrdiff_t apart, half;
     int rows;         /* an even number, 16 at most */
     int steps;        /* values that a 16-bit sum holds, 4 to 16 */
+    bool chroma;
     const struct rf_sorted_rays *rays;
 };
-static inline ptrdiff_t rf_sweep1_row(const struct rf_sweep1_job *job, int i)
-{
-    const int n = job->rows / 2;
-
-    return i < n ? i * job->apart : job->half + (i - n) * job->apart;
-}
 typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
 
 /* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
@@ -394,13 +405,12 @@ typedef void rf_smooth1_fn(uint16_t *out, const uint16_t *light, const int16_t *
                            ptrdiff_t apart, int least, int n);
 
 /*
- * aim_chroma: aim for samples of chroma that are two pixels apart across and 1 << down of them
- * down, two elements of a row each: x = round(u s / 2), y = round(v s / 2^down), as an offset
- * 2 x + y stride, and of cells: floor(2 x / RF_CELL) + floor(2^down y / RF_CELL) cell_stride.
+ * aim_chroma: offsets, as aim, of samples of chroma that are two pixels apart across and 1 << down
+ * of them down, two elements of a row each: 2 x + y stride, x = round(u s / 2) and
+ * y = round(v s / 2^down).
  */
-typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *cell, const int16_t *u,
-                              const int16_t *v, int blur, int down, int32_t stride,
-                              int32_t cell_stride, int n);
+typedef void rf_aim_chroma_fn(int32_t *offset, const int16_t *u, const int16_t *v, int blur,
+                              int down, int32_t stride, int n);
 
 /* sharpest4: of 2 x 2 blurs the first with the least |s|, twice: n pairs out of rows of 2 n.
  * Blurs are at most 127 pixels. */

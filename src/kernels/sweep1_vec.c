@@ -12,15 +12,17 @@ enum {
     EACH = (int)RF_TILE / (int)VEC_U16, /* vectors of a row */
     MOST_ROWS = 4 / EACH,               /* of a half, together */
     MOST_VECS = 2 * MOST_ROWS * EACH,
-    MANY = 4, /* tests and more are one class of rays, those with fewer a class each */
+    FEW = 4, /* tests are too many for loops of their own */
 };
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
 struct state {
     const struct rf_sweep1_job *job;
-    ptrdiff_t first;   /* element that the rows begin at */
-    int end[MANY + 1]; /* of the rays of a class */
+    ptrdiff_t first; /* element that the rows begin at */
+    int end[RF_SORTED_TESTS]; /* of the rays of so many tests that count */
+    const int32_t (*offset)[RF_RAY_CHUNK];
+    const uint16_t *const *last;
 };
 
 /* Vector j from `first` on, of `rows` rows of each half. */
@@ -43,10 +45,10 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[MOST_VECS], const struct state *
     vec_u16 value[MOST_VECS];
 
     for (int j = 0; j < vecs; j++)
-        value[j] = vec_u16_load(vector_at(rays->last[n] + s->first, s, j, rows));
+        value[j] = vec_u16_load(vector_at(s->last[n] + s->first, s, j, rows));
     for (int t = tests - 1; t >= 0; t--) {
         const struct rf_limits limits = rf_limits_of(rays, t, n);
-        const ptrdiff_t q = rays->offset[t][n];
+        const ptrdiff_t q = s->offset[t][n];
 
         for (int j = 0; j < vecs; j++) {
             const vec_u16 seen = vec_u16_load(vector_at(blur + q, s, j, rows));
@@ -63,7 +65,7 @@ static ALWAYS_INLINE void sweep_some(vec_u16 sum[MOST_VECS], const struct state 
                                      int end, const int tests, const int rows)
 {
     for (int n = first; n < end; n++)
-        sweep_ray(sum, s, n, tests < MANY ? tests : s->job->rays->tests[n], rows);
+        sweep_ray(sum, s, n, tests < FEW ? tests : s->job->rays->tests[n], rows);
 }
 
 /* Adds sums to those of 32 bits, whose second half begins at `half`, and clears them. */
@@ -88,56 +90,50 @@ static ALWAYS_INLINE void sweep_rows(uint32_t *to, struct state *s, int row, con
     s->first = row * s->job->apart;
     for (int j = 0; j < 2 * rows * EACH; j++)
         sum[j] = vec_u16_set(0);
-    for (int n = 0, tests = 0, end; tests <= MANY; n = end) {
-        end = s->end[tests] < n + left ? s->end[tests] : n + left;
-        switch (tests) {
-        case 0:
-            sweep_some(sum, s, n, end, 0, rows);
-            break;
-        case 1:
-            sweep_some(sum, s, n, end, 1, rows);
-            break;
-        case 2:
-            sweep_some(sum, s, n, end, 2, rows);
-            break;
-        case 3:
-            sweep_some(sum, s, n, end, 3, rows);
-            break;
-        default:
-            sweep_some(sum, s, n, end, MANY, rows);
+    for (int tests = 0; tests < RF_SORTED_TESTS; tests++) {
+        for (int n = s->job->rays->begin[tests], end; n < s->end[tests]; n = end) {
+            end = s->end[tests] < n + left ? s->end[tests] : n + left;
+            switch (tests) {
+            case 0:
+                sweep_some(sum, s, n, end, 0, rows);
+                break;
+            case 1:
+                sweep_some(sum, s, n, end, 1, rows);
+                break;
+            case 2:
+                sweep_some(sum, s, n, end, 2, rows);
+                break;
+            case 3:
+                sweep_some(sum, s, n, end, 3, rows);
+                break;
+            default:
+                sweep_some(sum, s, n, end, FEW, rows);
+            }
+            left -= end - n;
+            if (left == 0) {
+                flush(first, second, sum, rows);
+                left = s->job->steps;
+            }
         }
-        left -= end - n;
-        if (left == 0) {
-            flush(first, second, sum, rows);
-            left = s->job->steps;
-        }
-        tests += end == s->end[tests];
     }
     if (left < s->job->steps)
         flush(first, second, sum, rows);
 }
 
-/* Rays come with fewer tests first. */
-static void set_ends(struct state *s)
-{
-    const struct rf_sorted_rays *rays = s->job->rays;
-    int fewer[MANY] = {0};
-
-    for (int n = 0; n < rays->rays; n++)
-        for (int tests = 0; tests < MANY; tests++)
-            fewer[tests] += rays->tests[n] <= tests;
-    for (int tests = 0; tests < MANY; tests++)
-        s->end[tests] = fewer[tests];
-    s->end[MANY] = rays->rays;
-}
-
 static void RF_VEC(rf_sweep1)(uint32_t *sum, const struct rf_sweep1_job *job)
 {
     const int half = job->rows / 2;
-    struct state s = {.job = job};
+    const struct rf_sorted_rays *rays = job->rays;
+    struct state s;
     int row = 0;
 
-    set_ends(&s);
+    s.job = job;
+    s.offset =
+        (const int32_t(*)[RF_RAY_CHUNK])(job->chroma ? rays->chroma_offset : rays->offset);
+    s.last = (const uint16_t *const *)(job->chroma ? rays->chroma_last : rays->last);
+    for (int tests = 0; tests < RF_SORTED_TESTS; tests++)
+        s.end[tests] = job->chroma ? rays->begin[tests] + rays->shared[tests]
+                                   : rays->begin[tests + 1];
     for (; row + MOST_ROWS <= half; row += MOST_ROWS)
         sweep_rows(sum, &s, row, MOST_ROWS);
 #if defined(RF_VEC_AVX2) || defined(RF_VEC_AVX512)

@@ -109,23 +109,14 @@ static inline int16_t rounded(int16_t u, int16_t blur, int shift)
     return (int16_t)((int16_t)((int16_t)(u * blur >> 16) + (64 << shift)) >> (7 + shift));
 }
 
-static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, int32_t *restrict cell,
-                                  const int16_t *restrict u, const int16_t *restrict v,
-                                  int blur, int down, int32_t stride, int32_t cell_stride,
+static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, const int16_t *restrict u,
+                                  const int16_t *restrict v, int blur, int down, int32_t stride,
                                   int n)
 {
-    int16_t x[RF_RAY_CHUNK], y[RF_RAY_CHUNK];
     const int16_t s = (int16_t)blur;
-    const int to_cell = 2 - down;
 
-    for (int i = 0; i < n; i++) {
-        x[i] = rounded(u[i], s, 1);
-        y[i] = rounded(v[i], s, down);
-    }
-    for (int i = 0; i < n; i++) {
-        offset[i] = 2 * x[i] + y[i] * stride;
-        cell[i] = (x[i] >> 1) + (y[i] >> to_cell) * cell_stride;
-    }
+    for (int i = 0; i < n; i++)
+        offset[i] = 2 * rounded(u[i], s, 1) + rounded(v[i], s, down) * stride;
 }
 
 void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)

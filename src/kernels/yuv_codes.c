@@ -212,7 +212,7 @@ static void RF_VEC(rf_decode)(struct rf_decode_job *job)
     put_codes(job, y, uv);
 }
 
-enum { RUN = 64 }; /* samples that are worked on together */
+enum { RUN = 128 }; /* samples that are worked on together */
 
 /* Light of the pixels of n samples. */
 static void row_light(uint16_t *restrict light, const uint8_t *restrict luma,

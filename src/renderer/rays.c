@@ -4,11 +4,12 @@
 #include "renderer/bands.h"
 #include "renderer/rays.h"
 
+#include <string.h>
+
 /* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
- * that a highlight reaches, whose disc would show the single rays, at most twice that. Those below
- * LEAST are for chroma alone. */
-static const int class_rays[] = {9, 12, 18, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
-enum { CLASSES = sizeof class_rays / sizeof *class_rays, LEAST = 24, DENSER = 2 };
+ * that a highlight reaches, whose disc would show the single rays, at most twice that. */
+static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
+enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
 
 static uint64_t total_weight(const struct rf_ray_set *set)
 {
@@ -17,6 +18,11 @@ static uint64_t total_weight(const struct rf_ray_set *set)
     for (int i = 0; i < set->count; i++)
         sum += set->ray[i].weight;
     return sum;
+}
+
+static int chunk_end(const struct rf_ray_set *set, int first)
+{
+    return set->count - first < RF_RAY_CHUNK ? set->count : first + RF_RAY_CHUNK;
 }
 
 static bool are_equal(const struct rf_ray_set *set)
@@ -63,6 +69,27 @@ static void sort_rays(struct refocus_ray *ray, int count)
     }
 }
 
+/* Rays that chroma shares become the first ones of each chunk. Of sets as rays.c of the aperture
+ * makes them, on spirals or along a curve, every second ray is as even a set. */
+static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
+{
+    struct refocus_ray *const ray = set->ray;
+    int chosen = 0, others = set->shared;
+
+    for (int n = 0; n < set->count; n++)
+        spare[rf_shared_rays(set, n, n + 1) ? chosen++ : others++] = ray[n];
+    chosen = 0;
+    others = set->shared;
+    for (int n = 0, end; n < set->count; n = end) {
+        const int shared = rf_shared_rays(set, n, end = chunk_end(set, n));
+
+        memcpy(ray + n, spare + chosen, (size_t)shared * sizeof *ray);
+        memcpy(ray + n + shared, spare + others, (size_t)(end - n - shared) * sizeof *ray);
+        chosen += shared;
+        others += end - n - shared;
+    }
+}
+
 /* Coordinates of a set's rays apart from each other; returns where memory goes on. */
 static struct refocus_ray *part_coordinates(struct rf_ray_set *set, struct refocus_ray *next)
 {
@@ -86,8 +113,8 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
 
     if (rays != REFOCUS_RAYS_FULL)
         max_blur_radius = 0; /* sets of N do not depend on it */
-    if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays && r->set_denser == denser &&
-        r->set_blur == max_blur_radius)
+    if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays &&
+        r->set_denser == denser && r->set_blur == max_blur_radius && r->set_shared == r->yuv.on)
         return;
     r->sets = 0;
     if (rays == REFOCUS_RAYS_FULL) {
@@ -99,6 +126,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
         r->set[0].before = next;
         r->set[0].equal = are_equal(&r->set[0]);
         r->set[0].u = r->set[0].v = NULL;
+        r->set[0].shared = r->set[0].count;
         sets = 1;
         r->preset = 0;
     } else {
@@ -115,8 +143,6 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
                 r->preset = sets;
             } else if (own && (!denser || count > DENSER * rays)) {
                 break;
-            } else if (own && count < LEAST) {
-                continue;
             }
             set->ray = next;
             set->count = count;
@@ -130,6 +156,9 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
                 set->before = next;
                 next += count;
             }
+            set->shared = rf_chroma_rays(count);
+            if (r->yuv.on)
+                share_rays(set, next);
             next = part_coordinates(set, next);
             sets++;
         }
@@ -140,6 +169,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
     r->set_aperture = aperture->id;
     r->set_rays = rays;
     r->set_denser = denser;
+    r->set_shared = r->yuv.on;
     r->set_blur = max_blur_radius;
 }
 
@@ -150,26 +180,17 @@ const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach
     const int last = lamp ? r->sets - 1 : r->preset;
 
     for (int i = 0; i < last; i++)
-        if (r->set[i].count >= LEAST && (int64_t)r->set[i].count << 16 >= need)
+        if ((int64_t)r->set[i].count << 16 >= need)
             return &r->set[i];
     return &r->set[last];
 }
 
 int rf_rays_alike(const struct rf_ray_set *set, int first)
 {
-    const int most = set->count - first < RF_RAY_CHUNK ? set->count - first : RF_RAY_CHUNK;
+    const int most = chunk_end(set, first) - first;
     int n = set->equal ? most : 1;
 
     while (n < most && set->ray[first + n].weight == set->ray[first].weight)
         n++;
     return n;
-}
-
-const struct rf_ray_set *rf_chroma_rays(const struct refocus_renderer *r,
-                                        const struct rf_ray_set *set)
-{
-    for (int i = 0; i < r->sets; i++)
-        if (8 * r->set[i].count >= 3 * set->count)
-            return &r->set[i];
-    return set;
 }

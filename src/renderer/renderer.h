@@ -23,7 +23,7 @@
 enum {
     RF_GROUP = 4,     /* planes that lie together */
     RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
-    RF_RAY_CLASSES = 15, /* a preset's own set and smaller ones; denser ones for lamps */
+    RF_RAY_CLASSES = 12, /* a preset's own set and smaller ones; denser ones for lamps */
     RF_FULL_RAYS = 255 * 255,
 };
 
@@ -35,9 +35,19 @@ struct rf_ray_set {
     struct refocus_ray *before; /* those before the focus: the same, or as many others */
     const int16_t *u, *v; /* of those behind, by themselves; NULL of a full mask */
     int count;
+    int shared; /* by chroma; see rf_shared_rays() */
     uint64_t total_weight;
     bool equal; /* all rays weigh the same */
 };
+
+/* Chroma of a photo of Y, U and V takes some rays of luma; those among rays first to end - 1, which
+ * are of one chunk, are the first so many of them. */
+static inline int rf_shared_rays(const struct rf_ray_set *set, int first, int end)
+{
+    const int64_t shared = set->shared;
+
+    return (int)(shared * end / set->count - shared * first / set->count);
+}
 
 /* Pixels x0 <= x < x1, y0 <= y < y1. */
 struct rf_rect {
@@ -234,6 +244,7 @@ struct refocus_renderer {
     uint64_t set_aperture;  /* what they were made for */
     int set_rays;
     bool set_denser;
+    bool set_shared; /* chroma's rays come first */
     float set_blur;
     struct rf_cat_eye cat_eye; /* made when it is first asked for; */
     struct rf_cat_shape cat_shape; /* that of the last aperture with one */
