@@ -62,8 +62,9 @@ static const struct option options[] = {
      .name = "--out",
      .argument = "SINK",
      .offset = offsetof(struct live_settings, out),
-     .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE, frames-%04d.png or null "
-             "(default); FILE may be - for standard output"},
+     .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE[,FORMAT], frames-%04d.png or null "
+             "(default); FILE may be - for standard output, FORMAT own (as frames come), NV12, "
+             "NV21, YUV420, YUYV, UYVY, RGB24 (default), BGR24, RGBX or BGRX"},
     {.kind = OPTION_FLAG,
      .name = "--list",
      .offset = offsetof(struct live_settings, list),
