@@ -118,10 +118,11 @@ static void sweep(const struct rf_kernels *k, struct rows *r)
     uint16_t *strip = r->plane[RF_TILE] + MARGIN;
     const struct rf_sweep_job job = {.blur = (const int16_t *)strip,
                                      .lanes = RF_STRIP_LANES,
+                                     .steps = 16,
                                      .stride = stride,
                                      .pitch = pitch,
                                      .rays = &r->rays};
-    uint32_t *const sum[3] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2]};
+    uint32_t *const sum[4] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2], NULL};
 
     for (int n = 0; n < RF_RAY_CHUNK; n++) {
         r->rays.tests[n] = 1;

@@ -54,7 +54,7 @@ static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_b
                                    int tx, int ty)
 {
     enum { EACH = RF_TILE / RF_CELL };
-    struct rf_bins bins = {{0}, INT16_MAX, INT16_MIN, 0, 0};
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
         const int16_t *least = rf_cell_least(r, y), *most = rf_cell_most(r, y);
@@ -160,6 +160,8 @@ static void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
     const int least = near_kept ? bins->least : kept->high;
     const int most = far_kept ? bins->most : kept->low - 1;
 
+    if (bins->brightest > sum->brightest)
+        sum->brightest = bins->brightest;
     if (bins->lamp > sum->lamp && bins->lamp >= kept->blur)
         sum->lamp = bins->lamp;
     if (!near_kept && !far_kept)
@@ -176,7 +178,7 @@ static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_
 {
     const int x0 = tx > reach->tiles ? tx - reach->tiles : 0;
     const int y0 = ty > reach->tiles ? ty - reach->tiles : 0;
-    struct rf_bins sum = {{0}, INT16_MAX, INT16_MIN, 0, 0};
+    struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
 
     for (int y = y0; y <= ty + reach->tiles && y < r->tiles_y; y++)
         for (int x = x0; x <= tx + reach->tiles && x < r->tiles_x; x++)
@@ -258,4 +260,5 @@ void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
 
     cover(&bins, scale, plan);
     plan->lamp = bins.lamp > 0;
+    plan->brightest = bins.brightest;
 }
