@@ -180,7 +180,13 @@ static inline void place(struct rf_sorted_rays *restrict sorted,
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
         if (shared && n < job->shared)
             sorted->chroma_offset[t][m] = job->chroma_offset[k][n];
+        if (shared && weighted && n < job->shared)
+            sorted->chroma_weight_offset[t][m] = job->chroma_weight_offset[k][n];
     }
+    if (shared && weighted && n < job->shared)
+        sorted->chroma_last_weight[m] =
+            (last == job->slabs ? job->behind_weight : job->weight) +
+            job->chroma_weight_offset[last][n];
     if (shared && n < job->shared)
         sorted->chroma_last[m] = (last == job->slabs ? job->chroma_behind : job->chroma_front) +
                                  job->chroma_offset[last][n];
@@ -276,7 +282,9 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
             break;
     }
     sorted->rays = rays;
-    if (job->weight)
+    if (job->weight && job->shared)
+        place_all(sorted, job, &s, true, true);
+    else if (job->weight)
         place_all(sorted, job, &s, true, false);
     else if (job->shared)
         place_all(sorted, job, &s, false, true);

@@ -109,14 +109,18 @@ static inline int16_t rounded(int16_t u, int16_t blur, int shift)
     return (int16_t)((int16_t)((int16_t)(u * blur >> 16) + (64 << shift)) >> (7 + shift));
 }
 
-static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, const int16_t *restrict u,
-                                  const int16_t *restrict v, int blur, int down, int32_t stride,
-                                  int n)
+static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, int32_t *restrict pixel,
+                                  const int16_t *restrict u, const int16_t *restrict v,
+                                  int blur, int down, int32_t stride, int n)
 {
     const int16_t s = (int16_t)blur;
 
-    for (int i = 0; i < n; i++)
-        offset[i] = 2 * rounded(u[i], s, 1) + rounded(v[i], s, down) * stride;
+    for (int i = 0; i < n; i++) {
+        const int32_t x = 2 * rounded(u[i], s, 1), y = rounded(v[i], s, down) * stride;
+
+        offset[i] = x + y;
+        pixel[i] = x + y * (1 << down);
+    }
 }
 
 void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)

@@ -163,6 +163,7 @@ struct rf_yuv {
     uint16_t *smooth;   /* pre-filtered */
     uint16_t *behind;   /* and of the background */
     int16_t *blur;
+    uint16_t *weight;   /* eq. 5, of luma; in the background's light[2] */
     uint8_t *y;         /* y_stride a row */
     uint8_t *uv;        /* 2 width a row, rows uv_stride apart */
     ptrdiff_t y_stride, uv_stride;

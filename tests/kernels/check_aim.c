@@ -148,6 +148,8 @@ struct sight {
     int32_t offset[MOST_SLABS + 1][RF_RAY_CHUNK], cell[MOST_SLABS][RF_RAY_CHUNK];
     uint16_t chroma_front[1000], chroma_behind[1000];
     int32_t chroma_offset[MOST_SLABS + 1][RF_RAY_CHUNK];
+    uint16_t weight[1000], behind_weight[1000];
+    int32_t chroma_weight_offset[MOST_SLABS + 1][RF_RAY_CHUNK];
     struct rf_sort_job job;
     struct rf_sorted_rays sorted, expected;
 };
@@ -169,6 +171,7 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
 
             s->offset[k][i] = same ? s->offset[k - 1][i] : noise_between(&seed, 0, 999);
             s->chroma_offset[k][i] = noise_between(&seed, 0, 999);
+            s->chroma_weight_offset[k][i] = noise_between(&seed, 0, 999);
             if (k < slabs)
                 s->cell[k][i] =
                     same ? s->cell[k - 1][i] : noise_between(&seed, 0, SIDE * SIDE - 1);
@@ -191,6 +194,10 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
         .offset = (const int32_t(*)[RF_RAY_CHUNK])s->offset,
         .cell = (const int32_t(*)[RF_RAY_CHUNK])s->cell,
         .shared = seed % 3 ? noise_between(&seed, 0, n) : 0,
+        .weight = seed % 5 < 2 ? s->weight : NULL,
+        .behind_weight = s->behind_weight,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_offset, /* any */
+        .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_weight_offset,
         .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_offset,
         .chroma_front = s->chroma_front,
         .chroma_behind = s->chroma_behind,
@@ -205,6 +212,10 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
 
     s->expected.last[m] = s->behind + s->offset[s->job.slabs][n];
     s->expected.chroma_last[m] = s->chroma_behind + s->chroma_offset[s->job.slabs][n];
+    s->expected.last_weight[m] = s->behind_weight + s->offset[s->job.slabs][n];
+    s->expected.last_behind[m] = true;
+    s->expected.chroma_last_weight[m] =
+        s->behind_weight + s->chroma_weight_offset[s->job.slabs][n];
     for (int k = 0; k < s->job.slabs; k++) {
         const uint32_t range = s->range[s->cell[k][n]];
         const int low = (int16_t)(range & 0xffff), high = (int16_t)(range >> 16);
@@ -218,11 +229,16 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
         if (low >= from && high <= to) {
             s->expected.last[m] = s->front + s->offset[k][n];
             s->expected.chroma_last[m] = s->chroma_front + s->chroma_offset[k][n];
+            s->expected.last_weight[m] = s->weight + s->chroma_offset[k][n];
+            s->expected.last_behind[m] = false;
+            s->expected.chroma_last_weight[m] = s->weight + s->chroma_weight_offset[k][n];
             tests -= beside;
             break;
         }
         if (!beside || !s->joined[k]) {
             s->expected.chroma_offset[tests][m] = s->chroma_offset[k][n];
+            s->expected.weight_offset[tests][m] = s->chroma_offset[k][n];
+            s->expected.chroma_weight_offset[tests][m] = s->chroma_weight_offset[k][n];
             s->expected.offset[tests++][m] = s->offset[k][n];
             start = k;
         }
@@ -249,10 +265,33 @@ static bool check_shared(const struct subject *subject, const struct sight *s, i
         if (is->chroma_last[i] != should->chroma_last[i])
             return fail(subject, "sort_rays", seed, n, i, is->chroma_last[i] - s->chroma_front,
                         should->chroma_last[i] - s->chroma_front);
+        if (s->job.weight && is->chroma_last_weight[i] != should->chroma_last_weight[i])
+            return fail(subject, "sort_rays", seed, n, i, is->chroma_last_weight[i] - s->weight,
+                        should->chroma_last_weight[i] - s->weight);
         for (int t = 0; t < is->tests[i]; t++)
-            if (is->chroma_offset[t][i] != should->chroma_offset[t][i])
+            if (is->chroma_offset[t][i] != should->chroma_offset[t][i] ||
+                (s->job.weight &&
+                 is->chroma_weight_offset[t][i] != should->chroma_weight_offset[t][i]))
                 return fail(subject, "sort_rays", seed, n, i, is->chroma_offset[t][i],
                             should->chroma_offset[t][i]);
+    }
+    return true;
+}
+
+static bool check_weights(const struct subject *subject, const struct sight *s, int n,
+                          uint32_t seed)
+{
+    const struct rf_sorted_rays *is = &s->sorted, *should = &s->expected;
+
+    for (int i = 0; s->job.weight && i < n; i++) {
+        if (is->last_weight[i] != should->last_weight[i] ||
+            is->last_behind[i] != should->last_behind[i])
+            return fail(subject, "sort_rays", seed, n, i, is->last_weight[i] - s->weight,
+                        should->last_weight[i] - s->weight);
+        for (int t = 0; t < is->tests[i]; t++)
+            if (is->weight_offset[t][i] != should->weight_offset[t][i])
+                return fail(subject, "sort_rays", seed, n, i, is->weight_offset[t][i],
+                            should->weight_offset[t][i]);
     }
     return true;
 }
@@ -293,7 +332,7 @@ static bool check_sort(const struct subject *subject, struct sight *s, int n, ui
     for (int class = 0; class < RF_SORTED_TESTS; class++)
         if (!check_shared(subject, s, class, n, seed))
             return false;
-    return true;
+    return check_weights(subject, s, n, seed);
 }
 
 static bool check_tolerances(const struct subject *subject, int n, uint32_t seed)

@@ -1,10 +1,10 @@
 /* refocus-format-times: whole frames, prepared and rendered, in each pixel format by turns; the
  * best CPU time of one thread.
  *
- * usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [FORMAT]
+ * usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [SIGMA [FORMAT]]
  *
- * A line for each format: its name, and milliseconds of preparing, rendering and both. With FORMAT
- * that one alone, for those who count instructions. */
+ * A line for each format: its name, and milliseconds of preparing, rendering and both. With SIGMA
+ * weights of eq. 5; with FORMAT that one alone, for those who count instructions. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,12 +83,13 @@ int main(int argc, char **argv)
 
     int first = 0, end = FORMATS;
 
-    while (argc == 6 && first < FORMATS && strcmp(argv[5], formats[first].name))
+    while (argc == 7 && first < FORMATS && strcmp(argv[6], formats[first].name))
         first++;
-    if (argc == 6)
+    if (argc == 7)
         end = first + 1;
-    if (argc < 5 || argc > 6 || first == FORMATS) {
-        fputs("usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [FORMAT]\n", stderr);
+    if (argc < 5 || argc > 7 || first == FORMATS) {
+        fputs("usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [SIGMA [FORMAT]]\n",
+              stderr);
         return 2;
     }
     snprintf(path, sizeof path, "%s/allfocus.png", argv[1]);
@@ -102,6 +103,8 @@ int main(int argc, char **argv)
 
     params = refocus_render_params_default(0.689f, (float)atof(argv[2]));
     params.rays = atoi(argv[3]);
+    if (argc > 5)
+        params.sigma = (float)atof(argv[5]);
     for (int i = first; i < end; i++)
         if (set_up(&subject[i], formats[i].format, &photo, params.max_blur_radius))
             return 1;
