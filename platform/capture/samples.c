@@ -19,13 +19,16 @@ void rf_samples_of(struct rf_samples samples[3], uint32_t format,
             at = (i == 2) ^ swapped;
         samples[i] = (struct rf_samples){
             .first = (uint8_t *)(uintptr_t)plane[p] + at,
-            .step = packed ? (i ? 4 : 2) : planar || !i ? 1 : 2,
+            .step = packed         ? (i ? 4 : 2)
+                    : planar || !i ? 1
+                                   : 2,
             .stride = stride[p],
         };
     }
 }
 
-static void copy_row(uint8_t *to, int to_step, const uint8_t *from, int from_step, int n)
+static void copy_row(uint8_t *to, int to_step, const uint8_t *from, int from_step,
+                     int n)
 {
     if (to_step == 1 && from_step == 1) {
         memcpy(to, from, (size_t)n);
@@ -57,7 +60,8 @@ bool rf_same_samples(uint32_t format, uint32_t other)
 {
     const bool half = format == REFOCUS_FRAME_NV12 || format == REFOCUS_FRAME_NV21 ||
                       format == REFOCUS_FRAME_YUV420;
-    const bool other_half = other == REFOCUS_FRAME_NV12 || other == REFOCUS_FRAME_NV21 ||
+    const bool other_half = other == REFOCUS_FRAME_NV12 ||
+                            other == REFOCUS_FRAME_NV21 ||
                             other == REFOCUS_FRAME_YUV420;
 
     if (half || other_half)

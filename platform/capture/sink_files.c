@@ -18,7 +18,7 @@ struct stream {
     char *path;
     int fd;
     bool y4m, begun;
-    bool own; /* raw: frames are as pictures come */
+    bool own;                   /* raw: frames are as pictures come */
     bool tall;                  /* y4m: U and V have all rows */
     uint32_t range;             /* of its pictures: enum refocus_range */
     uint32_t layout;            /* raw: enum refocus_frame_format of frames */
@@ -74,7 +74,8 @@ static int write_all(const struct stream *stream, const void *bytes, size_t size
     return REFOCUS_OK;
 }
 
-/* "FILE,NV12" or "FILE,own", split; names may hold commas where a dot or a slash follows. */
+/* "FILE,NV12" or "FILE,own", split; names may hold commas where a dot or a slash
+ * follows. */
 static int parse_raw(struct stream *stream, struct refocus_reason *reason)
 {
     char *const comma = strrchr(stream->path, ',');
@@ -86,11 +87,12 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
     if (!stream->own)
         stream->layout = rf_format_by_name(comma + 1);
     if (!stream->own && !rf_can_encode(stream->layout))
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "'%.40s' is no format of raw frames that can be written; "
-                               "give own, NV12, NV21, YUV420, YUYV, UYVY, RGB24, BGR24, "
-                               "RGBX or BGRX",
-                               comma + 1);
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_ARGUMENT,
+            "'%.40s' is no format of raw frames that can be written; "
+            "give own, NV12, NV21, YUV420, YUYV, UYVY, RGB24, BGR24, "
+            "RGBX or BGRX",
+            comma + 1);
     *comma = '\0';
     return REFOCUS_OK;
 }
@@ -100,10 +102,12 @@ static int open_file(struct stream *stream, struct refocus_reason *reason)
     if (!*stream->path)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "give the name of a file behind the colon, or '-'");
-    stream->fd = strcmp(stream->path, "-") == 0
-                     ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
-                     : open(stream->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    return stream->fd < 0 ? rf_capture_fail_errno(reason, errno, stream->path) : REFOCUS_OK;
+    stream->fd =
+        strcmp(stream->path, "-") == 0
+            ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
+            : open(stream->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    return stream->fd < 0 ? rf_capture_fail_errno(reason, errno, stream->path)
+                          : REFOCUS_OK;
 }
 
 static int open_stream(struct refocus_sink *sink, const char *rest, bool y4m,
@@ -204,7 +208,8 @@ static bool lay_out(struct stream *stream, uint32_t layout, int width, int heigh
     return true;
 }
 
-static void rearrange(const struct refocus_image *image, const struct refocus_frame *frame)
+static void rearrange(const struct refocus_image *image,
+                      const struct refocus_frame *frame)
 {
     const uint32_t format = rf_frame_format_of(image->format);
     const uint8_t *const plane[3] = {image->plane[0], image->plane[1], image->plane[2]};

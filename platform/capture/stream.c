@@ -11,10 +11,10 @@ enum { LONGEST_HEADER = 1024 };
 struct stream {
     FILE *file;
     bool y4m, is_pipe;
-    bool tall; /* y4m of 4:2:2, which becomes YUYV: U and V have all rows */
+    bool tall;       /* y4m of 4:2:2, which becomes YUYV: U and V have all rows */
     uint8_t *planes; /* for that */
-    char *path; /* owned */
-    long begin; /* of the first frame */
+    char *path;      /* owned */
+    long begin;      /* of the first frame */
     uint32_t format, flags;
     int width, height;
     double fps;
@@ -73,8 +73,7 @@ static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
         else if (*word == 'C') {
             stream->tall = strcmp(word + 1, "422") == 0;
             stream->format = colour_space(word + 1);
-        }
-        else if (strcmp(word, "XCOLORRANGE=FULL") == 0)
+        } else if (strcmp(word, "XCOLORRANGE=FULL") == 0)
             stream->flags |= REFOCUS_FRAME_FULL_RANGE;
     }
     if (stream->format == REFOCUS_FRAME_ANY)
@@ -111,7 +110,8 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
     if (stream->format == REFOCUS_FRAME_ANY || stream->format == REFOCUS_FRAME_MJPEG)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "'%.40s' is no format of raw frames; give NV12, YUYV, "
-                               "RGB24, Y16, ...", word[n - 1]);
+                               "RGB24, Y16, ...",
+                               word[n - 1]);
     return REFOCUS_OK;
 }
 
@@ -251,9 +251,11 @@ static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
 }
 
 /* The same of 4:2:2 in planes, packed. */
-static int read_tall(struct stream *stream, uint8_t *memory, struct refocus_reason *reason)
+static int read_tall(struct stream *stream, uint8_t *memory,
+                     struct refocus_reason *reason)
 {
-    const size_t w = (size_t)stream->width, h = (size_t)stream->height, half = (w + 1) / 2;
+    const size_t w = (size_t)stream->width, h = (size_t)stream->height,
+                 half = (w + 1) / 2;
     const size_t bytes = (w + 2 * half) * h;
     struct rf_samples from[3], to[3];
     int status;
@@ -301,12 +303,12 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     }
     buffer = rf_ring_take(&stream->ring);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; "
-                                                          "release one");
-    status =
-        rf_ring_reserve(&stream->ring, buffer, bytes)
-            ? read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
-            : rf_capture_fail_memory(reason);
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
+                               "every buffer is out; "
+                               "release one");
+    status = rf_ring_reserve(&stream->ring, buffer, bytes)
+                 ? read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
+                 : rf_capture_fail_memory(reason);
     if (status == REFOCUS_ERR_END && source->config.flags & REFOCUS_SOURCE_LOOP &&
         !stream->is_pipe && stream->frame > 0 &&
         fseek(stream->file, stream->begin, SEEK_SET) == 0)

@@ -6,7 +6,8 @@ static ptrdiff_t at(const struct rf_sweep1_job *job, int i)
 {
     const int y = i / RF_TILE, half = job->rows / 2;
 
-    return (y < half ? y * job->apart : job->half + (y - half) * job->apart) + i % RF_TILE;
+    return (y < half ? y * job->apart : job->half + (y - half) * job->apart) +
+           i % RF_TILE;
 }
 
 void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
@@ -22,7 +23,7 @@ void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
         uint16_t value[RF_TILE * RF_TILE];
 
         while (n == rays->begin[class + 1])
-            class++;
+            class ++;
         if (job->chroma && n - rays->begin[class] >= rays->shared[class])
             continue;
         /* from the last to the nearest, which overwrites what lies behind it */
@@ -42,7 +43,8 @@ void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
 }
 
 /* Light and weight that ray n meets at lane i. */
-static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light, uint16_t *weight)
+static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light,
+                 uint16_t *weight)
 {
     const struct rf_sorted_rays *rays = job->rays;
     const int32_t(*const offset)[RF_RAY_CHUNK] =
@@ -68,13 +70,15 @@ static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light,
     *weight = (job->chroma ? rays->chroma_last_weight : rays->last_weight)[n][own];
 }
 
-void rf_sweep1_weighted_c(uint64_t *sum, uint64_t *weight_sum, const struct rf_sweep1_job *job)
+void rf_sweep1_weighted_c(uint64_t *sum, uint64_t *weight_sum,
+                          const struct rf_sweep1_job *job)
 {
     const struct rf_sorted_rays *rays = job->rays;
 
-    for (int class = 0; class < RF_SORTED_TESTS; class++) {
+    for (int class = 0; class < RF_SORTED_TESTS; class ++) {
         const int begin = rays->begin[class];
-        const int end = job->chroma ? begin + rays->shared[class] : rays->begin[class + 1];
+        const int end =
+            job->chroma ? begin + rays->shared[class] : rays->begin[class + 1];
 
         for (int n = begin; n < end; n++) {
             for (int i = 0; i < job->rows * RF_TILE; i++) {

@@ -1,8 +1,8 @@
-/* sweep1_vec.c: the sweep of one plane, a few rows of both halves of a tile at a time, sums in
- * registers.
+/* sweep1_vec.c: the sweep of one plane, a few rows of both halves of a tile at a time,
+ * sums in registers.
  *
- * A ray is followed from behind to the front: each slab overwrites what lies behind it where
- * it is hit, so that one addition a ray is left.
+ * A ray is followed from behind to the front: each slab overwrites what lies behind it
+ * where it is hit, so that one addition a ray is left.
  */
 #include "kernels/kernels.h"
 #include "kernels/slab_vec.h"
@@ -19,15 +19,15 @@ enum {
 
 struct state {
     const struct rf_sweep1_job *job;
-    ptrdiff_t first; /* element that the rows begin at */
+    ptrdiff_t first;          /* element that the rows begin at */
     int end[RF_SORTED_TESTS]; /* of the rays of so many tests that count */
     const int32_t (*offset)[RF_RAY_CHUNK];
     const uint16_t *const *last;
 };
 
 /* Vector j from `first` on, of `rows` rows of each half. */
-static ALWAYS_INLINE const uint16_t *vector_at(const uint16_t *first, const struct state *s, int j,
-                                               const int rows)
+static ALWAYS_INLINE const uint16_t *
+vector_at(const uint16_t *first, const struct state *s, int j, const int rows)
 {
     const uint16_t *at = j < rows * EACH ? first : first + s->job->half;
 
@@ -35,8 +35,8 @@ static ALWAYS_INLINE const uint16_t *vector_at(const uint16_t *first, const stru
 }
 
 /* What ray n of `tests` tests sees, added. */
-static ALWAYS_INLINE void sweep_ray(vec_u16 sum[MOST_VECS], const struct state *s, int n,
-                                    const int tests, const int rows)
+static ALWAYS_INLINE void sweep_ray(vec_u16 sum[MOST_VECS], const struct state *s,
+                                    int n, const int tests, const int rows)
 {
     const struct rf_sorted_rays *rays = s->job->rays;
     const uint16_t *const blur = (const uint16_t *)s->job->blur + s->first;
@@ -53,24 +53,26 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[MOST_VECS], const struct state *
         for (int j = 0; j < vecs; j++) {
             const vec_u16 seen = vec_u16_load(vector_at(blur + q, s, j, rows));
 
-            value[j] = vec_u16_load_where(rf_in_limits(vec_mask_all(), limits, seen), value[j],
-                                          vector_at(light + q, s, j, rows));
+            value[j] = vec_u16_load_where(rf_in_limits(vec_mask_all(), limits, seen),
+                                          value[j], vector_at(light + q, s, j, rows));
         }
     }
     for (int j = 0; j < vecs; j++)
         sum[j] = vec_u16_add(sum[j], value[j]);
 }
 
-static ALWAYS_INLINE void sweep_some(vec_u16 sum[MOST_VECS], const struct state *s, int first,
-                                     int end, const int tests, const int rows)
+static ALWAYS_INLINE void sweep_some(vec_u16 sum[MOST_VECS], const struct state *s,
+                                     int first, int end, const int tests,
+                                     const int rows)
 {
     for (int n = first; n < end; n++)
         sweep_ray(sum, s, n, tests < FEW ? tests : s->job->rays->tests[n], rows);
 }
 
-/* Adds sums to those of 32 bits, whose second half begins at `half`, and clears them. */
-static ALWAYS_INLINE void flush(uint32_t *first, uint32_t *second, vec_u16 sum[MOST_VECS],
-                                const int rows)
+/* Adds sums to those of 32 bits, whose second half begins at `half`, and clears them.
+ */
+static ALWAYS_INLINE void flush(uint32_t *first, uint32_t *second,
+                                vec_u16 sum[MOST_VECS], const int rows)
 {
     for (int j = 0; j < rows * EACH; j++) {
         vec_u16_add_to(first + j * (int)VEC_U16, sum[j]);
@@ -80,7 +82,8 @@ static ALWAYS_INLINE void flush(uint32_t *first, uint32_t *second, vec_u16 sum[M
 }
 
 /* All rays, at `rows` rows of each half, from row `row` of the first on. */
-static ALWAYS_INLINE void sweep_rows(uint32_t *to, struct state *s, int row, const int rows)
+static ALWAYS_INLINE void sweep_rows(uint32_t *to, struct state *s, int row,
+                                     const int rows)
 {
     uint32_t *const first = to + row * RF_TILE;
     uint32_t *const second = first + s->job->rows / 2 * RF_TILE;
@@ -128,8 +131,8 @@ static void RF_VEC(rf_sweep1)(uint32_t *sum, const struct rf_sweep1_job *job)
     int row = 0;
 
     s.job = job;
-    s.offset =
-        (const int32_t(*)[RF_RAY_CHUNK])(job->chroma ? rays->chroma_offset : rays->offset);
+    s.offset = (const int32_t(*)[RF_RAY_CHUNK])(job->chroma ? rays->chroma_offset
+                                                            : rays->offset);
     s.last = (const uint16_t *const *)(job->chroma ? rays->chroma_last : rays->last);
     for (int tests = 0; tests < RF_SORTED_TESTS; tests++)
         s.end[tests] = job->chroma ? rays->begin[tests] + rays->shared[tests]

@@ -1,8 +1,9 @@
 /* sweep_yuv.c: the sweep for a photo of Y, U and V.
  *
- * What sweep.c does for three planes is done here for luma and, with the same slabs, for chroma,
- * whose samples lie two pixels apart: rays are half as long there across, and in 4:2:0 down, and
- * some of them lie as densely among its samples as all do among pixels.
+ * What sweep.c does for three planes is done here for luma and, with the same slabs,
+ * for chroma, whose samples lie two pixels apart: rays are half as long there across,
+ * and in 4:2:0 down, and some of them lie as densely among its samples as all do among
+ * pixels.
  */
 #include "methods/method.h"
 #include "methods/tile_rows.h"
@@ -24,14 +25,14 @@ struct tile {
     const struct rf_frame *f;
     struct rf_tile_plan plan;
     const struct rf_ray_set *set;
-    int behind;            /* blur of the background */
-    const uint32_t *range; /* of the tile's first pixel, */
+    int behind;                             /* blur of the background */
+    const uint32_t *range;                  /* of the tile's first pixel, */
     const uint16_t *weight, *weight_behind; /* and weights of eq. 5, or NULL */
     struct plane luma, chroma;
 };
 
-/* Some rays of one weight, where they see the slabs of the tile and the background, and what they
- * have to look at. */
+/* Some rays of one weight, where they see the slabs of the tile and the background, and
+ * what they have to look at. */
 struct sight {
     int rays;
     const int16_t *u, *v;
@@ -55,16 +56,16 @@ static void set_rays(struct sight *sight, const struct rf_ray_set *set, int firs
     }
 }
 
-/* Sums of luma and of chroma, of rays of one weight: of light, or of light times weights of eq. 5
- * and those weights; and in `sum` of all rays. */
+/* Sums of luma and of chroma, of rays of one weight: of light, or of light times
+ * weights of eq. 5 and those weights; and in `sum` of all rays. */
 struct sums {
     uint32_t run[2][LANES];
     uint64_t weighted_run[2][LANES], weight_run[2][LANES];
     uint64_t sum[2][LANES], weight[2][LANES];
 };
 
-static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_sorted_rays *rays,
-                        struct sums *sums)
+static void sweep_plane(const struct tile *tile, bool chroma,
+                        const struct rf_sorted_rays *rays, struct sums *sums)
 {
     const struct refocus_renderer *r = tile->f->r;
     const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
@@ -82,13 +83,14 @@ static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_so
     };
 
     if (tile->weight)
-        r->kernels.sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma], &job);
+        r->kernels.sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma],
+                                   &job);
     else
         r->kernels.sweep1(sums->run[chroma], &job);
 }
 
-/* Rays, of which chroma shares the first so many. Strips of a tile together: of one plane, sorting
- * each by itself costs more than it saves. */
+/* Rays, of which chroma shares the first so many. Strips of a tile together: of one
+ * plane, sorting each by itself costs more than it saves. */
 static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
 {
     const struct refocus_renderer *r = tile->f->r;
@@ -113,12 +115,14 @@ static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
     };
 
     for (int k = 0; k <= tile->plan.slabs; k++) {
-        const int blur = k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
+        const int blur =
+            k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
 
         r->kernels.aim(sight->offset[k], sight->cell[k], sight->u, sight->v, blur,
                        (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
-        r->kernels.aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k], sight->u, sight->v,
-                              blur, tile->chroma.down, (int32_t)r->stride, shared);
+        r->kernels.aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k], sight->u,
+                              sight->v, blur, tile->chroma.down, (int32_t)r->stride,
+                              shared);
     }
     r->kernels.sort_rays(&sight->sorted, &job);
 }
@@ -194,30 +198,34 @@ static void take_means(const struct tile *tile, bool chroma, const struct sums *
     uint16_t memory[LANES], *computed = plane->computed.step == 1 ? mean : memory;
 
     if (tile->weight)
-        kernels->weighted_means(computed, sums->weighted_run[chroma], sums->weight_run[chroma],
-                                lanes);
+        kernels->weighted_means(computed, sums->weighted_run[chroma],
+                                sums->weight_run[chroma], lanes);
     else
-        kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays), lanes);
+        kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays),
+                       lanes);
     if (computed == memory && plane->rows == RF_TILE)
         kernels->between_rows(mean, computed, plane->computed.step);
     else if (computed == memory)
         kernels->between_chroma(mean, computed);
 }
 
-static void sweep_means(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
+static void sweep_means(struct tile *tile, struct sums *sums,
+                        struct rf_decode_job *means)
 {
     const struct rf_frame *f = tile->f;
 
     tile->luma.computed = rf_tile_rows(f, &tile->plan, tile->behind);
-    tile->chroma.computed = tile->chroma.down ? rf_chroma_rows(f, &tile->plan, tile->behind)
-                                              : tile->luma.computed;
+    tile->chroma.computed = tile->chroma.down
+                                ? rf_chroma_rows(f, &tile->plan, tile->behind)
+                                : tile->luma.computed;
     sweep_rays(tile, sums);
     take_means(tile, false, sums, means->luma);
     take_means(tile, true, sums, means->chroma);
 }
 
 /* The same from rays that do not weigh the same. */
-static void sweep_sums(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
+static void sweep_sums(struct tile *tile, struct sums *sums,
+                       struct rf_decode_job *means)
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
     uint16_t *const mean[2] = {means->luma, means->chroma};

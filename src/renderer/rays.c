@@ -69,8 +69,8 @@ static void sort_rays(struct refocus_ray *ray, int count)
     }
 }
 
-/* Rays that chroma shares become the first ones of each chunk. Of sets as rays.c of the aperture
- * makes them, on spirals or along a curve, every second ray is as even a set. */
+/* Rays that chroma shares become the first ones of each chunk. Of sets that lie on
+ * spirals or along a curve (aperture/rays.c) every second ray is as even a set. */
 static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
 {
     struct refocus_ray *const ray = set->ray;
@@ -84,14 +84,16 @@ static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
         const int shared = rf_shared_rays(set, n, end = chunk_end(set, n));
 
         memcpy(ray + n, spare + chosen, (size_t)shared * sizeof *ray);
-        memcpy(ray + n + shared, spare + others, (size_t)(end - n - shared) * sizeof *ray);
+        memcpy(ray + n + shared, spare + others,
+               (size_t)(end - n - shared) * sizeof *ray);
         chosen += shared;
         others += end - n - shared;
     }
 }
 
 /* Coordinates of a set's rays apart from each other; returns where memory goes on. */
-static struct refocus_ray *part_coordinates(struct rf_ray_set *set, struct refocus_ray *next)
+static struct refocus_ray *part_coordinates(struct rf_ray_set *set,
+                                            struct refocus_ray *next)
 {
     enum { EACH = sizeof *next / sizeof(int16_t) };
     int16_t *const u = (int16_t *)(void *)next, *const v = u + set->count;
@@ -114,7 +116,8 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
     if (rays != REFOCUS_RAYS_FULL)
         max_blur_radius = 0; /* sets of N do not depend on it */
     if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays &&
-        r->set_denser == denser && r->set_blur == max_blur_radius && r->set_shared == r->yuv.on)
+        r->set_denser == denser && r->set_blur == max_blur_radius &&
+        r->set_shared == r->yuv.on)
         return;
     r->sets = 0;
     if (rays == REFOCUS_RAYS_FULL) {

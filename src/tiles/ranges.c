@@ -1,8 +1,8 @@
 #include "tiles/ranges.h"
 
 enum {
-    EACH = RF_TILE / RF_CELL,                      /* cells of a tile, across and down */
-    TALL_Y = RF_WINDOW_Y + RF_STRIP / RF_CELL, /* cells that both strips of a tile lie in */
+    EACH = RF_TILE / RF_CELL, /* cells of a tile, across and down */
+    TALL_Y = RF_WINDOW_Y + RF_STRIP / RF_CELL, /* those that both its strips lie in */
 };
 
 static int cells_x(const struct refocus_renderer *r)
@@ -34,8 +34,8 @@ static int clamp(int v, int most)
 }
 
 /* The lesser and the greater ones of two rows of cells. */
-static void join_rows(int16_t *restrict least, int16_t *restrict most, const int16_t *const l[2],
-                      const int16_t *const m[2], int n)
+static void join_rows(int16_t *restrict least, int16_t *restrict most,
+                      const int16_t *const l[2], const int16_t *const m[2], int n)
 {
     const int16_t *restrict l0 = l[0], *restrict l1 = l[1];
     const int16_t *restrict m0 = m[0], *restrict m1 = m[1];
@@ -46,8 +46,8 @@ static void join_rows(int16_t *restrict least, int16_t *restrict most, const int
     }
 }
 
-/* Luma and chroma of a tile are each swept in one go, so ranges are of both its strips: five rows
- * of cells come to three. */
+/* Luma and chroma of a tile are each swept in one go, so ranges are of both its strips:
+ * five rows of cells come to three. */
 static void join_strips(const int16_t *least[TALL_Y], const int16_t *most[TALL_Y],
                         int16_t *scratch, int n)
 {
