@@ -147,6 +147,17 @@ static void guide_row(const struct refocus_renderer *r, uint8_t *out, int y)
     }
 }
 
+static void swap_pairs(uint8_t *restrict to, const uint8_t *restrict from, int n)
+{
+    for (int x = 0; x < n; x++) {
+        uint16_t pair;
+
+        memcpy(&pair, from + 2 * x, sizeof pair);
+        pair = (uint16_t)(pair << 8 | pair >> 8);
+        memcpy(to + 2 * x, &pair, sizeof pair);
+    }
+}
+
 /*
  * The codes are copied first, whole rows of a plane at a time and in order: camera memory may be
  * uncached, and slow to read in pieces. Only those that lie in between others take a second
@@ -165,8 +176,7 @@ static void keep_420(const struct refocus_renderer *r, const struct refocus_imag
     }
     if (photo->format == REFOCUS_FORMAT_NV21) {
         memcpy(scratch, photo->plane[1] + cy * photo->stride[1], 2 * (size_t)w);
-        for (int x = 0; x < 2 * w; x++)
-            uv[x] = scratch[x ^ 1];
+        swap_pairs(uv, scratch, w);
         return;
     }
     memcpy(scratch, photo->plane[1] + cy * photo->stride[1], (size_t)w);
