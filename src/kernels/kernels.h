@@ -142,8 +142,8 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
 
 /*
  * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its two
- * neighbours, `apart` elements before and after, whose blur is within one pixel (256) of its
- * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows
+ * neighbours, `apart` elements before and after, whose blur is within an eighth of its own, but at
+ * least one pixel (256) and less than two (511), of it; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows
  * written are not among those read.
  */
 typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
