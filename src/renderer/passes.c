@@ -298,6 +298,13 @@ static uint32_t made_thin(const struct rf_frame *f)
     return f->veils ? (uint32_t)f->veils << 8 | (1 + f->r->blend) : 0;
 }
 
+static bool has_same_thin(const struct rf_frame *f)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return m->thin == made_thin(f) && (!f->veils || m->veil_blur == f->veil_blur);
+}
+
 /* Whether all of that is there. */
 static bool is_there(const struct rf_frame *f, int number, const struct parts *parts,
                      bool layers)
@@ -307,7 +314,7 @@ static bool is_there(const struct rf_frame *f, int number, const struct parts *p
     if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
         return false;
     return rf_same_lens(f, number) && contains(m->window, parts->bins) &&
-           m->thin == made_thin(f) &&
+           has_same_thin(f) &&
            (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
                          (!m->weighed || is_sweep(f))
                    : !m->rims);
@@ -322,14 +329,15 @@ static void make_blur(struct rf_frame *f, bool layers)
                                    r->origin_y + r->height};
 
     if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
-        !contains(window, m->window) || m->thin != made_thin(f) || (m->rims && !layers) ||
+        !contains(window, m->window) || !has_same_thin(f) || (m->rims && !layers) ||
         (layers && !rf_same_light(f) && (m->lamps || f->params->highlight_gain > 1))) {
         *m = (struct rf_made){.half = m->half && r->used,
                               .photo = r->used,
                               .window = window,
                               .plan = f->plan,
                               .shift = f->scale.shift,
-                              .thin = made_thin(f)};
+                              .thin = made_thin(f),
+                              .veil_blur = f->veil_blur};
         rf_pass_blur(f, layers);
         if (f->veils && !rf_cancelled(r))
             rf_take_thin_apart(f);

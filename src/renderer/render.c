@@ -146,6 +146,16 @@ static void set_prefilter(struct rf_frame *f)
     }
 }
 
+/* Thin things are met well where rays lie closer than 2.25 pixels. */
+static int veil_blur(const struct refocus_render_params *p)
+{
+    const double blur = 256 * 2.25 * sqrt(p->rays / 3.14159265358979);
+
+    return p->rays == REFOCUS_RAYS_FULL || blur > INT16_MAX ? INT16_MAX
+           : blur < RF_VEIL_BLUR                            ? RF_VEIL_BLUR
+                                                            : (int)blur;
+}
+
 /* Discs of veils are as large as the opening's rays lie on the average: 1/2 for the mean square of a
  * disc's. Openings with fine structure have none, nor those that differ from place to place. */
 static int veil_scale(const struct rf_frame *f)
@@ -198,6 +208,7 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     }
     if (rf_cancelled(r))
         return;
+    f->veil_blur = veil_blur(f->params);
     f->veil_from = f->plan.plain ? rf_veil_from(f) : 0;
     f->veils = pinhole ? 0 : veil_scale(f);
     f->row_gap = pinhole ? 0 : rf_row_gap(f);

@@ -86,7 +86,8 @@ struct rf_made {
     struct rf_rect exact;  /* where it is as if made for the whole photo */
     struct rf_focus_plan plan;
     int shift; /* of the bins */
-    uint32_t thin; /* as what thin things were taken apart, made_thin() */
+    uint32_t thin; /* as what thin things were taken apart, made_thin(), */
+    int veil_blur; /* and from where on */
     uint32_t blend;
     float gain;
     int prefilter_above[RF_PREFILTER_STEPS];

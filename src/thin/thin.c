@@ -83,7 +83,7 @@ int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, i
 bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
 {
     return f->plan.plain ? thin->near_disparity >= f->veil_from
-                         : rf_near_blur(f, thin, tx, ty) <= -RF_VEIL_BLUR;
+                         : rf_near_blur(f, thin, tx, ty) <= -f->veil_blur;
 }
 
 int rf_veil_from(const struct rf_frame *f)
@@ -93,7 +93,7 @@ int rf_veil_from(const struct rf_frame *f)
     while (low < high) {
         const int middle = (low + high) / 2;
 
-        if (blur_of(f, (uint16_t)middle, 0, 0) <= -RF_VEIL_BLUR)
+        if (blur_of(f, (uint16_t)middle, 0, 0) <= -f->veil_blur)
             high = middle;
         else
             low = middle + 1;

@@ -19,7 +19,7 @@
 
 enum {
     RF_VEIL_CELL = 4,
-    RF_VEIL_BLUR = 8 << 8, /* Q7.8; from here on */
+    RF_VEIL_BLUR = 8 << 8, /* Q7.8: two cells, the least */
 };
 
 /* One cell of what is drawn. */

@@ -391,8 +391,8 @@ static void thin(void **state)
         float blur, focus, sigma;
         uint32_t blend;
     } shots[] = {{150, 101, 64, 0, 15, 0.03f, 400, REFOCUS_BLEND_LINEAR},
-                 {97, 130, 32, 6, 40, 0.2f, INFINITY, REFOCUS_BLEND_STORED},
-                 {160, 64, 128, 0, 9.5f, 0, 200, REFOCUS_BLEND_GAMMA}};
+                 {97, 130, 64, 6, 40, 0.2f, INFINITY, REFOCUS_BLEND_STORED},
+                 {160, 64, 32, 0, 9.5f, 0, 200, REFOCUS_BLEND_GAMMA}};
 
     (void)state;
     for (int i = 0; i < 3; i++) {

@@ -37,14 +37,14 @@ static struct refocus_renderer *create(const struct picture *p, uint32_t cpu,
 struct setting {
     float focus, blur, gain, sigma;
     uint32_t thin, blend, method;
-    int blades, reduce, x, y, width, height;
+    int rays, blades, reduce, x, y, width, height;
 };
 
 static const struct setting plain = {.focus = FAR / 65535.0f,
                                      .blur = 15,
                                      .gain = 1,
                                      .sigma = 400,
-                                     .thin = 1,
+                                     .thin = 1, .rays = 64,
                                      .reduce = 1};
 
 static int render(struct refocus_renderer *renderer, const struct setting *s,
@@ -63,6 +63,7 @@ static int render(struct refocus_renderer *renderer, const struct setting *s,
         assert_int_equal(refocus_aperture_create_polygon(&aperture, s->blades, 10),
                          REFOCUS_OK);
     params.aperture = aperture;
+    params.rays = s->rays;
     params.thin = s->thin;
     params.highlight_gain = s->gain;
     params.sigma = s->sigma;
@@ -204,7 +205,7 @@ static void regions(void **state)
     uint32_t seed = 5;
 
     (void)state;
-    for (int blur = 9; blur <= 15; blur += 6) {
+    for (int blur = 12; blur <= 15; blur += 3) {
         struct setting s = plain;
 
         s.blur = (float)blur;
@@ -259,6 +260,8 @@ static void change(struct setting *s, uint32_t *seed)
         s->reduce = what & 1024 ? 1 : 2;
     if (what & 128)
         s->sigma = what & 2048 ? 400 : INFINITY;
+    if (what & 512)
+        s->rays = what & 2048 ? 64 : what & 4096 ? 32 : 100;
     s->x = s->y = s->width = s->height = 0;
     if (what & 256) {
         s->x = 40;
