@@ -16,7 +16,9 @@ enum {
 
 struct state {
     const struct rf_sweep_job *job;
+    uint32_t *const *sum;
     uint16_t light[4][RF_STRIP_LANES]; /* sums of the last rays; [3]: of weights */
+    int left;                          /* rays that they hold yet */
 };
 
 /* Where some vectors lie, in bytes of the planes of light, and of the weights. */
@@ -92,27 +94,50 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[4][MOST_VECS], const struct rf_s
     }
 }
 
-/* Rays first .. end - 1, at most as many as 16-bit sums hold, all of `tests` tests. */
+/* 16-bit sums of vectors from lane i on to where they have room; they are 0 then. */
+static ALWAYS_INLINE void flush(uint32_t *const to[4], vec_u16 sum[4][MOST_VECS], int i,
+                                const int vecs, const int planes)
+{
+    for (int c = 0; c < planes; c++)
+        for (int j = 0; j < vecs; j++) {
+            vec_u16_add_to(to[c] + i + j * VEC_U16, sum[c][j]);
+            sum[c][j] = vec_u16_set(0);
+        }
+}
+
+/* Rays first .. end - 1, all of `tests` tests. */
 static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int vecs,
                                      const int tests, const bool weighted)
 {
     const struct rf_sweep_job *job = s->job;
     const int planes = weighted ? 4 : 3;
+    int left = s->left;
 
     for (int i = 0; i < job->lanes; i += vecs * (int)VEC_U16) {
         const ptrdiff_t x = i % RF_TILE, y = i / RF_TILE;
         const struct place p = {2 * (y * job->stride + x), 2 * (y * job->weight_stride + x)};
         vec_u16 sum[4][MOST_VECS];
 
+        left = s->left;
         for (int c = 0; c < planes; c++)
             for (int j = 0; j < vecs; j++)
                 sum[c][j] = vec_u16_load(&s->light[c][i + j * VEC_U16]);
-        for (int n = first; n < end; n++)
-            sweep_ray(sum, job, p, n, vecs, tests, weighted);
+        for (int n = first; n < end;) {
+            const int next = n + left < end ? n + left : end;
+
+            left -= next - n;
+            for (; n < next; n++)
+                sweep_ray(sum, job, p, n, vecs, tests, weighted);
+            if (left == 0) {
+                flush(s->sum, sum, i, vecs, planes);
+                left = job->steps;
+            }
+        }
         for (int c = 0; c < planes; c++)
             for (int j = 0; j < vecs; j++)
                 vec_u16_store(&s->light[c][i + j * VEC_U16], sum[c][j]);
     }
+    s->left = left;
 }
 
 static ALWAYS_INLINE void sweep_some(struct state *s, int first, int end, int tests,
@@ -139,40 +164,26 @@ static ALWAYS_INLINE void sweep_some(struct state *s, int first, int end, int te
     }
 }
 
-static void flush(uint32_t *const sum[4], struct state *s, int planes)
-{
-    const vec_u16 zero = vec_u16_set(0);
-
-    for (int c = 0; c < planes; c++)
-        for (int i = 0; i < s->job->lanes; i += (int)VEC_U16) {
-            vec_u16_add_to(sum[c] + i, vec_u16_load(&s->light[c][i]));
-            vec_u16_store(&s->light[c][i], zero);
-        }
-}
-
 static ALWAYS_INLINE void sweep_all(uint32_t *const sum[4], const struct rf_sweep_job *job,
                                     const bool weighted)
 {
     const struct rf_sorted_rays *rays = job->rays;
     const int planes = weighted ? 4 : 3;
-    int left = job->steps;
     struct state s;
 
     s.job = job;
+    s.sum = sum;
+    s.left = job->steps;
     memset(s.light, 0, sizeof s.light[0] * (size_t)planes);
     for (int n = 0, end; n < rays->rays; n = end) {
         end = n + 1;
-        while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)
+        while (end < rays->rays && rays->tests[end] == rays->tests[n])
             end++;
         sweep_some(&s, n, end, rays->tests[n], weighted);
-        left -= end - n;
-        if (left == 0) {
-            flush(sum, &s, planes);
-            left = job->steps;
-        }
     }
-    if (left < job->steps)
-        flush(sum, &s, planes);
+    for (int c = 0; c < planes; c++)
+        for (int i = 0; i < job->lanes; i += (int)VEC_U16)
+            vec_u16_add_to(sum[c] + i, vec_u16_load(&s.light[c][i]));
 }
 
 static void RF_VEC(rf_sweep)(uint32_t *const sum[4], const struct rf_sweep_job *job)

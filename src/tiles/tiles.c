@@ -182,11 +182,11 @@ static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_
  * what lies outside modulo 2^16; up to 127 pixels one slab is as much as can be. */
 static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struct rf_slab slab)
 {
-    const struct rf_slab *before = &plan->slab[plan->slabs - 1];
+    const int k = plan->slabs++;
 
-    plan->joined[plan->slabs] = plan->slabs > 0 && scale.shift < 8 &&
-                                slab.low <= before->low + before->width + 1;
-    plan->slab[plan->slabs++] = slab;
+    plan->slab[k] = slab;
+    plan->joined[k] = k > 0 && scale.shift < 8 &&
+                      slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
 }
 
 /* Cover the occupied bins from the near side. Slabs are a pixel wide, and half of that
