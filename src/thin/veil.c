@@ -126,8 +126,8 @@ static void draw(const struct refocus_renderer *r, int cx, int cy, int radius,
         const int half = chord(abs(y - cy) << 8, radius);
         int32_t(*row)[4] = r->veil.cell + (size_t)y * r->veil.stride;
 
-        step(row, cells, (cx << 8) + 128 - half, v, 1);
-        step(row, cells, (cx << 8) + 128 + half, v, -1);
+        step(row, cells, cx * 256 + 128 - half, v, 1);
+        step(row, cells, cx * 256 + 128 + half, v, -1);
     }
 }
 
