@@ -97,6 +97,8 @@ struct refocus_renderer_params {
                                   fields whose K is more than half of max_blur_radius may change
                                   single pixels by a code. For sweep, search, raytrace, jittered
                                   and blur; not with `previews` */
+    uint32_t thin;           /**< 1: with memory for `thin` of struct refocus_render_params, which
+                                  other renderers, and strip mode, take as 0 */
 };
 
 static inline struct refocus_renderer_params
@@ -129,6 +131,9 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  *     diffusion     96 (W + 16) (H + 16) + 2^18
  *
  * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.
+ *
+ * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.1 bytes a pixel for large pictures, and
+ * 4 / 3 of that with previews.
  *
  * Strip mode, params->in_place, takes no more than
  *
@@ -380,6 +385,17 @@ struct refocus_render_params {
                                  any, and `out` are in reduced pixels, all other lengths in
                                  those of the photo: the result is that of the reduced photo
                                  with K / reduce */
+
+    uint32_t thin;          /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels wide that
+                                 are blurred so much before the focus that rays lie 2.25 pixels
+                                 apart (10.2 pixels at 64 rays), and by 8 pixels at the least,
+                                 with nothing thick as near around them, are drawn as the veil
+                                 that they become, and so are their shares of the pixels at their
+                                 edges.
+                                 Rays, which meet them here and miss them there, would show
+                                 streaks. Not with openings of fine structure (masks, figures,
+                                 rings), cat's eyes, fringes, every ray, photos of Y, U and V. 0 = no, the
+                                 default */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole

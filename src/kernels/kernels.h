@@ -157,8 +157,8 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
 
 /*
  * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its two
- * neighbours, `apart` elements before and after, whose blur is within one pixel (256) of its
- * own; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows
+ * neighbours, `apart` elements before and after, whose blur is within an eighth of its own, but at
+ * least one pixel (256) and less than two (511), of it; the pixel itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows
  * written are not among those read.
  */
 typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
@@ -251,6 +251,17 @@ typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t 
 /* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (methods/tile_rows.h), by
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
+
+/*
+ * lay_veil: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn in cells of 4 x 4
+ * pixels (thin/veil.h): 6 x 6 of them, the first one above and to the left of the tile, each of light
+ * times cover and cover, Q12 times 2^RF_VEIL_SHIFT, between -2 and 2. Between the middles of cells
+ * it is linear, rounded down twice, at 2^-8 of Q12 and at Q14.
+ *
+ *     mean = light + mean - round(cover mean), 0 to 65535;  cover from 0 to 1
+ */
+enum { RF_VEIL_CELLS = 6, RF_VEIL_SHIFT = 14 };
+typedef void rf_lay_veil_fn(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4]);
 
 /* brightest: the largest value of any channel of a row. */
 typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
@@ -544,6 +555,7 @@ struct rf_kernels {
     rf_weighed_means_fn *weighed_means;
     rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
+    rf_lay_veil_fn *lay_veil;
     rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;
     rf_widen4_fn *widen4;

@@ -128,6 +128,46 @@ static void RF_VEC(rf_between_rows)(uint16_t *restrict mean, const uint16_t *res
     }
 }
 
+/* A row of cells at the middles of pixels, those of a channel together. */
+static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_VEIL_CELLS][4])
+{
+    for (int x = 0; x < RF_TILE; x++) {
+        const int at = 2 * x + 5, i = at >> 3, part = at & 7; /* eighths of a cell */
+
+        for (int c = 0; c < 4; c++)
+            out[c][x] = (cell[i][c] * (8 - part) + cell[i + 1][c] * part) >> (RF_VEIL_SHIFT + 3 - 8);
+    }
+}
+
+static void RF_VEC(rf_lay_veil)(uint16_t *const mean[3],
+                                int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
+{
+    int32_t row[RF_VEIL_CELLS][4][RF_TILE];
+
+    for (int i = 0; i < RF_VEIL_CELLS; i++)
+        across_cells(row[i], cell[i]);
+    for (int y = 0; y < RF_TILE; y++) {
+        const int at = 2 * y + 5, i = at >> 3, part = at & 7;
+        uint32_t cover[RF_TILE];
+
+        for (int x = 0; x < RF_TILE; x++) { /* Q15 */
+            const int32_t v = (row[i][3][x] * (8 - part) + row[i + 1][3][x] * part) >> 8;
+
+            cover[x] = (uint32_t)(v < 0 ? 0 : v > 32768 ? 32768 : v);
+        }
+        for (int c = 0; c < 3; c++) {
+            uint16_t *restrict out = mean[c] + y * RF_TILE;
+
+            for (int x = 0; x < RF_TILE; x++) {
+                const int32_t light = (row[i][c][x] * (8 - part) + row[i + 1][c][x] * part) >> 9;
+                const int32_t v = out[x] + light - (int32_t)((out[x] * cover[x] + 16384) >> 15);
+
+                out[x] = (uint16_t)(v < 0 ? 0 : v > 65535 ? 65535 : v);
+            }
+        }
+    }
+}
+
 static void RF_VEC(rf_luminance)(uint16_t *restrict out, const uint16_t *restrict red,
                                  const uint16_t *restrict green,
                                  const uint16_t *restrict blue, int n)
@@ -156,6 +196,7 @@ void RF_VEC(rf_light_use)(struct rf_kernels *kernels)
 {
     kernels->luminance = RF_VEC(rf_luminance);
     kernels->between_rows = RF_VEC(rf_between_rows);
+    kernels->lay_veil = RF_VEC(rf_lay_veil);
     kernels->brightest = RF_VEC(rf_brightest);
     kernels->weighted_means = RF_VEC(rf_weighted_means);
     kernels->weighed_means = RF_VEC(rf_weighed_means);

@@ -4,7 +4,9 @@
 
 static bool is_like(int16_t blur, int16_t own, int least)
 {
-    return abs(own) > least && abs(blur - own) <= 256;
+    const int eighth = abs(own) / 8, tolerance = eighth < 256 ? 256 : eighth > 511 ? 511 : eighth;
+
+    return abs(own) > least && abs(blur - own) <= tolerance;
 }
 
 void rf_smooth3_c(uint16_t *const out[3], const uint16_t *const light[3], const int16_t *blur,

@@ -2,7 +2,7 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-enum { PIXEL = 256 };
+enum { PIXEL = 256, TWO_PIXELS = 511 };
 
 /* Which neighbours count, in all lanes, and what follows from it. */
 struct use {
@@ -11,21 +11,31 @@ struct use {
     vec_u16 factor; /* see mean() */
 };
 
-static inline vec_u16 within_pixel(vec_u16 a, vec_u16 b)
+/* |s| / 8, from one pixel to two; of s and -s the lesser is |s|, which is below 2^15. */
+static inline vec_u16 tolerance(vec_u16 s)
 {
-    return vec_u16_at_most(vec_u16_add(vec_u16_sub(a, b), vec_u16_set(PIXEL)),
-                           vec_u16_set(2 * PIXEL));
+    const vec_u16 own = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s));
+
+    return vec_u16_min(vec_u16_max(vec_u16_half(vec_u16_half(vec_u16_half(own))),
+                                   vec_u16_set(PIXEL)),
+                       vec_u16_set(TWO_PIXELS));
+}
+
+static inline vec_u16 within(vec_u16 a, vec_u16 b, vec_u16 tolerance)
+{
+    return vec_u16_at_most(vec_u16_add(vec_u16_sub(a, b), tolerance),
+                           vec_u16_add(tolerance, tolerance));
 }
 
 static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, vec_u16 least)
 {
-    const vec_u16 s = vec_u16_load(blur);
+    const vec_u16 s = vec_u16_load(blur), t = tolerance(s);
     /* |s| <= least; s + least stays below 2^16 + s, and |s| <= 32512 */
     const vec_u16 narrow = vec_u16_at_most(vec_u16_add(s, least), vec_u16_add(least, least));
     const vec_u16 before =
-        vec_u16_without(within_pixel(vec_u16_load(blur - apart), s), narrow);
+        vec_u16_without(within(vec_u16_load(blur - apart), s, t), narrow);
     const vec_u16 after =
-        vec_u16_without(within_pixel(vec_u16_load(blur + apart), s), narrow);
+        vec_u16_without(within(vec_u16_load(blur + apart), s, t), narrow);
     const vec_u16 three = vec_u16_and(before, after);
 
     return (struct use){

@@ -30,6 +30,10 @@ struct rf_frame {
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
     int prefilter_step;     /* the one that is being made */
+    int veils;              /* thin things may be taken apart, thin/thin.h, and drawn with discs
+                               of this part of their blur, Q8; 0: they are not */
+    int veil_blur;          /* from this blur before the focus on, Q7.8, */
+    int veil_from;          /* which is this disparity: rf_veil_from() */
     bool weighted;          /* eq. 5 weights differ from 1, */
     bool premultiplied;     /* and little enough for light times weight in 16 bits */
     int row_gap;            /* see methods/tile_rows.h */

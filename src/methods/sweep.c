@@ -14,6 +14,8 @@
 #include "methods/tile_rays.h"
 #include "methods/tile_rows.h"
 #include "renderer/bands.h"
+#include "thin/thin.h"
+#include "thin/veil.h"
 
 #include <string.h>
 
@@ -292,6 +294,12 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
 
     (void)worker;
     rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
+    if (plan.sharp && f->veils && rf_has_veil(r, tx, ty)) {
+        rf_sharp_means(f, tx, ty, mean);
+        rf_veil_over(r, tx, ty, mean);
+        rf_encode_means(f, rect, mean);
+        return;
+    }
     if (plan.sharp) {
         rf_copy_tile(f, rect);
         return;
@@ -307,6 +315,8 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         else
             sweep_sums(f, &plan, &rays, tx, ty, mean, from, to);
     }
+    if (f->veils)
+        rf_veil_over(r, tx, ty, mean);
     if (!rf_cancelled(r))
         rf_encode_means(f, rect, mean);
 }

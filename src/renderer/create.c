@@ -38,7 +38,7 @@ static bool read_params(struct refocus_renderer_params *own,
            own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
            own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX512 &&
            (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 &&
-           own->previews <= 1 && own->in_place <= 1 &&
+           own->previews <= 1 && own->in_place <= 1 && own->thin <= 1 &&
            !(own->in_place && (own->previews || (own->methods & FRAME_METHODS))) &&
            !own->allocator.allocate == !own->allocator.release;
 }

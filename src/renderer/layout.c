@@ -68,6 +68,29 @@ static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width
         rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
+/* Thin things of a photo of this size. */
+static void take_thin(struct rf_arena *arena, struct rf_thin_list *thin, int width, int height)
+{
+    const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
+    const uint64_t down = (uint64_t)(height + RF_TILE - 1) / RF_TILE;
+
+    thin->pixel = rf_arena_take(arena, rf_thin_capacity(width) * down, sizeof *thin->pixel);
+    thin->run = rf_arena_take(arena, across * down, sizeof *thin->run);
+}
+
+/* What is drawn of them. Its sources lie in the pyramid, which comes later. */
+static void take_veil(struct rf_arena *arena, struct rf_veil *veil, int width, int height)
+{
+    const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
+    const uint64_t down = (uint64_t)(height + RF_TILE - 1) / RF_TILE;
+
+    veil->stride = (int)(across * (RF_TILE / RF_VEIL_CELL)) + 1;
+    veil->cell = rf_arena_take(arena, (uint64_t)veil->stride * down * (RF_TILE / RF_VEIL_CELL),
+                               sizeof *veil->cell);
+    veil->sources = rf_arena_take(arena, down, sizeof *veil->sources);
+    veil->drawn = rf_arena_take(arena, across * down, sizeof *veil->drawn);
+}
+
 /* Planes of a photo in a group; NULL: only counting. */
 static void place_photo(struct rf_photo *photo, uint16_t *group, uint8_t *alpha)
 {
@@ -278,7 +301,19 @@ static void lay_out(struct refocus_renderer *r,
     r->weight = rf_arena_take(
         arena, (uint64_t)r->weight_stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
     r->weight = r->weight ? r->weight + pad * (r->weight_stride + 1) : NULL;
-    arena->used = arena->used > after ? arena->used : after;
+    after = arena->used > after ? arena->used : after;
+    r->has_thin = params->thin && !params->in_place;
+    if (r->has_thin) { /* and not begun while sources are drawn */
+        arena->used = before;
+        r->veil.source = rf_arena_take(arena, 16 * tiles, sizeof *r->veil.source);
+        after = arena->used > after ? arena->used : after;
+    }
+    arena->used = after;
+    if (r->has_thin) {
+        take_veil(arena, &r->veil, w, h);
+        for (int i = 0; i < (params->previews ? RF_PHOTOS : 1); i++)
+            take_thin(arena, &r->photo[i].thin, rf_reduced(w, i), rf_reduced(h, i));
+    }
     r->range_stride = rf_range_width(across, pad);
     r->range = rf_arena_take(
         arena, (uint64_t)r->range_stride * (uint64_t)rf_range_width(down, pad),

@@ -9,6 +9,7 @@
 #include "renderer/bands.h"
 #include "renderer/reduce.h"
 #include "renderer/render_yuv.h"
+#include "thin/thin.h"
 #include "tiles/ranges.h"
 
 static void reblend_band(void *context, int band, int worker)
@@ -147,13 +148,22 @@ void rf_pass_bright(struct rf_frame *f)
                                  (f->bright == RF_BRIGHTER ? 8 : 16) * RF_LIGHT_MAX);
 }
 
-/* The light is the photo's again afterwards, whatever happens. */
+/* The light is the photo's again afterwards, whatever happens; of the next as well. */
+static void prefilter_without_thin(struct rf_frame *f)
+{
+    if (f->veils)
+        rf_swap_thin_light(f);
+    prefilter(f);
+    if (f->veils)
+        rf_swap_thin_light(f);
+}
+
 static void prefilter_with_highlights(struct rf_frame *f)
 {
     const float gain = fminf(f->params->highlight_gain, RF_PLAIN_GAIN);
     const int added = f->bright != RF_WHITE ? rf_add_highlights(f->r, gain) : 0;
 
-    prefilter(f);
+    prefilter_without_thin(f);
     rf_remove_highlights(f->r, gain, added);
 }
 
@@ -284,6 +294,19 @@ struct parts {
     struct rf_rect bins; /* and the tiles that may reach it */
 };
 
+/* What r->made.thin is for this frame: 0, or the size of discs and the blend. */
+static uint32_t made_thin(const struct rf_frame *f)
+{
+    return f->veils ? (uint32_t)f->veils << 8 | (1 + f->r->blend) : 0;
+}
+
+static bool has_same_thin(const struct rf_frame *f)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return m->thin == made_thin(f) && (!f->veils || m->veil_blur == f->veil_blur);
+}
+
 /* Whether all of that is there. */
 static bool is_there(const struct rf_frame *f, int number, const struct parts *parts,
                      bool layers)
@@ -293,6 +316,7 @@ static bool is_there(const struct rf_frame *f, int number, const struct parts *p
     if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
         return false;
     return rf_same_lens(f, number) && contains(m->window, parts->bins) &&
+           has_same_thin(f) &&
            (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
                          (!m->weighed || is_sweep(f))
                    : !m->rims);
@@ -307,14 +331,18 @@ static void make_blur(struct rf_frame *f, bool layers)
                                    r->origin_y + r->height};
 
     if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
-        !contains(window, m->window) || (m->rims && !layers) ||
+        !contains(window, m->window) || !has_same_thin(f) || (m->rims && !layers) ||
         (layers && !rf_same_light(f) && (m->lamps || f->params->highlight_gain > 1))) {
         *m = (struct rf_made){.half = m->half && r->used,
                               .photo = r->used,
                               .window = window,
                               .plan = f->plan,
-                              .shift = f->scale.shift};
+                              .shift = f->scale.shift,
+                              .thin = made_thin(f),
+                              .veil_blur = f->veil_blur};
         rf_pass_blur(f, layers);
+        if (f->veils && !rf_cancelled(r))
+            rf_take_thin_apart(f);
         m->blur = !rf_cancelled(r);
     }
     if (m->blur && layers && !m->rims) {
@@ -340,7 +368,7 @@ static void make_smooth(struct rf_frame *f)
     m->lamps = f->params->highlight_gain > 1;
     if (m->ranges) {
         f->bright = RF_WHITE;
-        prefilter(f);
+        prefilter_without_thin(f);
     } else {
         rf_pass_smooth(f);
         m->ranges = !rf_cancelled(r);
@@ -357,13 +385,20 @@ static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect
                             part.x1 - r->origin_x, part.y1 - r->origin_y};
 }
 
+/* How far beyond a tile something thick decides what becomes of what is thin in it. */
+static int thin_margin(const struct rf_frame *f)
+{
+    return f->veils ? f->r->pad + 2 * RF_TILE : 0;
+}
+
 /* How far from the window's sides the mark and the smooth light are those of the whole
  * photo: a cone's reach and the three steps of the pre-filter; at the photo's own
  * sides, all. */
-static struct rf_rect sure_part(const struct refocus_renderer *r)
+static struct rf_rect sure_part(const struct rf_frame *f)
 {
+    const struct refocus_renderer *r = f->r;
     const struct rf_photo *photo = &r->photo[r->used];
-    const int margin = 2 * r->pad + 8;
+    const int margin = 2 * r->pad + 8 + thin_margin(f);
 
     return (struct rf_rect){
         r->origin_x ? margin : 0,
@@ -391,7 +426,7 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     if (rf_cancelled(r))
         return false;
     if (!contains(m->window, rf_whole(r, r->used)) &&
-        !rf_background_is_exact(r, in_window(r, seen), sure_part(r)))
+        !rf_background_is_exact(r, in_window(r, seen), sure_part(f)))
         return false;
     m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
     rf_pass_behind(f, r->levels);
@@ -451,7 +486,8 @@ static void make_in_window(struct rf_frame *f, int number, const struct parts *p
         if (layers && !contains(window, all)) {
             while (step < around / 2)
                 step *= 2;
-            window = grown(r, number, parts->seen, 2 * r->pad + 8 + around, step);
+            window = grown(r, number, parts->seen,
+                           2 * r->pad + 8 + thin_margin(f) + around, step);
             window = around_both(window, grown(r, number, parts->bins, 0, step));
         }
         if (is_large(r, number, window))
@@ -508,6 +544,17 @@ static void find_highlights(struct rf_frame *f)
     photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
 }
 
+/* The same; nothing of it is in planes of other frames, which are lost. */
+static void find_thin(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+
+    if (!f->veils || r->photo[r->used].thin.blend == r->blend)
+        return;
+    r->made = (struct rf_made){.half = r->made.half};
+    rf_find_thin(r);
+}
+
 void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
                    enum rf_need need, bool whole)
 {
@@ -528,11 +575,13 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     rf_set_weights(f);
     if (layers)
         find_highlights(f);
+    if (!rf_cancelled(r))
+        find_thin(f);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
     if (!whole) {
         parts.seen = grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad, 1);
-        parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE, RF_TILE);
+        parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
     if (is_there(f, number, &parts, layers)) {
         rf_use(r, number, r->made.window);

@@ -81,7 +81,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     own = &r->photo[0];
     own->width = photo->width;
     own->height = photo->height;
-    own->highlights_blend = RF_NO_BLEND;
+    own->highlights_blend = own->thin.blend = RF_NO_BLEND;
     own->rims = 0;
     r->blend = REFOCUS_BLEND_LINEAR; /* that rims are found in, whatever came before */
     rf_yuv_begin(r, photo);

@@ -87,7 +87,7 @@ static void reduce(struct refocus_renderer *r, int to)
 
     job.to->width = rf_reduced(job.from->width, 1);
     job.to->height = rf_reduced(job.from->height, 1);
-    job.to->highlights_blend = RF_NO_BLEND;
+    job.to->highlights_blend = job.to->thin.blend = RF_NO_BLEND;
     rf_use(r, to, rf_whole(r, to));
     rf_pool_run(&r->pool, reduce_band, &job, rf_bands(r));
     job.to->rims = 0;

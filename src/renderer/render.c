@@ -11,6 +11,7 @@
 #include "renderer/passes.h"
 #include "renderer/rays.h"
 #include "renderer/render_yuv.h"
+#include "thin/thin.h"
 
 struct method {
     const char *name, *summary;
@@ -145,6 +146,32 @@ static void set_prefilter(struct rf_frame *f)
     }
 }
 
+/* Thin things are met well where rays lie closer than 2.25 pixels. */
+static int veil_blur(const struct refocus_render_params *p)
+{
+    const double blur = 256 * 2.25 * sqrt(p->rays / 3.14159265358979);
+
+    return p->rays == REFOCUS_RAYS_FULL || blur > INT16_MAX ? INT16_MAX
+           : blur < RF_VEIL_BLUR                            ? RF_VEIL_BLUR
+                                                            : (int)blur;
+}
+
+/* Discs of veils are as large as the opening's rays lie on the average: 1/2 for the mean square of a
+ * disc's. Openings with fine structure have none, nor those that differ from place to place. */
+static int veil_scale(const struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+    const struct rf_ray_set *set = &f->r->set[f->r->preset];
+    int64_t sum = 0;
+
+    if (!p->thin || !f->r->has_thin || p->method != REFOCUS_METHOD_SWEEP || f->r->yuv.on ||
+        (f->plan.plain && f->veil_from > 65535) || p->cat_eye > 0 || p->fringe != 0 || rf_aperture_is_fine(f->aperture))
+        return 0;
+    for (int n = 0; n < set->count; n++)
+        sum += set->ray[n].u * set->ray[n].u + set->ray[n].v * set->ray[n].v;
+    return (int)(sqrt(2.0 * (double)(sum / set->count)) / 128 + 0.5);
+}
+
 /* What tile_item() reads of a rectangle of tiles. */
 static void set_tiles(struct rf_frame *f)
 {
@@ -181,6 +208,9 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     }
     if (rf_cancelled(r))
         return;
+    f->veil_blur = veil_blur(f->params);
+    f->veil_from = f->plan.plain ? rf_veil_from(f) : 0;
+    f->veils = pinhole ? 0 : veil_scale(f);
     f->row_gap = pinhole ? 0 : rf_row_gap(f);
     if (r->in_place.on) {
         rf_run_blocks(f, region, need, run_tiles);

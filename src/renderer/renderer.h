@@ -19,6 +19,8 @@
 #include "kernels/kernels.h"
 #include "planes/prefilter.h"
 #include "support/pool.h"
+#include "thin/thin.h"
+#include "thin/veil.h"
 
 enum {
     RF_GROUP = 4,     /* planes that lie together */
@@ -72,6 +74,7 @@ struct rf_photo {
     uint64_t rims;
     struct rf_highlights highlights[RF_LAMP_PARTS];
     uint32_t highlights_blend; /* that they were found in, or RF_NO_BLEND */
+    struct rf_thin_list thin;
 };
 
 /* What the planes of the last lens setting hold, so that it need not be made again. */
@@ -94,6 +97,8 @@ struct rf_made {
     struct rf_rect exact;  /* where it is as if made for the whole photo */
     struct rf_focus_plan plan;
     int shift; /* of the bins */
+    uint32_t thin; /* as what thin things were taken apart, made_thin(), */
+    int veil_blur; /* and from where on */
     uint32_t blend;
     float gain;
     int prefilter_above[RF_PREFILTER_STEPS];
@@ -233,6 +238,8 @@ struct refocus_renderer {
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 
+    bool has_thin; /* there is memory for what is thin: */
+    struct rf_veil veil;
     struct rf_star *star; /* of this lens setting */
     int stars;
     struct rf_grain *grain; /* of this lens setting */

@@ -41,7 +41,7 @@ class Usage(Case):
                       '--focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
-                      '--highlights --mirror --background --threads --cpu --repeat --json --view '
+                      '--highlights --mirror --background --no-thin --threads --cpu --repeat --json --view '
                       '--parallax --region --settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
                      '--snap --upsample --estimate --preset --input-size --input-mean --input-scale '
@@ -52,7 +52,7 @@ class Usage(Case):
                      '--kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
-                     '--quality --aperture --blend --sigma --highlights --mirror --background '
+                     '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
                      '--threads --cpu --json --settings --save-settings -h --help',
             'pull': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
@@ -60,24 +60,24 @@ class Usage(Case):
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
-                    '--sigma --highlights --mirror --background --threads --cpu --json '
+                    '--sigma --highlights --mirror --background --no-thin --threads --cpu --json '
                     '--settings --save-settings -h --help',
             'view': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle --strokes '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
-                    '--aperture --blend --sigma --highlights --mirror --background --threads '
+                    '--aperture --blend --sigma --highlights --mirror --background --no-thin --threads '
                     '--cpu --json --settings --size --fullscreen --seconds -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --focus --focus-at --focus-rectangle '
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
-                       '--quality --aperture --blend --sigma --highlights --mirror --background '
+                       '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
                        '--threads --cpu --repeat --json -h --help',
             'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far '
                      '--focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --method --rays --iterations --quality '
-                     '--aperture --blend --sigma --highlights --mirror --background --threads --cpu '
+                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --threads --cpu '
                      '--repeat --json -h --help',
         }
         for name, expected in options.items():

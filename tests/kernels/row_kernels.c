@@ -1,5 +1,6 @@
 #include "row_kernels.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,6 +55,14 @@ static void run_smooth3(const struct rf_kernels *k, void *const *row, int parame
     k->smooth3(out, light, row[6], apart_of(parameter), parameter, n);
 }
 
+/* Whether two blurs are alike for the first: within an eighth of it, one pixel to two. */
+static bool alike(int own, int other)
+{
+    const double most = fmin(fmax(floor(abs(own) / 8.0), 256), 511);
+
+    return abs(other - own) <= most;
+}
+
 static void expect_smooth3(void *const *row, int parameter, int n)
 {
     const int16_t *blur = row[6];
@@ -65,7 +74,7 @@ static void expect_smooth3(void *const *row, int parameter, int n)
 
         for (int at = x - apart_of(parameter); at <= x + apart_of(parameter);
              at += apart_of(parameter)) {
-            if (at == x || (abs(blur[x]) > parameter && abs(blur[at] - blur[x]) <= 256)) {
+            if (at == x || (abs(blur[x]) > parameter && alike(blur[x], blur[at]))) {
                 sum += light[at];
                 count++;
             }
@@ -286,7 +295,7 @@ static void expect_smooth1(void *const *row, int parameter, int n)
         int sum = 0, count = 0;
 
         for (int i = -apart; i <= apart; i += apart) {
-            if (i == 0 || (abs(blur[0]) > parameter && abs(blur[i] - blur[0]) <= 256)) {
+            if (i == 0 || (abs(blur[0]) > parameter && alike(blur[0], blur[i]))) {
                 sum += light[i];
                 count++;
             }

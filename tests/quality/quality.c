@@ -63,6 +63,7 @@ static int render_image(const struct quality_scene *scene, const struct quality_
     limits.threads = settings->threads;
     limits.methods = REFOCUS_METHOD_BIT(settings->render.method);
     limits.cpu = (uint32_t)settings->cpu;
+    limits.thin = settings->render.thin;
     if ((status = make_aperture(view, &aperture))
         || (status = refocus_renderer_create(&renderer, &limits))
         || (status = refocus_prepare(renderer, photo, &disparity)))

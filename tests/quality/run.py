@@ -21,12 +21,13 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 # label, settings (see refocus-quality --help), what it is
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
-    ("standard", "method=sweep,highlight=4,sigma=400",
+    ("standard", "method=sweep,highlight=4,sigma=400,thin=1",
      "the default: two layers, 64 rays, light given back to clipped lamps, bright samples "
-     "count more"),
+     "count more, thin things drawn"),
     ("sweep", "method=sweep", "the same of what is in the photo"),
-    ("best", "method=sweep,rays=128,highlight=8,sigma=400",
-     "128 rays, light given back to clipped lamps, bright samples count more"),
+    ("best", "method=sweep,rays=128,highlight=8,sigma=400,thin=1",
+     "128 rays, light given back to clipped lamps, bright samples count more, thin things "
+     "drawn"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "the paper to the letter: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
@@ -73,6 +74,15 @@ BLENDS = [
     ("stored-s128", "blend=stored,sigma=128", "stored values, σ = 128"),
     ("stored-s96", "blend=stored,sigma=96", "stored values, σ = 96"),
     ("stored-s64", "blend=stored,sigma=64", "stored values, σ = 64"),
+]
+THIN = [
+    ("met", "highlight=4,sigma=400", "thin things are met by 64 rays"),
+    ("drawn", "highlight=4,sigma=400,thin=1", "far before the focus they are drawn: standard"),
+    ("met-32", "highlight=4,rays=32", "32 rays"),
+    ("drawn-32", "highlight=4,rays=32,thin=1", "32 rays, drawn: preview"),
+    ("met-128", "highlight=8,sigma=400,rays=128", "128 rays"),
+    ("drawn-128", "highlight=8,sigma=400,rays=128,thin=1", "128 rays, drawn: best"),
+    ("met-512", "highlight=4,sigma=400,rays=512", "512 rays"),
 ]
 SCORES = [("psnr", "PSNR", "{:.2f}"), ("edge_psnr", "near edges", "{:.2f}"),
           ("ssim", "SSIM", "{:.4f}"), ("rmse", "RMSE", "{:.2f}")]
@@ -133,7 +143,7 @@ def settings_list(runs):
     return "".join(f"- `{label}`: `{settings}`\n" for label, settings, _ in runs)
 
 
-def write(out, methods, rows, rays, against, blends, lights, others):
+def write(out, methods, rows, rays, against, blends, lights, thin, others):
     parts = [
         "# How good the pictures are\n\n"
         "Written by `tests/quality/run.py`; do not edit. Renderings of path-traced scenes by "
@@ -153,6 +163,8 @@ def write(out, methods, rows, rays, against, blends, lights, others):
         "The same against the picture of `sweep-full`:\n\n" + mean_table(RAYS[1:], against),
         "## Blending, `sweep`: mean of the twelve views\n\n" + mean_table(BLENDS, blends),
         "## Clipped lamps, `sweep`: mean of the twelve views\n\n" + mean_table(LIGHTS, lights),
+        "## Thin things, `sweep`: mean of the twelve views\n\n" + mean_table(THIN, thin),
+        "## Thin things: PSNR of each view\n\n" + view_table(THIN, thin, "psnr", "{:.2f}"),
         "## Other apertures: PSNR of each view\n\n" + view_table(METHODS, others, "psnr", "{:.2f}"),
         "## Other apertures: PSNR near edges\n\n"
         + view_table(METHODS, others, "edge_psnr", "{:.2f}"),
@@ -181,9 +193,10 @@ def main():
                                                  for l, s, _ in RAYS[1:]], 20, 0)
     blends = measure(tool, scenes, BLENDS, 20, 0)
     lights = measure(tool, scenes, LIGHTS, 20, 0)
+    thin = measure(tool, scenes, THIN, 20, 0)
     others = [r for blur, blades in ((20, 6), (10, 0), (40, 0))
               for r in measure(tool, scenes, METHODS, blur, blades)]
-    write(args.out, methods, rows, rays, against, blends, lights, others)
+    write(args.out, methods, rows, rays, against, blends, lights, thin, others)
     print(f"wrote {args.out}", file=sys.stderr)
 
 

@@ -49,6 +49,7 @@ static const struct key {
     {"mirror", BYTE, RENDER(mirror), NULL},
     {"background", BYTE, RENDER(background), NULL},
     {"prefilter", BYTE, RENDER(prefilter), NULL},
+    {"thin", INT32, RENDER(thin), NULL},
     {"highlight", FLOAT, RENDER(highlight_gain), NULL},
     {"cell", INT32, RENDER(cell), NULL},
     {"seed", INT32, RENDER(seed), NULL},

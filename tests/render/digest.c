@@ -383,6 +383,54 @@ static void effects(void **state)
     picture_free(&p);
 }
 
+/* Thin things that are drawn. */
+static void thin(void **state)
+{
+    static const struct {
+        int width, height, rays, blades;
+        float blur, focus, sigma;
+        uint32_t blend;
+    } shots[] = {{150, 101, 64, 0, 15, 0.03f, 400, REFOCUS_BLEND_LINEAR},
+                 {97, 130, 64, 6, 40, 0.2f, INFINITY, REFOCUS_BLEND_STORED},
+                 {160, 64, 32, 0, 9.5f, 0, 200, REFOCUS_BLEND_GAMMA}};
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const int w = shots[i].width, h = shots[i].height;
+        struct picture p = picture_fence(w, h, 31u + (uint32_t)i);
+        const struct refocus_image photo = picture_image(&p);
+        const struct refocus_disparity disparity = picture_disparity(&p);
+        uint8_t *out = calloc((size_t)w * (size_t)h, 3);
+        const struct refocus_image image =
+            refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * (ptrdiff_t)w);
+        struct refocus_renderer_params limits =
+            refocus_renderer_params_default(w, h, shots[i].blur);
+        struct refocus_render_params params =
+            refocus_render_params_default(shots[i].focus, shots[i].blur);
+        struct refocus_aperture *aperture = NULL;
+        struct refocus_renderer *renderer;
+        char name[80];
+
+        limits.thin = params.thin = 1;
+        params.rays = shots[i].rays;
+        params.blend = shots[i].blend;
+        params.sigma = shots[i].sigma;
+        assert_non_null(out);
+        if (shots[i].blades)
+            assert_int_equal(refocus_aperture_create_polygon(&aperture, shots[i].blades, 20), 0);
+        params.aperture = aperture;
+        assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+        assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        snprintf(name, sizeof name, "thin: %d x %d, K = %g", w, h, (double)shots[i].blur);
+        check_golden(hash(out, 3 * (size_t)w * (size_t)h), name);
+        refocus_renderer_destroy(&renderer);
+        refocus_aperture_destroy(&aperture);
+        free(out);
+        picture_free(&p);
+    }
+}
+
 /* A coarse map brought to the photo's size. */
 static void upsampled(void **state)
 {
@@ -437,6 +485,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures),
                                        cmocka_unit_test(yuv_views_same),
                                        cmocka_unit_test(effects),
+                                       cmocka_unit_test(thin),
                                        cmocka_unit_test(upsampled),
                                        cmocka_unit_test(ray_sets)};
     const bool update = argc == 3 && !strcmp(argv[2], "--update");

@@ -151,6 +151,49 @@ void picture_free(struct picture *picture)
     free(picture->disparity);
 }
 
+/* Share of a pixel in a line from (x0, y0), `wide` pixels wide. */
+static double share_of(double x, double y, double x0, double y0, double dx, double dy, double wide)
+{
+    const double off = fabs((x - x0) * dy - (y - y0) * dx) / hypot(dx, dy);
+
+    return fmin(fmax(wide / 2 + 0.5 - off, 0), 1);
+}
+
+void picture_line(struct picture *p, double x0, double y0, double dx, double dy, double wide,
+                  int code)
+{
+    for (int i = 0; i < p->width * p->height; i++) {
+        const double share = share_of(i % p->width, i / p->width, x0, y0, dx, dy, wide);
+
+        for (int c = 0; c < 3; c++)
+            p->rgb[3 * i + c] =
+                (uint8_t)(p->rgb[3 * i + c] * (1 - share) + (code - 30 * c) * share + 0.5);
+        if (share >= 0.5)
+            p->disparity[i] = FENCE_NEAR;
+    }
+}
+
+struct picture picture_fence(int width, int height, uint32_t seed)
+{
+    struct picture p = picture_flat(width, height, (uint8_t[3]){90, 70, 50}, FENCE_FAR);
+
+    for (int i = 0; i < width * height; i++) {
+        const int x = i % width, y = i / width;
+        const bool box = x > 90 && x < 170 && y > 60 && y < 150;
+
+        for (int c = 0; c < 3; c++)
+            p.rgb[3 * i + c] = (uint8_t)((x / 9 + y / 7) % 3 * 40 + 20 * c + (box ? 70 : 20) +
+                                         (int)(noise(&seed) % 12));
+        p.disparity[i] = box ? 20000 : FENCE_FAR;
+    }
+    for (int i = -6; i < 14; i++) {
+        picture_line(&p, 50 * i, 0, 1, 0.9, 1 + i % 4, 190);
+        picture_line(&p, 50 * i, 0, -1, 0.8, 2.5, 80);
+    }
+    picture_line(&p, 300, 0, 0, 1, 24, 120);
+    return p;
+}
+
 struct refocus_image picture_image(const struct picture *p)
 {
     return refocus_image_packed(REFOCUS_FORMAT_RGB8, p->rgb, p->width, p->height,

@@ -26,6 +26,14 @@ struct picture {
  * class of tile, hard edges, clipped pixels. The same for the same seed everywhere. */
 struct picture picture_make(int width, int height, uint32_t seed);
 
+/* A wall with a box before it, a fence of wires before both, and a beam as near as the fence. */
+enum { FENCE_FAR = 2000, FENCE_NEAR = 60000 }; /* disparities of the wall and the fence */
+struct picture picture_fence(int width, int height, uint32_t seed);
+
+/* Draws a line through (x0, y0) along (dx, dy), `wide` pixels wide, as near as the fence. */
+void picture_line(struct picture *picture, double x0, double y0, double dx, double dy, double wide,
+                  int code);
+
 /* All pixels of one colour, all disparities the same. */
 struct picture picture_flat(int width, int height, const uint8_t rgb[3],
                             uint16_t disparity);

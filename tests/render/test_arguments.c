@@ -49,6 +49,7 @@ static void bad_limits(void **state)
         BAD(refocus_renderer_params, threads, 65), BAD(refocus_renderer_params, cpu, 6), BAD(refocus_renderer_params, cpu, UINT32_MAX),
         BAD(refocus_renderer_params, methods, 1u << 10), BAD(refocus_renderer_params, reserved, 1),
         BAD(refocus_renderer_params, allocator.allocate, some_allocate),
+        BAD(refocus_renderer_params, thin, 2),
         BAD(refocus_renderer_params, allocator.release, some_release)};
 
     (void)state;
@@ -137,6 +138,7 @@ static void bad_settings(void **state)
         BAD(refocus_render_params, fringe, -0.51f), BAD(refocus_render_params, fringe, NAN),
         BAD(refocus_render_params, grain, -0.1f), BAD(refocus_render_params, grain, 4.1f),
         BAD(refocus_render_params, grain, NAN),
+        BAD(refocus_render_params, thin, 2),
         BAD(refocus_render_params, blur_limit, -1), BAD(refocus_render_params, blur_limit, 127.1f)};
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = prepared(&p, 5, 1);

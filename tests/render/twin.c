@@ -70,7 +70,7 @@ void twin_destroy(struct twin *t)
 }
 
 /* Along one axis: the mean of a pixel and of those neighbours, `step` pixels away, whose
- * blur is within a pixel of its own; the pixel itself where it is blurred by `above` or less. */
+ * blur is within an eighth, one pixel to two, of its own; the pixel itself where it is blurred by `above` or less. */
 static void smooth(const struct twin *t, double *out, const double *in, int step_x, int step_y,
                    double above)
 {
@@ -83,7 +83,9 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
             for (int i = -1; i <= 1; i++) {
                 const int q = twin_at(t, x + i * step_x, y + i * step_y);
 
-                if (i == 0 || (fabs(t->blur[p]) > above && fabs(t->blur[q] - t->blur[p]) <= 1)) {
+                if (i == 0 || (fabs(t->blur[p]) > above && 
+                               fabs(t->blur[q] - t->blur[p]) <=
+                                   fmin(fmax(fabs(t->blur[p]) / 8, 1), 2))) {
                     sum += in[q];
                     count++;
                 }

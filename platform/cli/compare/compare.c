@@ -112,6 +112,7 @@ static uint64_t memory_of(const struct engine *engine,
 
     params.threads = engine->info.threads;
     params.methods = REFOCUS_METHOD_BIT(method);
+    params.thin = engine->params.thin;
     return refocus_renderer_memory(&params);
 }
 

@@ -79,6 +79,7 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     params->highlight_gain = isnan(settings->highlights)
                                  ? qualities[settings->quality].highlight_gain
                                  : (float)settings->highlights;
+    params->thin = !settings->no_thin;
     params->mirror = settings->mirror;
     params->background = settings->background;
     engine->methods = REFOCUS_METHOD_BIT(params->method);
@@ -114,6 +115,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.threads = (int32_t)settings->threads;
     params.cpu = (uint32_t)settings->cpu;
     params.methods = engine->methods;
+    params.thin = engine->params.thin;
     engine->params.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;

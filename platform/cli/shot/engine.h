@@ -16,7 +16,7 @@ struct engine_settings {
     double rays, iterations, sigma, highlights; /* NAN: not given */
     double threads, repeat;
     const char *aperture; /* NULL: that of the bokeh's preset */
-    bool mirror, background, json;
+    bool mirror, background, no_thin, json;
     struct paper_settings papers;
     struct control_settings controls;
     struct bokeh_settings bokeh;
@@ -81,6 +81,12 @@ const char *engine_blend_summary(uint32_t index);
      .offset = offsetof(type, member.background),                                      \
      .help = "search: where a ray is hidden take the background layer",                \
      OF_METHODS(type, member.method, OF_SEARCH)},                               \
+    {.kind = OPTION_FLAG,                                                              \
+     .name = "--no-thin",                                                              \
+     .offset = offsetof(type, member.no_thin),                                         \
+     .help = "sweep: thin things far before the focus are met by rays like all else, " \
+             "not drawn",                                                              \
+     OF_METHODS(type, member.method, OF_SWEEP)},                                       \
     {.kind = OPTION_TEXT,                                                              \
      .name = "--aperture",                                                             \
      .argument = "SHAPE",                                                              \

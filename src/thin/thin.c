@@ -1,0 +1,211 @@
+#include "thin/thin.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "thin/veil.h"
+#include "focus/focus.h"
+#include "methods/method.h"
+#include "planes/planes.h"
+#include "renderer/bands.h"
+#include "tiles/ranges.h"
+
+enum { CELLS = RF_TILE / RF_CELL };
+
+struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
+                           uint32_t *count)
+{
+    const struct rf_photo *photo = &r->photo[r->used];
+    const int row = ty + r->origin_y / RF_TILE, column = tx + r->origin_x / RF_TILE;
+    const int across = (photo->width + RF_TILE - 1) / RF_TILE;
+    const struct rf_thin_run *run = &photo->thin.run[(size_t)row * across + column];
+
+    *count = run->count;
+    return photo->thin.pixel + (uint64_t)row * rf_thin_capacity(photo->width) +
+           run->first;
+}
+
+/* Blur of a disparity at a pixel. */
+static int blur_of(const struct rf_frame *f, uint16_t disparity, int x, int y)
+{
+    int16_t blur;
+
+    if (f->plan.plain)
+        f->r->kernels.signed_blur(&blur, &disparity, f->plan.focus, 1);
+    else
+        rf_focus_row(&f->plan, &blur, &disparity, f->r->origin_x + x,
+                     f->r->origin_y + y, 1);
+    return blur;
+}
+
+static bool *is_drawn(const struct refocus_renderer *r, int tx, int ty)
+{
+    return &r->veil.drawn[(size_t)ty * r->tiles_x + tx];
+}
+
+bool rf_thin_drawn(const struct refocus_renderer *r, int tx, int ty)
+{
+    return *is_drawn(r, tx, ty);
+}
+
+/* Whether a tile holds some cells all of which is as near as a blur: nothing thin fills
+ * many. */
+static bool is_filled(const struct refocus_renderer *r, int tx, int ty, int blur)
+{
+    enum { FEW = 3 };
+    int filled = 0;
+
+    for (int y = ty * CELLS; y < (ty + 1) * CELLS; y++)
+        for (int x = tx * CELLS; x < (tx + 1) * CELLS; x++)
+            filled += rf_cell_most(r, y)[x] <= blur;
+    return filled > FEW;
+}
+
+/* Whether nothing that is nearly as near as a blur reaches a tile, but for what is
+ * thin: what is drawn is laid over all. */
+static bool is_alone(const struct refocus_renderer *r, int tx, int ty, int blur)
+{
+    const int reach = (abs(blur) + 256 * RF_TILE - 1) / (256 * RF_TILE);
+
+    for (int y = ty - reach; y <= ty + reach; y++)
+        for (int x = tx - reach; x <= tx + reach; x++)
+            if (x >= 0 && y >= 0 && x < r->tiles_x && y < r->tiles_y &&
+                is_filled(r, x, y, blur * 3 / 4))
+                return false;
+    return true;
+}
+
+int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+{
+    return blur_of(f, thin->near_disparity, tx * RF_TILE, ty * RF_TILE);
+}
+
+bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+{
+    return f->plan.plain ? thin->near_disparity >= f->veil_from
+                         : rf_near_blur(f, thin, tx, ty) <= -f->veil_blur;
+}
+
+int rf_veil_from(const struct rf_frame *f)
+{
+    int low = 0, high = 65536;
+
+    while (low < high) {
+        const int middle = (low + high) / 2;
+
+        if (blur_of(f, (uint16_t)middle, 0, 0) <= -f->veil_blur)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+static void choose_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    const struct refocus_renderer *r = f->r;
+
+    (void)worker;
+    for (int tx = 0; tx < r->tiles_x; tx++) {
+        const struct rf_thin *farthest = NULL;
+        uint32_t count;
+        const struct rf_thin *thin = rf_thin_of(r, tx, band, &count);
+
+        for (uint32_t i = 0; i < count; i++)
+            if (rf_is_veil(f, &thin[i], tx, band) &&
+                (!farthest || thin[i].near_disparity < farthest->near_disparity))
+                farthest = &thin[i];
+        *is_drawn(r, tx, band) =
+            farthest && is_alone(r, tx, band, rf_near_blur(f, farthest, tx, band));
+    }
+}
+
+/* F's blur where what is before it is drawn. */
+static void patch_tile(const struct rf_frame *f, int tx, int ty)
+{
+    const struct refocus_renderer *r = f->r;
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+
+    for (uint32_t i = 0; i < count; i++) {
+        const int x = tx * RF_TILE + thin[i].at % RF_TILE;
+        const int y = ty * RF_TILE + thin[i].at / RF_TILE;
+
+        if (rf_is_veil(f, &thin[i], tx, ty))
+            r->front.blur[y * r->stride + x] =
+                (int16_t)blur_of(f, thin[i].far_disparity, x, y);
+    }
+}
+
+static void patch_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    bool any = false;
+
+    (void)worker;
+    for (int tx = 0; tx < r->tiles_x; tx++) {
+        if (!*is_drawn(r, tx, band))
+            continue;
+        any = true;
+        patch_tile(f, tx, band);
+    }
+    if (!any)
+        return;
+    rf_extend_rows(r, r->front.blur, rf_band_start(band), rf_band_end(r, band));
+    rf_cell_rows(r, band);
+    rf_bin_tiles(r, f->scale, band);
+}
+
+void rf_take_thin_apart(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, choose_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, patch_band, f, rf_bands(f->r));
+    rf_veil_draw(f);
+}
+
+void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
+                    uint16_t mean[3][RF_TILE * RF_TILE])
+{
+    const struct refocus_renderer *r = f->r;
+    const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < RF_TILE * RF_TILE; i++)
+            mean[c][i] = (uint16_t)(4 * r->front.light[c][at + i / RF_TILE * r->stride +
+                                                          i % RF_TILE]);
+    for (uint32_t i = 0; *is_drawn(r, tx, ty) && i < count; i++)
+        for (int c = 0; rf_is_veil(f, &thin[i], tx, ty) && c < 3; c++)
+            mean[c][thin[i].at] = (uint16_t)(4 * thin[i].light[c]);
+}
+
+static void swap_tile(const struct rf_frame *f, int tx, int ty)
+{
+    const struct refocus_renderer *r = f->r;
+    uint32_t count;
+    struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+
+    for (uint32_t i = 0; i < count; i++) {
+        const ptrdiff_t at = (ty * RF_TILE + thin[i].at / RF_TILE) * r->stride +
+                             tx * RF_TILE + thin[i].at % RF_TILE;
+
+        for (int c = 0; rf_is_veil(f, &thin[i], tx, ty) && c < 3; c++) {
+            const uint16_t light = r->front.light[c][at];
+
+            r->front.light[c][at] = thin[i].light[c];
+            thin[i].light[c] = light;
+        }
+    }
+}
+
+/* Not by the pool, which leaves out what comes after the run was cancelled. */
+void rf_swap_thin_light(const struct rf_frame *f)
+{
+    for (int ty = 0; ty < f->r->tiles_y; ty++)
+        for (int tx = 0; tx < f->r->tiles_x; tx++)
+            if (*is_drawn(f->r, tx, ty))
+                swap_tile(f, tx, ty);
+}

@@ -1,0 +1,225 @@
+#include "thin/veil.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "methods/method.h"
+#include "renderer/bands.h"
+
+enum { CELLS = RF_TILE / RF_VEIL_CELL };
+
+/* Sums over a cell. */
+struct sum {
+    int32_t light[4]; /* of alpha N, and of alpha: 4096 = 1 */
+    int32_t blur, weight;
+};
+
+/* What is thin in a tile, by cells. */
+static void add_tile(const struct rf_frame *f, int tx, int ty,
+                     struct sum sum[CELLS * CELLS])
+{
+    const struct refocus_renderer *r = f->r;
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+
+    for (uint32_t i = 0; i < count; i++, thin++) {
+        const int x = thin->at % RF_TILE, y = thin->at / RF_TILE;
+        const ptrdiff_t at = (ty * RF_TILE + y) * r->stride + tx * RF_TILE + x;
+        struct sum *cell = &sum[y / RF_VEIL_CELL * CELLS + x / RF_VEIL_CELL];
+
+        if (!rf_is_veil(f, thin, tx, ty))
+            continue;
+        for (int c = 0; c < 3; c++)
+            cell->light[c] += r->front.light[c][at] -
+                              ((255 - thin->alpha) * thin->light[c] + 127) / 255;
+        cell->light[3] += (4096 * thin->alpha + 127) / 255;
+        cell->weight += thin->alpha;
+        cell->blur -= thin->alpha * rf_near_blur(f, thin, tx, ty);
+    }
+}
+
+/* Half the chord of a disc of radius 1 at n / 32 from its middle, Q15: sqrt(1 - (n /
+ * 32)^2). */
+static const uint16_t half_chord[33] = {
+    32768, 32752, 32704, 32624, 32511, 32366, 32187, 31974, 31727, 31445, 31127,
+    30771, 30377, 29942, 29466, 28945, 28378, 27762, 27092, 26367, 25580, 24725,
+    23796, 22783, 21674, 20454, 19102, 17588, 15864, 13852, 11403, 8128,  0};
+
+static int chord(int dy, int radius) /* Q8 both */
+{
+    const int64_t at = ((int64_t)dy << 13) / radius; /* Q8 of 1/32 */
+    const int i = (int)(at >> 8), part = (int)(at & 255);
+
+    if (i >= 32)
+        return 0;
+    return (int)(((int64_t)(half_chord[i] * (256 - part) + half_chord[i + 1] * part) *
+                  radius) >>
+                 23);
+}
+
+/* What a cell adds to each cell of its disc, light and cover: the disc has as many as
+ * its rows are long together. */
+static void share(const int32_t light[4], int radius, int32_t each[4])
+{
+    int64_t length = chord(0, radius);
+
+    for (int y = 1; y <= radius >> 8; y++)
+        length += 2 * chord(y << 8, radius);
+    for (int c = 0; c < 4; c++) /* sums are of pixels, 16 a cell */
+        each[c] = (int32_t)(((int64_t)light[c] * (1 << (RF_VEIL_SHIFT + 8 - 4))) /
+                            (2 * length));
+}
+
+static void gather_band(void *context, int ty, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    struct rf_veil_source *out =
+        r->veil.source + (ptrdiff_t)ty * r->tiles_x * CELLS * CELLS;
+    uint32_t sources = 0;
+
+    (void)worker;
+    for (int tx = 0; tx < r->tiles_x; tx++) {
+        struct sum sum[CELLS * CELLS] = {0};
+
+        if (!rf_thin_drawn(r, tx, ty))
+            continue;
+        add_tile(f, tx, ty, sum);
+        for (int i = 0; i < CELLS * CELLS; i++) {
+            if (!sum[i].weight)
+                continue;
+            out[sources].x = (uint16_t)(tx * CELLS + i % CELLS);
+            out[sources].y = (uint16_t)(ty * CELLS + i / CELLS);
+            out[sources].radius =
+                (uint16_t)(sum[i].blur / sum[i].weight * f->veils >> 10);
+            share(sum[i].light, out[sources].radius, out[sources].each);
+            sources++;
+        }
+    }
+    r->veil.sources[ty] = sources;
+}
+
+/* Adds v from cell x on, Q8. */
+static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int sign)
+{
+    const int i = x < 0 ? 0 : x >> 8, part = x < 0 ? 0 : x & 255;
+
+    if (i >= cells)
+        return;
+    for (int c = 0; c < 4; c++) {
+        const int32_t later = (int32_t)((int64_t)v[c] * part >> 8);
+
+        row[i][c] += sign * (v[c] - later);
+        row[i + 1][c] += sign * later;
+    }
+}
+
+/* A disc in rows from `first` to `end` - 1. */
+static void draw(const struct refocus_renderer *r, int cx, int cy, int radius,
+                 const int32_t v[4], int first, int end)
+{
+    const int cells = r->tiles_x * CELLS, rows = radius >> 8;
+
+    first = cy - rows > first ? cy - rows : first;
+    end = cy + rows + 1 < end ? cy + rows + 1 : end;
+    for (int y = first; y < end; y++) {
+        const int half = chord(abs(y - cy) << 8, radius);
+        int32_t(*row)[4] = r->veil.cell + (size_t)y * r->veil.stride;
+
+        step(row, cells, cx * 256 + 128 - half, v, 1);
+        step(row, cells, cx * 256 + 128 + half, v, -1);
+    }
+}
+
+/* Beyond the picture's sides it goes on as its reflection. */
+static void draw_reflected(const struct refocus_renderer *r,
+                           const struct rf_veil_source *s, int first, int end)
+{
+    const int rows = s->radius >> 8;
+    const int right = (r->width + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
+    const int below = (r->height + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
+    const int x[] = {s->x, -1 - s->x, 2 * right - 1 - s->x};
+    const int y[] = {s->y, -1 - s->y, 2 * below - 1 - s->y};
+
+    for (int j = 0; j < 3; j++)
+        for (int i = 0; i < 3; i++)
+            if (x[i] >= -rows - 1 && x[i] <= right + rows && y[j] >= -rows &&
+                y[j] < below + rows)
+                draw(r, x[i], y[j], s->radius, s->each, first, end);
+}
+
+static void draw_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    const struct refocus_renderer *r = f->r;
+    const int reach = (r->pad + RF_TILE) / RF_TILE + 1;
+    const int first = band * CELLS, end = first + CELLS;
+
+    (void)worker;
+    memset(r->veil.cell + (size_t)first * (size_t)r->veil.stride, 0,
+           (size_t)CELLS * (size_t)r->veil.stride * sizeof *r->veil.cell);
+    for (int ty = band - reach; ty <= band + reach; ty++) {
+        const struct rf_veil_source *s =
+            r->veil.source + (ptrdiff_t)ty * r->tiles_x * CELLS * CELLS;
+
+        if (ty < 0 || ty >= r->tiles_y)
+            continue;
+        for (uint32_t i = 0; i < r->veil.sources[ty]; i++)
+            draw_reflected(r, &s[i], first, end);
+    }
+    for (int y = first; y < end; y++) {
+        int32_t(*row)[4] = r->veil.cell + (ptrdiff_t)y * r->veil.stride;
+
+        for (int x = 1; x < r->tiles_x * CELLS; x++)
+            for (int c = 0; c < 4; c++)
+                row[x][c] += row[x - 1][c];
+    }
+}
+
+void rf_veil_draw(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, gather_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, draw_band, f, rf_bands(f->r));
+}
+
+static int clamp(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+/* Cells around a tile; false: nothing is drawn there. */
+static bool get_cells(const struct refocus_renderer *r, int tx, int ty,
+                      int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
+{
+    const int across = r->tiles_x * CELLS, down = r->tiles_y * CELLS;
+    int any = 0;
+
+    for (int j = 0; j < RF_VEIL_CELLS; j++) {
+        const int y = clamp(ty * CELLS + j - 1, down - 1);
+
+        for (int i = 0; i < RF_VEIL_CELLS; i++) {
+            const int x = clamp(tx * CELLS + i - 1, across - 1);
+
+            memcpy(part[j][i], r->veil.cell[(size_t)y * r->veil.stride + x],
+                   sizeof part[j][i]);
+            any |= part[j][i][3];
+        }
+    }
+    return any >> RF_VEIL_SHIFT != 0;
+}
+
+bool rf_has_veil(const struct refocus_renderer *r, int tx, int ty)
+{
+    int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
+
+    return get_cells(r, tx, ty, part);
+}
+
+void rf_veil_over(const struct refocus_renderer *r, int tx, int ty,
+                  uint16_t mean[3][RF_TILE * RF_TILE])
+{
+    int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
+
+    if (get_cells(r, tx, ty, part))
+        r->kernels.lay_veil((uint16_t *const[3]){mean[0], mean[1], mean[2]}, part);
+}

@@ -1,0 +1,346 @@
+/* Thin things far before the focus: src/thin. */
+#include "pictures.h"
+
+#include "renderer/renderer.h"
+
+enum {
+    WIDTH = 339,
+    HEIGHT = 251,
+    MOST = 3 * WIDTH * HEIGHT,
+    FAR = FENCE_FAR,
+    NEAR = FENCE_NEAR
+};
+static const float K = 15;
+
+static struct refocus_renderer *create(const struct picture *p, uint32_t cpu,
+                                       int threads, bool thin)
+{
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(p->width, p->height, K);
+    const struct refocus_image photo = picture_image(p);
+    const struct refocus_disparity disparity = picture_disparity(p);
+    struct refocus_renderer *renderer;
+    int status;
+
+    limits.cpu = cpu;
+    limits.threads = threads;
+    limits.thin = thin;
+    limits.previews = 1;
+    status = refocus_renderer_create(&renderer, &limits);
+    if (status == REFOCUS_ERR_UNSUPPORTED)
+        return NULL;
+    assert_int_equal(status, REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+    return renderer;
+}
+
+struct setting {
+    float focus, blur, gain, sigma;
+    uint32_t thin, blend, method;
+    int rays, blades, reduce, x, y, width, height;
+};
+
+static const struct setting plain = {.focus = FAR / 65535.0f,
+                                     .blur = 15,
+                                     .gain = 1,
+                                     .sigma = 400,
+                                     .thin = 1, .rays = 64,
+                                     .reduce = 1};
+
+static int render(struct refocus_renderer *renderer, const struct setting *s,
+                  uint8_t *out)
+{
+    struct refocus_render_params params =
+        refocus_render_params_default(s->focus, s->blur);
+    const int w = s->width ? s->width : (WIDTH + s->reduce - 1) / s->reduce;
+    const int h = s->height ? s->height : (HEIGHT + s->reduce - 1) / s->reduce;
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
+    struct refocus_aperture *aperture = NULL;
+    int status;
+
+    if (s->blades)
+        assert_int_equal(refocus_aperture_create_polygon(&aperture, s->blades, 10),
+                         REFOCUS_OK);
+    params.aperture = aperture;
+    params.rays = s->rays;
+    params.thin = s->thin;
+    params.highlight_gain = s->gain;
+    params.sigma = s->sigma;
+    params.blend = s->blend;
+    params.method = s->method;
+    params.reduce = s->reduce;
+    params.region_x = s->x;
+    params.region_y = s->y;
+    params.region_width = s->width;
+    params.region_height = s->height;
+    memset(out, 0x5a, MOST);
+    status = refocus_render(renderer, &params, &image);
+    refocus_aperture_destroy(&aperture);
+    return status;
+}
+
+/* Renders by a renderer of its own. */
+static void render_fresh(const struct picture *p, bool memory, const struct setting *s,
+                         uint8_t *out)
+{
+    struct refocus_renderer *renderer = create(p, REFOCUS_CPU_AUTO, 1, memory);
+
+    assert_non_null(renderer);
+    assert_int_equal(render(renderer, s, out), REFOCUS_OK);
+    refocus_renderer_destroy(&renderer);
+}
+
+static double light_of(int code)
+{
+    const double x = code / 255.0;
+
+    return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+}
+
+/* A wire of width w before black is the chord of a disc: L w 2 sqrt(s^2 - t^2) / pi s^2
+ * at t from its middle, from end to end. */
+static void wire(void **state)
+{
+    static uint8_t out[MOST];
+    const double s = (double)K * (NEAR - FAR) / 65535, wide = 3, pi = 3.14159265358979;
+    struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
+    double sum = 0, worst = 0, worst_rays = 0;
+    struct setting rays = plain;
+
+    (void)state;
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 168; x <= 170; x++) {
+            memset(p.rgb + 3 * (y * WIDTH + x), 220, 3);
+            p.disparity[y * WIDTH + x] = NEAR;
+        }
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        rays.thin = !pass;
+        render_fresh(&p, true, &rays, out);
+        for (int x = 150; x < 190; x++) {
+            const double t = fabs(x - 169.0);
+            const double should =
+                t < s ? light_of(220) * wide * 2 * sqrt(s * s - t * t) / (pi * s * s)
+                      : 0;
+            const double is = light_of(out[3 * (HEIGHT / 2 * WIDTH + x)]);
+            double *most = pass ? &worst_rays : &worst;
+
+            sum += pass ? 0 : is;
+            if (t < s - 5) /* cells blur the edge */
+                *most = fmax(*most, fabs(is - should));
+        }
+        for (int y = 1; y < HEIGHT && !pass; y++) /* to both ends */
+            if (abs(out[3 * (y * WIDTH + 169)] - out[3 * 169]) > 4)
+                fail_msg("row %d is %d, the first %d", y, out[3 * (y * WIDTH + 169)],
+                         out[3 * 169]);
+    }
+    printf("wire: %.4f off where it is %.4f; by rays %.4f\n", worst,
+           light_of(220) * wide * 2 / (pi * s), worst_rays);
+    assert_true(fabs(sum - light_of(220) * wide) < 0.03 * light_of(220) * wide);
+    assert_true(worst < 0.13 * light_of(220) * wide * 2 / (pi * s));
+    assert_true(worst < worst_rays / 3);
+    picture_free(&p);
+}
+
+/* Where it has nothing to do, or may not, nothing changes. */
+static void elsewhere(void **state)
+{
+    static uint8_t out[MOST], expected[MOST];
+    struct picture p = picture_fence(WIDTH, HEIGHT, 1),
+                   thick = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){9, 80, 7}, FAR);
+    struct setting on = plain, off = plain;
+
+    (void)state;
+    off.thin = 0;
+    render_fresh(&p, false, &on, out); /* no memory for it */
+    render_fresh(&p, true, &off, expected);
+    assert_same_pixels(out, expected, WIDTH, HEIGHT, "a renderer without");
+    render_fresh(&p, true, &on, out);
+    assert_true(memcmp(out, expected, MOST));
+    on.focus = off.focus = NEAR / 65535.0f;
+    render_fresh(&p, true, &on, out);
+    render_fresh(&p, true, &off, expected);
+    assert_same_pixels(out, expected, WIDTH, HEIGHT, "the fence in focus");
+    on = off = plain;
+    off.thin = 0;
+    picture_line(&thick, 160, 0, 0.1, 1, 30, 200);
+    render_fresh(&thick, true, &on, out);
+    render_fresh(&thick, true, &off, expected);
+    assert_same_pixels(out, expected, WIDTH, HEIGHT, "a beam");
+    picture_free(&p);
+    picture_free(&thick);
+}
+
+static void same_everywhere(void **state)
+{
+    static uint8_t out[MOST], expected[MOST];
+    static const int threads[] = {2, 3, 8};
+    struct picture p = picture_fence(WIDTH, HEIGHT, 2);
+    struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_C, 1, true);
+
+    (void)state;
+    assert_int_equal(render(renderer, &plain, expected), REFOCUS_OK);
+    refocus_renderer_destroy(&renderer);
+    for (uint32_t cpu = 0; cpu <= REFOCUS_CPU_AVX512; cpu++) {
+        for (int i = 0; i < 3; i++) {
+            if (cpu != REFOCUS_CPU_AUTO && i > 0)
+                continue;
+            renderer = create(&p, cpu, threads[i], true);
+            if (!renderer)
+                continue;
+            assert_int_equal(render(renderer, &plain, out), REFOCUS_OK);
+            assert_same_pixels(out, expected, WIDTH, HEIGHT, refocus_cpu_name(cpu));
+            refocus_renderer_destroy(&renderer);
+        }
+    }
+    picture_free(&p);
+}
+
+/* A part of the picture is that of the whole. */
+static void regions(void **state)
+{
+    static uint8_t whole[MOST], out[MOST];
+    struct picture p = picture_fence(WIDTH, HEIGHT, 3);
+    uint32_t seed = 5;
+
+    (void)state;
+    for (int blur = 12; blur <= 15; blur += 3) {
+        struct setting s = plain;
+
+        s.blur = (float)blur;
+        render_fresh(&p, true, &s, whole);
+        for (int i = 0; i < (left_out(1, 2) ? 6 : 16); i++) {
+            s.width = 1 + (int)(noise(&seed) >> 8) % 50;
+            s.height = 1 + (int)(noise(&seed) >> 8) % 50;
+            s.x = (int)((noise(&seed) >> 8) % (uint32_t)(WIDTH - s.width + 1));
+            s.y = (int)((noise(&seed) >> 8) % (uint32_t)(HEIGHT - s.height + 1));
+            render_fresh(&p, true, &s, out);
+            for (int y = 0; y < s.height; y++)
+                if (memcmp(out + 3 * y * s.width, whole + 3 * ((s.y + y) * WIDTH + s.x),
+                           3 * (size_t)s.width))
+                    fail_msg("K = %d, %dx%d at %d,%d: row %d differs", blur, s.width,
+                             s.height, s.x, s.y, y);
+        }
+    }
+    picture_free(&p);
+}
+
+struct canceller {
+    struct refocus_renderer *renderer;
+    atomic_int left;
+};
+
+static void cancel_later(void *user)
+{
+    struct canceller *canceller = user;
+
+    if (atomic_fetch_sub(&canceller->left, 1) == 1)
+        refocus_cancel(canceller->renderer);
+}
+
+static void change(struct setting *s, uint32_t *seed)
+{
+    static const float focuses[] = {FAR / 65535.0f, 0.3f, NEAR / 65535.0f};
+    const uint32_t what = noise(seed) >> 8;
+
+    if (what & 1)
+        s->thin = !s->thin;
+    if (what & 2)
+        s->focus = focuses[what / 1024 % 3];
+    if (what & 4)
+        s->blend = what / 1024 % RF_BLEND_COUNT;
+    if (what & 8)
+        s->gain = what & 2048 ? 1 : 4;
+    if (what & 16)
+        s->method = what & 1024 ? REFOCUS_METHOD_SEARCH : REFOCUS_METHOD_SWEEP;
+    if (what & 32)
+        s->blades = what & 2048 ? 0 : 5;
+    if (what & 64)
+        s->reduce = what & 1024 ? 1 : 2;
+    if (what & 128)
+        s->sigma = what & 2048 ? 400 : INFINITY;
+    if (what & 512)
+        s->rays = what & 2048 ? 64 : what & 4096 ? 32 : 100;
+    s->x = s->y = s->width = s->height = 0;
+    if (what & 256) {
+        s->x = 40;
+        s->y = 30;
+        s->width = 60;
+        s->height = 20;
+    }
+}
+
+/* Whatever was rendered or cancelled before, a picture is that of a new renderer. */
+static void sequence(void **state)
+{
+    static uint8_t out[MOST], expected[MOST];
+    struct picture p = picture_fence(WIDTH, HEIGHT, 4);
+    struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_AUTO, 2, true);
+    struct canceller canceller = {renderer, 0};
+    struct setting s = plain;
+    uint32_t seed = 6;
+    int cancelled = 0;
+
+    (void)state;
+    renderer->run.user = &canceller;
+    for (int i = 0; i < (left_out(1, 2) ? 20 : 80); i++) {
+        change(&s, &seed);
+        if (i % 3 == 1) {
+            struct setting other = s;
+
+            change(&other, &seed);
+            atomic_store(&canceller.left, 1 + (int)(noise(&seed) >> 8) % 150);
+            renderer->run.looked_at = cancel_later;
+            cancelled += render(renderer, &other, out) == REFOCUS_ERR_CANCELLED;
+            renderer->run.looked_at = NULL;
+            s = i % 2 ? other : s;
+        }
+        assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
+        render_fresh(&p, true, &s, expected);
+        for (int k = 0; k < MOST; k++)
+            if (out[k] != expected[k])
+                fail_msg("step %d: byte %d is %d, should be %d", i, k, out[k],
+                         expected[k]);
+    }
+    assert_true(cancelled > 0);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* The text of render.h. */
+static void memory(void **state)
+{
+    static const int sides[][2] = {{1, 1},     {65535, 1}, {17, 33},
+                                   {720, 540}, {2, 40000}, {1921, 1087}};
+
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        const int w = sides[i / 2][0], h = sides[i / 2][1];
+        struct refocus_renderer_params params =
+            refocus_renderer_params_default(w, h, 20);
+        double bytes;
+
+        params.previews = i % 2;
+        bytes = -(double)refocus_renderer_memory(&params);
+        params.thin = 1;
+        bytes += (double)refocus_renderer_memory(&params);
+        if (bytes < 0 ||
+            bytes > (6.0 * (w + 16) * (h + 16) + 4096) * (i % 2 ? 4 / 3.0 : 1))
+            fail_msg("%d x %d: %.0f bytes", w, h, bytes);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wire),
+        cmocka_unit_test(elsewhere),
+        cmocka_unit_test(same_everywhere),
+        cmocka_unit_test(regions),
+        cmocka_unit_test(sequence),
+        cmocka_unit_test(memory),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
