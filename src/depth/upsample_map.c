@@ -19,8 +19,8 @@ static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
     up->coarse = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
     up->wide_stride = up->photo->width;
     up->wide = rf_arena_take(arena, width * rows, 2);
-    up->raw_stride = up->photo->width + 2;
-    up->raw = rf_arena_take(arena, (width + 2) * height, 2);
+    up->settled_stride = up->photo->width;
+    up->settled = rf_arena_take(arena, width * height, 2);
     up->across = rf_arena_take(arena, width, sizeof *up->across);
     up->down = rf_arena_take(arena, height, sizeof *up->down);
     up->span = rf_arena_take(arena, columns + 2, sizeof *up->span);
@@ -31,9 +31,10 @@ static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
         up->trust = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
     up->sure_stride = up->photo->width;
     up->sure = rf_arena_take(arena, width * height, 1);
+    up->unsure_stride = rf_upsample_blocks(up->photo->width) + 1;
+    up->unsure = rf_arena_take(arena, (uint64_t)up->unsure_stride * height, 2);
     if (arena->base) {
         up->coarse += 2 * up->coarse_stride + 2;
-        up->raw += 1;
         for (int c = 0; c < 3; c++)
             up->colour[c] += 2 * up->colour_stride + 2;
         if (up->confidence)
