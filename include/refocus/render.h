@@ -430,8 +430,8 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  * blurred reaching over them, come out as they went in; alpha always does (255 where
  * the photo has none).
  *
- * What the last call made is kept as long as it holds: another aperture shape, sigma or region
- * costs only the rays; other rays or highlights, what depends on them; another focus or K, all
+ * What the last call made is kept as long as it holds: another aperture shape or region
+ * costs only the rays; other rays, highlights or sigma, what depends on them; another focus or K, all
  * but the light of the photo. A region costs what lies in it and around it. None of this changes
  * a byte.
  *

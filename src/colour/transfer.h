@@ -6,6 +6,7 @@
 #ifndef RF_TRANSFER_H
 #define RF_TRANSFER_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -29,5 +30,14 @@ void rf_transfer_init(struct rf_transfer *transfer, int blend);
  * at least 1/32767, so that no average is ever empty.
  */
 void rf_highlight_weights(uint16_t weight[256], double sigma);
+
+/*
+ * Light times weight in 16 bits (kernels.h, weigh) is rounded; whether each code that no
+ * channel of a pixel exceeds comes back from its weighted mean nevertheless. In sRGB it
+ * does for weights of 0.66 and more of the largest, if light is nearest in Q13, not Q12: `odd`
+ * are the Q12 values of codes that are more than that, the rest of it 65535.
+ */
+bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256],
+                           uint16_t *odd, int odds);
 
 #endif

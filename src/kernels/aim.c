@@ -101,40 +101,58 @@ static void RF_VEC(rf_aim)(int32_t *restrict offset, int32_t *restrict cell,
     }
 }
 
-enum { BITS = 32, BLOCKS = RF_BINS / BITS };
+enum { BITS = RF_JOIN_BLOCK, BLOCKS = RF_BINS / BITS };
 
 /* Of all rays at once: */
 struct state {
-    uint32_t need[BLOCKS][RF_RAY_CHUNK]; /* bit k % 32 of block k / 32: test slab k */
-    uint32_t open[RF_RAY_CHUNK];         /* ~0: no slab so far takes all */
-    uint32_t tests[RF_RAY_CHUNK];
-    uint32_t last[RF_RAY_CHUNK];         /* slab, or their number: the background */
+    uint16_t first[BLOCKS][RF_RAY_CHUNK];  /* bit k % BITS of block k / BITS: test slab k, */
+    uint16_t joined[BLOCKS][RF_RAY_CHUNK]; /* or with the one before */
+    uint16_t open[RF_RAY_CHUNK];           /* all bits: no slab so far takes all */
+    uint16_t tests[RF_RAY_CHUNK];
+    uint16_t last[RF_RAY_CHUNK];           /* slab, or their number: the background */
+    uint16_t from[RF_BINS], until[RF_BINS]; /* of the slabs, for rf_in_range() */
 };
 
-/* Returns whether any ray is still open. */
-static bool meet_slab(struct state *restrict s, uint32_t *restrict need,
-                      const uint32_t *restrict seen, const struct rf_slab *slab, int k,
-                      int rays)
+static inline uint16_t mask(int is_true)
 {
-    const int32_t low = slab->low, high = slab->low + slab->width;
-    const uint32_t bit = UINT32_C(1) << k % BITS;
-    uint32_t *restrict open = s->open, *restrict tests = s->tests, *restrict last = s->last;
-    uint32_t any = 0;
+    return (uint16_t)-is_true;
+}
 
-    for (int n = 0; n < rays; n++) {
-        const int32_t least = (int16_t)seen[n], most = (int32_t)seen[n] >> 16;
-        const uint32_t outside = (uint32_t)-((most < low) | (least > high));
-        const uint32_t inside = (uint32_t)-((least >= low) & (most <= high));
-        const uint32_t test = open[n] & ~(outside | inside);
-        const uint32_t all = open[n] & inside;
+/* Slab k, seen by ray n where blurs lie from least[n] to most[n] and, with same[n], slab k - 1
+ * too. Returns whether any ray is still open. */
+static bool meet_slab(struct state *restrict s, const struct rf_sort_job *job, int k,
+                      const int16_t *restrict least, const int16_t *restrict most,
+                      const uint16_t *restrict same)
+{
+    const int16_t low = job->slab[k].low, high = (int16_t)(low + job->slab[k].width);
+    const uint16_t bit = (uint16_t)(1 << k % BITS), before = k % BITS ? bit / 2 : 0;
+    const uint16_t may_join = job->joined[k] ? 0xffff : 0, slab = (uint16_t)k;
+    uint16_t *restrict first = s->first[k / BITS], *restrict joined = s->joined[k / BITS];
+    uint16_t *restrict open = s->open, *restrict tests = s->tests, *restrict last = s->last;
+    uint16_t any = 0;
 
-        need[n] |= test & bit;
-        tests[n] -= test;
-        last[n] = (all & (uint32_t)k) | (~all & last[n]);
-        open[n] &= ~inside;
+    for (int n = 0; n < job->rays; n++) {
+        const uint16_t outside = mask(most[n] < low) | mask(least[n] > high);
+        const uint16_t partly = mask(least[n] < low) | mask(most[n] > high);
+        const uint16_t test = open[n] & partly & (uint16_t)~outside;
+        const uint16_t all = open[n] & (uint16_t)~partly;
+        const uint16_t beside = same[n] & mask(((first[n] | joined[n]) & before) != 0);
+        const uint16_t join = test & beside & may_join, start = test & (uint16_t)~join;
+
+        joined[n] |= join & bit;
+        first[n] |= start & bit;
+        tests[n] += (all & beside) - start; /* -1 is true */
+        last[n] = (all & slab) | ((uint16_t)~all & last[n]);
+        open[n] &= partly;
         any |= open[n];
     }
     return any != 0;
+}
+
+/* How many slabs are joined to that of a bit. */
+static inline int joined_to(uint32_t joined, int bit)
+{
+    return __builtin_ctz(~(joined >> (bit + 1)));
 }
 
 /* Ray n becomes the m-th. */
@@ -143,16 +161,19 @@ static inline void place(struct rf_sorted_rays *restrict sorted,
                          const struct state *restrict s, int n, int m, const bool weighted)
 {
     const int tests = (int)s->tests[n], last = (int)s->last[n];
-    uint32_t need = s->need[0][n];
+    uint32_t need = s->first[0][n];
 
     for (int t = 0, block = 0; t < tests; t++) {
-        int k;
+        int k, bit;
 
         while (!need)
-            need = s->need[++block][n];
-        k = block * BITS + __builtin_ctz(need);
+            need = s->first[++block][n];
+        bit = __builtin_ctz(need);
+        k = block * BITS + bit;
         need &= need - 1;
-        sorted->slab[t][m] = (uint8_t)k;
+        sorted->from[t][m] = s->from[k];
+        sorted->to[t][m] = (uint16_t)(s->until[k + joined_to(s->joined[block][n], bit)] -
+                                      s->from[k]);
         sorted->offset[t][m] = job->offset[k][n];
         if (weighted)
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
@@ -191,11 +212,27 @@ static inline void place_all(struct rf_sorted_rays *restrict sorted,
     }
 }
 
-/* One range of two. */
-static inline uint32_t both(uint32_t a, uint32_t b)
+/* Where slab k is seen: the blurs there, and whether slab k - 1 is seen there too. */
+static inline void look(int16_t *restrict least, int16_t *restrict most,
+                        uint16_t *restrict same, const struct rf_sort_job *job, int k)
 {
-    return (uint16_t)lesser((int16_t)a, (int16_t)b) |
-           (uint32_t)(uint16_t)greater((int16_t)(a >> 16), (int16_t)(b >> 16)) << 16;
+    const int32_t *restrict cell = job->cell[k], *restrict at = job->offset[k];
+    const int32_t *restrict before = job->offset[k > 0 ? k - 1 : 0];
+
+    for (int n = 0; n < job->rays; n++) {
+        const uint32_t range = job->range[cell[n]];
+
+        least[n] = (int16_t)range;
+        most[n] = (int16_t)(range >> 16);
+    }
+    for (int n = 0; job->below && n < job->rays; n++) {
+        const uint32_t range = job->below[cell[n]];
+
+        least[n] = lesser(least[n], (int16_t)range);
+        most[n] = greater(most[n], (int16_t)(range >> 16));
+    }
+    for (int n = 0; n < job->rays; n++)
+        same[n] = mask(at[n] == before[n]);
 }
 
 static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_sort_job *job)
@@ -204,21 +241,22 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
     struct state s;
 
     for (int n = 0; n < rays; n++) {
-        s.open[n] = UINT32_MAX;
+        s.open[n] = 0xffff;
         s.tests[n] = 0;
-        s.last[n] = (uint32_t)job->slabs;
+        s.last[n] = (uint16_t)job->slabs;
     }
     for (int k = 0; k < job->slabs; k++) {
-        const int32_t *restrict cell = job->cell[k];
-        uint32_t seen[RF_RAY_CHUNK];
+        s.from[k] = rf_range_from(&job->slab[k]);
+        s.until[k] = rf_range_until(&job->slab[k]);
+    }
+    for (int k = 0; k < job->slabs; k++) {
+        int16_t least[RF_RAY_CHUNK], most[RF_RAY_CHUNK];
+        uint16_t same[RF_RAY_CHUNK];
 
-        if (k % BITS == 0)
-            memset(s.need[k / BITS], 0, sizeof s.need[0]);
-        for (int n = 0; n < rays; n++)
-            seen[n] = job->range[cell[n]];
-        for (int n = 0; job->below && n < rays; n++)
-            seen[n] = both(seen[n], job->below[cell[n]]);
-        if (!meet_slab(&s, s.need[k / BITS], seen, &job->slab[k], k, rays))
+        for (int n = 0; k % BITS == 0 && n < rays; n++)
+            s.first[k / BITS][n] = s.joined[k / BITS][n] = 0;
+        look(least, most, same, job, k);
+        if (!meet_slab(&s, job, k, least, most, same))
             break;
     }
     sorted->rays = rays;

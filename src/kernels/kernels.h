@@ -52,11 +52,16 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
  *             else:                              test slab k at offset[k][n]
  *         the last is the background at offset[slabs][n]
  *
+ * Slabs k - 1 and k that are both to be tested at one offset are one test of all from the
+ * former's low to the latter's end, where the slabs overlap or touch (joined[k]); and the last
+ * test is left out where a slab's light is the last and it was tested in slab k - 1 at the same
+ * offset. This does not go across multiples of RF_JOIN_BLOCK.
+ *
  * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
- * otherwise in their order. Nothing is lost by this: tests that are left out could not hit, or
- * would all hit.
+ * otherwise in their order. Nothing is lost by all this: tests that are left out could not hit,
+ * would all hit, or lead to the same light.
  */
-enum { RF_SORTED_TESTS = 8 };
+enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 
 struct rf_sort_job {
     const uint32_t *range; /* at the strip's first pixel, */
@@ -65,6 +70,7 @@ struct rf_sort_job {
     const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
     const struct rf_slab *slab;
+    const bool *joined; /* [slabs]: slab k to k - 1 */
     const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
     const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
 };
@@ -72,8 +78,9 @@ struct rf_sort_job {
 struct rf_sorted_rays {
     int rays;
     uint8_t tests[RF_RAY_CHUNK];
-    uint8_t slab[RF_BINS][RF_RAY_CHUNK]; /* of test t, nearest first, */
-    int32_t offset[RF_BINS][RF_RAY_CHUNK]; /* at this offset */
+    /* Test t, nearest first, at offset[t], hits where rf_in_range(from[t], to[t], blur). */
+    int32_t offset[RF_BINS][RF_RAY_CHUNK];
+    uint16_t from[RF_BINS][RF_RAY_CHUNK], to[RF_BINS][RF_RAY_CHUNK];
     const uint16_t *last[RF_RAY_CHUNK]; /* first of three planes, for the strip's first pixel */
 
     /* Only with weights: as `offset` and `last`, of the weights. */
@@ -88,14 +95,14 @@ typedef void rf_sort_rays_fn(struct rf_sorted_rays *sorted, const struct rf_sort
  *
  *     for each ray n and pixel p of the strip:
  *         for t = 0 .. tests[n] - 1:
- *             q = p + offset[t][n], k = slab[t][n]
- *             if 0 <= blur[q] - slab[k].low <= slab[k].width:
+ *             q = p + offset[t][n]
+ *             if rf_in_range(from[t][n], to[t][n], blur[q]):
  *                 sum += light[q]; next ray
  *         sum += last[n][p]
  *
- * Light is Q12, at most 4095, or 4, 8 or 16 times that as `bright` says; sums are exact.
- * Pointers are to the strip's first pixel. Blurs are at most 127 pixels, slabs narrower than 480
- * (Q7.8).
+ * Light is at most 65535 / steps; sums are exact. Pointers are to the strip's first pixel.
+ * Where sum[3] is not NULL, the weights of what is hit are added up there: no more than that, and
+ * lying as those of sweep_weighted.
  */
 /* Light that highlights reach: white, 4, 8 or 16 times that. */
 enum rf_bright { RF_WHITE, RF_BRIGHT, RF_BRIGHTER, RF_BRIGHTEST };
@@ -103,21 +110,20 @@ enum rf_bright { RF_WHITE, RF_BRIGHT, RF_BRIGHTER, RF_BRIGHTEST };
 struct rf_sweep_job {
     const int16_t *blur;     /* light is in the three planes after it, pitch apart */
     ptrdiff_t stride, pitch; /* elements */
-    int slabs;
-    const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
-    enum rf_bright bright;
-    int lanes; /* of sweep and sweep_weighted: those of an even number of rows, of RF_STRIP at most */
+    int steps;             /* of sweep: values that a 16-bit sum holds, 1 to 16 */
+    enum rf_bright bright; /* of sweep_weighted */
+    int lanes; /* those of an even number of rows, of RF_STRIP at most */
 
-    /* of sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
+    /* weights of the front, 1 to RF_WEIGHT_MAX in sweep_weighted */
     const uint16_t *weight;
     ptrdiff_t weight_stride;
 };
-typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
+typedef void rf_sweep_fn(uint32_t *const sum[4], const struct rf_sweep_job *job);
 
-/* sweep_weighted: the same, where light counts weight times; sum[3] is that of weights. Those
- * of the front lie in a plane with a stride of its own, those of the background as its light.
- * Never RF_BRIGHTEST but for the reference. */
+/* sweep_weighted: the same, where light, Q12 up to `bright`, counts weight times; sum[3] is that
+ * of weights. Those of the front lie in a plane with a stride of its own, those of the background
+ * as its light. Never RF_BRIGHTEST but for the reference. */
 enum { RF_WEIGHT_MAX = 32767 };
 typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
@@ -193,6 +199,35 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
  * the same. In double precision, whose four operations are the same everywhere. */
 typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uint64_t *weight,
                                   int n);
+
+/*
+ * weigh: weights of n pixels of both layers, and their light times weight.
+ *
+ *     weight = light_weight[min(max(R, G, B), RF_LIGHT_MAX)] / 8                          Q12
+ *     light  = round(weight (2 light + 1 where light is one of `odd`))                    Q13
+ *              2 round(weight light) of light above 16383
+ *
+ * Light is Q12, at most 8 RF_LIGHT_MAX; halves up. brightest[i] becomes the brightest light of
+ * pixels RF_TILE i and after, where it exceeds that.
+ */
+enum { RF_ODD_LIGHTS = 4 };
+struct rf_weights {
+    const uint16_t *light_weight; /* RF_LIGHT_MAX + 1, Q15 */
+    uint16_t odd[RF_ODD_LIGHTS];
+};
+struct rf_weigh_job {
+    uint16_t *near[3], *far[3];
+    uint16_t *near_weight, *far_weight;
+    uint16_t *brightest;
+    const struct rf_weights *weights;
+};
+typedef void rf_weigh_fn(const struct rf_weigh_job *job, int n);
+
+/* weighed_means: Q14 means of n sums below 2^31 of Q13 light times Q12 weight, and of the
+ * weights: 2^13 sum / weight half up, at most 65520. In single precision, one operation after
+ * the other: within 1/2 + 2^-6. */
+typedef void rf_weighed_means_fn(uint16_t *mean, const uint32_t *sum, const uint32_t *weight,
+                                 int n);
 
 /* luminance: Rec. 709 in Q11, (218 R + 732 G + 74 B) / 2048 half up. */
 typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t *green,
@@ -388,8 +423,6 @@ struct rf_sweep1_job {
     const ptrdiff_t *row;
     int rows;         /* an even number, 16 at most */
     int steps;        /* values that a 16-bit sum holds, 4 to 16 */
-    int slabs;
-    const struct rf_slab *slab;
     const struct rf_sorted_rays *rays;
 };
 typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
@@ -498,6 +531,8 @@ struct rf_kernels {
     rf_pull_blur_fn *pull_blur;
     rf_means_fn *means;
     rf_weighted_means_fn *weighted_means;
+    rf_weigh_fn *weigh;
+    rf_weighed_means_fn *weighed_means;
     rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
     rf_brightest_fn *brightest;
@@ -527,6 +562,7 @@ rf_push_fn rf_push_c;
 rf_pull_fn rf_pull_c;
 rf_pull_blur_fn rf_pull_blur_c;
 rf_sweep_weighted_fn rf_sweep_weighted_c;
+rf_weigh_fn rf_weigh_c;
 
 /* Each set overwrites what it does better; rf_kernels_use() calls the others of its set. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
@@ -534,7 +570,8 @@ typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 #define RF_ALL_SETS(use) use##_c, RF_VECTOR_SETS(use)
 rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
-    RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep_weighted_use);
+    RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep_weighted_use),
+    RF_VECTOR_SETS(rf_weigh_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use),
     RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use),
     RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);

@@ -32,6 +32,16 @@ static void RF_VEC(rf_weighted_means)(uint16_t *restrict mean, const uint64_t *r
         mean[i] = (uint16_t)(int32_t)(4 * s[i] / w[i] + 0.5);
 }
 
+static void RF_VEC(rf_weighed_means)(uint16_t *restrict mean, const uint32_t *restrict sum,
+                                     const uint32_t *restrict weight, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const float v = (float)(int32_t)sum[i] * 8192.0f / (float)(int32_t)weight[i] + 0.5f;
+
+        mean[i] = (uint16_t)(int32_t)(v < 65520.0f ? v : 65520.0f);
+    }
+}
+
 /* Rows between those that are computed, by the cubic through the four nearest: Lagrange's shares
  * in Q14, of rows from `first` on; not beyond the rows before and after, so that an edge
  * does not ring. */
@@ -148,4 +158,5 @@ void RF_VEC(rf_light_use)(struct rf_kernels *kernels)
     kernels->between_rows = RF_VEC(rf_between_rows);
     kernels->brightest = RF_VEC(rf_brightest);
     kernels->weighted_means = RF_VEC(rf_weighted_means);
+    kernels->weighed_means = RF_VEC(rf_weighed_means);
 }

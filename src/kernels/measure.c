@@ -121,16 +121,16 @@ static void sweep(const struct rf_kernels *k, struct rows *r)
     uint16_t *strip = r->plane[RF_TILE] + MARGIN;
     const struct rf_sweep_job job = {.blur = (const int16_t *)strip,
                                      .lanes = RF_STRIP_LANES,
+                                     .steps = 16,
                                      .stride = stride,
                                      .pitch = pitch,
-                                     .slabs = 1,
-                                     .slab = &slab,
                                      .rays = &r->rays};
-    uint32_t *const sum[3] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2]};
+    uint32_t *const sum[4] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2], NULL};
 
     for (int n = 0; n < RF_RAY_CHUNK; n++) {
         r->rays.tests[n] = 1;
-        r->rays.slab[0][n] = 0;
+        r->rays.from[0][n] = rf_range_from(&slab);
+        r->rays.to[0][n] = rf_range_to(&slab, &slab);
         r->rays.offset[0][n] = (int32_t)((n / 8 - 4) * stride + (n % 8 - 4) * 5);
         r->rays.last[n] = strip + pitch + n % 5;
     }

@@ -12,13 +12,11 @@ void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
         for (int i = 0; i < lanes; i++)
             value[i] = rays->last[n][job->row[i / RF_TILE] + i % RF_TILE];
         for (int t = rays->tests[n] - 1; t >= 0; t--) {
-            const struct rf_slab *slab = &job->slab[rays->slab[t][n]];
-
             for (int i = 0; i < lanes; i++) {
                 const ptrdiff_t q =
                     job->row[i / RF_TILE] + i % RF_TILE + rays->offset[t][n];
 
-                if ((uint16_t)(job->blur[q] - slab->low) <= slab->width)
+                if (rf_in_range(rays->from[t][n], rays->to[t][n], job->blur[q]))
                     value[i] = job->light[q];
             }
         }

@@ -19,7 +19,6 @@ enum {
 struct state {
     const struct rf_sweep1_job *job;
     uint16_t light[RF_TILE * RF_TILE]; /* sums of the last rays */
-    struct rf_limits limits[RF_BINS];
 };
 
 static ALWAYS_INLINE void load(vec_u16 v[VECS], const uint16_t *at,
@@ -49,7 +48,7 @@ static ALWAYS_INLINE void sweep_vectors(struct state *s, int first, int end, con
 
         load(value, rays->last[n], place, vecs);
         for (int t = tests - 1; t >= 0; t--) {
-            const struct rf_limits *l = &s->limits[rays->slab[t][n]];
+            const struct rf_limits l = rf_limits_of(rays, t, n);
             const ptrdiff_t q = rays->offset[t][n];
             vec_u16 seen[VECS], front[VECS];
 
@@ -114,7 +113,6 @@ static void RF_VEC(rf_sweep1)(uint32_t *sum, const struct rf_sweep1_job *job)
 
     s.job = job;
     memset(s.light, 0, (size_t)job->rows * RF_TILE * sizeof s.light[0]);
-    rf_set_limits(s.limits, job->slab, job->slabs);
     for (int n = 0, end; n < rays->rays; n = end) {
         end = n + 1;
         while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)

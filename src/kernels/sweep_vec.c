@@ -6,23 +6,24 @@
 #include <string.h>
 
 enum {
-    STEPS = 16, /* rays that a 16-bit sum of Q12 light holds: 16 * 4095 < 65536 */
     MOST_VECS = 4,  /* together: */
     ALONE_VECS = 4, /* of rays without tests, */
-    TEST_VECS = 2,  /* and with them */
+    TEST_VECS = 2,  /* with them, or with weights */
     EACH = (int)RF_TILE / (int)VEC_U16, /* vectors of a row */
 };
-
-/* Rays that it holds of light 4, 8 and 16 times as bright. */
-static const uint8_t steps_of[] = {
-    [RF_WHITE] = STEPS, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 2, [RF_BRIGHTEST] = 1};
 
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
 struct state {
     const struct rf_sweep_job *job;
-    uint16_t light[3][RF_STRIP_LANES]; /* sums of the last rays */
-    struct rf_limits limits[RF_BINS];
+    uint32_t *const *sum;
+    uint16_t light[4][RF_STRIP_LANES]; /* sums of the last rays; [3]: of weights */
+    int left;                          /* rays that they hold yet */
+};
+
+/* Where some vectors lie, in bytes of the planes of light, and of the weights. */
+struct place {
+    ptrdiff_t at, weight_at;
 };
 
 /* Vector j from `first` on; bytes. */
@@ -31,120 +32,166 @@ static ALWAYS_INLINE const char *vector_at(const char *first, ptrdiff_t stride, 
     return first + j / EACH * stride + j % EACH * (2 * VEC_U16);
 }
 
-/* Adds a ray's light where `mask` is set; NULL: everywhere. */
-static ALWAYS_INLINE void add_light(vec_u16 sum[3][MOST_VECS], const char *q, ptrdiff_t stride,
-                                    ptrdiff_t plane, const vec_mask *mask, const int vecs)
+/* Adds what lies at q where `mask` is set; NULL: everywhere. */
+static ALWAYS_INLINE void add_plane(vec_u16 sum[MOST_VECS], const char *q, ptrdiff_t stride,
+                                    const vec_mask *mask, const int vecs)
 {
-    for (int c = 0; c < 3; c++, q += plane) {
-        for (int j = 0; j < vecs; j++) {
-            const vec_u16 light = vec_u16_load(vector_at(q, stride, j));
+    for (int j = 0; j < vecs; j++) {
+        const vec_u16 v = vec_u16_load(vector_at(q, stride, j));
 
-            sum[c][j] = mask ? vec_u16_add_where(mask[j], sum[c][j], light)
-                             : vec_u16_add(sum[c][j], light);
-        }
+        sum[j] = mask ? vec_u16_add_where(mask[j], sum[j], v) : vec_u16_add(sum[j], v);
     }
 }
 
-/* Ray n at the vectors that begin `at` bytes from the strip's first pixel. */
-static ALWAYS_INLINE void sweep_ray(vec_u16 sum[3][MOST_VECS], const struct state *s,
-                                    ptrdiff_t at, int n, const int vecs, const int tests)
+/* Test t of ray n. */
+static ALWAYS_INLINE void test_ray(vec_u16 sum[4][MOST_VECS], vec_mask is_free[MOST_VECS],
+                                   const struct rf_sweep_job *job, struct place p, int t, int n,
+                                   const int vecs, const bool weighted)
 {
-    const ptrdiff_t stride = 2 * s->job->stride, plane = 2 * s->job->pitch;
-    const struct rf_sorted_rays *rays = s->job->rays;
+    const struct rf_sorted_rays *rays = job->rays;
+    const ptrdiff_t stride = 2 * job->stride, plane = 2 * job->pitch;
+    const char *q = (const char *)job->blur + p.at + 2 * (ptrdiff_t)rays->offset[t][n];
+    const struct rf_limits l = rf_limits_of(rays, t, n);
+    vec_mask hit[MOST_VECS];
+
+    for (int j = 0; j < vecs; j++) {
+        const vec_u16 blur = vec_u16_load(vector_at(q, stride, j));
+
+        if (t == 0)
+            is_free[j] = vec_mask_all();
+        hit[j] = rf_in_limits(is_free[j], l, blur);
+        is_free[j] = vec_mask_without(is_free[j], hit[j]);
+    }
+    for (int c = 0; c < 3; c++)
+        add_plane(sum[c], q + (c + 1) * plane, stride, hit, vecs);
+    if (weighted)
+        add_plane(sum[3],
+                  (const char *)job->weight + p.weight_at +
+                      2 * (ptrdiff_t)rays->weight_offset[t][n],
+                  2 * job->weight_stride, hit, vecs);
+}
+
+/* Ray n. */
+static ALWAYS_INLINE void sweep_ray(vec_u16 sum[4][MOST_VECS], const struct rf_sweep_job *job,
+                                    struct place p, int n, const int vecs, const int tests,
+                                    const bool weighted)
+{
+    const struct rf_sorted_rays *rays = job->rays;
+    const ptrdiff_t stride = 2 * job->stride, plane = 2 * job->pitch;
     vec_mask is_free[MOST_VECS];
+    const vec_mask *left = tests > 0 ? is_free : NULL;
 
-    for (int t = 0; t < tests; t++) {
-        const char *q = (const char *)s->job->blur + at + 2 * (ptrdiff_t)rays->offset[t][n];
-        const struct rf_limits *l = &s->limits[rays->slab[t][n]];
-        vec_mask hit[MOST_VECS];
+    for (int t = 0; t < tests; t++)
+        test_ray(sum, is_free, job, p, t, n, vecs, weighted);
+    for (int c = 0; c < 3; c++)
+        add_plane(sum[c], (const char *)rays->last[n] + p.at + c * plane, stride, left, vecs);
+    if (weighted) {
+        const bool behind = rays->last_behind[n];
 
-        for (int j = 0; j < vecs; j++) {
-            const vec_u16 blur = vec_u16_load(vector_at(q, stride, j));
-
-            if (t == 0)
-                is_free[j] = vec_mask_all();
-            hit[j] = rf_in_limits(is_free[j], l, blur);
-            is_free[j] = vec_mask_without(is_free[j], hit[j]);
-        }
-        add_light(sum, q + plane, stride, plane, hit, vecs);
+        add_plane(sum[3],
+                  (const char *)rays->last_weight[n] + (behind ? p.at : p.weight_at),
+                  behind ? stride : 2 * job->weight_stride, left, vecs);
     }
-    add_light(sum, (const char *)rays->last[n] + at, stride, plane, tests > 0 ? is_free : NULL,
-              vecs);
 }
 
-/* Rays first .. end - 1, at most as many as 16-bit sums hold, all of `tests` tests. */
-static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int vecs,
-                                     const int tests)
+/* 16-bit sums of vectors from lane i on to where they have room; they are 0 then. */
+static ALWAYS_INLINE void flush(uint32_t *const to[4], vec_u16 sum[4][MOST_VECS], int i,
+                                const int vecs, const int planes)
 {
-    for (int i = 0; i < s->job->lanes; i += vecs * (int)VEC_U16) {
-        const ptrdiff_t at = 2 * (i / RF_TILE * s->job->stride + i % RF_TILE);
-        vec_u16 sum[3][MOST_VECS];
+    for (int c = 0; c < planes; c++)
+        for (int j = 0; j < vecs; j++) {
+            vec_u16_add_to(to[c] + i + j * VEC_U16, sum[c][j]);
+            sum[c][j] = vec_u16_set(0);
+        }
+}
 
-        for (int c = 0; c < 3; c++)
+/* Rays first .. end - 1, all of `tests` tests. */
+static ALWAYS_INLINE void sweep_rays(struct state *s, int first, int end, const int vecs,
+                                     const int tests, const bool weighted)
+{
+    const struct rf_sweep_job *job = s->job;
+    const int planes = weighted ? 4 : 3;
+    int left = s->left;
+
+    for (int i = 0; i < job->lanes; i += vecs * (int)VEC_U16) {
+        const ptrdiff_t x = i % RF_TILE, y = i / RF_TILE;
+        const struct place p = {2 * (y * job->stride + x), 2 * (y * job->weight_stride + x)};
+        vec_u16 sum[4][MOST_VECS];
+
+        left = s->left;
+        for (int c = 0; c < planes; c++)
             for (int j = 0; j < vecs; j++)
                 sum[c][j] = vec_u16_load(&s->light[c][i + j * VEC_U16]);
-        for (int n = first; n < end; n++)
-            sweep_ray(sum, s, at, n, vecs, tests);
-        for (int c = 0; c < 3; c++)
+        for (int n = first; n < end;) {
+            const int next = n + left < end ? n + left : end;
+
+            left -= next - n;
+            for (; n < next; n++)
+                sweep_ray(sum, job, p, n, vecs, tests, weighted);
+            if (left == 0) {
+                flush(s->sum, sum, i, vecs, planes);
+                left = job->steps;
+            }
+        }
+        for (int c = 0; c < planes; c++)
             for (int j = 0; j < vecs; j++)
                 vec_u16_store(&s->light[c][i + j * VEC_U16], sum[c][j]);
     }
+    s->left = left;
 }
 
-static void sweep_some(struct state *s, int first, int end, int tests)
+static ALWAYS_INLINE void sweep_some(struct state *s, int first, int end, int tests,
+                                     const bool weighted)
 {
     switch (tests) {
     case 0:
-        if (s->job->lanes % (ALONE_VECS * (int)VEC_U16) == 0)
-            sweep_rays(s, first, end, ALONE_VECS, 0);
+        if (!weighted && s->job->lanes % (ALONE_VECS * (int)VEC_U16) == 0)
+            sweep_rays(s, first, end, ALONE_VECS, 0, weighted);
         else
-            sweep_rays(s, first, end, TEST_VECS, 0);
+            sweep_rays(s, first, end, TEST_VECS, 0, weighted);
         break;
     case 1:
-        sweep_rays(s, first, end, TEST_VECS, 1);
+        sweep_rays(s, first, end, TEST_VECS, 1, weighted);
         break;
     case 2:
-        sweep_rays(s, first, end, TEST_VECS, 2);
+        sweep_rays(s, first, end, TEST_VECS, 2, weighted);
         break;
     case 3:
-        sweep_rays(s, first, end, TEST_VECS, 3);
+        sweep_rays(s, first, end, TEST_VECS, 3, weighted);
         break;
     default:
-        sweep_rays(s, first, end, TEST_VECS, tests);
+        sweep_rays(s, first, end, TEST_VECS, tests, weighted);
     }
 }
 
-static void flush(uint32_t *const sum[3], struct state *s)
-{
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < s->job->lanes; i += VEC_U16)
-            vec_u16_add_to(sum[c] + i, vec_u16_load(&s->light[c][i]));
-    memset(s->light, 0, sizeof s->light);
-}
-
-static void RF_VEC(rf_sweep)(uint32_t *const sum[3], const struct rf_sweep_job *job)
+static ALWAYS_INLINE void sweep_all(uint32_t *const sum[4], const struct rf_sweep_job *job,
+                                    const bool weighted)
 {
     const struct rf_sorted_rays *rays = job->rays;
-    const int steps = steps_of[job->bright];
-    int left = steps;
+    const int planes = weighted ? 4 : 3;
     struct state s;
 
     s.job = job;
-    memset(s.light, 0, sizeof s.light);
-    rf_set_limits(s.limits, job->slab, job->slabs);
+    s.sum = sum;
+    s.left = job->steps;
+    memset(s.light, 0, sizeof s.light[0] * (size_t)planes);
     for (int n = 0, end; n < rays->rays; n = end) {
         end = n + 1;
-        while (end < rays->rays && rays->tests[end] == rays->tests[n] && end < n + left)
+        while (end < rays->rays && rays->tests[end] == rays->tests[n])
             end++;
-        sweep_some(&s, n, end, rays->tests[n]);
-        left -= end - n;
-        if (left == 0) {
-            flush(sum, &s);
-            left = steps;
-        }
+        sweep_some(&s, n, end, rays->tests[n], weighted);
     }
-    if (left < steps)
-        flush(sum, &s);
+    for (int c = 0; c < planes; c++)
+        for (int i = 0; i < job->lanes; i += (int)VEC_U16)
+            vec_u16_add_to(sum[c] + i, vec_u16_load(&s.light[c][i]));
+}
+
+static void RF_VEC(rf_sweep)(uint32_t *const sum[4], const struct rf_sweep_job *job)
+{
+    if (sum[3])
+        sweep_all(sum, job, true);
+    else
+        sweep_all(sum, job, false);
 }
 
 void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
@@ -154,6 +201,7 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
     RF_VEC(rf_smooth_use)(kernels);
     RF_VEC(rf_fill_use)(kernels);
     RF_VEC(rf_sweep_weighted_use)(kernels);
+    RF_VEC(rf_weigh_use)(kernels);
     RF_VEC(rf_light_use)(kernels);
     RF_VEC(rf_rows_use)(kernels);
     RF_VEC(rf_search_use)(kernels);

@@ -12,11 +12,10 @@ static void add(uint64_t *const sum[4], int i, const uint16_t *light, ptrdiff_t 
 static bool hits(uint64_t *const sum[4], const struct rf_sweep_job *job, int i, int t, int n)
 {
     const struct rf_sorted_rays *rays = job->rays;
-    const struct rf_slab *slab = &job->slab[rays->slab[t][n]];
     const ptrdiff_t x = i % RF_TILE, y = i / RF_TILE;
     const int16_t *const q = job->blur + y * job->stride + x + rays->offset[t][n];
 
-    if ((uint16_t)(*q - slab->low) > slab->width)
+    if (!rf_in_range(rays->from[t][n], rays->to[t][n], *q))
         return false;
     add(sum, i, (const uint16_t *)q + job->pitch, job->pitch,
         job->weight[y * job->weight_stride + x + rays->weight_offset[t][n]]);

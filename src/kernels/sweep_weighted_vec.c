@@ -46,7 +46,7 @@ static ALWAYS_INLINE struct place place_of(const struct rf_sweep_job *job, int i
 }
 
 static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct place p,
-                                       const struct rf_limits *limits, int n)
+                                       int n)
 {
     const struct rf_sorted_rays *rays = job->rays;
     const ptrdiff_t plane = 2 * job->pitch;
@@ -54,7 +54,7 @@ static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct pl
     struct met met = {{vec_u16_set(0), vec_u16_set(0), vec_u16_set(0)}, vec_u16_set(0)};
 
     for (int t = 0; t < rays->tests[n]; t++) {
-        const struct rf_limits *l = &limits[rays->slab[t][n]];
+        const struct rf_limits l = rf_limits_of(rays, t, n);
         const ptrdiff_t q = p.at + 2 * (ptrdiff_t)rays->offset[t][n];
         const vec_u16 weight =
             load(job->weight, p.weight_at + 2 * (ptrdiff_t)rays->weight_offset[t][n]);
@@ -71,8 +71,7 @@ static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct pl
 }
 
 static ALWAYS_INLINE void sweep_vector(uint64_t *const sum[4], int i,
-                                       const struct rf_sweep_job *job,
-                                       const struct rf_limits *limits)
+                                       const struct rf_sweep_job *job)
 {
     const struct place p = place_of(job, i);
     const vec_u16 one = vec_u16_set(1), zero = vec_u16_set(0);
@@ -84,11 +83,11 @@ static ALWAYS_INLINE void sweep_vector(uint64_t *const sum[4], int i,
         vec_u32 weight = vec_u32_zero();
 
         for (; n < end; n += 2) {
-            const struct met a = follow(job, p, limits, n);
+            const struct met a = follow(job, p, n);
             struct met b = {{zero, zero, zero}, zero};
 
             if (n + 1 < end)
-                b = follow(job, p, limits, n + 1);
+                b = follow(job, p, n + 1);
             for (int c = 0; c < 3; c++)
                 light[c] = vec_u32_add_products(light[c], a.light[c], a.weight, b.light[c],
                                                 b.weight);
@@ -103,11 +102,8 @@ static ALWAYS_INLINE void sweep_vector(uint64_t *const sum[4], int i,
 
 static void RF_VEC(rf_sweep_weighted)(uint64_t *const sum[4], const struct rf_sweep_job *job)
 {
-    struct rf_limits limits[RF_BINS];
-
-    rf_set_limits(limits, job->slab, job->slabs);
     for (int i = 0; i < job->lanes; i += VEC_U16)
-        sweep_vector(sum, i, job, limits);
+        sweep_vector(sum, i, job);
 }
 
 void RF_VEC(rf_sweep_weighted_use)(struct rf_kernels *kernels)

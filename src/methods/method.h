@@ -30,7 +30,8 @@ struct rf_frame {
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
     int prefilter_step;     /* the one that is being made */
-    bool weighted;          /* eq. 5 weights differ from 1 */
+    bool weighted;          /* eq. 5 weights differ from 1, */
+    bool premultiplied;     /* and little enough for light times weight in 16 bits */
     int row_gap;            /* see methods/tile_rows.h */
     bool stars, grain;      /* lamps have spikes; blur has grain */
     bool finish_ready;      /* both are found out */

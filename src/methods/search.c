@@ -102,6 +102,7 @@ static void search_strip(const struct rf_frame *f, const struct chunk *chunk, in
         .stride = r->stride,
         .pitch = r->pitch,
         .rays = &sorted,
+        .steps = 16,
         .lanes = RF_STRIP_LANES,
     };
     const struct rf_search_job search = {
@@ -132,7 +133,7 @@ static void search_strip(const struct rf_frame *f, const struct chunk *chunk, in
     left.rays = test;
     sorted.rays = add;
     if (add)
-        r->kernels.sweep(sum, &sweep);
+        r->kernels.sweep((uint32_t *const[4]){sum[0], sum[1], sum[2], NULL}, &sweep);
     if (test)
         r->kernels.search(sum, &search);
 }

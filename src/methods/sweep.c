@@ -57,12 +57,11 @@ static void set_sight(struct sight *sight, const struct rf_frame *f,
         const int seen = rf_scaled_blur(rays, blur);
         const struct aims *aims = &own[blur < 0 && sides.before != sides.behind];
 
+        if (f->weighted && k < plan->slabs)
+            r->kernels.aim(sight->weight_offset[k], sight->cell[k], aims->u, aims->v, seen,
+                           (int32_t)r->weight_stride, (int32_t)r->range_stride, sight->rays);
         r->kernels.aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen,
                        (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
-        for (int n = 0; f->weighted && k < plan->slabs && n < sight->rays; n++)
-            sight->weight_offset[k][n] =
-                rf_offset(aims->v[n], seen) * (int32_t)r->weight_stride +
-                rf_offset(aims->u[n], seen);
     }
 }
 
@@ -73,11 +72,27 @@ static int behind_of(const struct refocus_renderer *r, int tx, int ty)
     return r->bins[(size_t)ty * r->tiles_x + tx].behind;
 }
 
-/* What is summed of a tile: plainly, or light times weight and weights. */
+/* What is summed of a tile: light, plain or times weight, and weights. */
 union tally {
-    uint32_t plain[3][LANES];
-    uint64_t weighted[4][LANES];
+    uint32_t sum[4][LANES];
+    uint64_t weighted[4][LANES]; /* where weights differ too much for 16 bits */
 };
+
+static bool has_wide_sums(const struct rf_frame *f)
+{
+    return f->weighted && !f->premultiplied;
+}
+
+/* How many values a 16-bit sum holds. */
+static int steps_of(const struct rf_frame *f, const struct rf_tile_plan *plan)
+{
+    static const int steps[] = {
+        [RF_WHITE] = 16, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 2, [RF_BRIGHTEST] = 1};
+
+    if (!f->premultiplied)
+        return steps[f->bright];
+    return plan->brightest > 65535 / 16 ? 65535 / plan->brightest : 16;
+}
 
 /* Rows of a tile that are computed together. */
 struct strip {
@@ -109,6 +124,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .rays = sight->rays,
         .slabs = plan->slabs,
         .slab = plan->slab,
+        .joined = plan->joined,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
         .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
         .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->weight_offset,
@@ -117,9 +133,8 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .blur = r->front.blur + at,
         .stride = strip.step * r->stride,
         .pitch = r->pitch,
-        .slabs = plan->slabs,
-        .slab = plan->slab,
         .rays = &sorted,
+        .steps = steps_of(f, plan),
         .bright = f->bright,
         .lanes = strip.rows * RF_TILE,
         .weight = r->weight + weight_at,
@@ -127,13 +142,14 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     };
 
     r->kernels.sort_rays(&sorted, &sort);
-    if (f->weighted)
+    if (has_wide_sums(f))
         weighted((uint64_t *const[4]){run->weighted[0] + first, run->weighted[1] + first,
                                       run->weighted[2] + first, run->weighted[3] + first},
                  &job);
     else
-        r->kernels.sweep((uint32_t *const[3]){run->plain[0] + first, run->plain[1] + first,
-                                              run->plain[2] + first}, &job);
+        r->kernels.sweep((uint32_t *const[4]){run->sum[0] + first, run->sum[1] + first,
+                                              run->sum[2] + first,
+                                              f->weighted ? run->sum[3] + first : NULL}, &job);
 }
 
 /* All computed rows of a tile. */
@@ -152,11 +168,14 @@ static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *pl
 static void add_run(const struct rf_frame *f, const union tally *run, uint64_t ray_weight,
                     uint64_t rays, struct rf_sums *sums)
 {
+    const bool wide = has_wide_sums(f);
+
     for (int i = 0; i < LANES; i++) {
         for (int c = 0; c < 3; c++)
-            sums->light[c][i] +=
-                ray_weight * (f->weighted ? run->weighted[c][i] : run->plain[c][i]);
-        sums->weight[i] += ray_weight * (f->weighted ? run->weighted[3][i] : rays);
+            sums->light[c][i] += ray_weight * (wide ? run->weighted[c][i] : run->sum[c][i]);
+        sums->weight[i] += ray_weight * (wide          ? run->weighted[3][i]
+                                         : f->weighted ? run->sum[3][i]
+                                                       : rays);
     }
 }
 
@@ -171,7 +190,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     const struct rf_ray_set *set = tile_rays->set;
     const int behind = behind_of(r, tx, ty);
     struct sight sight;
-    const size_t used = f->weighted ? sizeof run->weighted : sizeof run->plain;
+    const size_t used = has_wide_sums(f) ? sizeof run->weighted : sizeof run->sum;
     int rays = 0; /* in this run */
 
     memset(run, 0, used);
@@ -194,18 +213,18 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
 }
 
 /* Means are at most 4 times white: it is all white in the end. */
-static void limit(union tally *run, bool weighted, uint32_t rays)
+static void limit(union tally *run, bool wide, uint32_t rays)
 {
     const uint32_t times = RF_PLAIN_GAIN * RF_LIGHT_MAX;
 
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < LANES; i++) {
-            const uint64_t most = times * (weighted ? run->weighted[3][i] : rays);
+            const uint64_t most = times * (wide ? run->weighted[3][i] : rays);
 
-            if (weighted)
+            if (wide)
                 run->weighted[c][i] = run->weighted[c][i] < most ? run->weighted[c][i] : most;
             else
-                run->plain[c][i] = run->plain[c][i] < most ? run->plain[c][i] : (uint32_t)most;
+                run->sum[c][i] = run->sum[c][i] < most ? run->sum[c][i] : (uint32_t)most;
         }
     }
 }
@@ -225,15 +244,17 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
     sweep_rays(f, plan, tile_rays, tx, ty, rows, &run, NULL);
     if (rf_cancelled(r))
         return;
-    if (f->bright > RF_BRIGHT)
+    if (f->bright > RF_BRIGHT && !f->premultiplied)
         limit(&run, f->weighted, count);
     for (int c = from; c < to; c++) {
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
-        if (f->weighted)
+        if (f->premultiplied)
+            r->kernels.weighed_means(out, run.sum[c], run.sum[3], lanes);
+        else if (f->weighted)
             r->kernels.weighted_means(out, run.weighted[c], run.weighted[3], lanes);
         else
-            r->kernels.means(out, run.plain[c], rf_mean_scale(count), lanes);
+            r->kernels.means(out, run.sum[c], rf_mean_scale(count), lanes);
         if (rows.step > 1)
             r->kernels.between_rows(mean[c], computed, rows.step);
     }
@@ -245,6 +266,7 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
                        uint16_t mean[3][LANES], int from, int to)
 {
     const uint64_t most = RF_PLAIN_GAIN * 4 * RF_LIGHT_MAX;
+    const uint64_t unit = f->premultiplied ? 8192 : 4; /* of Q13 times Q12, or Q12 */
     struct rf_sums sums;
     union tally run;
 
@@ -254,7 +276,7 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
         return;
     for (int c = from; c < to; c++) {
         for (int i = 0; i < LANES; i++) {
-            const uint64_t w = sums.weight[i], v = (4 * sums.light[c][i] + w / 2) / w;
+            const uint64_t w = sums.weight[i], v = (unit * sums.light[c][i] + w / 2) / w;
 
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }

@@ -84,6 +84,7 @@ static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_pl
         .rays = sight->rays,
         .slabs = plan->slabs,
         .slab = plan->slab,
+        .joined = plan->joined,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
         .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
     };
@@ -93,8 +94,6 @@ static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_pl
         .row = plane->row,
         .rows = plane->computed.count,
         .steps = plane->steps,
-        .slabs = plan->slabs,
-        .slab = plan->slab,
         .rays = &sorted,
     };
 

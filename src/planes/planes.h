@@ -50,6 +50,10 @@ void rf_note_behind(struct refocus_renderer *r, int ty);
  * background over its blur. */
 void rf_weigh_rows(struct refocus_renderer *r, int ty);
 
+/* The same as kernels.h, weigh, has it: their light is times the weight then. Notes the
+ * brightest of each tile. */
+void rf_premultiply_rows(struct refocus_renderer *r, uint16_t *scratch, int ty);
+
 /* Extend rows y0..y1-1 of a padded plane of 16-bit values beyond its sides, and the first
  * and the last row of the picture above and below it. */
 void rf_extend_rows(const struct refocus_renderer *r, void *plane, int y0, int y1);

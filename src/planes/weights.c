@@ -1,5 +1,55 @@
 #include "planes/planes.h"
+
+#include <string.h>
+
 #include "tiles/tiles.h"
+
+/* n pixels of a row of both layers. */
+static void weigh(const struct refocus_renderer *r, int x, int y, uint16_t *brightest, int n)
+{
+    const ptrdiff_t at = y * r->stride + x;
+    struct rf_weigh_job job = {
+        .near_weight = r->weight + y * r->weight_stride + x,
+        .far_weight = (uint16_t *)r->behind.blur + at,
+        .brightest = brightest,
+        .weights = &r->weights,
+    };
+
+    for (int c = 0; c < 3; c++) {
+        job.near[c] = r->smooth[c] + at;
+        job.far[c] = r->behind.light[c] + at;
+    }
+    r->kernels.weigh(&job, n);
+}
+
+/* The greatest of n values and v. */
+static uint16_t greatest(uint16_t v, const uint16_t *values, int n)
+{
+    for (int i = 0; i < n; i++)
+        v = values[i] > v ? values[i] : v;
+    return v;
+}
+
+/* What lies beyond the sides counts for the tiles there. */
+void rf_premultiply_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
+{
+    const int left = r->border.x0, right = r->border.x1, width = r->tiles_x * RF_TILE;
+    const int y0 = ty * RF_TILE - (ty == 0 ? r->border.y0 : 0);
+    const int y1 = ty + 1 < r->tiles_y ? (ty + 1) * RF_TILE : r->height + r->border.y1;
+    const int tiles = r->tiles_x, before = left / RF_TILE + 1, after = right / RF_TILE + 1;
+    uint16_t *brightest = scratch + before;
+
+    memset(scratch, 0, (size_t)(before + tiles + after) * sizeof scratch[0]);
+    for (int y = y0; y < y1; y++) {
+        weigh(r, -left, y, scratch, left);
+        weigh(r, 0, y, brightest, width);
+        weigh(r, width, y, brightest + tiles, right);
+    }
+    brightest[0] = greatest(brightest[0], scratch, before);
+    brightest[tiles - 1] = greatest(brightest[tiles - 1], brightest + tiles, after);
+    for (int tx = 0; tx < tiles; tx++)
+        r->bins[(size_t)ty * tiles + tx].brightest = brightest[tx];
+}
 
 static int brightest(uint16_t *const light[3], ptrdiff_t at)
 {

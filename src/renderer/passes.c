@@ -28,6 +28,21 @@ static void reblend_band(void *context, int band, int worker)
     *blend = (uint8_t)f->params->blend;
 }
 
+static bool is_sweep(const struct rf_frame *f)
+{
+    return f->params->method == REFOCUS_METHOD_SWEEP;
+}
+
+/* Whether sums of premultiplied light stay below 2^31: 8 times white in Q13, and twice the rays
+ * for lamps. */
+static bool may_premultiply(const struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+
+    return is_sweep(f) && !f->r->yuv.on && p->highlight_gain <= 2 * RF_PLAIN_GAIN &&
+           p->rays != REFOCUS_RAYS_FULL && p->rays <= 8192;
+}
+
 /* Eq. 5 over the Q12 values of the blend in use. */
 void rf_set_weights(struct rf_frame *f)
 {
@@ -36,13 +51,22 @@ void rf_set_weights(struct rf_frame *f)
     const float sigma = f->params->sigma;
 
     f->weighted = sigma < 1e6f; /* beyond it all weights round to 1 */
-    if (!f->weighted || (r->weight_sigma == sigma && r->weight_blend == r->blend))
+    f->premultiplied = false;
+    if (!f->weighted)
         return;
-    rf_highlight_weights(weight, sigma);
-    for (int light = 0; light <= RF_LIGHT_MAX; light++)
-        r->light_weight[light] = weight[r->transfer[r->blend].to_code[4 * light]];
-    r->weight_sigma = sigma;
-    r->weight_blend = r->blend;
+    if (r->weight_sigma != sigma || r->weight_blend != r->blend) {
+        const struct rf_transfer *transfer = &r->transfer[r->blend];
+
+        rf_highlight_weights(weight, sigma);
+        for (int light = 0; light <= RF_LIGHT_MAX; light++)
+            r->light_weight[light] = weight[transfer->to_code[4 * light]];
+        r->weights.light_weight = r->light_weight;
+        r->keep_codes =
+            rf_weights_keep_codes(transfer, weight, r->weights.odd, RF_ODD_LIGHTS);
+        r->weight_sigma = sigma;
+        r->weight_blend = r->blend;
+    }
+    f->premultiplied = r->keep_codes && may_premultiply(f);
 }
 
 static void blur_band(void *context, int band, int worker)
@@ -187,8 +211,12 @@ static void note_band(void *context, int band, int worker)
 
 static void weigh_band(void *context, int band, int worker)
 {
-    (void)worker;
-    rf_weigh_rows(context, band);
+    const struct rf_frame *f = context;
+
+    if (f->premultiplied)
+        rf_premultiply_rows(f->r, rf_scratch(f->r, worker), band);
+    else
+        rf_weigh_rows(f->r, band);
 }
 
 void rf_pass_behind(struct rf_frame *f, int levels)
@@ -204,7 +232,7 @@ void rf_pass_behind(struct rf_frame *f, int levels)
 
 void rf_pass_weights(struct rf_frame *f)
 {
-    rf_pool_run(&f->r->pool, weigh_band, f->r, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, weigh_band, f, rf_bands(f->r));
 }
 
 void rf_pass_mark(struct rf_frame *f)
@@ -248,11 +276,6 @@ void rf_note_light(struct rf_frame *f)
     memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
-static bool is_sweep(const struct rf_frame *f)
-{
-    return f->params->method == REFOCUS_METHOD_SWEEP;
-}
-
 /* What a region needs of the photo. */
 struct parts {
     struct rf_rect seen; /* where its rays go: the background layer */
@@ -265,6 +288,8 @@ static bool is_there(const struct rf_frame *f, int number, const struct parts *p
 {
     const struct rf_made *m = &f->r->made;
 
+    if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
+        return false;
     return rf_same_lens(f, number) && contains(m->window, parts->bins) &&
            (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
                          (!m->weighed || is_sweep(f))
@@ -445,9 +470,11 @@ static void make_weights(struct rf_frame *f)
 {
     struct rf_made *m = &f->r->made;
 
-    if (rf_cancelled(f->r) || (m->weighed && m->sigma == f->params->sigma))
+    if (rf_cancelled(f->r) || (m->weighed && m->sigma == f->params->sigma &&
+                               m->premultiplied == f->premultiplied))
         return;
     m->weighed = true;
+    m->premultiplied = f->premultiplied;
     m->sigma = -1; /* until they are all there */
     rf_pass_weights(f);
     if (!rf_cancelled(f->r))
@@ -509,7 +536,8 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
         rf_use(r, number, r->made.window);
         f->bright = layers ? r->made.bright : RF_WHITE;
     } else {
-        if (r->made.spread) /* the background takes smooth light without it */
+        /* the background takes smooth light without it */
+        if (r->made.spread || r->made.premultiplied)
             r->made = (struct rf_made){.half = r->made.half};
         make_in_window(f, number, &parts, layers);
     }

@@ -73,7 +73,8 @@ struct rf_made {
     enum rf_bright bright; /* with light given back to lamps, */
     bool spread; /* that beyond 4 times white as well */
     bool behind; /* the background layer, */
-    bool weighed; /* but with weights of `sigma` in place of its blur */
+    bool weighed; /* but with weights of `sigma` in place of its blur, */
+    bool premultiplied; /* and the light of both layers times them */
     float sigma;
     int rays;    /* that lamps were widened for */
     bool half;   /* photo[1], which lies in memory of the background layer of photo[0] */
@@ -127,6 +128,7 @@ struct rf_bins {
     int16_t least, most; /* Q7.8 */
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
     int16_t behind;      /* blur of the background in the middle, once that is filled */
+    uint16_t brightest;  /* light of either layer, once it is premultiplied */
 };
 
 /*
@@ -214,6 +216,8 @@ struct refocus_renderer {
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
+    struct rf_weights weights; /* the same for `weigh`, */
+    bool keep_codes;           /* which may be used */
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 

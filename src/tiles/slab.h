@@ -2,6 +2,7 @@
 #ifndef RF_SLAB_H
 #define RF_SLAB_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -15,5 +16,28 @@ struct rf_slab {
     uint16_t width;
     int16_t centre; /* Q7.8 */
 };
+
+/* 0 <= s - low <= width as one signed comparison, modulo 2^16, (s - from) < to, of vectors:
+ * adding 2^15 to both sides makes it of an unsigned one. */
+static inline uint16_t rf_range_from(const struct rf_slab *slab)
+{
+    return (uint16_t)(slab->low ^ 0x8000);
+}
+
+static inline uint16_t rf_range_until(const struct rf_slab *slab)
+{
+    return (uint16_t)(slab->low + slab->width + 1);
+}
+
+/* Of all from the first slab's low to the last one's end. */
+static inline uint16_t rf_range_to(const struct rf_slab *first, const struct rf_slab *last)
+{
+    return (uint16_t)(rf_range_until(last) - rf_range_from(first));
+}
+
+static inline bool rf_in_range(uint16_t from, uint16_t to, int16_t blur)
+{
+    return (int16_t)(uint16_t)(blur - from) < (int16_t)to;
+}
 
 #endif

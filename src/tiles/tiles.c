@@ -54,7 +54,7 @@ static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_b
                                    int tx, int ty)
 {
     enum { EACH = RF_TILE / RF_CELL };
-    struct rf_bins bins = {{0}, INT16_MAX, INT16_MIN, 0, 0};
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
         const int16_t *least = rf_cell_least(r, y), *most = rf_cell_most(r, y);
@@ -151,6 +151,8 @@ static void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
     const int least = near_kept ? bins->least : kept->high;
     const int most = far_kept ? bins->most : kept->low - 1;
 
+    if (bins->brightest > sum->brightest)
+        sum->brightest = bins->brightest;
     if (bins->lamp > sum->lamp && bins->lamp >= kept->blur)
         sum->lamp = bins->lamp;
     if (!near_kept && !far_kept)
@@ -167,13 +169,24 @@ static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_
 {
     const int x0 = tx > reach->tiles ? tx - reach->tiles : 0;
     const int y0 = ty > reach->tiles ? ty - reach->tiles : 0;
-    struct rf_bins sum = {{0}, INT16_MAX, INT16_MIN, 0, 0};
+    struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
 
     for (int y = y0; y <= ty + reach->tiles && y < r->tiles_y; y++)
         for (int x = x0; x <= tx + reach->tiles && x < r->tiles_x; x++)
             add_kept(&sum, &r->bins[(size_t)y * r->tiles_x + x],
                      &reach->kept[abs(y - ty)][abs(x - tx)]);
     return sum;
+}
+
+/* Blurs of up to 63.5 pixels differ by less than 2^15, so that a range of any width is told from
+ * what lies outside modulo 2^16; up to 127 pixels one slab is as much as can be. */
+static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struct rf_slab slab)
+{
+    const int k = plan->slabs++;
+
+    plan->slab[k] = slab;
+    plan->joined[k] = k > 0 && scale.shift < 8 &&
+                      slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
 }
 
 /* Cover the occupied bins from the near side. Slabs are a pixel wide, and half of that
@@ -197,7 +210,7 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             continue;
         }
         if (bin >= scale.focus && bin < focus_end) {
-            plan->slab[plan->slabs++] = (struct rf_slab){-HALF, 2 * HALF - 1, 0};
+            add_slab(plan, scale, (struct rf_slab){-HALF, 2 * HALF - 1, 0});
             plan->least = 0;
             bin = focus_end;
             continue;
@@ -229,8 +242,8 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             high = -HALF - 1;
         if (centre > 0 && low < HALF)
             low = HALF;
-        plan->slab[plan->slabs++] =
-            (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre};
+        add_slab(plan, scale,
+                 (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
         bin = last + 1;
     }
 }
@@ -242,4 +255,5 @@ void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
 
     cover(&bins, scale, plan);
     plan->lamp = bins.lamp > 0;
+    plan->brightest = bins.brightest;
 }

@@ -25,7 +25,9 @@ struct rf_tile_plan {
     int least; /* and the least */
     bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
     bool lamp;    /* a highlight is in reach */
+    uint16_t brightest; /* as rf_bins has it, of the tiles in reach */
     struct rf_slab slab[RF_MAX_SLABS];
+    bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */
 };
 
 /* Which blurs reach from a tile to another that is some tiles away. */

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { LANES = RF_TILE * RF_TILE, WHITE = 4 * 4095 };
 
@@ -64,6 +65,128 @@ static int check_any(const struct subject *subject)
             if (mean[i] != should &&
                 (4 * sum[i] + weight[i] / 2) % weight[i] > weight[i] >> 30)
                 return wrong(subject, "weighted_means", "of a sum", mean[i], (double)should);
+        }
+    }
+    return 0;
+}
+
+enum { ROW = 300 };
+
+struct layer {
+    uint16_t row[3][ROW + 1], before[3][ROW + 1], weight[ROW + 1];
+};
+
+/* n pixels of a layer after `weigh`, and what is beyond; the brightest of each tile. */
+static int check_layer(const struct subject *subject, const struct layer *l,
+                       const struct rf_weights *weights, int n, uint16_t *brightest)
+{
+    for (int x = 0; x <= ROW; x++) {
+        int m = 0, w;
+
+        for (int c = 0; c < 3; c++)
+            m = l->before[c][x] > m ? l->before[c][x] : m;
+        w = x < n ? weights->light_weight[m < 4095 ? m : 4095] / 8 : 4321;
+        if (l->weight[x] != w)
+            return wrong(subject, "weigh", "a weight", l->weight[x], w);
+        for (int c = 0; c < 3; c++) {
+            const uint32_t v = l->before[c][x];
+            uint32_t should = 2 * v;
+
+            for (int i = 0; i < RF_ODD_LIGHTS && should % 2 == 0; i++)
+                should += v == weights->odd[i];
+            should = x >= n      ? v
+                     : v > 16383 ? 2 * ((v * (uint32_t)w + 2048) / 4096)
+                                 : (should * (uint32_t)w + 2048) / 4096;
+            if (l->row[c][x] != should)
+                return wrong(subject, "weigh", "light", l->row[c][x], should);
+            if (x < n && should > brightest[x / RF_TILE])
+                brightest[x / RF_TILE] = (uint16_t)should;
+        }
+    }
+    return 0;
+}
+
+static void make_layer(struct layer *l, int most, uint32_t *seed)
+{
+    for (int x = 0; x <= ROW; x++) {
+        for (int c = 0; c < 3; c++)
+            l->before[c][x] = (uint16_t)noise_between(seed, 0, most);
+        l->weight[x] = 4321;
+    }
+}
+
+/* Light of every size, and odd ones; a background that is the same for some tiles. */
+static int check_weigh(const struct subject *subject)
+{
+    static uint16_t table[4096];
+    static struct layer near, far;
+    struct rf_weights weights = {table, {0}};
+    uint32_t seed = 14;
+
+    for (int round = 0; round < 500; round++) {
+        const int n = (int)(noise(&seed) % (ROW + 1)), most = noise(&seed) % 2 ? 8 * 4095 : 20;
+        uint16_t is[ROW / RF_TILE + 2], brightest[ROW / RF_TILE + 2];
+        const struct rf_weigh_job job = {
+            .near = {near.row[0], near.row[1], near.row[2]},
+            .far = {far.row[0], far.row[1], far.row[2]},
+            .near_weight = near.weight,
+            .far_weight = far.weight,
+            .brightest = is,
+            .weights = &weights,
+        };
+
+        for (int i = 0; i < 4096; i++)
+            table[i] = (uint16_t)noise_between(&seed, 8, RF_WEIGHT_MAX);
+        for (int i = 0; i < RF_ODD_LIGHTS; i++)
+            weights.odd[i] = (uint16_t)(noise(&seed) % 4 ? noise(&seed) % 20 : 65535);
+        for (int i = 0; i < ROW / RF_TILE + 2; i++)
+            is[i] = brightest[i] = (uint16_t)(noise(&seed) % 2 * (noise(&seed) % 65536));
+        make_layer(&near, most, &seed);
+        make_layer(&far, most, &seed);
+        for (int x = 0; x < ROW; x++)
+            for (int c = 0; c < 3 && (x / RF_TILE + round) % 3; c++)
+                far.before[c][x] = (uint16_t)(near.before[c][x] ^ (noise(&seed) % 32 == 0));
+        memcpy(near.row, near.before, sizeof near.row);
+        memcpy(far.row, far.before, sizeof far.row);
+        subject->kernels.weigh(&job, n);
+        if (check_layer(subject, &near, &weights, n, brightest) ||
+            check_layer(subject, &far, &weights, n, brightest))
+            return 1;
+        for (int i = 0; i < ROW / RF_TILE + 2; i++)
+            if (is[i] != brightest[i])
+                return wrong(subject, "weigh", "the brightest", is[i], brightest[i]);
+    }
+    return 0;
+}
+
+/* The operations one after the other, rounded to single precision each. */
+static int check_weighed_means(const struct subject *subject)
+{
+    uint32_t sum[LANES], weight[LANES], seed = 15;
+    uint16_t mean[LANES + 1];
+
+    for (int round = 0; round < 500; round++) {
+        const int n = (int)(noise(&seed) % (LANES + 1));
+
+        for (int i = 0; i < n; i++) {
+            weight[i] = 1 + noise(&seed) % (round % 2 ? 1u << 28 : 1u << 18);
+            sum[i] = (uint32_t)((uint64_t)weight[i] * (noise(&seed) % 65536) / 8192);
+            sum[i] = sum[i] < INT32_MAX ? sum[i] : INT32_MAX;
+        }
+        mean[n] = 12345;
+        subject->kernels.weighed_means(mean, sum, weight, n);
+        if (mean[n] != 12345)
+            return wrong(subject, "weighed_means", "one past the end", mean[n], 12345);
+        for (int i = 0; i < n; i++) {
+            volatile float s = (float)sum[i], w = (float)weight[i];
+            volatile float product = s * 8192, quotient = product / w, v = quotient + 0.5f;
+            const uint16_t should = (uint16_t)(v < 65520 ? v : 65520);
+
+            if (mean[i] != should)
+                return wrong(subject, "weighed_means", "of a sum", mean[i], should);
+            if (fabs(mean[i] - 8192.0 * sum[i] / weight[i]) > 0.5 + 1.0 / 64 && should < 65520)
+                return wrong(subject, "weighed_means", "far from it", mean[i],
+                             8192.0 * sum[i] / weight[i]);
         }
     }
     return 0;
@@ -147,9 +270,10 @@ static int check_between(const struct subject *subject)
 int check_light(const struct subject *subject)
 {
     const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject) +
-                         check_between(subject);
+                         check_between(subject) + check_weigh(subject) +
+                         check_weighed_means(subject);
 
     if (!failures)
-        printf("ok    %-12s %-6s weighted means, brightest, rows between\n", "light", subject->cpu);
+        printf("ok    %-12s %-6s means with weights, weights, brightest, rows between\n", "light", subject->cpu);
     return failures;
 }

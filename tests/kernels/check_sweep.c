@@ -16,13 +16,18 @@ enum {
     LANES = RF_STRIP_LANES,
 };
 
+/* What a run sums: light; light and weights; or light times weight and weights. */
+enum kind { PLAIN, WITH_WEIGHTS, WEIGHTED };
+
 struct stage {
     struct guarded front, behind; /* groups of planes: blur and light, light and weight */
     struct guarded weight;        /* of the front */
     struct rf_slab slab[MOST_SLABS];
     struct rf_sorted_rays rays;
+    uint8_t tested[MOST_SLABS][RF_RAY_CHUNK]; /* slab of a test */
     struct rf_sweep_job job;
-    uint32_t sum[3][LANES], expected[3][LANES];
+    enum kind kind;
+    uint32_t sum[4][LANES], expected[4][LANES]; /* [3]: of weights */
     uint64_t weighted[4][LANES], expected_weighted[4][LANES];
 };
 
@@ -32,6 +37,7 @@ static void count(struct stage *s, int pixel, const uint16_t *red, uint16_t weig
         s->expected[c][pixel] += red[c * PITCH];
         s->expected_weighted[c][pixel] += (uint64_t)red[c * PITCH] * weight;
     }
+    s->expected[3][pixel] += weight;
     s->expected_weighted[3][pixel] += weight;
 }
 
@@ -42,7 +48,7 @@ static void follow(struct stage *s, int pixel, int ray)
     const ptrdiff_t w = pixel / RF_TILE * WEIGHT_STRIDE + pixel % RF_TILE;
 
     for (int t = 0; t < s->rays.tests[ray]; t++) {
-        const struct rf_slab *slab = &s->slab[s->rays.slab[t][ray]];
+        const struct rf_slab *slab = &s->slab[s->tested[t][ray]];
         const ptrdiff_t q = p + s->rays.offset[t][ray];
         const int above = job->blur[q] - slab->low;
 
@@ -82,7 +88,11 @@ static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *be
 
         rays->tests[n] = (uint8_t)(same ? tests : noise_between(seed, 0, tests));
         for (int t = 0; t < rays->tests[n]; t++) {
-            rays->slab[t][n] = (uint8_t)noise_between(seed, 0, MOST_SLABS - 1);
+            const int k = noise_between(seed, 0, MOST_SLABS - 1);
+
+            s->tested[t][n] = (uint8_t)k;
+            rays->from[t][n] = rf_range_from(&s->slab[k]);
+            rays->to[t][n] = rf_range_to(&s->slab[k], &s->slab[k]);
             rays->offset[t][n] = make_offset(n, &rays->weight_offset[t][n], seed);
         }
         offset = make_offset(n, &weight_offset, seed);
@@ -136,12 +146,13 @@ static void make_blurs(struct stage *s, int16_t *blur, uint32_t *seed)
     }
 }
 
-static void make_weights(uint16_t *weight, ptrdiff_t stride, bool extreme, uint32_t *seed)
+static void make_weights(uint16_t *weight, ptrdiff_t stride, int most, bool extreme,
+                         uint32_t *seed)
 {
     for (int y = -PAD; y < RF_TILE + PAD; y++)
         for (int x = -PAD; x < RF_TILE + PAD; x++)
             weight[y * stride + x] =
-                (uint16_t)(extreme ? RF_WEIGHT_MAX : noise_between(seed, 1, RF_WEIGHT_MAX));
+                (uint16_t)(extreme ? most : noise_between(seed, 1, most));
 }
 
 static void make_stage(struct stage *s, int tests, bool same, enum place place, uint32_t seed)
@@ -149,13 +160,11 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
     const size_t weights = (SIDE - 1) * WEIGHT_STRIDE + SIDE;
     uint16_t *front, *behind, *weight;
     bool extreme;
-    int most;
+    int most, heaviest = RF_WEIGHT_MAX;
 
     s->job = (struct rf_sweep_job){
         .stride = STRIDE,
         .pitch = PITCH,
-        .slabs = MOST_SLABS,
-        .slab = s->slab,
         .rays = &s->rays,
         .weight_stride = WEIGHT_STRIDE,
         .lanes = (int)(2 + 2 * (seed % 4)) * RF_TILE,
@@ -164,17 +173,21 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
     extreme = noise(&seed) % 4 == 0;
     s->job.bright = noise(&seed) % 2 ? RF_WHITE : (enum rf_bright)(noise(&seed) % 4);
     most = 4095 * (s->job.bright == RF_WHITE ? 1 : 2 << s->job.bright);
+    s->job.steps = 65535 / most;
+    s->kind = noise(&seed) % 2 ? WITH_WEIGHTS : PLAIN;
+    if (s->kind == WITH_WEIGHTS && heaviest > most)
+        heaviest = most;
     behind = make_group(&s->behind, 4, 0, most, extreme, place, &seed);
-    make_weights(behind + 3 * PITCH, STRIDE, extreme, &seed);
+    make_weights(behind + 3 * PITCH, STRIDE, heaviest, extreme, &seed);
     weight = guarded_place(&s->weight, weights * 2, 2, place, noise(&seed) % 17);
     weight += PAD * (WEIGHT_STRIDE + 1);
-    make_weights(weight, WEIGHT_STRIDE, extreme, &seed);
+    make_weights(weight, WEIGHT_STRIDE, heaviest, extreme, &seed);
     s->job.weight = weight;
     front = make_group(&s->front, 4, 1, most, extreme, place, &seed);
     make_blurs(s, (int16_t *)front, &seed);
     make_rays(s, front, behind, tests, same, &seed);
     s->job.blur = (const int16_t *)front;
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 4; c++)
         for (int i = 0; i < LANES; i++)
             s->sum[c][i] = s->expected[c][i] = noise(&seed);
     for (int c = 0; c < 4; c++)
@@ -194,14 +207,16 @@ static bool is_same(const struct subject *subject, const struct stage *s, const 
     return false;
 }
 
-static void run(const struct rf_kernels *kernels, struct stage *s, bool weighted)
+static void run(const struct rf_kernels *kernels, struct stage *s, enum kind kind)
 {
-    uint64_t *const sum[4] = {s->weighted[0], s->weighted[1], s->weighted[2], s->weighted[3]};
+    uint64_t *const wide[4] = {s->weighted[0], s->weighted[1], s->weighted[2], s->weighted[3]};
+    uint32_t *const sum[4] = {s->sum[0], s->sum[1], s->sum[2],
+                              kind == WITH_WEIGHTS ? s->sum[3] : NULL};
 
-    if (weighted)
-        kernels->sweep_weighted(sum, &s->job);
+    if (kind == WEIGHTED)
+        kernels->sweep_weighted(wide, &s->job);
     else
-        kernels->sweep((uint32_t *const[3]){s->sum[0], s->sum[1], s->sum[2]}, &s->job);
+        kernels->sweep(sum, &s->job);
 }
 
 static bool check_case(const struct subject *subject, struct stage *s, int tests, bool same,
@@ -211,10 +226,10 @@ static bool check_case(const struct subject *subject, struct stage *s, int tests
     for (int i = 0; i < s->job.lanes; i++)
         for (int n = 0; n < s->rays.rays; n++)
             follow(s, i, n);
-    run(&subject->kernels, s, false);
+    run(&subject->kernels, s, s->kind);
     if (s->job.bright != RF_BRIGHTEST) /* by contract */
-        run(&subject->kernels, s, true);
-    for (int c = 0; c < 3; c++)
+        run(&subject->kernels, s, WEIGHTED);
+    for (int c = 0; c < (s->kind == WITH_WEIGHTS ? 4 : 3); c++)
         for (int i = 0; i < LANES; i++)
             if (!is_same(subject, s, "sweep", seed, c, i, s->sum[c][i], s->expected[c][i]))
                 return false;
@@ -266,7 +281,7 @@ int check_sweep(const struct subject *subject)
 struct bench {
     struct stage *stage;
     const struct rf_kernels *kernels;
-    bool weighted;
+    enum kind kind;
 };
 
 static void call(void *context)
@@ -274,7 +289,7 @@ static void call(void *context)
     const struct bench *b = context;
 
     for (int i = 0; i < 50; i++)
-        run(b->kernels, b->stage, b->weighted);
+        run(b->kernels, b->stage, b->kind);
 }
 
 /* The seed's rays are repeated until a chunk is full. */
@@ -288,7 +303,8 @@ static void fill_chunk(struct rf_sorted_rays *rays)
         rays->last_weight[n] = rays->last_weight[like];
         rays->last_behind[n] = rays->last_behind[like];
         for (int t = 0; t < rays->tests[n]; t++) {
-            rays->slab[t][n] = rays->slab[t][like];
+            rays->from[t][n] = rays->from[t][like];
+            rays->to[t][n] = rays->to[t][like];
             rays->offset[t][n] = rays->offset[t][like];
             rays->weight_offset[t][n] = rays->weight_offset[t][like];
         }
@@ -296,17 +312,20 @@ static void fill_chunk(struct rf_sorted_rays *rays)
     rays->rays = RF_RAY_CHUNK;
 }
 
-static void bench_case(const struct subject *subject, struct stage *s, int tests, bool weighted)
+static void bench_case(const struct subject *subject, struct stage *s, int tests,
+                       enum kind kind)
 {
+    static const char *const names[] = {"sweep", "with weights", "weighted"};
     const double samples = 50.0 * RF_RAY_CHUNK * LANES;
-    struct bench b = {s, &subject->plain, weighted};
+    struct bench b = {s, &subject->plain, kind};
     double plain, own;
     char name[24];
 
-    for (uint32_t seed = 5; seed == 5 || s->rays.rays < 15 || s->job.bright; seed++)
+    for (uint32_t seed = 5; seed == 5 || s->rays.rays < 15 || s->job.bright || s->kind == PLAIN;
+         seed++)
         make_stage(s, tests, true, INSIDE, seed);
     fill_chunk(&s->rays);
-    snprintf(name, sizeof name, "%s, %d", weighted ? "weighted" : "sweep", tests);
+    snprintf(name, sizeof name, "%s, %d", names[kind], tests);
     plain = best_time(call, &b);
     b.kernels = &subject->kernels;
     own = best_time(call, &b);
@@ -321,7 +340,7 @@ void bench_sweep(const struct subject *subject)
     if (!create(&s))
         return;
     for (int tests = 0; tests <= 5; tests++)
-        for (int weighted = 0; weighted < 2; weighted++)
-            bench_case(subject, &s, tests, weighted);
+        for (int kind = PLAIN; kind <= WEIGHTED; kind++)
+            bench_case(subject, &s, tests, (enum kind)kind);
     destroy(&s);
 }

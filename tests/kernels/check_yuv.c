@@ -232,8 +232,6 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
         .row = s->row,
         .rows = rows,
         .steps = step,
-        .slabs = slabs,
-        .slab = s->slab,
         .rays = &s->rays,
     };
     for (int y = -PAD; y < rows + jump + PAD; y++)
@@ -247,7 +245,8 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
     for (int n = 0; n < s->rays.rays; n++) {
         s->rays.tests[n] = (uint8_t)(n * (slabs + 1) / (s->rays.rays + 1));
         for (int t = 0; t < s->rays.tests[n]; t++) {
-            s->rays.slab[t][n] = (uint8_t)t;
+            s->rays.from[t][n] = rf_range_from(&s->slab[t]);
+            s->rays.to[t][n] = rf_range_to(&s->slab[t], &s->slab[t]);
             s->rays.offset[t][n] = offset_in(&state);
         }
         s->rays.last[n] = light + offset_in(&state);
@@ -261,7 +260,7 @@ static void follow(struct stage *s, int i, int n)
     const ptrdiff_t p = s->row[i / RF_TILE] + i % RF_TILE;
 
     for (int t = 0; t < s->rays.tests[n]; t++) {
-        const struct rf_slab *slab = &s->slab[s->rays.slab[t][n]];
+        const struct rf_slab *slab = &s->slab[t];
         const ptrdiff_t q = p + s->rays.offset[t][n];
         const int above = s->job.blur[q] - slab->low;
 

@@ -34,7 +34,7 @@ static void one_colour(void **state)
 /* Every grey and every σ of a blend, on a small picture. */
 static void every_grey(void **state)
 {
-    static const float sigmas[] = {0, 1, 3, 10, 30, 64, 128, 1000};
+    static const float sigmas[] = {0, 1, 3, 10, 30, 64, 128, 400, 1000};
     enum { W = 18, H = 5 };
     uint8_t out[3 * W * H];
     struct picture deep = picture_make(W, H, 33);
@@ -47,7 +47,7 @@ static void every_grey(void **state)
 
         memcpy(flat.disparity, deep.disparity, sizeof(uint16_t) * W * H);
         renderer = prepared(&flat, 5, 1);
-        for (int i = 0; i < 24; i++) {
+        for (int i = 0; i < 27; i++) {
             struct style style = {"sweep", REFOCUS_METHOD_SWEEP, 24, 1, 0, 0, 1, 0, 0, 0, 0, 0};
 
             style.blend = (uint32_t)i % 3;

@@ -74,6 +74,8 @@ static const struct style ways[] = {
      .iterations = 1, .prefilter = 1, .sigma = 128, .blend = REFOCUS_BLEND_STORED},
     {.name = "sweep linear 300", .method = REFOCUS_METHOD_SWEEP, .rays = 64,
      .iterations = 1, .prefilter = 1, .sigma = 300, .blend = REFOCUS_BLEND_LINEAR},
+    {.name = "sweep linear 400", .method = REFOCUS_METHOD_SWEEP, .rays = 64,
+     .iterations = 1, .prefilter = 1, .sigma = 400, .blend = REFOCUS_BLEND_LINEAR},
     {.name = "sweep linear 96", .method = REFOCUS_METHOD_SWEEP, .rays = 64,
      .iterations = 1, .sigma = 96, .blend = REFOCUS_BLEND_LINEAR},
     {.name = "search T = 1", .method = REFOCUS_METHOD_SEARCH, .rays = 64,
