@@ -5,12 +5,13 @@
 
 enum {
     PAD = RF_UPSAMPLE_PAD,
-    SPAN = 4,    /* rows of samples of a work item */
+    SPAN = 4, /* rows of samples of a work item */
     BLOCK = RF_UPSAMPLE_BLOCK,
     QUARTER = 2, /* shift of colours: sums of three differences then fit */
 };
 
-/* Cubic B-spline, for means: it smooths noise, and keeps slopes. t in Q8, result in Q24 / 6. */
+/* Cubic B-spline, for means: it smooths noise, and keeps slopes. t in Q8, result in Q24
+ * / 6. */
 static int mean_weight(int t)
 {
     const int64_t a = abs(t), left = 512 - a;
@@ -21,8 +22,8 @@ static int mean_weight(int t)
                           : 4 * (1 << 24) - 6 * 256 * a * a + 3 * a * a * a);
 }
 
-/* 0.465 (1 - (t / 2)^2)^2 in Q16 for what is expected before the photo is looked at: four of
- * them add up to less than 1. t in Q8. */
+/* 0.465 (1 - (t / 2)^2)^2 in Q16 for what is expected before the photo is looked at:
+ * four of them add up to less than 1. t in Q8. */
 static uint16_t nearness(int64_t t)
 {
     const int64_t fall = 65536 - t * t / 4;
@@ -65,7 +66,8 @@ static int clamp(int v, int most)
 /* Which of `size` columns or rows is the i-th of `samples`. */
 static int place(int i, int samples, int size)
 {
-    return (int)((2 * (int64_t)clamp(i, samples - 1) + 1) * size / (2 * (int64_t)samples));
+    return (int)((2 * (int64_t)clamp(i, samples - 1) + 1) * size /
+                 (2 * (int64_t)samples));
 }
 
 /* place() of 0, 1, 2 ... without divisions: `at` and `rest` / per. */
@@ -93,7 +95,8 @@ static void load_colours(const struct rf_upsampler *up, int y)
 {
     const struct refocus_image *photo = up->photo;
     const int bytes = refocus_format_bytes(photo->format), n = up->columns;
-    const uint8_t *row = photo->plane[0] + place(y, up->rows, photo->height) * photo->stride[0];
+    const uint8_t *row =
+        photo->plane[0] + place(y, up->rows, photo->height) * photo->stride[0];
     struct walk walk = walk_from_0(n, photo->width);
     uint8_t *const out[3] = {up->colour[0] + y * up->colour_stride,
                              up->colour[1] + y * up->colour_stride,
@@ -150,11 +153,13 @@ static void widen_row(void *context, int y, int worker)
     const struct rf_upsampler *up = context;
 
     (void)worker;
-    up->kernels->widen4(up->wide + y * up->wide_stride, up->coarse + y * up->coarse_stride,
-                        up->across, up->photo->width);
+    up->kernels->widen4(up->wide + y * up->wide_stride,
+                        up->coarse + y * up->coarse_stride, up->across,
+                        up->photo->width);
 }
 
-/* n pixels of which some are not sure, from those around; at the border, of one block. */
+/* n pixels of which some are not sure, from those around; at the border, of one block.
+ */
 static void settle_block(const struct rf_upsampler *up, int x, int y, int n)
 {
     const int right = up->photo->width - 1, last = up->photo->height - 1;
@@ -189,7 +194,8 @@ static void settle_row(const struct rf_upsampler *up, int y)
         const int x = unsure[i] * BLOCK;
         int n = width - x < BLOCK ? width - x : BLOCK;
 
-        for (; x > 0 && i < unsure[0] && unsure[i + 1] == unsure[i] + 1 && x + n + BLOCK < width;
+        for (; x > 0 && i < unsure[0] && unsure[i + 1] == unsure[i] + 1 &&
+               x + n + BLOCK < width;
              n += BLOCK)
             i++;
         settle_block(up, x, y, n);
@@ -229,9 +235,9 @@ static int row_of(const struct rf_upsampler *up, int first)
     return low;
 }
 
-/* The rows of pixels of a band, SPAN rows of samples. What is not sure is settled beside the
- * result, as its neighbours need what it was, and then taken over: here as far as that needs no
- * other band, while it is in the cache. */
+/* The rows of pixels of a band, SPAN rows of samples. What is not sure is settled
+ * beside the result, as its neighbours need what it was, and then taken over: here as
+ * far as that needs no other band, while it is in the cache. */
 static void fill_band(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
@@ -255,7 +261,8 @@ static void fill_band(void *context, int item, int worker)
 static void settle_border(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int y0 = row_of(up, item * SPAN - PAD), y1 = row_of(up, (item + 1) * SPAN - PAD);
+    const int y0 = row_of(up, item * SPAN - PAD),
+              y1 = row_of(up, (item + 1) * SPAN - PAD);
 
     (void)worker;
     if (y0 < y1)
@@ -267,7 +274,8 @@ static void settle_border(void *context, int item, int worker)
 static void take_over_border(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int y0 = row_of(up, item * SPAN - PAD), y1 = row_of(up, (item + 1) * SPAN - PAD);
+    const int y0 = row_of(up, item * SPAN - PAD),
+              y1 = row_of(up, (item + 1) * SPAN - PAD);
 
     (void)worker;
     for (int y = y0; y < y1; y++)

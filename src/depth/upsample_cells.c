@@ -12,7 +12,8 @@ enum {
     KINDS = 8,         /* of spans that are remembered */
 };
 
-/* Where pixels of a span lie among the samples, for those that have been looked at last. */
+/* Where pixels of a span lie among the samples, for those that have been looked at
+ * last. */
 struct lies {
     struct rf_lie lie[KINDS];
     int alike[KINDS], x[KINDS];
@@ -40,7 +41,8 @@ struct patch {
 };
 
 /* The colours of n pixels from column x on, a row after the other. */
-static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *patch, int x, int n)
+static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *patch,
+                    int x, int n)
 {
     const struct refocus_image *photo = patch->up->photo;
     const int rows = patch->y1 - patch->y0;
@@ -84,8 +86,10 @@ static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
         for (int i = 0; i < n; i++, at++) {
             lie->all[at] = 0;
             for (int t = 0; t < RF_TAP_COUNT; t++) {
-                const uint32_t near_by = (uint32_t)up->across[x + i].near_by[t / RF_TAPS] *
-                                             up->down[y].near_by[t % RF_TAPS] >> 16;
+                const uint32_t near_by =
+                    (uint32_t)up->across[x + i].near_by[t / RF_TAPS] *
+                        up->down[y].near_by[t % RF_TAPS] >>
+                    16;
 
                 lie->near_by[t][at] = (uint16_t)near_by;
                 lie->all[at] = (uint16_t)(lie->all[at] + near_by);
@@ -114,11 +118,13 @@ static int clamp(int v, int most)
 }
 
 /* Elements of a row from x on, which beyond the border are those at the border. */
-static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x, int columns)
+static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
+                            int columns)
 {
     if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
         return row + x;
-    const int from = x < 0 ? -x : 0, to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
+    const int from = x < 0 ? -x : 0;
+    const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
 
     if (from < to)
         memcpy(spare + from, row + x + from, (size_t)(to - from));
@@ -129,11 +135,13 @@ static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
     return spare;
 }
 
-static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, int x, int columns)
+static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, int x,
+                              int columns)
 {
     if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
         return row + x;
-    const int from = x < 0 ? -x : 0, to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
+    const int from = x < 0 ? -x : 0;
+    const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
 
     if (from < to)
         memcpy(spare + from, row + x + from, (size_t)(to - from) * sizeof *row);
@@ -152,8 +160,9 @@ static void turn(const struct patch *patch, uint8_t *out, const uint8_t *samples
     const uint8_t *row[RF_AROUND];
 
     for (int j = 0; j < RF_AROUND; j++)
-        row[j] = take8(spare[j], samples + clamp(patch->row - 2 + j, up->rows - 1) * stride, x,
-                       up->columns);
+        row[j] =
+            take8(spare[j], samples + clamp(patch->row - 2 + j, up->rows - 1) * stride,
+                  x, up->columns);
     up->kernels->turn8(out, row);
 }
 
@@ -167,7 +176,8 @@ static void look_around(struct patch *patch, int first)
 
     for (int j = 0; j < RF_AROUND; j++)
         row[j] = take16(spare[j],
-                        up->coarse + clamp(patch->row - 2 + j, up->rows - 1) * up->coarse_stride,
+                        up->coarse +
+                            clamp(patch->row - 2 + j, up->rows - 1) * up->coarse_stride,
                         x, up->columns);
     up->kernels->turn16(patch->around.disparity, row);
     for (int c = 0; c < 3; c++)
@@ -181,10 +191,12 @@ static void fill_cell(struct patch *patch, int cell, int i)
 {
     const struct rf_upsampler *up = patch->up;
     const struct around *around = &patch->around;
-    const int x1 = up->span[cell + 1].begin, rows = patch->y1 - patch->y0, at = RF_AROUND * i;
+    const int x1 = up->span[cell + 1].begin, rows = patch->y1 - patch->y0;
+    const int at = RF_AROUND * i;
     const struct rf_window window = {
         .disparity = around->disparity + at,
-        .colour = {around->colour[0] + at, around->colour[1] + at, around->colour[2] + at},
+        .colour = {around->colour[0] + at, around->colour[1] + at,
+                   around->colour[2] + at},
         .trust = up->confidence ? around->trust + at : NULL};
     bool found = false;
 
@@ -193,12 +205,13 @@ static void fill_cell(struct patch *patch, int cell, int i)
         uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], sure[RF_BATCH];
         uint16_t result[RF_BATCH];
 
-        collect(colour, patch, x, n); /* long before it is read as vectors: that would stall */
+        /* Long before it is read as vectors: that would stall. */
+        collect(colour, patch, x, n);
         if (!found)
             up->kernels->find_surfaces(&patch->cell, &window, &patch->parts, i);
         found = true;
-        up->kernels->surface(result, sure, &patch->cell, &window, lie_of(patch, cell, x, n),
-                             colour, rows * n);
+        up->kernels->surface(result, sure, &patch->cell, &window,
+                             lie_of(patch, cell, x, n), colour, rows * n);
         for (int j = 0; j < rows; j++) {
             put(up->out + (patch->y0 + j) * up->out_stride + x, result + j * n, n, 2);
             put(up->sure + (patch->y0 + j) * up->sure_stride + x, sure + j * n, n, 1);
@@ -206,9 +219,10 @@ static void fill_cell(struct patch *patch, int cell, int i)
     }
 }
 
-/* Taps in the corners are in the means, but nothing beyond the others is to come of that. */
-static void clamp_cell(const struct patch *patch, int cell, const uint16_t *const row[RF_TAPS],
-                       int at)
+/* Taps in the corners are in the means, but nothing beyond the others is to come of
+ * that. */
+static void clamp_cell(const struct patch *patch, int cell,
+                       const uint16_t *const row[RF_TAPS], int at)
 {
     const struct rf_upsampler *up = patch->up;
     uint16_t low = row[1][at], high = low;
@@ -255,7 +269,8 @@ static void fill_cells(struct patch *patch, int first, int n)
     up->kernels->part(&patch->parts, row, n);
     look_around(patch, first);
     for (int i = 0; i < n; i++)
-        if (rough[i] == RF_ROUGH && up->span[first + i].begin < up->span[first + i + 1].begin)
+        if (rough[i] == RF_ROUGH &&
+            up->span[first + i].begin < up->span[first + i + 1].begin)
             fill_cell(patch, first + i, i);
 }
 

@@ -12,7 +12,8 @@
 /* Sets the pointers, or with arena->base == NULL only counts. */
 static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
 {
-    const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
+    const uint64_t width = (uint64_t)up->photo->width,
+                   height = (uint64_t)up->photo->height;
     const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
 
     up->coarse_stride = up->columns + 4;
@@ -42,14 +43,16 @@ static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
     }
 }
 
-static void copy_map(const struct refocus_disparity *map, uint16_t *out, ptrdiff_t stride)
+static void copy_map(const struct refocus_disparity *map, uint16_t *out,
+                     ptrdiff_t stride)
 {
     for (int y = 0; y < map->height; y++) {
         const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
         uint16_t *to = (uint16_t *)((char *)out + y * stride);
 
         for (int x = 0; x < map->width; x++)
-            to[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
+            to[x] =
+                (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
     }
 }
 
@@ -62,7 +65,8 @@ static bool good_params(const struct refocus_upsample_params *params,
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
-int refocus_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
+int refocus_upsample(const struct refocus_image *photo,
+                     const struct refocus_disparity *map,
                      const struct refocus_upsample_params *params, uint16_t *out,
                      ptrdiff_t stride)
 {
@@ -74,8 +78,8 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     void *block;
     int status;
 
-    if (!rf_good_image(photo) || !rf_good_map(map) || !params || !good_params(params, map) ||
-        !out || ((uintptr_t)out & 1) || (stride & 1) ||
+    if (!rf_good_image(photo) || !rf_good_map(map) || !params ||
+        !good_params(params, map) || !out || ((uintptr_t)out & 1) || (stride & 1) ||
         !rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
     threads.threads = params->threads;

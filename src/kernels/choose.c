@@ -11,10 +11,15 @@ enum { ALIKE_TO = 8 }; /* where the table ends */
 
 #if defined(RF_VECTORS)
 
-enum { HALVES = 2, SAMPLES = RF_AROUND * RF_AROUND }; /* vectors of 16 bits for one of 8 */
+enum {
+    HALVES = 2, /* vectors of 16 bits for one of 8 */
+    SAMPLES = RF_AROUND * RF_AROUND,
+};
 
-/* Samples that may be like one of the pixels: those that are near the box around their colours. */
-static inline uint64_t near_samples(const uint8_t *const sample[3], const vec_u8 colour[3])
+/* Samples that may be like one of the pixels: those that are near the box around their
+ * colours. */
+static inline uint64_t near_samples(const uint8_t *const sample[3],
+                                    const vec_u8 colour[3])
 {
     const vec_u8 reach = vec_u8_set(ALIKE_TO);
     vec_u8 low[3], high[3];
@@ -51,14 +56,14 @@ static inline void look(uint16_t alike[VEC_U8], const vec_u8 colour[3],
         const vec_u8 d1 = vec_u8_apart(colour[1], vec_u8_set(sample[1][i]));
         const vec_u8 d2 = vec_u8_apart(colour[2], vec_u8_set(sample[2][i]));
 
-        vec_u8_add_wide(sum,
-                        vec_u8_lookup_or_0(table, vec_u8_adds(vec_u8_adds(d0, d1), d2)));
+        vec_u8_add_wide(
+            sum, vec_u8_lookup_or_0(table, vec_u8_adds(vec_u8_adds(d0, d1), d2)));
     }
     vec_u8_store_wide(alike, sum);
 }
 
-static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell, unsigned taps,
-                            const struct rf_lie *lie, int x)
+static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell,
+                            unsigned taps, const struct rf_lie *lie, int x)
 {
     vec_u16 sum[HALVES] = {vec_u16_set(0), vec_u16_set(0)};
 
@@ -77,10 +82,10 @@ static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell, u
         prior[h] = sum[h];
 }
 
-/* What is expected of each surface. Where the taps are sure, the surface with the most of them is
- * given what the others leave. */
-static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES], const struct rf_cell *cell,
-                          const struct rf_lie *lie, int x)
+/* What is expected of each surface. Where the taps are sure, the surface with the most
+ * of them is given what the others leave. */
+static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES],
+                          const struct rf_cell *cell, const struct rf_lie *lie, int x)
 {
     const int rest = cell->sure ? cell->greatest : RF_TAP_COUNT;
     vec_u16 left[HALVES];
@@ -98,7 +103,8 @@ static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES], const struct rf_c
         prior[rest][h] = left[h];
 }
 
-static inline vec_u16 height_of(const struct rf_surface *surface, const struct rf_lie *lie, int x)
+static inline vec_u16 height_of(const struct rf_surface *surface,
+                                const struct rf_lie *lie, int x)
 {
     vec_u16 d = vec_u16_set((uint16_t)surface->mean);
 
@@ -129,16 +135,17 @@ static inline void weigh(struct found *found, const struct rf_surface *s,
             vec_u16_mul_high(vec_u16_add(vec_u16_mul(mean, four), unlike), prior[h]);
         const vec_u16 best = found->best[h];
 
-        found->disparity[h] = vec_u16_select(vec_u16_at_most(score, best), found->disparity[h],
-                                             height_of(s, lie, x + h * VEC_U16));
+        found->disparity[h] =
+            vec_u16_select(vec_u16_at_most(score, best), found->disparity[h],
+                           height_of(s, lie, x + h * VEC_U16));
         found->second[h] = vec_u16_max(found->second[h], vec_u16_min(best, score));
         found->best[h] = vec_u16_max(best, score);
     }
 }
 
 static void RF_VEC(rf_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
-                               const struct rf_cell *cell, const struct rf_window *window,
-                               const struct rf_lie *lie,
+                               const struct rf_cell *cell,
+                               const struct rf_window *window, const struct rf_lie *lie,
                                uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += VEC_U8) {
@@ -221,7 +228,8 @@ static int off_box(const struct box *box, int c, uint8_t v)
 static void look(uint16_t alike[LANES], uint8_t *const colour[3], const struct box *box,
                  const struct rf_window *window, uint64_t samples)
 {
-    const uint8_t *restrict p0 = colour[0], *restrict p1 = colour[1], *restrict p2 = colour[2];
+    const uint8_t *restrict p0 = colour[0], *restrict p1 = colour[1];
+    const uint8_t *restrict p2 = colour[2];
     uint16_t sum[LANES] = {0};
 
     for (; samples; samples &= samples - 1) {
@@ -231,8 +239,10 @@ static void look(uint16_t alike[LANES], uint8_t *const colour[3], const struct b
 
         if (off_box(box, 0, c0) + off_box(box, 1, c1) + off_box(box, 2, c2) > ALIKE_TO)
             continue;
-        for (int x = 0; x < LANES; x++) { /* the table, in numbers: (124 - 11 d)^4 / 2^20 */
-            const uint8_t d = (uint8_t)(apart(p0[x], c0) + apart(p1[x], c1) + apart(p2[x], c2));
+        /* The table, in numbers: (124 - 11 d)^4 / 2^20. */
+        for (int x = 0; x < LANES; x++) {
+            const uint8_t d =
+                (uint8_t)(apart(p0[x], c0) + apart(p1[x], c1) + apart(p2[x], c2));
             const uint8_t like = (uint8_t)(124 - 11 * least(d, 11));
             const uint16_t square = (uint16_t)(like * like);
             const uint16_t fourth = (uint16_t)((uint32_t)square * square >> 16);
@@ -244,7 +254,8 @@ static void look(uint16_t alike[LANES], uint8_t *const colour[3], const struct b
 }
 
 static void add_taps(uint16_t prior[LANES], const struct rf_cell *cell,
-                     const struct rf_surface *surface, const struct rf_lie *lie, int from)
+                     const struct rf_surface *surface, const struct rf_lie *lie,
+                     int from)
 {
     for (int x = 0; x < LANES; x++)
         prior[x] = 0;
@@ -262,8 +273,8 @@ static void add_taps(uint16_t prior[LANES], const struct rf_cell *cell,
     }
 }
 
-/* What is expected of each surface. Where the taps are sure, the surface with the most of them is
- * given what the others leave. */
+/* What is expected of each surface. Where the taps are sure, the surface with the most
+ * of them is given what the others leave. */
 static void expect(uint16_t prior[RF_TAP_COUNT][LANES], const struct rf_cell *cell,
                    const struct rf_lie *lie, int from)
 {
@@ -297,9 +308,9 @@ static void height_of(uint16_t height[LANES], const struct rf_surface *surface,
     }
 }
 
-static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct rf_cell *cell,
-                   const struct rf_window *window, const struct rf_lie *lie,
-                   uint8_t *const colour[3], int from)
+static void choose(uint16_t *restrict out, uint8_t *restrict sure,
+                   const struct rf_cell *cell, const struct rf_window *window,
+                   const struct rf_lie *lie, uint8_t *const colour[3], int from)
 {
     const struct box box = box_of(colour);
     uint16_t best[LANES] = {0}, second[LANES] = {0}, prior[RF_TAP_COUNT][LANES];
@@ -315,7 +326,8 @@ static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct 
         look(alike, colour, &box, window, s->samples);
         height_of(height, s, lie, from);
         for (int x = 0; x < LANES; x++) {
-            const uint16_t mean = (uint16_t)((uint32_t)(uint16_t)(alike[x] * grow) * scale >> 16);
+            const uint16_t mean =
+                (uint16_t)((uint32_t)(uint16_t)(alike[x] * grow) * scale >> 16);
             const uint16_t evidence = (uint16_t)(4 * mean + RF_UNLIKE);
             const uint16_t score = (uint16_t)((uint32_t)prior[k][x] * evidence >> 16);
             const uint16_t less = score < best[x] ? score : best[x];
@@ -330,8 +342,8 @@ static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct 
 }
 
 static void RF_VEC(rf_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
-                               const struct rf_cell *cell, const struct rf_window *window,
-                               const struct rf_lie *lie,
+                               const struct rf_cell *cell,
+                               const struct rf_window *window, const struct rf_lie *lie,
                                uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += LANES) {

@@ -11,13 +11,13 @@ enum {
     TAPS = RF_TAP_COUNT,
     SAMPLES = RF_AROUND * RF_AROUND,
     FIRST = 2 * RF_AROUND + 2, /* tap */
-    GAP = 65535 / 44,  /* largest one between neighbouring disparities of a surface */
+    GAP = 65535 / 44, /* largest one between neighbouring disparities of a surface */
     WIDEST = 65535 / 8,
     TRUSTED = 128,
-    MANY = 40,         /* samples of a surface */
-    EVEN = 65535 / 256, /* slopes of a surface with less between its low and high are left out */
-    STEEPEST = 16383,  /* a sample */
-    FIRM = 8,          /* weight of "it is flat" in the slopes, of 64 of all taps */
+    MANY = 40, /* samples of a surface */
+    EVEN = 65535 / 256, /* with less between its low and high a surface has no slopes */
+    STEEPEST = 16383, /* a sample */
+    FIRM = 8,         /* weight of "it is flat" in the slopes, of 64 of all taps */
 };
 
 /* Bits of every other of 8 x 8 samples, those of a checkerboard. */
@@ -46,13 +46,14 @@ static inline void order(uint16_t *restrict low, uint16_t *restrict high)
 
 /* Batcher's odd-even merges of runs of 1, 2, 4 and 8. */
 static const uint8_t exchange[63][2] = {
-    {0, 1}, {2, 3}, {4, 5}, {6, 7}, {8, 9}, {10, 11}, {12, 13}, {14, 15}, {0, 2},
-    {1, 3}, {4, 6}, {5, 7}, {8, 10}, {9, 11}, {12, 14}, {13, 15}, {1, 2}, {5, 6},
-    {9, 10}, {13, 14}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {8, 12}, {9, 13}, {10, 14},
-    {11, 15}, {2, 4}, {3, 5}, {10, 12}, {11, 13}, {1, 2}, {3, 4}, {5, 6}, {9, 10},
-    {11, 12}, {13, 14}, {0, 8}, {1, 9}, {2, 10}, {3, 11}, {4, 12}, {5, 13}, {6, 14},
-    {7, 15}, {4, 8}, {5, 9}, {6, 10}, {7, 11}, {2, 4}, {3, 5}, {6, 8}, {7, 9}, {10,
-    12}, {11, 13}, {1, 2}, {3, 4}, {5, 6}, {7, 8}, {9, 10}, {11, 12}, {13, 14}};
+    {0, 1},  {2, 3},  {4, 5},   {6, 7},   {8, 9},   {10, 11}, {12, 13}, {14, 15},
+    {0, 2},  {1, 3},  {4, 6},   {5, 7},   {8, 10},  {9, 11},  {12, 14}, {13, 15},
+    {1, 2},  {5, 6},  {9, 10},  {13, 14}, {0, 4},   {1, 5},   {2, 6},   {3, 7},
+    {8, 12}, {9, 13}, {10, 14}, {11, 15}, {2, 4},   {3, 5},   {10, 12}, {11, 13},
+    {1, 2},  {3, 4},  {5, 6},   {9, 10},  {11, 12}, {13, 14}, {0, 8},   {1, 9},
+    {2, 10}, {3, 11}, {4, 12},  {5, 13},  {6, 14},  {7, 15},  {4, 8},   {5, 9},
+    {6, 10}, {7, 11}, {2, 4},   {3, 5},   {6, 8},   {7, 9},   {10, 12}, {11, 13},
+    {1, 2},  {3, 4},  {5, 6},   {7, 8},   {9, 10},  {11, 12}, {13, 14}};
 
 static void sort(uint16_t sorted[TAPS][RF_CELLS])
 {
@@ -60,13 +61,15 @@ static void sort(uint16_t sorted[TAPS][RF_CELLS])
         order(sorted[exchange[i][0]], sorted[exchange[i][1]]);
 }
 
-static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
+static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS],
+                            int n)
 {
     uint16_t low[RF_CELLS], starts[RF_CELLS];
 
     for (int t = 0; t < TAPS; t++) {
         memset(parts->sorted[t], 0, sizeof parts->sorted[t]);
-        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS, (size_t)n * sizeof(uint16_t));
+        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS,
+               (size_t)n * sizeof(uint16_t));
     }
     sort(parts->sorted);
     for (int i = 0; i < RF_CELLS; i++) {
@@ -74,10 +77,12 @@ static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF
         starts[i] = 1;
     }
     for (int t = 1; t < TAPS; t++) {
-        const uint16_t *restrict last = parts->sorted[t - 1], *restrict d = parts->sorted[t];
+        const uint16_t *restrict last = parts->sorted[t - 1];
+        const uint16_t *restrict d = parts->sorted[t];
 
         for (int i = 0; i < RF_CELLS; i++) {
-            const uint16_t far_off = (uint16_t)((d[i] - last[i] > GAP) | (d[i] - low[i] > WIDEST));
+            const uint16_t far_off =
+                (uint16_t)((d[i] - last[i] > GAP) | (d[i] - low[i] > WIDEST));
 
             starts[i] = (uint16_t)(starts[i] | far_off << t);
             low[i] = far_off ? d[i] : low[i];
@@ -148,13 +153,16 @@ static uint64_t high_bits(const uint8_t *byte)
 static int count(uint64_t bits)
 {
     bits -= bits >> 1 & UINT64_C(0x5555555555555555);
-    bits = (bits & UINT64_C(0x3333333333333333)) + (bits >> 2 & UINT64_C(0x3333333333333333));
+    bits = (bits & UINT64_C(0x3333333333333333)) +
+           (bits >> 2 & UINT64_C(0x3333333333333333));
     bits = (bits + (bits >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
     return (int)(bits * UINT64_C(0x0101010101010101) >> 56);
 }
 
-/* The samples that show what a surface looks like; of many, every other one is enough. How many. */
-static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES], uint64_t trusted)
+/* The samples that show what a surface looks like; of many, every other one is enough.
+ * How many. */
+static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
+                        uint64_t trusted)
 {
     const int under = s->low > GAP / 2 ? s->low - GAP / 2 : 0;
     const int high = s->low + s->range;
@@ -162,7 +170,8 @@ static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
     uint64_t members = 0;
 
     for (int i = 0; i < SAMPLES; i += 16)
-        members |= within16(disparity + i, (uint16_t)under, (uint16_t)(over - under)) << i;
+        members |= within16(disparity + i, (uint16_t)under, (uint16_t)(over - under))
+                   << i;
     s->samples = members & trusted;
     if (count(s->samples) > MANY)
         s->samples &= CHECKERED;
@@ -170,19 +179,24 @@ static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
 }
 
 /* What n samples grow by to be 64 to 127, and 64 / (n grow) in Q16. */
+/* clang-format off */
 #define GROW(n, grow) {65536 * 64 / ((n) * (grow)), grow}
-#define GROW4(n, grow) GROW(n, grow), GROW(n + 1, grow), GROW(n + 2, grow), GROW(n + 3, grow)
-#define GROW16(n, grow) GROW4(n, grow), GROW4(n + 4, grow), GROW4(n + 8, grow), GROW4(n + 12, grow)
+/* clang-format on */
+#define GROW4(n, grow)                                                                 \
+    GROW(n, grow), GROW(n + 1, grow), GROW(n + 2, grow), GROW(n + 3, grow)
+#define GROW16(n, grow)                                                                \
+    GROW4(n, grow), GROW4(n + 4, grow), GROW4(n + 8, grow), GROW4(n + 12, grow)
 static const struct {
     uint32_t share;
     uint16_t grow;
 } growth[SAMPLES + 1] = {
-    {0, 0},        GROW(1, 64),    GROW(2, 32),   GROW(3, 32),   GROW4(4, 16),
-    GROW4(8, 8),   GROW4(12, 8),   GROW16(16, 4), GROW16(32, 2), GROW16(48, 2),
-    GROW(64, 1),
+    {0, 0},        GROW(1, 64),   GROW(2, 32),  GROW(3, 32),
+    GROW4(4, 16),  GROW4(8, 8),   GROW4(12, 8), GROW16(16, 4),
+    GROW16(32, 2), GROW16(48, 2), GROW(64, 1),
 };
 
-/* Of equal evidence the nearer surface is up to a fifth better: what is thin is in front. */
+/* Of equal evidence the nearer surface is up to a fifth better: what is thin is in
+ * front. */
 static void set_scale(struct rf_surface *s, int n)
 {
     const uint64_t scale =
@@ -214,27 +228,31 @@ static int slope(int along, int spread, int weight)
 
 /* Twice how far a tap is from the middle, and how much it counts there. */
 static const int16_t one[TAPS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-static const int16_t across[TAPS] = {-3, -3, -3, -3, -1, -1, -1, -1, 1, 1, 1, 1, 3, 3, 3, 3};
-static const int16_t down[TAPS] = {-3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3};
+static const int16_t across[TAPS] = {-3, -3, -3, -3, -1, -1, -1, -1,
+                                     1,  1,  1,  1,  3,  3,  3,  3};
+static const int16_t down[TAPS] = {-3, -1, 1, 3, -3, -1, 1, 3,
+                                   -3, -1, 1, 3, -3, -1, 1, 3};
 static const int16_t middle[TAPS] = {256, 768,  768,  256, 768, 2304, 2304, 768,
                                      768, 2304, 2304, 768, 256, 768,  768,  256};
 
 /* middle[] times across[] and down[]. */
-static const int16_t middle_across[TAPS] = {-768, -2304, -2304, -768, -768, -2304, -2304, -768,
-                                            768,  2304,  2304,  768,  768,  2304,  2304,  768};
-static const int16_t middle_down[TAPS] = {-768,  -768,  768,  768,  -2304, -2304, 2304, 2304,
-                                          -2304, -2304, 2304, 2304, -768,  -768,  768,  768};
+static const int16_t middle_across[TAPS] = {-768,  -2304, -2304, -768, -768, -2304,
+                                            -2304, -768,  768,   2304, 2304, 768,
+                                            768,   2304,  2304,  768};
+static const int16_t middle_down[TAPS] = {-768, -768, 768,   768,   -2304, -2304,
+                                          2304, 2304, -2304, -2304, 2304,  2304,
+                                          -768, -768, 768,   768};
 
-/* Sums over the taps of a surface: weights q, and with e heights above its low, at most WIDEST.
- * Weights add up to 64 * 256 at the most: all fit 32 bits. */
+/* Sums over the taps of a surface: weights q, and with e heights above its low, at most
+ * WIDEST. Weights add up to 64 * 256 at the most: all fit 32 bits. */
 struct sums {
     int q, qx, qy, qxx, qyy; /* x = across, y = down */
     int qe, qxe, qye;
 };
 
 /* The heights of a surface's taps, 0 of the others, and which those are. */
-static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS], const struct rf_surface *s,
-                             const uint16_t tap[TAPS])
+static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS],
+                             const struct rf_surface *s, const uint16_t tap[TAPS])
 {
 #if defined(RF_VECTORS)
     for (int i = 0; i < TAPS; i += VEC_U16) {
@@ -256,8 +274,9 @@ static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS], const struct r
 
 /* By rows of a column: bits 0 to 7 the sum of (1, 3, 3, 1), bits 8 to 15 of those times
  * (-3, -1, 1, 3) and 8, bits 16 to 23 of those times their squares. */
-#define COLUMN(a, b, c, d)                                                                          \
-    (((a) + 3 * (b) + 3 * (c) + (d)) + ((8 - 3 * (a) - 3 * (b) + 3 * (c) + 3 * (d)) << 8) +         \
+#define COLUMN(a, b, c, d)                                                             \
+    (((a) + 3 * (b) + 3 * (c) + (d)) +                                                 \
+     ((8 - 3 * (a)-3 * (b) + 3 * (c) + 3 * (d)) << 8) +                                \
      ((9 * (a) + 3 * (b) + 3 * (c) + 9 * (d)) << 16))
 static const uint32_t column[16] = {
     COLUMN(0, 0, 0, 0), COLUMN(1, 0, 0, 0), COLUMN(0, 1, 0, 0), COLUMN(1, 1, 0, 0),
@@ -265,7 +284,8 @@ static const uint32_t column[16] = {
     COLUMN(0, 0, 0, 1), COLUMN(1, 0, 0, 1), COLUMN(0, 1, 0, 1), COLUMN(1, 1, 0, 1),
     COLUMN(0, 0, 1, 1), COLUMN(1, 0, 1, 1), COLUMN(0, 1, 1, 1), COLUMN(1, 1, 1, 1)};
 
-/* Where each tap counts what it does in the middle: what needs no heights by columns. */
+/* Where each tap counts what it does in the middle: what needs no heights by columns.
+ */
 static struct sums sums_of(const struct rf_surface *s, const int16_t e[TAPS])
 {
     const uint32_t a = column[s->taps & 15], b = column[s->taps >> 4 & 15];
@@ -303,8 +323,8 @@ static struct sums sums_by(const int16_t weight[TAPS], const uint16_t own[TAPS],
                          .qye = dot(qy, e)};
 }
 
-/* A plane by least squares over the taps, those in the middle counting most; weight == NULL: all
- * are sure. */
+/* A plane by least squares over the taps, those in the middle counting most; weight ==
+ * NULL: all are sure. */
 static void fit(struct rf_surface *s, const uint16_t tap[TAPS], const int16_t *weight)
 {
     int16_t e[TAPS];
@@ -326,14 +346,17 @@ static void fit(struct rf_surface *s, const uint16_t tap[TAPS], const int16_t *w
         slope(2 * (sum.qye - y * mean), sum.qyy - (int)(v * v / (uint32_t)w), 4 * w);
 
     mean -= (gx * x + gy * y) / (2 * w);
-    s->mean = (int16_t)(mean < -STEEPEST ? -STEEPEST : mean > STEEPEST ? STEEPEST : mean);
+    s->mean = (int16_t)(mean < -STEEPEST  ? -STEEPEST
+                        : mean > STEEPEST ? STEEPEST
+                                          : mean);
     s->right = (int16_t)gx;
     s->below = (int16_t)gy;
 }
 
-/* Trust of the taps, their weights in a plane, and of all samples whether they are trusted. */
-static uint64_t take_trust(struct rf_cell *cell, int16_t spare[TAPS], const int16_t **weight,
-                           const struct rf_window *window)
+/* Trust of the taps, their weights in a plane, and of all samples whether they are
+ * trusted. */
+static uint64_t take_trust(struct rf_cell *cell, int16_t spare[TAPS],
+                           const int16_t **weight, const struct rf_window *window)
 {
     uint64_t trusted;
     uint8_t trust[TAPS];
@@ -360,7 +383,8 @@ static uint64_t take_trust(struct rf_cell *cell, int16_t spare[TAPS], const int1
     return trusted;
 }
 
-static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell, const struct rf_window *window,
+static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell,
+                                     const struct rf_window *window,
                                      const struct rf_parts *parts, int at)
 {
     int16_t spare[TAPS];
