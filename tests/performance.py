@@ -184,23 +184,23 @@ def format_rows(build, repeat):
     yield "\n## Pixel formats\n"
     yield ("Prepare and render by turns in each format, CPU time of one thread, the best of "
            f"{repeat}; 720x540, K = 20.\n")
-    yield "| rays | format | prepare ms | render ms | both | of RGB8 |"
-    yield "| --- | --- | --- | --- | --- | --- |"
-    for rays in (32, 64, 128):
+    yield "| rays | sigma | format | prepare ms | render ms | both | of RGB8 |"
+    yield "| --- | --- | --- | --- | --- | --- | --- |"
+    for rays, sigma in ((32, "inf"), (64, "inf"), (64, "400"), (128, "inf"), (128, "400")):
         done = subprocess.run([build / "tests" / "quality" / "refocus-format-times", SCENE, "20",
-                               str(rays), str(repeat)], stdout=subprocess.PIPE, text=True,
-                              check=True)
+                               str(rays), str(repeat), sigma], stdout=subprocess.PIPE,
+                              text=True, check=True)
         rows = [line.split() for line in done.stdout.splitlines()]
         for name, prepare, render, both in rows:
-            yield (f"| {rays} | {name} | {prepare} | {render} | {both} "
-                   f"| {100 * float(both) / float(rows[0][3]):.0f} % |")
+            yield (f"| {rays} | {'off' if sigma == 'inf' else sigma} | {name} | {prepare} "
+                   f"| {render} | {both} | {100 * float(both) / float(rows[0][3]):.0f} % |")
 
 
 def live_rows(refocus, seconds):
     """Frames of the replay source at 30 a second, from the camera to the sink."""
     yield "\n## Live\n"
     yield (f"`refocus live` with the replay source, 30 frames a second for {seconds} s, depth of "
-           "the same size, K = 20, `--sigma off --out null`; milliseconds.\n")
+           "the same size, K = 20, `--out null`; milliseconds.\n")
     yield ("| camera | rendered in | frames a second | latency, median | 99 % | prepare | render "
            "| outside rendering | peak memory MiB |")
     yield "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
@@ -209,7 +209,7 @@ def live_rows(refocus, seconds):
             done = subprocess.run(
                 [refocus, "live", "--camera", f"replay::format {form};size {size};fps 30",
                  "--depth", f"replay::format Z16;size {size};fps 30", "--focus", "0.5",
-                 "--blur", "20", "--sigma", "off", "--duration", str(seconds), "--no-commands",
+                 "--blur", "20", "--duration", str(seconds), "--no-commands",
                  "--json"],
                 stdout=subprocess.PIPE, check=True)
             r = json.loads(done.stdout)

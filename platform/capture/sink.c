@@ -97,7 +97,7 @@ static const struct rf_sink_ops *find(const char *name, const char **rest,
         return &rf_sink_pictures;
     rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                     "no such kind of sink; give window, v4l2:DEVICE, y4m:FILE, "
-                    "raw:FILE, null or a pattern of pictures such as frames-%%04d.png");
+                    "raw:FILE[,FORMAT], null or a pattern of pictures such as frames-%%04d.png");
     return NULL;
 }
 

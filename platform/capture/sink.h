@@ -46,4 +46,18 @@ uint32_t rf_frame_format_of(uint32_t image_format);
 void rf_copy_frame(const struct refocus_image *image,
                    const struct refocus_frame *frame);
 
+/* samples.c: Y, U or V of frames, wherever they lie. */
+struct rf_samples {
+    uint8_t *first;
+    int step;         /* bytes to the next of the row, */
+    ptrdiff_t stride; /* to the next row */
+};
+void rf_samples_of(struct rf_samples samples[3], uint32_t format,
+                   const uint8_t *const plane[3], const ptrdiff_t stride[3]);
+/* Frames with as many samples: the rows of Y, and those of U and V. */
+void rf_copy_samples(const struct rf_samples to[3], const struct rf_samples from[3],
+                     int width, int height, int chroma_rows);
+/* Whether two frame formats of Y, U and V hold as many samples: both 4:2:0 or 4:2:2. */
+bool rf_same_samples(uint32_t format, uint32_t other);
+
 #endif

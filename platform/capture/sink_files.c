@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <time.h>
 #include <unistd.h>
 #include "pictures.h"
@@ -17,8 +18,10 @@ struct stream {
     char *path;
     int fd;
     bool y4m, begun;
-    uint32_t format, range;     /* of its pictures: enum refocus_format,
-                                   refocus_range */
+    bool own;                   /* raw: frames are as pictures come */
+    bool tall;                  /* y4m: U and V have all rows */
+    uint32_t range;             /* of its pictures: enum refocus_range */
+    uint32_t layout;            /* raw: enum refocus_frame_format of frames */
     struct refocus_frame frame; /* in memory */
     uint8_t *memory;
     size_t bytes;
@@ -71,34 +74,65 @@ static int write_all(const struct stream *stream, const void *bytes, size_t size
     return REFOCUS_OK;
 }
 
+/* "FILE,NV12" or "FILE,own", split; names may hold commas where a dot or a slash
+ * follows. */
+static int parse_raw(struct stream *stream, struct refocus_reason *reason)
+{
+    char *const comma = strrchr(stream->path, ',');
+
+    stream->layout = REFOCUS_FRAME_RGB24;
+    if (!comma || strpbrk(comma, "./"))
+        return REFOCUS_OK;
+    stream->own = strcasecmp(comma + 1, "own") == 0;
+    if (!stream->own)
+        stream->layout = rf_format_by_name(comma + 1);
+    if (!stream->own && !rf_can_encode(stream->layout))
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_ARGUMENT,
+            "'%.40s' is no format of raw frames that can be written; "
+            "give own, NV12, NV21, YUV420, YUYV, UYVY, RGB24, BGR24, "
+            "RGBX or BGRX",
+            comma + 1);
+    *comma = '\0';
+    return REFOCUS_OK;
+}
+
+static int open_file(struct stream *stream, struct refocus_reason *reason)
+{
+    if (!*stream->path)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "give the name of a file behind the colon, or '-'");
+    stream->fd =
+        strcmp(stream->path, "-") == 0
+            ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
+            : open(stream->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    return stream->fd < 0 ? rf_capture_fail_errno(reason, errno, stream->path)
+                          : REFOCUS_OK;
+}
+
 static int open_stream(struct refocus_sink *sink, const char *rest, bool y4m,
                        struct refocus_reason *reason)
 {
-    struct stream *stream;
-    int status;
+    struct stream *stream = calloc(1, sizeof *stream);
+    int status = REFOCUS_OK;
 
-    if (!*rest)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "give the name of a file behind the colon, or '-'");
-    stream = calloc(1, sizeof *stream);
     if (!stream)
         return rf_capture_fail_memory(reason);
-    sink->state = stream;
     stream->y4m = y4m;
     stream->path = strdup(rest);
-    stream->fd = strcmp(rest, "-") == 0
-                     ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
-                     : open(rest, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    status = !stream->path    ? rf_capture_fail_memory(reason)
-             : stream->fd < 0 ? rf_capture_fail_errno(reason, errno, rest)
-                              : REFOCUS_OK;
+    if (!stream->path)
+        status = rf_capture_fail_memory(reason);
+    if (status == REFOCUS_OK && !y4m)
+        status = parse_raw(stream, reason);
+    if (status == REFOCUS_OK)
+        status = open_file(stream, reason);
     if (status != REFOCUS_OK) {
-        if (stream->fd >= 0)
-            close(stream->fd);
         free(stream->path);
         free(stream);
+        return status;
     }
-    return status;
+    sink->state = stream;
+    return REFOCUS_OK;
 }
 
 static int open_y4m(struct refocus_sink *sink, const char *rest,
@@ -124,70 +158,67 @@ static uint32_t range_of(const struct refocus_sink *sink)
                                                : sink->range;
 }
 
-static bool takes_yuv(const struct refocus_sink *sink, uint32_t format)
+static bool y4m_takes(const struct refocus_sink *sink, uint32_t format)
 {
     (void)sink;
     (void)format;
     return true;
 }
 
+static bool raw_takes(const struct refocus_sink *sink, uint32_t format)
+{
+    const struct stream *stream = sink->state;
+
+    return stream->own || rf_same_samples(stream->layout, rf_frame_format_of(format));
+}
+
+/* The frames that pictures of the sink's format become. */
+static uint32_t layout_of(const struct refocus_sink *sink)
+{
+    const struct stream *stream = sink->state;
+
+    if (stream->y4m)
+        return REFOCUS_FRAME_YUV420;
+    if (!stream->own)
+        return stream->layout;
+    return sink->format == REFOCUS_FORMAT_RGB8 ? (uint32_t)REFOCUS_FRAME_RGB24
+                                               : rf_frame_format_of(sink->format);
+}
+
 /* Planes of y4m are those of YUV420; in 4:2:2 U and V have all rows. */
-static bool lay_out(struct stream *stream, int width, int height)
+static bool lay_out(struct stream *stream, uint32_t layout, int width, int height)
 {
     struct refocus_frame *frame = &stream->frame;
     const size_t half = ((size_t)width + 1) / 2;
 
     rf_frame_clear(frame);
-    frame->format = stream->y4m ? REFOCUS_FRAME_YUV420 : REFOCUS_FRAME_RGB24;
+    frame->format = layout;
     frame->width = width;
     frame->height = height;
     stream->bytes = (size_t)rf_frame_bytes(
         frame->format, rf_plane_row(frame->format, 0, width), width, height);
-    if (is_422(stream->format))
+    if (stream->tall)
         stream->bytes = ((size_t)width + 2 * half) * (size_t)height;
     stream->memory = malloc(stream->bytes);
     if (!stream->memory)
         return false;
     rf_frame_lay_out(frame, stream->memory, rf_plane_row(frame->format, 0, width));
-    if (is_422(stream->format))
+    if (stream->tall)
         frame->plane[2] = frame->plane[1] + half * (size_t)height;
     return true;
 }
 
-/* Samples of a row that lie `step` bytes apart. */
-static void take_row(uint8_t *to, const uint8_t *from, int step, int n)
+static void rearrange(const struct refocus_image *image,
+                      const struct refocus_frame *frame)
 {
-    if (step == 1)
-        memcpy(to, from, (size_t)n);
-    else
-        for (int x = 0; x < n; x++)
-            to[x] = from[x * step];
-}
+    const uint32_t format = rf_frame_format_of(image->format);
+    const uint8_t *const plane[3] = {image->plane[0], image->plane[1], image->plane[2]};
+    struct rf_samples from[3], to[3];
 
-/* Y, U and V in planes of their own. */
-static void take_apart(const struct refocus_image *image, struct stream *stream)
-{
-    const int half = (image->width + 1) / 2;
-    const bool planar = image->format == REFOCUS_FORMAT_I420,
-               packed = is_422(image->format);
-    const bool swapped = image->format == REFOCUS_FORMAT_NV21;
-    uint8_t *at = stream->memory;
-
-    for (int i = 0; i < 3; i++) {
-        const int plane = packed ? 0 : planar ? i : i > 0;
-        const int step = i == 0 ? (packed ? 2 : 1) : packed ? 4 : planar ? 1 : 2;
-        const int first = i == 0 || planar ? 0
-                          : packed         ? 2 * i - 1
-                                           : (i == 2) ^ swapped;
-        const int n = i == 0 ? image->width : half;
-
-        for (int y = 0; y < (i == 0 ? image->height
-                                    : rf_plane_rows(rf_frame_format_of(image->format),
-                                                    plane, image->height));
-             y++, at += n)
-            take_row(at, image->plane[plane] + y * image->stride[plane] + first, step,
-                     n);
-    }
+    rf_samples_of(from, format, plane, image->stride);
+    rf_samples_of(to, frame->format, frame->plane, frame->stride);
+    rf_copy_samples(to, from, image->width, image->height,
+                    is_422(image->format) ? image->height : (image->height + 1) / 2);
 }
 
 static int start_stream(struct refocus_sink *sink, int width, int height, double fps,
@@ -196,9 +227,12 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
     struct stream *stream = sink->state;
     char header[128];
 
+    const uint32_t layout = layout_of(sink);
+    const bool tall = stream->y4m && is_422(sink->format);
+
     if (stream->begun) {
         if (width == stream->frame.width && height == stream->frame.height &&
-            is_422(sink->format) == is_422(stream->format) &&
+            tall == stream->tall && layout == stream->frame.format &&
             range_of(sink) == stream->range)
             return REFOCUS_OK;
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
@@ -207,9 +241,9 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
                                stream->path, stream->frame.width, stream->frame.height,
                                width, height);
     }
-    stream->format = sink->format;
+    stream->tall = tall;
     stream->range = range_of(sink);
-    if (!lay_out(stream, width, height))
+    if (!lay_out(stream, layout, width, height))
         return rf_capture_fail_memory(reason);
     /* y4m says the size at once: only a header that was written is begun. */
     stream->begun = true;
@@ -217,7 +251,7 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
         return REFOCUS_OK;
     snprintf(header, sizeof header,
              "YUV4MPEG2 W%d H%d F%d:1000 Ip A1:1 C%s XCOLORRANGE=%s\n", width, height,
-             (int)(fps * 1000 + 0.5), is_422(stream->format) ? "422" : "420jpeg",
+             (int)(fps * 1000 + 0.5), stream->tall ? "422" : "420jpeg",
              stream->range == REFOCUS_RANGE_FULL ? "FULL" : "LIMITED");
     return write_all(stream, header, strlen(header), reason);
 }
@@ -231,7 +265,7 @@ static int write_stream(struct refocus_sink *sink, const struct refocus_image *i
     if (image->format == REFOCUS_FORMAT_RGB8)
         rf_encode(image, &stream->frame);
     else
-        take_apart(image, stream);
+        rearrange(image, &stream->frame);
     if (stream->y4m)
         status = write_all(stream, "FRAME\n", 6, reason);
     if (status == REFOCUS_OK)
@@ -254,12 +288,13 @@ static int close_stream(struct refocus_sink *sink, struct refocus_reason *reason
 
 const struct rf_sink_ops rf_sink_y4m = {.scheme = "y4m",
                                         .open = open_y4m,
-                                        .takes = takes_yuv,
+                                        .takes = y4m_takes,
                                         .start = start_stream,
                                         .write = write_stream,
                                         .close = close_stream};
 const struct rf_sink_ops rf_sink_raw = {.scheme = "raw",
                                         .open = open_raw,
+                                        .takes = raw_takes,
                                         .start = start_stream,
                                         .write = write_stream,
                                         .close = close_stream};

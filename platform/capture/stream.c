@@ -4,14 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 #include "ring.h"
+#include "sink.h"
 
 enum { LONGEST_HEADER = 1024 };
 
 struct stream {
     FILE *file;
     bool y4m, is_pipe;
-    char *path; /* owned */
-    long begin; /* of the first frame */
+    bool tall;       /* y4m of 4:2:2, which becomes YUYV: U and V have all rows */
+    uint8_t *planes; /* for that */
+    char *path;      /* owned */
+    long begin;      /* of the first frame */
     uint32_t format, flags;
     int width, height;
     double fps;
@@ -42,6 +45,8 @@ static uint32_t colour_space(const char *name)
     for (int i = 0; i < 4; i++)
         if (strcmp(name, yuv420[i]) == 0)
             return REFOCUS_FRAME_YUV420;
+    if (strcmp(name, "422") == 0)
+        return REFOCUS_FRAME_YUYV;
     if (strcmp(name, "mono") == 0)
         return REFOCUS_FRAME_GREY;
     return strcmp(name, "mono16") == 0 ? REFOCUS_FRAME_Y16 : REFOCUS_FRAME_ANY;
@@ -65,14 +70,15 @@ static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
             stream->height = atoi(word + 1);
         else if (*word == 'F')
             sscanf(word + 1, "%9ld:%9ld", &numerator, &denominator);
-        else if (*word == 'C')
+        else if (*word == 'C') {
+            stream->tall = strcmp(word + 1, "422") == 0;
             stream->format = colour_space(word + 1);
-        else if (strcmp(word, "XCOLORRANGE=FULL") == 0)
+        } else if (strcmp(word, "XCOLORRANGE=FULL") == 0)
             stream->flags |= REFOCUS_FRAME_FULL_RANGE;
     }
     if (stream->format == REFOCUS_FRAME_ANY)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "%.160s: give 4:2:0 of 8 bits, mono or mono16",
+                               "%.160s: give 4:2:0 or 4:2:2 of 8 bits, mono or mono16",
                                stream->path);
     stream->fps =
         numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator : 30;
@@ -104,7 +110,8 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
     if (stream->format == REFOCUS_FRAME_ANY || stream->format == REFOCUS_FRAME_MJPEG)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "'%.40s' is no format of raw frames; give NV12, YUYV, "
-                               "RGB24, Y16, ...", word[n - 1]);
+                               "RGB24, Y16, ...",
+                               word[n - 1]);
     return REFOCUS_OK;
 }
 
@@ -115,6 +122,7 @@ static void close_stream(struct refocus_source *source)
     if (stream->file && stream->file != stdin)
         fclose(stream->file);
     rf_ring_free(&stream->ring);
+    free(stream->planes);
     free(stream->path);
     free(stream);
 }
@@ -242,6 +250,40 @@ static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
                            stream->path, (long long)stream->frame);
 }
 
+/* The same of 4:2:2 in planes, packed. */
+static int read_tall(struct stream *stream, uint8_t *memory,
+                     struct refocus_reason *reason)
+{
+    const size_t w = (size_t)stream->width, h = (size_t)stream->height,
+                 half = (w + 1) / 2;
+    const size_t bytes = (w + 2 * half) * h;
+    struct rf_samples from[3], to[3];
+    int status;
+
+    if (!stream->planes)
+        stream->planes = malloc(bytes);
+    if (!stream->planes)
+        return rf_capture_fail_memory(reason);
+    status = read_frame(stream, stream->planes, bytes, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    rf_samples_of(from, REFOCUS_FRAME_YUV420,
+                  (const uint8_t *const[3]){stream->planes, stream->planes + w * h,
+                                            stream->planes + (w + half) * h},
+                  (const ptrdiff_t[3]){(ptrdiff_t)w, (ptrdiff_t)half, (ptrdiff_t)half});
+    rf_samples_of(to, REFOCUS_FRAME_YUYV, (const uint8_t *const[3]){memory, NULL, NULL},
+                  (const ptrdiff_t[3]){4 * (ptrdiff_t)half, 0, 0});
+    rf_copy_samples(to, from, stream->width, stream->height, stream->height);
+    return REFOCUS_OK;
+}
+
+static int read_next(struct stream *stream, uint8_t *memory, size_t bytes,
+                     struct refocus_reason *reason)
+{
+    return stream->tall ? read_tall(stream, memory, reason)
+                        : read_frame(stream, memory, bytes, reason);
+}
+
 static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                       struct refocus_frame **result, struct refocus_reason *reason)
 {
@@ -261,16 +303,16 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     }
     buffer = rf_ring_take(&stream->ring);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; "
-                                                          "release one");
-    status =
-        rf_ring_reserve(&stream->ring, buffer, bytes)
-            ? read_frame(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
-            : rf_capture_fail_memory(reason);
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
+                               "every buffer is out; "
+                               "release one");
+    status = rf_ring_reserve(&stream->ring, buffer, bytes)
+                 ? read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
+                 : rf_capture_fail_memory(reason);
     if (status == REFOCUS_ERR_END && source->config.flags & REFOCUS_SOURCE_LOOP &&
         !stream->is_pipe && stream->frame > 0 &&
         fseek(stream->file, stream->begin, SEEK_SET) == 0)
-        status = read_frame(stream, stream->ring.memory[buffer], (size_t)bytes, reason);
+        status = read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason);
     if (status != REFOCUS_OK) {
         rf_ring_give(&stream->ring, (uint32_t)buffer);
         return status;

@@ -95,7 +95,7 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
 }
 
 /* Brightest value of n pixels. Signed: baseline x86 has a signed 16-bit maximum
- * only. */
+ * only. Of Y, U and V there is luminance alone. */
 static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
 {
     const int16_t *a = (const int16_t *)r->front.light[0] + at;
@@ -103,7 +103,9 @@ static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
     const int16_t *c = (const int16_t *)r->front.light[2] + at;
     int16_t most = 0;
 
-    for (int x = 0; x < n; x++) {
+    for (int x = 0; r->yuv.on && x < n; x++)
+        most = a[x] > most ? a[x] : most;
+    for (int x = 0; !r->yuv.on && x < n; x++) {
         most = a[x] > most ? a[x] : most;
         most = b[x] > most ? b[x] : most;
         most = c[x] > most ? c[x] : most;

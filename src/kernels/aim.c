@@ -158,7 +158,8 @@ static inline int joined_to(uint32_t joined, int bit)
 /* Ray n becomes the m-th. */
 static inline void place(struct rf_sorted_rays *restrict sorted,
                          const struct rf_sort_job *restrict job,
-                         const struct state *restrict s, int n, int m, const bool weighted)
+                         const struct state *restrict s, int n, int m, const bool weighted,
+                         const bool shared)
 {
     const int tests = (int)s->tests[n], last = (int)s->last[n];
     uint32_t need = s->first[0][n];
@@ -177,7 +178,18 @@ static inline void place(struct rf_sorted_rays *restrict sorted,
         sorted->offset[t][m] = job->offset[k][n];
         if (weighted)
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
+        if (shared && n < job->shared)
+            sorted->chroma_offset[t][m] = job->chroma_offset[k][n];
+        if (shared && weighted && n < job->shared)
+            sorted->chroma_weight_offset[t][m] = job->chroma_weight_offset[k][n];
     }
+    if (shared && weighted && n < job->shared)
+        sorted->chroma_last_weight[m] =
+            (last == job->slabs ? job->behind_weight : job->weight) +
+            job->chroma_weight_offset[last][n];
+    if (shared && n < job->shared)
+        sorted->chroma_last[m] = (last == job->slabs ? job->chroma_behind : job->chroma_front) +
+                                 job->chroma_offset[last][n];
     if (weighted) {
         sorted->last_behind[m] = last == job->slabs;
         sorted->last_weight[m] = last == job->slabs
@@ -197,17 +209,27 @@ static inline int class_of(uint32_t tests)
 
 static inline void place_all(struct rf_sorted_rays *restrict sorted,
                              const struct rf_sort_job *restrict job,
-                             const struct state *restrict s, const bool weighted)
+                             const struct state *restrict s, const bool weighted,
+                             const bool shared)
 {
-    uint64_t count = 0, at;
+    const int first = shared ? job->shared : 0;
+    uint64_t count = 0, at, first_count;
 
-    for (int n = 0; n < job->rays; n++)
+    for (int n = 0; n < first; n++)
+        count += UINT64_C(1) << class_of(s->tests[n]);
+    first_count = count;
+    for (int n = first; n < job->rays; n++)
         count += UINT64_C(1) << class_of(s->tests[n]);
     at = count * UINT64_C(0x0101010101010101) << 8; /* sums of those before */
+    for (int class = 0; class < RF_SORTED_TESTS; class++) {
+        sorted->begin[class] = (uint8_t)(at >> 8 * class);
+        sorted->shared[class] = (uint8_t)(first_count >> 8 * class);
+    }
+    sorted->begin[RF_SORTED_TESTS] = (uint8_t)job->rays;
     for (int n = 0; n < job->rays; n++) {
         const int class = class_of(s->tests[n]);
 
-        place(sorted, job, s, n, (int)(at >> class & 255), weighted);
+        place(sorted, job, s, n, (int)(at >> class & 255), weighted, shared);
         at += UINT64_C(1) << class;
     }
 }
@@ -260,10 +282,14 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
             break;
     }
     sorted->rays = rays;
-    if (job->weight)
-        place_all(sorted, job, &s, true);
+    if (job->weight && job->shared)
+        place_all(sorted, job, &s, true, true);
+    else if (job->weight)
+        place_all(sorted, job, &s, true, false);
+    else if (job->shared)
+        place_all(sorted, job, &s, false, true);
     else
-        place_all(sorted, job, &s, false);
+        place_all(sorted, job, &s, false, false);
 }
 
 /* Square root and division are exact to the last bit everywhere. */

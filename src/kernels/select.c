@@ -50,6 +50,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     kernels->search = rf_search_c;
     kernels->sweep = rf_sweep_c;
     kernels->sweep1 = rf_sweep1_c;
+    kernels->sweep1_weighted = rf_sweep1_weighted_c;
     kernels->weigh = rf_weigh_c;
     kernels->smooth1 = rf_smooth1_c;
     kernels->smooth3 = rf_smooth3_c;

@@ -1,20 +1,37 @@
+/* sweep1.c: the sweep of one plane, plainly and with weights. */
 #include "kernels/kernels.h"
+
+/* Where lane i is, elements from the first. */
+static ptrdiff_t at(const struct rf_sweep1_job *job, int i)
+{
+    const int y = i / RF_TILE, half = job->rows / 2;
+
+    return (y < half ? y * job->apart : job->half + (y - half) * job->apart) +
+           i % RF_TILE;
+}
 
 void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
 {
     const struct rf_sorted_rays *rays = job->rays;
+    const int32_t(*const offset)[RF_RAY_CHUNK] =
+        job->chroma ? (const int32_t(*)[RF_RAY_CHUNK])rays->chroma_offset
+                    : (const int32_t(*)[RF_RAY_CHUNK])rays->offset;
     const int lanes = job->rows * RF_TILE;
+    int class = 0; /* of tests */
 
     for (int n = 0; n < rays->rays; n++) {
         uint16_t value[RF_TILE * RF_TILE];
 
+        while (n == rays->begin[class + 1])
+            class ++;
+        if (job->chroma && n - rays->begin[class] >= rays->shared[class])
+            continue;
         /* from the last to the nearest, which overwrites what lies behind it */
         for (int i = 0; i < lanes; i++)
-            value[i] = rays->last[n][job->row[i / RF_TILE] + i % RF_TILE];
+            value[i] = (job->chroma ? rays->chroma_last : rays->last)[n][at(job, i)];
         for (int t = rays->tests[n] - 1; t >= 0; t--) {
             for (int i = 0; i < lanes; i++) {
-                const ptrdiff_t q =
-                    job->row[i / RF_TILE] + i % RF_TILE + rays->offset[t][n];
+                const ptrdiff_t q = at(job, i) + offset[t][n];
 
                 if (rf_in_range(rays->from[t][n], rays->to[t][n], job->blur[q]))
                     value[i] = job->light[q];
@@ -22,5 +39,55 @@ void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
         }
         for (int i = 0; i < lanes; i++)
             sum[i] += value[i];
+    }
+}
+
+/* Light and weight that ray n meets at lane i. */
+static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light,
+                 uint16_t *weight)
+{
+    const struct rf_sorted_rays *rays = job->rays;
+    const int32_t(*const offset)[RF_RAY_CHUNK] =
+        job->chroma ? (const int32_t(*)[RF_RAY_CHUNK])rays->chroma_offset
+                    : (const int32_t(*)[RF_RAY_CHUNK])rays->offset;
+    const int32_t(*const pixel)[RF_RAY_CHUNK] =
+        job->chroma ? (const int32_t(*)[RF_RAY_CHUNK])rays->chroma_weight_offset
+                    : (const int32_t(*)[RF_RAY_CHUNK])rays->offset;
+    const int x = i % RF_TILE;
+    const ptrdiff_t p = at(job, i);
+    const ptrdiff_t own = (p - x) * (1 << job->down) + (job->chroma ? x & ~1 : x);
+
+    for (int t = 0; t < rays->tests[n]; t++) {
+        const ptrdiff_t q = p + offset[t][n];
+
+        if (rf_in_range(rays->from[t][n], rays->to[t][n], job->blur[q])) {
+            *light = job->light[q];
+            *weight = job->weight[own + pixel[t][n]];
+            return;
+        }
+    }
+    *light = (job->chroma ? rays->chroma_last : rays->last)[n][p];
+    *weight = (job->chroma ? rays->chroma_last_weight : rays->last_weight)[n][own];
+}
+
+void rf_sweep1_weighted_c(uint64_t *sum, uint64_t *weight_sum,
+                          const struct rf_sweep1_job *job)
+{
+    const struct rf_sorted_rays *rays = job->rays;
+
+    for (int class = 0; class < RF_SORTED_TESTS; class ++) {
+        const int begin = rays->begin[class];
+        const int end =
+            job->chroma ? begin + rays->shared[class] : rays->begin[class + 1];
+
+        for (int n = begin; n < end; n++) {
+            for (int i = 0; i < job->rows * RF_TILE; i++) {
+                uint16_t light, weight;
+
+                meet(job, n, i, &light, &weight);
+                sum[i] += (uint64_t)weight * light;
+                weight_sum[i] += weight;
+            }
+        }
     }
 }

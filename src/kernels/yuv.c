@@ -15,7 +15,9 @@ static inline int16_t sharper(int16_t a, int16_t b)
 static void RF_VEC(rf_sharpest4)(int16_t *restrict out, const int16_t *restrict upper,
                                  const int16_t *restrict lower, int n)
 {
-    for (int x = 0; x < n; x++) {
+    for (int x = 0; upper == lower && x < n; x++)
+        out[2 * x] = out[2 * x + 1] = sharper(upper[2 * x], upper[2 * x + 1]);
+    for (int x = 0; upper != lower && x < n; x++) {
         const int16_t s = sharper(sharper(upper[2 * x], upper[2 * x + 1]),
                                   sharper(lower[2 * x], lower[2 * x + 1]));
 
@@ -107,22 +109,17 @@ static inline int16_t rounded(int16_t u, int16_t blur, int shift)
     return (int16_t)((int16_t)((int16_t)(u * blur >> 16) + (64 << shift)) >> (7 + shift));
 }
 
-static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, int32_t *restrict cell,
+static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, int32_t *restrict pixel,
                                   const int16_t *restrict u, const int16_t *restrict v,
-                                  int blur, int down, int32_t stride, int32_t cell_stride,
-                                  int n)
+                                  int blur, int down, int32_t stride, int n)
 {
-    int16_t x[RF_RAY_CHUNK], y[RF_RAY_CHUNK];
     const int16_t s = (int16_t)blur;
-    const int to_cell = 2 - down;
 
     for (int i = 0; i < n; i++) {
-        x[i] = rounded(u[i], s, 1);
-        y[i] = rounded(v[i], s, down);
-    }
-    for (int i = 0; i < n; i++) {
-        offset[i] = 2 * x[i] + y[i] * stride;
-        cell[i] = (x[i] >> 1) + (y[i] >> to_cell) * cell_stride;
+        const int32_t x = 2 * rounded(u[i], s, 1), y = rounded(v[i], s, down) * stride;
+
+        offset[i] = x + y;
+        pixel[i] = x + y * (1 << down);
     }
 }
 

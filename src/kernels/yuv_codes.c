@@ -8,6 +8,8 @@
 
 #include <string.h>
 
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+
 enum { PAIRS = RF_TILE / 2, SAMPLES = RF_TILE * PAIRS };
 
 /* The first and the second in memory of a pair. */
@@ -45,7 +47,7 @@ static inline int32_t sum_of(uint32_t pair)
 #endif
 
 /* n look-ups in place. */
-static inline void look_up(int32_t *restrict v, const int16_t *restrict table, int n)
+static ALWAYS_INLINE void look_up(int32_t *restrict v, const int16_t *restrict table, int n)
 {
     UNROLLED
     for (int i = 0; i < n; i++)
@@ -58,7 +60,7 @@ static inline uint16_t white_at_most(uint16_t mean)
 }
 
 /* L' of each sample; means are at most RF_MEAN_MAX, so two of them fit 16 bits. */
-static void mean_light(int32_t *restrict light, const uint16_t *restrict luma, int down)
+static ALWAYS_INLINE void mean_light(int32_t *restrict light, const uint16_t *restrict luma, int down)
 {
     for (int y = 0; y < RF_TILE; y += 1 << down) {
         const uint16_t *a = luma + y * RF_TILE, *b = a + down * RF_TILE;
@@ -75,7 +77,7 @@ static void mean_light(int32_t *restrict light, const uint16_t *restrict luma, i
 }
 
 /* rf_chroma_code() of n samples, a multiple of 4; of the excess, pairs of the same. */
-static void decode_chroma(uint16_t *restrict uv, uint32_t *restrict excess,
+static ALWAYS_INLINE void decode_chroma(uint16_t *restrict uv, uint32_t *restrict excess,
                           const int32_t *restrict light, const uint32_t *restrict chroma,
                           const struct rf_yuv_curve *restrict curve, int n)
 {
@@ -113,7 +115,7 @@ static void decode_chroma(uint16_t *restrict uv, uint32_t *restrict excess,
 }
 
 /* L - E lies within -RF_MEAN_MAX .. 2 RF_MEAN_MAX. */
-static void decode_luma(uint8_t *restrict y, const uint16_t *restrict luma,
+static ALWAYS_INLINE void decode_luma(uint8_t *restrict y, const uint16_t *restrict luma,
                         const uint32_t *restrict excess, const uint8_t *restrict to_code,
                         int down)
 {
@@ -138,7 +140,7 @@ static void decode_luma(uint8_t *restrict y, const uint16_t *restrict luma,
 }
 
 /* What rows of a tile differ by from 4 times what they were. */
-static void differences(uint16_t *restrict differs, const uint16_t *restrict mean,
+static ALWAYS_INLINE void differences(uint16_t *restrict differs, const uint16_t *restrict mean,
                         const uint16_t *own, ptrdiff_t stride, int rows)
 {
     for (int i = 0; i < rows * RF_TILE; i += RF_TILE, own += stride)
@@ -146,7 +148,7 @@ static void differences(uint16_t *restrict differs, const uint16_t *restrict mea
             differs[i + x] = (uint16_t)(mean[i + x] ^ (uint16_t)(4 * own[x]));
 }
 
-static void choose(uint8_t *restrict to, const uint16_t *restrict differs,
+static ALWAYS_INLINE void choose(uint8_t *restrict to, const uint16_t *restrict differs,
                    const uint8_t *restrict code, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -157,16 +159,17 @@ static void choose(uint8_t *restrict to, const uint16_t *restrict differs,
 }
 
 /* All bits of a pair, if any. */
-static void widen(uint32_t *pair, int n)
+static ALWAYS_INLINE void widen(uint32_t *pair, int n)
 {
     for (int i = 0; i < n; i++)
         pair[i] = pair[i] ? 0xffffffff : 0;
 }
 
 /* Codes in place of those that are not to be kept. */
-static void put_codes(struct rf_decode_job *job, const uint8_t *y, const uint8_t *uv)
+static ALWAYS_INLINE void put_codes(struct rf_decode_job *job, const uint8_t *y,
+                                    const uint8_t *uv, const int down)
 {
-    const int down = job->down, rows = RF_TILE >> down, n = rows * RF_TILE;
+    const int rows = RF_TILE >> down, n = rows * RF_TILE;
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE];
     uint32_t of_pixels[SAMPLES], of_samples[SAMPLES], wide[SAMPLES], any[SAMPLES];
 
@@ -194,9 +197,9 @@ static void put_codes(struct rf_decode_job *job, const uint8_t *y, const uint8_t
     choose(job->uv, chroma, uv, n);
 }
 
-static void RF_VEC(rf_decode)(struct rf_decode_job *job)
+static ALWAYS_INLINE void decode(struct rf_decode_job *job, const int down)
 {
-    const int samples = SAMPLES >> job->down;
+    const int samples = SAMPLES >> down;
     uint8_t y[RF_TILE * RF_TILE], uv[RF_TILE * RF_TILE];
     uint16_t luma[RF_TILE * RF_TILE], uv_pair[SAMPLES];
     uint32_t excess[SAMPLES], chroma[SAMPLES];
@@ -205,14 +208,22 @@ static void RF_VEC(rf_decode)(struct rf_decode_job *job)
     for (int i = 0; i < RF_TILE * RF_TILE; i++)
         luma[i] = white_at_most(job->luma[i]);
     memcpy(chroma, job->chroma, (size_t)samples * sizeof chroma[0]);
-    mean_light(light, luma, job->down);
+    mean_light(light, luma, down);
     decode_chroma(uv_pair, excess, light, chroma, job->curve, samples);
     memcpy(uv, uv_pair, (size_t)samples * sizeof uv_pair[0]);
-    decode_luma(y, luma, excess, job->curve->to_code, job->down);
-    put_codes(job, y, uv);
+    decode_luma(y, luma, excess, job->curve->to_code, down);
+    put_codes(job, y, uv, down);
 }
 
-enum { RUN = 64 }; /* samples that are worked on together */
+static void RF_VEC(rf_decode)(struct rf_decode_job *job)
+{
+    if (job->down)
+        decode(job, 1);
+    else
+        decode(job, 0);
+}
+
+enum { RUN = 128 }; /* samples that are worked on together */
 
 /* Light of the pixels of n samples. */
 static void row_light(uint16_t *restrict light, const uint8_t *restrict luma,

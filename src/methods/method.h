@@ -86,11 +86,6 @@ int rf_rays_alike(const struct rf_ray_set *set, int first);
  * a highlight is in reach. */
 const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach, bool lamp);
 
-/* For chroma of a photo of Y, U and V, whose samples lie two pixels apart: three rays for eight of
- * luma, or the smallest set. */
-const struct rf_ray_set *rf_chroma_rays(const struct refocus_renderer *r,
-                                        const struct rf_ray_set *set);
-
 /* Means of a tile into the output picture. */
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);
 

@@ -1,8 +1,9 @@
 /* sweep_yuv.c: the sweep for a photo of Y, U and V.
  *
- * What sweep.c does for three planes is done here for luma and, with the same slabs, for chroma,
- * whose samples lie two pixels apart: its rays are half as long across, and in 4:2:0 down,
- * and fewer of them lie as densely among its samples.
+ * What sweep.c does for three planes is done here for luma and, with the same slabs,
+ * for chroma, whose samples lie two pixels apart: rays are half as long there across,
+ * and in 4:2:0 down, and some of them lie as densely among its samples as all do among
+ * pixels.
  */
 #include "methods/method.h"
 #include "methods/tile_rows.h"
@@ -15,260 +16,279 @@ enum { LANES = RF_TILE * RF_TILE };
 struct plane {
     const int16_t *blur;
     const uint16_t *light, *behind;
-    const uint16_t *weighing, *weighing_behind; /* luma of the tile, for eq. 5 */
     int rows, steps;
     struct rf_tile_rows computed;
-    ptrdiff_t row[RF_TILE]; /* where those are, elements */
-    int across, down; /* shifts from pixels to samples */
-    const uint32_t *range; /* of the tile's first pixel */
+    int down; /* shift from rows of pixels */
+};
+
+struct tile {
+    const struct rf_frame *f;
+    struct rf_tile_plan plan;
     const struct rf_ray_set *set;
+    int behind;                             /* blur of the background */
+    const uint32_t *range;                  /* of the tile's first pixel, */
+    const uint16_t *weight, *weight_behind; /* and weights of eq. 5, or NULL */
+    struct plane luma, chroma;
 };
 
-/* rf_offset() in samples of 1 << shift pixels. */
-static int offset(int u, int s, int shift)
-{
-    return (u * s + (1 << (22 + shift))) >> (23 + shift);
-}
-
-/* Elements of a plane, across and down. */
-struct place {
-    int x, y;
-};
-
-static struct place shift_of(const struct plane *plane, const struct refocus_ray *ray, int blur)
-{
-    return (struct place){offset(ray->u, blur, plane->across) * (1 << plane->across),
-                          offset(ray->v, blur, plane->down)};
-}
-
-/* Where some rays see the slabs of a tile, and the background. */
+/* Some rays of one weight, where they see the slabs of the tile and the background, and
+ * what they have to look at. */
 struct sight {
     int rays;
+    const int16_t *u, *v;
+    int16_t own_u[RF_RAY_CHUNK], own_v[RF_RAY_CHUNK];
     int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    /* Of the first of them: */
+    int32_t chroma_offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t chroma_pixel[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    struct rf_sorted_rays sorted;
 };
 
-static void set_sight(struct sight *sight, const struct refocus_renderer *r,
-                      const struct plane *plane, const struct rf_tile_plan *plan,
-                      const struct refocus_ray *ray, int behind)
+static void set_rays(struct sight *sight, const struct rf_ray_set *set, int first)
 {
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
-
-    for (int n = 0; n < sight->rays; n++) {
-        u[n] = ray[n].u;
-        v[n] = ray[n].v;
-    }
-    for (int k = 0; k <= plan->slabs; k++) {
-        const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
-
-        if (plane->across)
-            r->kernels.aim_chroma(sight->offset[k], sight->cell[k], u, v, blur, plane->down,
-                                  (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
-        else
-            r->kernels.aim(sight->offset[k], sight->cell[k], u, v, blur, (int32_t)r->stride,
-                           (int32_t)r->range_stride, sight->rays);
+    sight->rays = rf_rays_alike(set, first);
+    sight->u = set->u ? set->u + first : sight->own_u;
+    sight->v = set->u ? set->v + first : sight->own_v;
+    for (int n = 0; !set->u && n < sight->rays; n++) {
+        sight->own_u[n] = set->ray[first + n].u;
+        sight->own_v[n] = set->ray[first + n].v;
     }
 }
 
-/* Strips of a tile together: of one plane, sorting each by itself costs more than it saves. */
-static void sweep_tile(const struct refocus_renderer *r, const struct rf_tile_plan *plan,
-                       const struct plane *plane, const struct sight *sight,
-                       uint32_t run[LANES])
+/* Sums of luma and of chroma, of rays of one weight: of light, or of light times
+ * weights of eq. 5 and those weights; and in `sum` of all rays. */
+struct sums {
+    uint32_t run[2][LANES];
+    uint64_t weighted_run[2][LANES], weight_run[2][LANES];
+    uint64_t sum[2][LANES], weight[2][LANES];
+};
+
+static void sweep_plane(const struct tile *tile, bool chroma,
+                        const struct rf_sorted_rays *rays, struct sums *sums)
 {
-    struct rf_sorted_rays sorted;
-    const struct rf_sort_job sort = {
-        .range = plane->range,
-        .below = plane->range + RF_STRIP / RF_CELL * r->range_stride,
-        .front = plane->light,
-        .behind = plane->behind,
-        .rays = sight->rays,
-        .slabs = plan->slabs,
-        .slab = plan->slab,
-        .joined = plan->joined,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
-        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
-    };
+    const struct refocus_renderer *r = tile->f->r;
+    const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
     const struct rf_sweep1_job job = {
         .blur = plane->blur,
         .light = plane->light,
-        .row = plane->row,
+        .apart = rf_row_at(plane->computed, 1) * r->stride,
+        .half = rf_row_at(plane->computed, plane->computed.count / 2) * r->stride,
         .rows = plane->computed.count,
         .steps = plane->steps,
-        .rays = &sorted,
+        .chroma = chroma,
+        .rays = rays,
+        .weight = tile->weight,
+        .down = plane->down,
     };
 
-    r->kernels.sort_rays(&sorted, &sort);
-    r->kernels.sweep1(run, &job);
+    if (tile->weight)
+        r->kernels.sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma],
+                                   &job);
+    else
+        r->kernels.sweep1(sums->run[chroma], &job);
 }
 
-static void add_run(uint32_t run[LANES], uint64_t weight, uint64_t sum[LANES])
+/* Rays, of which chroma shares the first so many. Strips of a tile together: of one
+ * plane, sorting each by itself costs more than it saves. */
+static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
 {
-    for (int i = 0; i < LANES; i++)
-        sum[i] += weight * run[i];
-    memset(run, 0, LANES * sizeof run[0]);
+    const struct refocus_renderer *r = tile->f->r;
+    const struct rf_sort_job job = {
+        .range = tile->range,
+        .front = tile->luma.light,
+        .behind = tile->luma.behind,
+        .rays = sight->rays,
+        .slabs = tile->plan.slabs,
+        .slab = tile->plan.slab,
+        .joined = tile->plan.joined,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+        .weight = tile->weight,
+        .behind_weight = tile->weight_behind,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .shared = shared,
+        .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->chroma_offset,
+        .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->chroma_pixel,
+        .chroma_front = tile->chroma.light,
+        .chroma_behind = tile->chroma.behind,
+    };
+
+    for (int k = 0; k <= tile->plan.slabs; k++) {
+        const int blur =
+            k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
+
+        r->kernels.aim(sight->offset[k], sight->cell[k], sight->u, sight->v, blur,
+                       (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
+        r->kernels.aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k], sight->u,
+                              sight->v, blur, tile->chroma.down, (int32_t)r->stride,
+                              shared);
+    }
+    r->kernels.sort_rays(&sight->sorted, &job);
 }
 
-/* As sweep_rays() of sweep.c: sums of rays of one weight in `run`, of others in `sum`. */
-static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct plane *plane, int behind, uint32_t run[LANES],
-                       uint64_t sum[LANES])
+static void clear_run(const struct tile *tile, struct sums *sums)
 {
-    const struct rf_ray_set *set = plane->set;
+    const struct plane *const plane[2] = {&tile->luma, &tile->chroma};
+
+    for (int p = 0; p < 2; p++) {
+        const size_t lanes = (size_t)plane[p]->computed.count * RF_TILE;
+
+        if (tile->weight) {
+            memset(sums->weighted_run[p], 0, lanes * sizeof sums->weighted_run[p][0]);
+            memset(sums->weight_run[p], 0, lanes * sizeof sums->weight_run[p][0]);
+        } else {
+            memset(sums->run[p], 0, lanes * sizeof sums->run[p][0]);
+        }
+    }
+}
+
+/* A run of rays of a weight, of `rays[p]` of them. */
+static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
+                    const int rays[2])
+{
+    const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
+
+    for (int p = 0; p < 2; p++) {
+        for (int i = 0; i < lanes[p]; i++) {
+            sums->sum[p][i] +=
+                weight * (tile->weight ? sums->weighted_run[p][i] : sums->run[p][i]);
+            sums->weight[p][i] +=
+                weight * (tile->weight ? sums->weight_run[p][i] : (uint64_t)rays[p]);
+        }
+    }
+    clear_run(tile, sums);
+}
+
+/* As sweep_rays() of sweep.c. */
+static void sweep_rays(const struct tile *tile, struct sums *sums)
+{
+    const struct rf_ray_set *set = tile->set;
+    int rays[2] = {0, 0}; /* in this run */
     struct sight sight;
 
-    memset(run, 0, LANES * sizeof run[0]);
-    for (int n = 0; n < set->count; n += sight.rays) {
-        const struct refocus_ray *ray = &set->ray[n];
+    clear_run(tile, sums);
+    for (int n = 0, end; n < set->count; n = end) {
+        const uint64_t weight = set->ray[n].weight;
+        int shared;
 
-        sight.rays = rf_rays_alike(set, n);
-        set_sight(&sight, f->r, plane, plan, ray, behind);
-        sweep_tile(f->r, plan, plane, &sight, run);
-        if (!set->equal &&
-            (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight))
-            add_run(run, ray->weight, sum);
-    }
-}
-
-/* Weight of eq. 5: of luma, of chroma that of the first pixel that shares the sample. */
-static uint64_t weight_of(const struct rf_frame *f, const struct plane *plane,
-                          const uint16_t *luma, struct place q)
-{
-    const int x = q.x - (plane->across ? q.x & 1 : 0), y = q.y * (1 << plane->down);
-    const uint16_t light = luma[y * f->r->stride + x];
-
-    return f->r->light_weight[light > RF_LIGHT_MAX ? RF_LIGHT_MAX : light];
-}
-
-/* One ray with eq. 5's weights, plain C. */
-static void weigh_ray(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                      const struct plane *plane, const struct refocus_ray *ray, int behind,
-                      uint64_t sum[LANES], uint64_t weight[LANES])
-{
-    struct place shift[RF_MAX_SLABS + 1];
-
-    for (int k = 0; k <= plan->slabs; k++)
-        shift[k] = shift_of(plane, ray, k < plan->slabs ? plan->slab[k].centre : behind);
-    for (int i = 0; i < plane->rows * RF_TILE; i++) {
-        struct place q = {0, 0};
-        ptrdiff_t at = 0;
-        uint64_t w;
-        int k = 0;
-
-        for (;; k++) {
-            q = (struct place){i % RF_TILE + shift[k].x, i / RF_TILE + shift[k].y};
-            at = q.y * f->r->stride + q.x;
-            if (k == plan->slabs ||
-                (uint16_t)(plane->blur[at] - plan->slab[k].low) <= plan->slab[k].width)
-                break;
+        set_rays(&sight, set, n);
+        end = n + sight.rays;
+        shared = rf_shared_rays(set, n, end);
+        rays[0] += sight.rays;
+        rays[1] += shared;
+        sort_rays(tile, &sight, shared);
+        sweep_plane(tile, false, &sight.sorted, sums);
+        sweep_plane(tile, true, &sight.sorted, sums);
+        if (!set->equal && (end == set->count || set->ray[end].weight != weight)) {
+            add_run(tile, sums, weight, rays);
+            rays[0] = rays[1] = 0;
         }
-        w = ray->weight * weight_of(f, plane,
-                                    k < plan->slabs ? plane->weighing : plane->weighing_behind,
-                                    q);
-        sum[i] += w * (k < plan->slabs ? plane->light[at] : plane->behind[at]);
-        weight[i] += w;
     }
-}
-
-static void set_rows(struct plane *plane, struct rf_tile_rows rows, ptrdiff_t stride)
-{
-    plane->computed = rows;
-    for (int i = 0; i < rows.count; i++)
-        plane->row[i] = rf_row_at(rows, i) * stride;
 }
 
 /* Means of rays that weigh the same, of some rows and then of those between. */
-static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct plane *plane, int behind, uint16_t mean[LANES])
+static void take_means(const struct tile *tile, bool chroma, const struct sums *sums,
+                       uint16_t mean[LANES])
 {
-    const struct rf_kernels *kernels = &f->r->kernels;
-    const bool all = plane->computed.step == 1;
-    uint16_t computed[LANES];
-    uint32_t run[LANES];
+    const struct rf_kernels *kernels = &tile->f->r->kernels;
+    const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
+    const int rays = chroma ? tile->set->shared : tile->set->count;
+    const int lanes = plane->computed.count * RF_TILE;
+    uint16_t memory[LANES], *computed = plane->computed.step == 1 ? mean : memory;
 
-    sweep_rays(f, plan, plane, behind, run, NULL);
-    kernels->means(all ? mean : computed, run, rf_mean_scale((uint64_t)plane->set->count),
-                   plane->computed.count * RF_TILE);
-    if (!all && plane->rows == RF_TILE)
+    if (tile->weight)
+        kernels->weighted_means(computed, sums->weighted_run[chroma],
+                                sums->weight_run[chroma], lanes);
+    else
+        kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays),
+                       lanes);
+    if (computed == memory && plane->rows == RF_TILE)
         kernels->between_rows(mean, computed, plane->computed.step);
-    else if (!all)
+    else if (computed == memory)
         kernels->between_chroma(mean, computed);
 }
 
-static void sweep_plane(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        struct plane *plane, int behind, uint16_t mean[LANES])
+static void sweep_means(struct tile *tile, struct sums *sums,
+                        struct rf_decode_job *means)
 {
-    const struct rf_ray_set *set = plane->set;
-    const ptrdiff_t stride = f->r->stride;
-    uint64_t sum[LANES], weight[LANES];
-    uint32_t run[LANES];
+    const struct rf_frame *f = tile->f;
 
-    if (set->equal && !f->weighted) {
-        set_rows(plane,
-                 plane->rows == RF_TILE ? rf_tile_rows(f, plan, behind)
-                                        : rf_chroma_rows(f, plan, behind),
-                 stride);
-        sweep_means(f, plan, plane, behind, mean);
-        return;
-    }
-    set_rows(plane, (struct rf_tile_rows){1, plane->rows}, stride);
-    memset(sum, 0, sizeof sum);
-    memset(weight, 0, sizeof weight);
-    if (f->weighted) {
-        for (int n = 0; n < set->count; n++)
-            weigh_ray(f, plan, plane, &set->ray[n], behind, sum, weight);
-    } else {
-        sweep_rays(f, plan, plane, behind, run, sum);
-        for (int i = 0; i < LANES; i++)
-            weight[i] = set->total_weight;
-    }
-    for (int i = 0; i < plane->rows * RF_TILE; i++)
-        mean[i] = (uint16_t)((4 * sum[i] + weight[i] / 2) / weight[i]);
+    tile->luma.computed = rf_tile_rows(f, &tile->plan, tile->behind);
+    tile->chroma.computed = tile->chroma.down
+                                ? rf_chroma_rows(f, &tile->plan, tile->behind)
+                                : tile->luma.computed;
+    sweep_rays(tile, sums);
+    take_means(tile, false, sums, means->luma);
+    take_means(tile, true, sums, means->chroma);
+}
+
+/* The same from rays that do not weigh the same. */
+static void sweep_sums(struct tile *tile, struct sums *sums,
+                       struct rf_decode_job *means)
+{
+    const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
+    uint16_t *const mean[2] = {means->luma, means->chroma};
+
+    tile->luma.computed = (struct rf_tile_rows){1, tile->luma.rows};
+    tile->chroma.computed = (struct rf_tile_rows){1, tile->chroma.rows};
+    memset(sums->sum, 0, sizeof sums->sum);
+    memset(sums->weight, 0, sizeof sums->weight);
+    sweep_rays(tile, sums);
+    for (int p = 0; p < 2; p++)
+        for (int i = 0; i < lanes[p]; i++)
+            mean[p][i] = (uint16_t)((4 * sums->sum[p][i] + sums->weight[p][i] / 2) /
+                                    sums->weight[p][i]);
+}
+
+static void set_planes(struct tile *tile, int tx, int ty)
+{
+    const struct refocus_renderer *r = tile->f->r;
+    const struct rf_yuv *yuv = &r->yuv;
+    const ptrdiff_t origin = ty * RF_TILE * r->stride + tx * RF_TILE;
+    const ptrdiff_t at = (ty * RF_TILE >> yuv->down) * r->stride + tx * RF_TILE;
+
+    tile->range = r->range + RF_TILE / RF_CELL * (ty * r->range_stride + tx);
+    tile->weight = tile->f->weighted ? yuv->weight + origin : NULL;
+    tile->weight_behind = (const uint16_t *)r->behind.blur + origin;
+    tile->luma = (struct plane){
+        .blur = r->front.blur + origin,
+        .light = r->smooth[0] + origin,
+        .behind = r->behind.light[0] + origin,
+        .rows = RF_TILE,
+        .steps = tile->f->bright ? 4 : 16,
+    };
+    tile->chroma = (struct plane){
+        .blur = yuv->blur + at,
+        .light = yuv->smooth + at,
+        .behind = yuv->behind + at,
+        .rows = RF_TILE >> yuv->down,
+        .steps = 65535 / RF_CHROMA_MAX, /* 8 */
+        .down = yuv->down,
+    };
 }
 
 void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                        int worker)
 {
     const struct refocus_renderer *r = f->r;
-    const struct rf_yuv *yuv = &r->yuv;
-    const ptrdiff_t origin = ty * RF_TILE * r->stride + tx * RF_TILE;
-    const ptrdiff_t at = (ty * RF_TILE >> yuv->down) * r->stride + tx * RF_TILE;
-    const int behind = r->behind.blur[rf_tile_middle(r, tx, ty)];
-    const uint32_t *range =
-        r->range + RF_TILE / RF_CELL * (ty * r->range_stride + tx);
-    struct plane luma = {
-        .blur = r->front.blur + origin,
-        .light = r->smooth[0] + origin,
-        .behind = r->behind.light[0] + origin,
-        .weighing = r->smooth[0] + origin,
-        .weighing_behind = r->behind.light[0] + origin,
-        .rows = RF_TILE,
-        .range = range,
-        .steps = f->bright ? 4 : 16,
-    };
-    struct plane chroma = {
-        .blur = yuv->blur + at,
-        .light = yuv->smooth + at,
-        .behind = yuv->behind + at,
-        .weighing = r->smooth[0] + origin,
-        .weighing_behind = r->behind.light[0] + origin,
-        .rows = RF_TILE >> yuv->down,
-        .range = range,
-        .steps = 65535 / RF_CHROMA_MAX, /* 8 */
-        .across = 1,
-        .down = yuv->down,
-    };
     struct rf_decode_job means;
-    struct rf_tile_plan plan;
+    struct tile tile;
+    struct sums sums;
 
     (void)worker;
-    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
-    if (plan.sharp) {
+    tile.f = f;
+    tile.behind = r->bins[(size_t)ty * r->tiles_x + tx].behind;
+    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &tile.plan);
+    if (tile.plan.sharp) {
         rf_copy_yuv_tile(f, rect);
         return;
     }
-    luma.set = rf_rays_for(r, plan.reach, plan.lamp);
-    chroma.set = rf_chroma_rays(r, luma.set);
-    sweep_plane(f, &plan, &luma, behind, means.luma);
-    sweep_plane(f, &plan, &chroma, behind, means.chroma);
+    tile.set = rf_rays_for(r, tile.plan.reach, tile.plan.lamp);
+    set_planes(&tile, tx, ty);
+    if (tile.set->equal)
+        sweep_means(&tile, &sums, &means);
+    else
+        sweep_sums(&tile, &sums, &means);
     rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

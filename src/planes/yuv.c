@@ -48,6 +48,7 @@ void rf_yuv_use(struct refocus_renderer *r)
     yuv->smooth = chroma_of(r, r->smooth[1]);
     yuv->behind = chroma_of(r, r->behind.light[1]);
     yuv->blur = (int16_t *)chroma_of(r, r->smooth[2]);
+    yuv->weight = r->behind.light[2];
     yuv->y = r->alpha;
     yuv->y_stride = r->alpha_stride;
     yuv->uv_stride = r->stride * (ptrdiff_t)sizeof(uint16_t);
@@ -146,6 +147,17 @@ static void guide_row(const struct refocus_renderer *r, uint8_t *out, int y)
     }
 }
 
+static void swap_pairs(uint8_t *restrict to, const uint8_t *restrict from, int n)
+{
+    for (int x = 0; x < n; x++) {
+        uint16_t pair;
+
+        memcpy(&pair, from + 2 * x, sizeof pair);
+        pair = (uint16_t)(pair << 8 | pair >> 8);
+        memcpy(to + 2 * x, &pair, sizeof pair);
+    }
+}
+
 /*
  * The codes are copied first, whole rows of a plane at a time and in order: camera memory may be
  * uncached, and slow to read in pieces. Only those that lie in between others take a second
@@ -164,8 +176,7 @@ static void keep_420(const struct refocus_renderer *r, const struct refocus_imag
     }
     if (photo->format == REFOCUS_FORMAT_NV21) {
         memcpy(scratch, photo->plane[1] + cy * photo->stride[1], 2 * (size_t)w);
-        for (int x = 0; x < 2 * w; x++)
-            uv[x] = scratch[x ^ 1];
+        swap_pairs(uv, scratch, w);
         return;
     }
     memcpy(scratch, photo->plane[1] + cy * photo->stride[1], (size_t)w);
@@ -248,6 +259,28 @@ void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)
         r->kernels.sharpest4(yuv->blur + cy * r->stride, upper, lower, yuv->width);
     }
     rf_extend_chroma(r, yuv->blur, c0, c1);
+}
+
+/* Most of the background is what is seen. */
+void rf_yuv_weigh_rows(struct refocus_renderer *r, int ty)
+{
+    const int y0 = ty * RF_TILE - (ty == 0 ? r->border.y0 : 0);
+    const int y1 = ty + 1 < r->tiles_y ? (ty + 1) * RF_TILE : r->height + r->border.y1;
+    const int x1 = r->tiles_x * RF_TILE + r->border.x1;
+    const uint16_t *const of_light = r->light_weight;
+
+    for (int y = y0; y < y1; y++) {
+        const ptrdiff_t row = y * r->stride;
+        const uint16_t *seen = r->smooth[0] + row, *behind = r->behind.light[0] + row;
+        uint16_t *near = r->yuv.weight + row, *far = (uint16_t *)r->behind.blur + row;
+
+        for (int x = -r->border.x0; x < x1; x++)
+            near[x] = of_light[seen[x] < RF_LIGHT_MAX ? seen[x] : RF_LIGHT_MAX];
+        for (int x = -r->border.x0; x < x1; x++)
+            far[x] = behind[x] == seen[x]
+                         ? near[x]
+                         : of_light[behind[x] < RF_LIGHT_MAX ? behind[x] : RF_LIGHT_MAX];
+    }
 }
 
 /* A plane and its blur, and how far apart neighbours are. */

@@ -43,6 +43,10 @@ void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const ui
                              const int above[RF_PREFILTER_STEPS], int step, uint16_t *scratch,
                              int ty);
 
+/* Weights of eq. 5 for luma of a row of tiles, in yuv.weight; those of the background over its
+ * blur. */
+void rf_yuv_weigh_rows(struct refocus_renderer *r, int ty);
+
 /* rf_extend_rows() of rows c0 to c1 - 1 of a plane of chroma. */
 void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int c1);
 

@@ -241,7 +241,7 @@ static int block_side(const struct refocus_renderer_params *params)
 static uint64_t few_rays(const struct refocus_renderer_params *params)
 {
     const uint64_t side = 2 * (uint64_t)ceilf(params->max_blur_radius) + 1;
-    const uint64_t sets = 6144; /* on both sides of the focus */
+    const uint64_t sets = 7680; /* on both sides of the focus, and coordinates apart */
 
     return side * side > sets ? side * side : sets;
 }

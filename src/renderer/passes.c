@@ -213,7 +213,9 @@ static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
 
-    if (f->premultiplied)
+    if (f->r->yuv.on)
+        rf_yuv_weigh_rows(f->r, band);
+    else if (f->premultiplied)
         rf_premultiply_rows(f->r, rf_scratch(f->r, worker), band);
     else
         rf_weigh_rows(f->r, band);
@@ -545,7 +547,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
         rf_pass_bright(f);
         r->made.spread = true;
     }
-    if (layers && f->weighted && is_sweep(f) && !r->yuv.on)
+    if (layers && f->weighted && is_sweep(f))
         make_weights(f);
     f->region = in_window(r, region);
 }

@@ -4,6 +4,8 @@
 #include "renderer/bands.h"
 #include "renderer/rays.h"
 
+#include <string.h>
+
 /* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
  * that a highlight reaches, whose disc would show the single rays, at most twice that. */
 static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
@@ -16,6 +18,11 @@ static uint64_t total_weight(const struct rf_ray_set *set)
     for (int i = 0; i < set->count; i++)
         sum += set->ray[i].weight;
     return sum;
+}
+
+static int chunk_end(const struct rf_ray_set *set, int first)
+{
+    return set->count - first < RF_RAY_CHUNK ? set->count : first + RF_RAY_CHUNK;
 }
 
 static bool are_equal(const struct rf_ray_set *set)
@@ -62,6 +69,44 @@ static void sort_rays(struct refocus_ray *ray, int count)
     }
 }
 
+/* Rays that chroma shares become the first ones of each chunk. Of sets that lie on
+ * spirals or along a curve (aperture/rays.c) every second ray is as even a set. */
+static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
+{
+    struct refocus_ray *const ray = set->ray;
+    int chosen = 0, others = set->shared;
+
+    for (int n = 0; n < set->count; n++)
+        spare[rf_shared_rays(set, n, n + 1) ? chosen++ : others++] = ray[n];
+    chosen = 0;
+    others = set->shared;
+    for (int n = 0, end; n < set->count; n = end) {
+        const int shared = rf_shared_rays(set, n, end = chunk_end(set, n));
+
+        memcpy(ray + n, spare + chosen, (size_t)shared * sizeof *ray);
+        memcpy(ray + n + shared, spare + others,
+               (size_t)(end - n - shared) * sizeof *ray);
+        chosen += shared;
+        others += end - n - shared;
+    }
+}
+
+/* Coordinates of a set's rays apart from each other; returns where memory goes on. */
+static struct refocus_ray *part_coordinates(struct rf_ray_set *set,
+                                            struct refocus_ray *next)
+{
+    enum { EACH = sizeof *next / sizeof(int16_t) };
+    int16_t *const u = (int16_t *)(void *)next, *const v = u + set->count;
+
+    for (int i = 0; i < set->count; i++) {
+        u[i] = set->ray[i].u;
+        v[i] = set->ray[i].v;
+    }
+    set->u = u;
+    set->v = v;
+    return next + (2 * set->count + EACH - 1) / EACH;
+}
+
 void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
                   int rays, bool denser, float max_blur_radius)
 {
@@ -70,8 +115,9 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
 
     if (rays != REFOCUS_RAYS_FULL)
         max_blur_radius = 0; /* sets of N do not depend on it */
-    if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays && r->set_denser == denser &&
-        r->set_blur == max_blur_radius)
+    if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays &&
+        r->set_denser == denser && r->set_blur == max_blur_radius &&
+        r->set_shared == r->yuv.on)
         return;
     r->sets = 0;
     if (rays == REFOCUS_RAYS_FULL) {
@@ -82,6 +128,8 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
         r->set[0].total_weight = total_weight(&r->set[0]);
         r->set[0].before = next;
         r->set[0].equal = are_equal(&r->set[0]);
+        r->set[0].u = r->set[0].v = NULL;
+        r->set[0].shared = r->set[0].count;
         sets = 1;
         r->preset = 0;
     } else {
@@ -111,6 +159,10 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
                 set->before = next;
                 next += count;
             }
+            set->shared = rf_chroma_rays(count);
+            if (r->yuv.on)
+                share_rays(set, next);
+            next = part_coordinates(set, next);
             sets++;
         }
     }
@@ -120,6 +172,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
     r->set_aperture = aperture->id;
     r->set_rays = rays;
     r->set_denser = denser;
+    r->set_shared = r->yuv.on;
     r->set_blur = max_blur_radius;
 }
 
@@ -137,19 +190,10 @@ const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach
 
 int rf_rays_alike(const struct rf_ray_set *set, int first)
 {
-    const int most = set->count - first < RF_RAY_CHUNK ? set->count - first : RF_RAY_CHUNK;
+    const int most = chunk_end(set, first) - first;
     int n = set->equal ? most : 1;
 
     while (n < most && set->ray[first + n].weight == set->ray[first].weight)
         n++;
     return n;
-}
-
-const struct rf_ray_set *rf_chroma_rays(const struct refocus_renderer *r,
-                                        const struct rf_ray_set *set)
-{
-    for (int i = 0; i < r->sets; i++)
-        if (8 * r->set[i].count >= 3 * set->count)
-            return &r->set[i];
-    return set;
 }

@@ -37,8 +37,8 @@ int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
 static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_STEPS])
 {
     const struct refocus_renderer *r = f->r;
-    const struct rf_ray_set *luma = &r->set[r->preset], *chroma = rf_chroma_rays(r, luma);
-    const double times = 2 * sqrt((double)chroma->count / luma->count);
+    const struct rf_ray_set *set = &r->set[r->preset];
+    const double times = 2 * sqrt((double)set->shared / set->count);
 
     for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
         const double s = times * f->prefilter_above[i];

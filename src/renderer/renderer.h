@@ -33,10 +33,21 @@ enum {
 struct rf_ray_set {
     struct refocus_ray *ray;
     struct refocus_ray *before; /* those before the focus: the same, or as many others */
+    const int16_t *u, *v; /* of those behind, by themselves; NULL of a full mask */
     int count;
+    int shared; /* by chroma; see rf_shared_rays() */
     uint64_t total_weight;
     bool equal; /* all rays weigh the same */
 };
+
+/* Chroma of a photo of Y, U and V takes some rays of luma; those among rays first to end - 1, which
+ * are of one chunk, are the first so many of them. */
+static inline int rf_shared_rays(const struct rf_ray_set *set, int first, int end)
+{
+    const int64_t shared = set->shared;
+
+    return (int)(shared * end / set->count - shared * first / set->count);
+}
 
 /* Pixels x0 <= x < x1, y0 <= y < y1. */
 struct rf_rect {
@@ -152,6 +163,7 @@ struct rf_yuv {
     uint16_t *smooth;   /* pre-filtered */
     uint16_t *behind;   /* and of the background */
     int16_t *blur;
+    uint16_t *weight;   /* eq. 5, of luma; in the background's light[2] */
     uint8_t *y;         /* y_stride a row */
     uint8_t *uv;        /* 2 width a row, rows uv_stride apart */
     ptrdiff_t y_stride, uv_stride;
@@ -237,6 +249,7 @@ struct refocus_renderer {
     uint64_t set_aperture;  /* what they were made for */
     int set_rays;
     bool set_denser;
+    bool set_shared; /* chroma's rays come first */
     float set_blur;
     struct rf_cat_eye cat_eye; /* made when it is first asked for; */
     struct rf_cat_shape cat_shape; /* that of the last aperture with one */

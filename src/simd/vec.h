@@ -29,6 +29,7 @@
  *     vec_u16_odd(a, b)       lanes 1, 3, 5 ...
  *     vec_u16_zip_low(a, b)   a[0], b[0], a[1], b[1] ... of the lower halves
  *     vec_u16_zip_high(a, b)  and of the upper ones
+ *     vec_u16_twice(a)        a[0], a[0], a[2], a[2] ...
  *     vec_u16_add_to(sum, v)  sum[i] += v[i], 32-bit sums
  *     vec_s16_less(a, b)      (int16_t)a < (int16_t)b ? 0xffff : 0
  *     vec_s16_apart(a, b)     min(|a - b|, 32767) of signed lanes
@@ -54,6 +55,7 @@
  *     vec_mask_first(m)       the number of the first that is on, of the last lane if none
  *     vec_u16_add_where(m, a, b)  m ? (uint16_t)(a + b) : a
  *     vec_u16_choose(m, a, b)     m ? a : b
+ *     vec_u16_load_where(m, a, p) m ? p[i] : a; whole vectors of p are there
  *     vec_u16_put_where(m, a, b)  m ? b : a, where a is 0 in the lanes of m
  *
  * A vec_u32 holds as many lanes of 32 bits, in an order of its own.

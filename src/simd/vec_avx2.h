@@ -143,6 +143,11 @@ static inline vec_u16 vec_u16_zip_high(vec_u16 a, vec_u16 b)
                                      0x31);
 }
 
+static inline vec_u16 vec_u16_twice(vec_u16 a)
+{
+    return _mm256_blend_epi16(a, _mm256_slli_epi32(a, 16), 0xaa);
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     __m256i *low = (__m256i *)sum, *high = (__m256i *)(sum + 8);

@@ -54,6 +54,11 @@ static inline vec_u16 vec_u16_add_where(vec_mask mask, vec_u16 sum, vec_u16 v)
     return _mm256_mask_add_epi16(sum, mask, sum, v);
 }
 
+static inline vec_u16 vec_u16_load_where(vec_mask mask, vec_u16 old, const void *p)
+{
+    return _mm256_mask_loadu_epi16(old, mask, p);
+}
+
 static inline vec_u16 vec_u16_put_where(vec_mask mask, vec_u16 old, vec_u16 v)
 {
     return _mm256_mask_mov_epi16(old, mask, v);

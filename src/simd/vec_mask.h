@@ -54,6 +54,11 @@ static inline vec_u16 vec_u16_add_where(vec_mask mask, vec_u16 sum, vec_u16 v)
     return vec_u16_add(sum, vec_u16_and(v, mask));
 }
 
+static inline vec_u16 vec_u16_load_where(vec_mask mask, vec_u16 old, const void *p)
+{
+    return vec_u16_select(mask, vec_u16_load(p), old);
+}
+
 static inline vec_u16 vec_u16_put_where(vec_mask mask, vec_u16 old, vec_u16 v)
 {
     return vec_u16_or(old, vec_u16_and(v, mask));

@@ -142,6 +142,11 @@ static inline vec_u16 vec_u16_zip_high(vec_u16 a, vec_u16 b)
     return vzipq_u16(a, b).val[1];
 }
 
+static inline vec_u16 vec_u16_twice(vec_u16 a)
+{
+    return vtrnq_u16(a, a).val[0];
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     vst1q_u32(sum, vaddw_u16(vld1q_u32(sum), vget_low_u16(v)));

@@ -138,6 +138,11 @@ static inline vec_u16 vec_u16_zip_high(vec_u16 a, vec_u16 b)
     return _mm_unpackhi_epi16(a, b);
 }
 
+static inline vec_u16 vec_u16_twice(vec_u16 a)
+{
+    return _mm_blend_epi16(a, _mm_slli_epi32(a, 16), 0xaa);
+}
+
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     const __m128i zero = _mm_setzero_si128();

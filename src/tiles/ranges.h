@@ -40,7 +40,7 @@ void rf_cell_rows(struct refocus_renderer *r, int ty);
 /* One more blur in the cell of pixel (x, y). */
 void rf_add_to_cell(struct refocus_renderer *r, int x, int y, int16_t blur);
 
-/* The ranges of tile row ty, from all cells. */
+/* The ranges of tile row ty, from all cells; for a photo of Y, U and V those of whole tiles. */
 void rf_range_rows(struct refocus_renderer *r, uint16_t *scratch, int ty);
 
 #endif

@@ -95,6 +95,15 @@ static bool has(const struct rf_bins *bins, int bin)
     return bins->word[bin / 64] >> (bin % 64) & 1;
 }
 
+/* The first bin from `bin` on that is occupied, RF_BINS if none is. */
+static int next_bin(const struct rf_bins *bins, int bin)
+{
+    for (; bin < RF_BINS; bin = (bin / 64 + 1) * 64)
+        if (bins->word[bin / 64] >> bin % 64)
+            return bin + __builtin_ctzll(bins->word[bin / 64] >> bin % 64);
+    return RF_BINS;
+}
+
 /* Clear bins [from, to). */
 static void clear(uint64_t word[RF_BINS / 64], int from, int to)
 {
@@ -202,13 +211,9 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
     plan->reach = 0;
     plan->least = INT16_MAX;
     plan->sharp = true;
-    for (int bin = 0; bin < RF_BINS;) {
+    for (int bin = next_bin(bins, 0); bin < RF_BINS; bin = next_bin(bins, bin)) {
         int end = bin + pixel, last = bin, low, high, centre;
 
-        if (!has(bins, bin)) {
-            bin++;
-            continue;
-        }
         if (bin >= scale.focus && bin < focus_end) {
             add_slab(plan, scale, (struct rf_slab){-HALF, 2 * HALF - 1, 0});
             plan->least = 0;

@@ -106,6 +106,35 @@ class Live(unittest.TestCase):
         self.assertEqual(len(outs[0]), 6 * 64 * 48 * 3)
         self.assertEqual(outs[0], outs[1])
 
+    def test_raw_frames_in_the_camera_s_own_format(self):
+        sizes = {'NV12': 64 * 48 * 3 // 2, 'YUYV': 64 * 48 * 2, 'RGB24': 64 * 48 * 3}
+        args = ['--depth', DEPTH, '--fast', '--frames-policy', 'every']
+        for form, size in sizes.items():
+            camera = ['--camera', 'replay::format %s;size 64x48;frames 4' % form]
+            r = self.report(*camera, *args, '--focus', '0.7', '--out', 'raw:own.raw,own')
+            self.assertEqual(r['rendered_in'], form)
+            own = content('own.raw')
+            self.assertEqual(len(own), 4 * size)
+            self.report(*camera, *args, '--focus', '0.7', '--out', 'raw:named.raw,' + form)
+            self.assertEqual(content('named.raw'), own)
+            # Without blur it is what came; read again it is the same once more.
+            self.report(*camera, *args, '--blur', '0', '--out', 'raw:sharp.raw,own')
+            sharp = content('sharp.raw')
+            self.assertNotEqual(sharp, own)
+            self.report('--camera', 'raw:sharp.raw,%s,64x48,30' % form, *args, '--blur', '0',
+                        '--out', 'raw:again.raw,own')
+            self.assertEqual(content('again.raw'), sharp)
+        # Another sampling is rendered in RGB and converted; another order is not.
+        camera = ['--camera', 'replay::format NV12;size 64x48;frames 4']
+        r = self.report(*camera, *args, '--out', 'raw:packed.raw,YUYV')
+        self.assertEqual((r['rendered_in'], len(content('packed.raw'))),
+                         ('RGB24', 4 * sizes['YUYV']))
+        r = self.report(*camera, *args, '--out', 'raw:planes.raw,yuv420')
+        self.assertEqual((r['rendered_in'], len(content('planes.raw'))),
+                         ('NV12', 4 * sizes['NV12']))
+        self.fails(2, 'NV99', '--camera', 'replay::size 64x48', '--depth', DEPTH, '--out', 'raw:x,NV99')
+        self.assertFalse(os.path.exists('x'))
+
     def test_steady_depth(self):
         outs = []
         for more in [], ['--steady', '0'], ['--steady', '0.9']:
@@ -205,7 +234,7 @@ class Live(unittest.TestCase):
                             (bytes([100]) * 16 + bytes([80]) * 16) * 24 +
                             (bytes([110]) * 16 + bytes([200]) * 16) * 24)
         r = self.report('--camera', 'y4m:photo.y4m', *args[2:], '--depth', 'estimate:red.onnx',
-                        '--sigma', '400', '--fast', '--frames-policy', 'every', '--out',
+                        '--fast', '--frames-policy', 'every', '--out',
                         'y4m:out.y4m')
         self.assertEqual((r['rendered_in'], r['depth']['frames'], r['frames_out']),
                          ('YUV420', 30, 30))

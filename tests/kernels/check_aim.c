@@ -146,6 +146,10 @@ struct sight {
     struct rf_slab slab[MOST_SLABS];
     bool joined[MOST_SLABS];
     int32_t offset[MOST_SLABS + 1][RF_RAY_CHUNK], cell[MOST_SLABS][RF_RAY_CHUNK];
+    uint16_t chroma_front[1000], chroma_behind[1000];
+    int32_t chroma_offset[MOST_SLABS + 1][RF_RAY_CHUNK];
+    uint16_t weight[1000], behind_weight[1000];
+    int32_t chroma_weight_offset[MOST_SLABS + 1][RF_RAY_CHUNK];
     struct rf_sort_job job;
     struct rf_sorted_rays sorted, expected;
 };
@@ -166,6 +170,8 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
             const bool same = k > 0 && noise(&seed) % 2; /* as the slab before */
 
             s->offset[k][i] = same ? s->offset[k - 1][i] : noise_between(&seed, 0, 999);
+            s->chroma_offset[k][i] = noise_between(&seed, 0, 999);
+            s->chroma_weight_offset[k][i] = noise_between(&seed, 0, 999);
             if (k < slabs)
                 s->cell[k][i] =
                     same ? s->cell[k - 1][i] : noise_between(&seed, 0, SIDE * SIDE - 1);
@@ -187,6 +193,14 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
         .joined = s->joined,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])s->offset,
         .cell = (const int32_t(*)[RF_RAY_CHUNK])s->cell,
+        .shared = seed % 3 ? noise_between(&seed, 0, n) : 0,
+        .weight = seed % 5 < 2 ? s->weight : NULL,
+        .behind_weight = s->behind_weight,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_offset, /* any */
+        .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_weight_offset,
+        .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_offset,
+        .chroma_front = s->chroma_front,
+        .chroma_behind = s->chroma_behind,
     };
 }
 
@@ -197,6 +211,11 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
     int tests = 0, before = -1, start = 0; /* the last slab that is tested */
 
     s->expected.last[m] = s->behind + s->offset[s->job.slabs][n];
+    s->expected.chroma_last[m] = s->chroma_behind + s->chroma_offset[s->job.slabs][n];
+    s->expected.last_weight[m] = s->behind_weight + s->offset[s->job.slabs][n];
+    s->expected.last_behind[m] = true;
+    s->expected.chroma_last_weight[m] =
+        s->behind_weight + s->chroma_weight_offset[s->job.slabs][n];
     for (int k = 0; k < s->job.slabs; k++) {
         const uint32_t range = s->range[s->cell[k][n]];
         const int low = (int16_t)(range & 0xffff), high = (int16_t)(range >> 16);
@@ -209,10 +228,17 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
                  s->offset[k][n] == s->offset[k - 1][n];
         if (low >= from && high <= to) {
             s->expected.last[m] = s->front + s->offset[k][n];
+            s->expected.chroma_last[m] = s->chroma_front + s->chroma_offset[k][n];
+            s->expected.last_weight[m] = s->weight + s->chroma_offset[k][n];
+            s->expected.last_behind[m] = false;
+            s->expected.chroma_last_weight[m] = s->weight + s->chroma_weight_offset[k][n];
             tests -= beside;
             break;
         }
         if (!beside || !s->joined[k]) {
+            s->expected.chroma_offset[tests][m] = s->chroma_offset[k][n];
+            s->expected.weight_offset[tests][m] = s->chroma_offset[k][n];
+            s->expected.chroma_weight_offset[tests][m] = s->chroma_weight_offset[k][n];
             s->expected.offset[tests++][m] = s->offset[k][n];
             start = k;
         }
@@ -224,14 +250,67 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
     return tests == wanted || (wanted == RF_SORTED_TESTS - 1 && tests > wanted);
 }
 
+/* Rays that chroma shares: of each class those of the job's first ones. */
+static bool check_shared(const struct subject *subject, const struct sight *s, int class, int n,
+                         uint32_t seed)
+{
+    const struct rf_sorted_rays *is = &s->sorted, *should = &s->expected;
+
+    if (is->begin[class] != should->begin[class])
+        return fail(subject, "sort_rays", seed, n, class, is->begin[class], should->begin[class]);
+    if (is->shared[class] != should->shared[class])
+        return fail(subject, "sort_rays", seed, n, class, is->shared[class],
+                    should->shared[class]);
+    for (int i = is->begin[class]; i < is->begin[class] + is->shared[class]; i++) {
+        if (is->chroma_last[i] != should->chroma_last[i])
+            return fail(subject, "sort_rays", seed, n, i, is->chroma_last[i] - s->chroma_front,
+                        should->chroma_last[i] - s->chroma_front);
+        if (s->job.weight && is->chroma_last_weight[i] != should->chroma_last_weight[i])
+            return fail(subject, "sort_rays", seed, n, i, is->chroma_last_weight[i] - s->weight,
+                        should->chroma_last_weight[i] - s->weight);
+        for (int t = 0; t < is->tests[i]; t++)
+            if (is->chroma_offset[t][i] != should->chroma_offset[t][i] ||
+                (s->job.weight &&
+                 is->chroma_weight_offset[t][i] != should->chroma_weight_offset[t][i]))
+                return fail(subject, "sort_rays", seed, n, i, is->chroma_offset[t][i],
+                            should->chroma_offset[t][i]);
+    }
+    return true;
+}
+
+static bool check_weights(const struct subject *subject, const struct sight *s, int n,
+                          uint32_t seed)
+{
+    const struct rf_sorted_rays *is = &s->sorted, *should = &s->expected;
+
+    for (int i = 0; s->job.weight && i < n; i++) {
+        if (is->last_weight[i] != should->last_weight[i] ||
+            is->last_behind[i] != should->last_behind[i])
+            return fail(subject, "sort_rays", seed, n, i, is->last_weight[i] - s->weight,
+                        should->last_weight[i] - s->weight);
+        for (int t = 0; t < is->tests[i]; t++)
+            if (is->weight_offset[t][i] != should->weight_offset[t][i])
+                return fail(subject, "sort_rays", seed, n, i, is->weight_offset[t][i],
+                            should->weight_offset[t][i]);
+    }
+    return true;
+}
+
 static bool check_sort(const struct subject *subject, struct sight *s, int n, uint32_t seed)
 {
     int m = 0;
 
     make_sight(s, n, seed);
-    for (int wanted = 0; wanted < RF_SORTED_TESTS; wanted++)
-        for (int i = 0; i < n; i++)
-            m += m < n && expect_ray(s, i, m, wanted);
+    for (int wanted = 0; wanted < RF_SORTED_TESTS; wanted++) {
+        s->expected.begin[wanted] = (uint8_t)m;
+        s->expected.shared[wanted] = 0;
+        for (int i = 0; i < n; i++) {
+            const bool is_next = m < n && expect_ray(s, i, m, wanted);
+
+            s->expected.shared[wanted] += is_next && i < s->job.shared;
+            m += is_next;
+        }
+    }
     subject->kernels.sort_rays(&s->sorted, &s->job);
     if (s->sorted.rays != n)
         return fail(subject, "sort_rays", seed, n, -1, s->sorted.rays, n);
@@ -250,7 +329,10 @@ static bool check_sort(const struct subject *subject, struct sight *s, int n, ui
                 return fail(subject, "sort_rays", seed, n, i, s->sorted.from[t][i],
                             s->expected.from[t][i]);
     }
-    return true;
+    for (int class = 0; class < RF_SORTED_TESTS; class++)
+        if (!check_shared(subject, s, class, n, seed))
+            return false;
+    return check_weights(subject, s, n, seed);
 }
 
 static bool check_tolerances(const struct subject *subject, int n, uint32_t seed)

@@ -194,6 +194,14 @@ static uint16_t c_choose(uint16_t a, uint16_t b)
     return c_mask_of(a, b) ? a : b;
 }
 
+static vec_u16 load_where(vec_u16 a, vec_u16 b)
+{
+    uint16_t lanes[MOST_LANES];
+
+    vec_u16_store(lanes, a);
+    return vec_u16_load_where(mask_of(a, b), b, lanes);
+}
+
 /* Equal lanes, but only where the mask is on, and those where it is on and b is not 1. */
 static vec_u16 among(vec_u16 a, vec_u16 b)
 {
@@ -252,6 +260,7 @@ static const struct {
     {"add_where", add_where, c_add_where},
     {"put_where", put_where, c_put_where},
     {"choose", choose, c_choose},            {"among", among, c_among},
+    {"load_where", load_where, c_choose},
     {"first", first_on, c_first_on},         {"less", vec_s16_less, c_less},
     {"apart", vec_s16_apart, c_apart},
 };
@@ -327,6 +336,13 @@ static int check_order(void)
         if (out[0][i] != in[2 * i] || out[1][i] != in[2 * i + 1] ||
             out[2][i] != in[i / 2 + i % 2 * N] || out[3][i] != in[N / 2 + i / 2 + i % 2 * N]) {
             printf("FAIL  vec_u16_even, odd or zip, %s: lane %d\n", TEXT(RF_VEC_SET), i);
+            return 1;
+        }
+    }
+    vec_u16_store(out[0], vec_u16_twice(b));
+    for (int i = 0; i < N; i++) {
+        if (out[0][i] != in[N + i / 2 * 2]) {
+            printf("FAIL  vec_u16_twice, %s: lane %d\n", TEXT(RF_VEC_SET), i);
             return 1;
         }
     }

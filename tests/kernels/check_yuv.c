@@ -158,7 +158,7 @@ static int round_down(int v, int by)
 
 static int check_aim_chroma(const struct subject *subject)
 {
-    int32_t offset[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
+    int32_t offset[RF_RAY_CHUNK], pixel[RF_RAY_CHUNK];
     int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
 
     for (uint32_t seed = 1; seed <= 400; seed++) {
@@ -171,15 +171,15 @@ static int check_aim_chroma(const struct subject *subject)
             u[i] = (int16_t)(i % 3 ? noise_between(&state, -32767, 32767) : i % 2 ? 32767 : -32767);
             v[i] = (int16_t)noise_between(&state, -32767, 32767);
         }
-        subject->kernels.aim_chroma(offset, cell, u, v, blur, down, 1000, 77, n);
+        subject->kernels.aim_chroma(offset, pixel, u, v, blur, down, 1000, n);
         for (int i = 0; i < n; i++) {
             const int x = round_down(u[i] * blur + (1 << 23), 1 << 24);
             const int y = round_down(v[i] * blur + (1 << (22 + down)), 1 << (23 + down));
-            const int32_t at = 2 * x + y * 1000;
-            const int32_t in = round_down(2 * x, RF_CELL) +
-                               round_down(y * (1 << down), RF_CELL) * 77;
+            const int32_t at = 2 * x + y * 1000, to = 2 * x + y * (1 << down) * 1000;
 
-            if (offset[i] != at || cell[i] != in)
+            if (pixel[i] != to)
+                return fail(subject, "aim_chroma", seed, i, pixel[i], to);
+            if (offset[i] != at)
                 return fail(subject, "aim_chroma", seed, i, offset[i], at);
         }
     }
@@ -188,12 +188,12 @@ static int check_aim_chroma(const struct subject *subject)
 }
 
 struct stage {
-    struct guarded blur, light;
+    struct guarded blur, light, weight;
     struct rf_slab slab[RF_BINS];
     struct rf_sorted_rays rays;
     struct rf_sweep1_job job;
-    ptrdiff_t row[RF_TILE];
     uint32_t sum[LANES], expected[LANES];
+    uint64_t weighted[2][LANES], expected_weighted[2][LANES]; /* products, weights */
 };
 
 static uint16_t *make_plane(struct guarded *g, enum place place, int rows, uint32_t *state,
@@ -212,34 +212,78 @@ static int offset_in(uint32_t *state)
     return noise_between(state, -PAD, PAD) * STRIDE + noise_between(state, -PAD, PAD);
 }
 
+static int even_offset_in(uint32_t *state)
+{
+    return noise_between(state, -PAD, PAD) * STRIDE + 2 * noise_between(state, -PAD / 2, PAD / 2);
+}
+
+/* How many tests rays have, and which are shared by chroma. */
+static void set_classes(struct stage *s, const uint16_t *light, uint32_t *state)
+{
+    struct rf_sorted_rays *rays = &s->rays;
+    int n = 0;
+
+    for (int class = 0; class < RF_SORTED_TESTS; class++) {
+        rays->begin[class] = (uint8_t)n;
+        while (n < rays->rays && (rays->tests[n] == class || class == RF_SORTED_TESTS - 1))
+            n++;
+        rays->shared[class] = (uint8_t)noise_between(state, 0, n - rays->begin[class]);
+    }
+    rays->begin[RF_SORTED_TESTS] = (uint8_t)n;
+    for (int i = 0; i < rays->rays; i++) {
+        rays->chroma_last[i] = light + offset_in(state);
+        rays->last_weight[i] = s->job.weight + offset_in(state);
+        rays->chroma_last_weight[i] = s->job.weight + even_offset_in(state);
+        for (int t = 0; t < rays->tests[i]; t++) {
+            rays->chroma_offset[t][i] = even_offset_in(state);
+            rays->chroma_weight_offset[t][i] = even_offset_in(state);
+        }
+    }
+}
+
+static bool counts(const struct stage *s, int n)
+{
+    const struct rf_sorted_rays *rays = &s->rays;
+    const int class = rays->tests[n] < RF_SORTED_TESTS ? rays->tests[n] : RF_SORTED_TESTS - 1;
+
+    return !s->job.chroma || n - rays->begin[class] < rays->shared[class];
+}
+
 static void make_stage(struct stage *s, uint32_t seed, enum place place)
 {
-    static const int steps[] = {4, 8, 16}, row_counts[] = {4, 6, 8, 16};
+    static const int steps[] = {4, 8, 16}, row_counts[] = {2, 4, 6, 8, 10, 12, 14, 16};
     uint32_t state = seed;
-    const int step = steps[seed % 3], rows = row_counts[seed / 3 % 4];
-    const int slabs = 1 + (int)(seed % 7), jump = (int)(seed / 5 % 2);
+    const int step = steps[seed % 3], rows = row_counts[seed / 3 % 8];
+    const int slabs = 1 + (int)(seed % 11), jump = (int)(seed / 5 % 2);
+    const bool chroma = seed / 7 % 2;
+    const int down = chroma && seed / 14 % 2;
     const uint16_t *light;
 
     for (int k = 0; k < slabs; k++)
         s->slab[k] = (struct rf_slab){(int16_t)noise_between(&state, -3000, 3000),
                                       (uint16_t)noise_between(&state, 0, 479), 0};
-    for (int i = 0; i < rows; i++) /* one is left out in the middle, or none */
-        s->row[i] = (i + (i >= rows / 2 ? jump : 0)) * STRIDE;
     light = make_plane(&s->light, place, rows + jump, &state, 0, 65535 / step, seed % 4 == 0);
     s->job = (struct rf_sweep1_job){
         .blur = (const int16_t *)make_plane(&s->blur, place, rows + jump, &state, 0, 0, false),
         .light = light,
-        .row = s->row,
+        .apart = STRIDE,
+        .half = (rows / 2 + jump) * STRIDE, /* a row is left out in the middle, or none */
         .rows = rows,
         .steps = step,
+        .chroma = chroma,
         .rays = &s->rays,
+        .weight = make_plane(&s->weight, place, (rows + jump) << down, &state, 1, RF_WEIGHT_MAX,
+                             seed % 4 == 0),
+        .down = down,
     };
     for (int y = -PAD; y < rows + jump + PAD; y++)
         for (int x = -PAD; x < RF_TILE + PAD; x++) {
             const struct rf_slab *slab = &s->slab[noise(&state) % (uint32_t)slabs];
+            int16_t *blur = (int16_t *)(uintptr_t)s->job.blur + y * STRIDE + x;
 
-            ((int16_t *)(uintptr_t)s->job.blur)[y * STRIDE + x] =
-                (int16_t)(slab->low + noise_between(&state, -100, slab->width + 100));
+            *blur = (int16_t)(slab->low + noise_between(&state, -100, slab->width + 100));
+            if (chroma && x % 2 && x > -PAD) /* that of chroma comes twice */
+                *blur = blur[-1];
         }
     s->rays.rays = (int)(seed % (RF_RAY_CHUNK + 1));
     for (int n = 0; n < s->rays.rays; n++) {
@@ -251,25 +295,43 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
         }
         s->rays.last[n] = light + offset_in(&state);
     }
-    for (int i = 0; i < LANES; i++)
+    set_classes(s, light, &state);
+    for (int i = 0; i < LANES; i++) {
         s->sum[i] = s->expected[i] = noise(&state);
+        for (int k = 0; k < 2; k++)
+            s->weighted[k][i] = s->expected_weighted[k][i] = noise(&state);
+    }
+}
+
+static void expect(struct stage *s, int i, uint16_t light, uint16_t weight)
+{
+    s->expected[i] += light;
+    s->expected_weighted[0][i] += (uint64_t)light * weight;
+    s->expected_weighted[1][i] += weight;
 }
 
 static void follow(struct stage *s, int i, int n)
 {
-    const ptrdiff_t p = s->row[i / RF_TILE] + i % RF_TILE;
+    const struct rf_sorted_rays *rays = &s->rays;
+    const bool chroma = s->job.chroma;
+    const int x = i % RF_TILE, y = i / RF_TILE, half = s->job.rows / 2;
+    const ptrdiff_t row = y < half ? y * STRIDE : s->job.half + (y - half) * STRIDE;
+    const ptrdiff_t p = row + x;
+    const uint16_t *weight = s->job.weight + row * (1 << s->job.down) + (chroma ? x / 2 * 2 : x);
 
     for (int t = 0; t < s->rays.tests[n]; t++) {
         const struct rf_slab *slab = &s->slab[t];
-        const ptrdiff_t q = p + s->rays.offset[t][n];
+        const ptrdiff_t q = p + (chroma ? rays->chroma_offset : rays->offset)[t][n];
         const int above = s->job.blur[q] - slab->low;
 
         if (above >= 0 && above <= slab->width) {
-            s->expected[i] += s->job.light[q];
+            expect(s, i, s->job.light[q],
+                   weight[(chroma ? rays->chroma_weight_offset : rays->offset)[t][n]]);
             return;
         }
     }
-    s->expected[i] += s->rays.last[n][p];
+    expect(s, i, (chroma ? rays->chroma_last : rays->last)[n][p],
+           (chroma ? rays->chroma_last_weight : rays->last_weight)[n][weight - s->job.weight]);
 }
 
 static int check_sweep1(const struct subject *subject)
@@ -278,7 +340,8 @@ static int check_sweep1(const struct subject *subject)
     int failures = 0;
 
     if (!guarded_create(&s.blur, (SIDE + 1) * STRIDE * 2) ||
-        !guarded_create(&s.light, (SIDE + 1) * STRIDE * 2)) {
+        !guarded_create(&s.light, (SIDE + 1) * STRIDE * 2) ||
+        !guarded_create(&s.weight, (SIDE + RF_TILE + 2) * STRIDE * 2)) {
         printf("FAIL  no memory between pages\n");
         return 1;
     }
@@ -286,16 +349,24 @@ static int check_sweep1(const struct subject *subject)
         make_stage(&s, seed, (enum place)(seed % PLACES));
         for (int i = 0; i < s.job.rows * RF_TILE; i++)
             for (int n = 0; n < s.rays.rays; n++)
-                follow(&s, i, n);
+                if (counts(&s, n))
+                    follow(&s, i, n);
         subject->kernels.sweep1(s.sum, &s.job);
         for (int i = 0; i < LANES && !failures; i++)
             if (s.sum[i] != s.expected[i])
                 failures = fail(subject, "sweep1", seed, i, (int)s.sum[i], (int)s.expected[i]);
+        subject->kernels.sweep1_weighted(s.weighted[0], s.weighted[1], &s.job);
+        for (int i = 0; i < 2 * LANES && !failures; i++)
+            if (s.weighted[i / LANES][i % LANES] != s.expected_weighted[i / LANES][i % LANES])
+                failures = fail(subject, "sweep1_weighted", seed, i,
+                                (int)s.weighted[i / LANES][i % LANES],
+                                (int)s.expected_weighted[i / LANES][i % LANES]);
     }
     guarded_destroy(&s.blur);
     guarded_destroy(&s.light);
+    guarded_destroy(&s.weight);
     if (!failures)
-        printf("ok    %-12s %-6s 600 cases\n", "sweep1", subject->cpu);
+        printf("ok    %-12s %-6s 600 cases, plain and weighted\n", "sweep1", subject->cpu);
     return failures;
 }
 

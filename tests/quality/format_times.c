@@ -1,12 +1,14 @@
 /* refocus-format-times: whole frames, prepared and rendered, in each pixel format by turns; the
  * best CPU time of one thread.
  *
- * usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS
+ * usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [SIGMA [FORMAT]]
  *
- * A line for each format: its name, and milliseconds of preparing, rendering and both. */
+ * A line for each format: its name, and milliseconds of preparing, rendering and both. With SIGMA
+ * weights of eq. 5; with FORMAT that one alone, for those who count instructions. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <refocus/refocus.h>
 
@@ -79,8 +81,15 @@ int main(int argc, char **argv)
     char path[1200];
     int width, height, w, h;
 
-    if (argc != 5) {
-        fputs("usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS\n", stderr);
+    int first = 0, end = FORMATS;
+
+    while (argc == 7 && first < FORMATS && strcmp(argv[6], formats[first].name))
+        first++;
+    if (argc == 7)
+        end = first + 1;
+    if (argc < 5 || argc > 7 || first == FORMATS) {
+        fputs("usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [SIGMA [FORMAT]]\n",
+              stderr);
         return 2;
     }
     snprintf(path, sizeof path, "%s/allfocus.png", argv[1]);
@@ -94,14 +103,16 @@ int main(int argc, char **argv)
 
     params = refocus_render_params_default(0.689f, (float)atof(argv[2]));
     params.rays = atoi(argv[3]);
-    for (int i = 0; i < FORMATS; i++)
+    if (argc > 5)
+        params.sigma = (float)atof(argv[5]);
+    for (int i = first; i < end; i++)
         if (set_up(&subject[i], formats[i].format, &photo, params.max_blur_radius))
             return 1;
     for (int n = 0; n < atoi(argv[4]); n++)
-        for (int i = 0; i < FORMATS; i++)
+        for (int i = first; i < end; i++)
             if (time_once(&subject[i], &map, &params) != REFOCUS_OK)
                 return 1;
-    for (int i = 0; i < FORMATS; i++)
+    for (int i = first; i < end; i++)
         printf("%s %.2f %.2f %.2f\n", formats[i].name, subject[i].prepare, subject[i].render,
                subject[i].both);
     return 0;

@@ -8,10 +8,17 @@
  *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0, BT.601 limited
  *                            range; pictures of Y, U and V keep their codes, 4:2:0 or
  *                                4:2:2
- *     raw:FILE               RGB8 frames without a header
+ *     raw:FILE[,FORMAT]      frames without a header, one behind the other, rows without
+ *                            gaps, as the source raw: reads them. FORMAT is RGB24
+ *                            (default), BGR24, RGBX, BGRX, NV12, NV21, YUV420, YUYV or
+ *                            UYVY; or `own`: that of the pictures, RGB24 of RGB8.
+ *                            RGB8 becomes BT.601 limited range where it is one of Y, U
+ *                            and V; pictures of Y, U and V with as many samples keep
+ *                            their codes
  *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0
  *
- * FILE may be "-" for standard output, or a pipe. A sink is reentrant. The window has a
+ * FILE may be "-" for standard output, or a pipe. Of raw: the last comma of the name
+ * begins the format, unless a dot or a slash follows it. A sink is reentrant. The window has a
  * thread of its own, which must be the only one of the process that uses SDL's video.
  */
 #ifndef REFOCUS_PLATFORM_SINK_H
@@ -52,8 +59,9 @@ REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int hei
 
 /**
  * Whether pictures of a format can be written without a change of their codes: 0 or 1.
- * RGB8 is taken by every sink, formats of Y, U and V by `null` and `y4m`, and by `v4l2`
- * where the node has that format.
+ * RGB8 is taken by every sink; formats of Y, U and V by `null` and `y4m`, by `raw` where
+ * its FORMAT is `own` or has as many samples (4:2:0 or 4:2:2), in whatever order, and by
+ * `v4l2` where the node has that format.
  */
 REFOCUS_API int refocus_sink_takes(struct refocus_sink *sink, uint32_t format);
 

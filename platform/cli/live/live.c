@@ -62,8 +62,9 @@ static const struct option options[] = {
      .name = "--out",
      .argument = "SINK",
      .offset = offsetof(struct live_settings, out),
-     .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE, frames-%04d.png or null "
-             "(default); FILE may be - for standard output"},
+     .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE[,FORMAT], frames-%04d.png or null "
+             "(default); FILE may be - for standard output, FORMAT own (as frames come), NV12, "
+             "NV21, YUV420, YUYV, UYVY, RGB24 (default), BGR24, RGBX or BGRX"},
     {.kind = OPTION_FLAG,
      .name = "--list",
      .offset = offsetof(struct live_settings, list),
@@ -523,8 +524,7 @@ const struct command live_command = {
     .notes = "While it runs, standard input (and --socket) takes a command a line: focus D, focus-at X,Y, "
              "pull D SECONDS, pull-at X,Y SECONDS (smooth), blur K, quit. Depth is paired with "
              "colour by time within half a frame; without a pair the newest depth serves. "
-             "Frames of Y, U and V are averaged plainly unless --sigma is given: their weights are "
-             "slow. After a fault the camera is opened again; platform/README.md lists faults and "
+             "After a fault the camera is opened again; platform/README.md lists faults and "
              "outcomes. Ctrl-C ends it with status 0.",
     .options = options,
     .files_least = 0,

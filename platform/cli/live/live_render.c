@@ -94,9 +94,6 @@ static int refocus(struct live *live, const struct live_picture *picture,
     live_focus_get(&live->focus, begin, &focus, &blur);
     params.focus_disparity = (float)focus;
     params.max_blur_radius = (float)blur;
-    /* weights of Y, U and V are plain C: for those who ask for them */
-    if (isnan(live->settings->engine.sigma) && refocus_format_is_yuv(out->format))
-        params.sigma = INFINITY;
     status = refocus_render(live->engine->renderer, &params, out);
     live_times_add(&live->render.times, (double)(live_now_ns() - begin) / 1e6);
     return status;

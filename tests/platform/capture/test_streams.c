@@ -242,11 +242,179 @@ static void y4m_keeps_codes(void **state)
     for (int i = 0; i < 4; i++)
         for (uint32_t range = 0; range < 2; range++)
             check_y4m_of(formats[i], planes[i], range);
-    assert_status(refocus_sink_open(&sink, "raw:yuv.raw", NULL), REFOCUS_OK);
+    assert_status(refocus_sink_open(&sink, "raw:yuv.raw", NULL), REFOCUS_OK); /* RGB24 */
     assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_NV12), 0);
     assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_RGB8), 1);
     assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_ERR_UNSUPPORTED);
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+}
+
+enum { RAW_W = 7, RAW_H = 5 };
+
+/* A picture of any format, rows with gaps. */
+static struct refocus_image noisy(uint32_t format, uint8_t memory[3][32 * RAW_H], uint32_t range)
+{
+    struct refocus_image image = {.format = format, .width = RAW_W, .height = RAW_H,
+                                  .range = range};
+
+    for (int i = 0; i < 3; i++) {
+        image.plane[i] = memory[i];
+        image.stride[i] = 32;
+        for (int k = 0; k < 32 * RAW_H; k++)
+            memory[i][k] = (uint8_t)(37 * k + 91 * i);
+    }
+    return image;
+}
+
+/* Pictures of one format in frames of another with as many samples, back by the source. */
+static void check_raw_of(uint32_t format, const char *name, uint32_t frame_format, bool own)
+{
+    static const uint32_t image_formats[] = {
+        [REFOCUS_FRAME_NV12] = REFOCUS_FORMAT_NV12, [REFOCUS_FRAME_NV21] = REFOCUS_FORMAT_NV21,
+        [REFOCUS_FRAME_YUV420] = REFOCUS_FORMAT_I420, [REFOCUS_FRAME_YUYV] = REFOCUS_FORMAT_YUYV};
+    static uint8_t memory[3][32 * RAW_H];
+    struct refocus_image image = noisy(format, memory, 1), back = {0};
+    const int tall = format == REFOCUS_FORMAT_YUYV;
+    struct refocus_source *source;
+    const struct refocus_frame *frame;
+    struct refocus_sink *sink = NULL;
+    uint8_t swapped[2 * (RAW_W + 1) * RAW_H];
+    char path[80];
+
+    snprintf(path, sizeof path, "raw:some,%s.raw,%s", name, own ? "OWN" : name);
+    assert_status(refocus_sink_open(&sink, path, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_sink_takes(sink, format), 1);
+    assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_OK);
+    for (int n = 0; n < 2; n++)
+        assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_OK);
+    image.range = 0; /* nothing in the file says so */
+    assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+
+    snprintf(path, sizeof path, "raw:some,%s.raw,%s,7x5", name, name);
+    source = started(path, REFOCUS_SOURCE_FAST);
+    for (int n = 0; n < 2; n++) {
+        assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
+        assert_int_equal(frame->format, frame_format);
+        back = (struct refocus_image){.format = REFOCUS_FORMAT_YUYV, .width = RAW_W,
+                                      .height = RAW_H};
+        if (frame_format == REFOCUS_FRAME_UYVY) {
+            for (size_t i = 0; i < 2 * (RAW_W + 1) * RAW_H; i++)
+                swapped[i] = frame->plane[0][i ^ 1];
+            back.plane[0] = swapped;
+            back.stride[0] = frame->stride[0];
+        } else {
+            back.format = image_formats[frame_format];
+            for (int i = 0; i < 3; i++) {
+                back.plane[i] = (uint8_t *)(uintptr_t)frame->plane[i];
+                back.stride[i] = frame->stride[i];
+            }
+        }
+        for (int y = 0; y < RAW_H; y++)
+            for (int x = 0; x < RAW_W + tall; x++)
+                for (int i = 0; i < 3; i++)
+                    if (*sample_of(&back, i, x, y) != *sample_of(&image, i, x, y))
+                        fail_msg("%s: sample %d of (%d, %d) is %d, was %d", path, i, x, y,
+                                 *sample_of(&back, i, x, y), *sample_of(&image, i, x, y));
+        refocus_source_release(source, frame);
+    }
+    assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_ERR_END);
+    refocus_source_close(&source);
+}
+
+static void raw_keeps_codes(void **state)
+{
+    static const struct {
+        uint32_t format;
+        const char *name;
+        uint32_t frame;
+    } kinds[] = {{REFOCUS_FORMAT_NV12, "NV12", REFOCUS_FRAME_NV12},
+                 {REFOCUS_FORMAT_NV21, "nv21", REFOCUS_FRAME_NV21},
+                 {REFOCUS_FORMAT_I420, "YUV420", REFOCUS_FRAME_YUV420},
+                 {REFOCUS_FORMAT_YUYV, "YUYV", REFOCUS_FRAME_YUYV}};
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        check_raw_of(kinds[i].format, kinds[i].name, kinds[i].frame, true);
+        for (int k = 0; k < 3 && i < 3; k++)
+            check_raw_of(kinds[i].format, kinds[k].name, kinds[k].frame, false);
+    }
+    check_raw_of(REFOCUS_FORMAT_YUYV, "YUYV", REFOCUS_FRAME_YUYV, false);
+    check_raw_of(REFOCUS_FORMAT_YUYV, "UYVY", REFOCUS_FRAME_UYVY, false);
+}
+
+/* RGB8 into every format, and what is no format. */
+static void raw_formats(void **state)
+{
+    static const struct {
+        const char *name;
+        int bound;
+    } formats[] = {{"own", 0}, {"RGB24", 0}, {"BGR24", 0}, {"RGBX", 0}, {"BGRX", 0},
+                   {"NV12", 5}, {"NV21", 5}, {"YUV420", 5}, {"YUYV", 5}, {"UYVY", 5}};
+    static const char *const wrong[] = {"raw:x,NV99", "raw:x,", "raw:x,GREY", "raw:x,MJPEG",
+                                        "raw:,NV12", "raw:x,Z16", "raw:x,any"};
+    struct refocus_sink *sink = NULL;
+    struct refocus_image yuv = {.format = REFOCUS_FORMAT_YUYV, .width = 4, .height = 4};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        char name[80];
+
+        snprintf(name, sizeof name, "raw:all.raw,%s", formats[i].name);
+        write_frames(name);
+        snprintf(name, sizeof name, "raw:all.raw,%s,37x22,25", i ? formats[i].name : "RGB24");
+        read_frames(name, formats[i].bound);
+    }
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct refocus_reason reason = {""};
+
+        if (refocus_sink_open(&sink, wrong[i], &reason) != REFOCUS_ERR_ARGUMENT || sink ||
+            !reason.text[0])
+            fail_msg("'%s' is not refused", wrong[i]);
+    }
+    assert_int_equal(access("x", F_OK), -1); /* nothing was begun */
+    assert_status(refocus_sink_open(&sink, "raw:half.yuv,NV12", NULL), REFOCUS_OK);
+    assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_I420), 1);
+    assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_YUYV), 0);
+    assert_status(refocus_sink_start_image(sink, &yuv, 25, NULL), REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+}
+
+/* 4:2:2 comes back from y4m as the YUYV that it was. */
+static void y4m_422_comes_back(void **state)
+{
+    static uint8_t memory[3][32 * RAW_H];
+    struct refocus_image image = noisy(REFOCUS_FORMAT_YUYV, memory, 1);
+    struct refocus_source *source;
+    const struct refocus_frame *frame;
+    struct refocus_sink *sink = NULL;
+
+    (void)state;
+    assert_status(refocus_sink_open(&sink, "y4m:tall.y4m", NULL), REFOCUS_OK);
+    assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_OK);
+    for (int n = 0; n < 2; n++)
+        assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    source = started("y4m:tall.y4m", REFOCUS_SOURCE_FAST);
+    for (int n = 0; n < 2; n++) {
+        struct refocus_image back = {.format = REFOCUS_FORMAT_YUYV};
+
+        assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
+        assert_int_equal(frame->format, REFOCUS_FRAME_YUYV);
+        assert_true(frame->flags & REFOCUS_FRAME_FULL_RANGE);
+        back.plane[0] = (uint8_t *)(uintptr_t)frame->plane[0];
+        back.stride[0] = frame->stride[0];
+        for (int y = 0; y < RAW_H; y++) {
+            for (int x = 0; x < RAW_W; x++)
+                for (int i = 0; i < 3; i++)
+                    assert_int_equal(*sample_of(&back, i, x, y), *sample_of(&image, i, x, y));
+            /* the pixel that completes a pair repeats the last */
+            assert_int_equal(*sample_of(&back, 0, RAW_W, y), *sample_of(&image, 0, RAW_W - 1, y));
+        }
+        refocus_source_release(source, frame);
+    }
+    assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_ERR_END);
+    refocus_source_close(&source);
 }
 
 static void sinks_refuse_what_is_wrong(void **state)
@@ -298,7 +466,9 @@ int main(void)
         cmocka_unit_test(damage_is_named),
         cmocka_unit_test(wrong_names_are_refused),
         cmocka_unit_test(a_closed_pipe_is_a_status),
-        cmocka_unit_test(y4m_keeps_codes), cmocka_unit_test(sinks_refuse_what_is_wrong),
+        cmocka_unit_test(y4m_keeps_codes), cmocka_unit_test(raw_keeps_codes),
+        cmocka_unit_test(raw_formats), cmocka_unit_test(y4m_422_comes_back),
+        cmocka_unit_test(sinks_refuse_what_is_wrong),
         cmocka_unit_test(replay_replays),
     };
 
