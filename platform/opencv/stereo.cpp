@@ -230,15 +230,16 @@ int stereo(const refocus_image *left, const refocus_image *right,
     }
     disparity *= scale;
     cv::resize(disparity, full, cv::Size(left->width, left->height), 0, 0, cv::INTER_NEAREST);
+    double least = 0, greatest = 0;
+    cv::minMaxLoc(full, &least, &greatest, nullptr, nullptr, full == full);
+    if (greatest - least < 1)
+        return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
+                                "nothing lies nearer than anything else: the two pictures show no "
+                                "more than one shift; give a left and a right one");
     for (int y = 0; y < full.rows; y++)
         std::copy_n(full.ptr<float>(y), full.cols, out + (size_t)y * (size_t)full.cols);
     if (report) {
-        *report = {(float)(s.offset * scale), (float)(s.least * scale),
-                   (float)((s.least + s.count) * scale), matched};
-        double least = 0, greatest = 0;
-        cv::minMaxLoc(full, &least, &greatest, nullptr, nullptr, full == full);
-        report->least = (float)least;
-        report->greatest = (float)greatest;
+        *report = {(float)(s.offset * scale), (float)least, (float)greatest, matched};
     }
     return REFOCUS_OK;
 }

@@ -7,24 +7,31 @@
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
-/* The columns of pixels between the same columns of samples, up to those of the next one. */
+enum {
+    RF_UPSAMPLE_PAD = 2,    /* samples beyond the map's border, repeated */
+    RF_UPSAMPLE_BLOCK = 16, /* pixels that are settled together */
+};
+
+/* The columns of pixels between the same columns of samples, up to those of the next
+ * one. */
 struct rf_span {
     int32_t begin;
     int32_t alike; /* the first one whose pixels lie the same way */
 };
 
 /*
- * Where no two neighbours among the 4 x 4 samples around a pixel are farther apart than 1/24 of
- * the range, it takes their mean by nearness. Elsewhere these samples are sorted into surfaces,
- * and the 8 x 8 samples around show what each looks like in the photo: the pixel goes to the
- * surface with the most of nearness times likeness (Bayes' rule: nearness is what is expected
- * before looking), and takes the plane through its samples. So no disparity between two surfaces
- * is invented. Where that choice was a close one, the sixth of 3 x 3 follows, a median that leans to
- * the near: what is thin is in front, and most of it lies between samples. A map that has more
- * columns or rows than the photo is sampled first.
+ * Where no two neighbours among the 4 x 4 samples around a pixel are farther apart than
+ * 1/24 of the range, it takes their mean by nearness. Elsewhere these samples are
+ * sorted into surfaces, and the 8 x 8 samples around show what each looks like in the
+ * photo: the pixel goes to the surface with the most of nearness times likeness (Bayes'
+ * rule: nearness is what is expected before looking), and takes the plane through its
+ * samples. So no disparity between two surfaces is invented. Where that choice was a
+ * close one, a median of 3 x 3 follows that those who were sure weigh most in; it leans
+ * to the near: what is thin is in front, and most of it lies between samples. A map
+ * that has more columns or rows than the photo is sampled first.
  *
- * All the memory is the caller's. Elements -2 to samples + 1 of rows -2 to samples + 1 of
- * `coarse`, `colour` and `trust` and -1 to width of `raw` are used.
+ * All the memory is the caller's. Elements -2 to samples + 1 of rows -2 to samples + 1
+ * of `coarse`, `colour` and `trust` are used.
  */
 struct rf_upsampler {
     const struct rf_kernels *kernels;
@@ -32,7 +39,7 @@ struct rf_upsampler {
     const struct refocus_disparity *map;
     const uint8_t *confidence; /* of each sample of the map, or NULL */
     ptrdiff_t confidence_stride;
-    int columns, rows;         /* samples that are used: rf_upsample_samples() */
+    int columns, rows; /* samples that are used: rf_upsample_samples() */
 
     uint16_t *coarse; /* samples */
     ptrdiff_t coarse_stride;
@@ -41,10 +48,13 @@ struct rf_upsampler {
     ptrdiff_t colour_stride, trust_stride;
     uint16_t *wide; /* rows x width: each row of samples as long as the photo's */
     ptrdiff_t wide_stride;
-    uint16_t *raw; /* height x width: before the sixth of 3 x 3 */
-    ptrdiff_t raw_stride;
-    uint8_t *sure; /* height x width: not 0 where that is left out */
+    uint16_t *settled; /* height x width: what becomes of those that are not sure */
+    ptrdiff_t settled_stride;
+    uint8_t *sure; /* height x width: 255 or 0 */
     ptrdiff_t sure_stride;
+    uint16_t *unsure; /* of each row how many blocks have such pixels, and which: blocks
+                         + 1 */
+    ptrdiff_t unsure_stride;
     struct rf_taps *across, *down; /* width and height of them */
     struct rf_span *span;          /* columns + 2 of them */
     struct rf_run *run;
@@ -53,11 +63,23 @@ struct rf_upsampler {
     ptrdiff_t out_stride; /* elements */
 };
 
+static inline int rf_upsample_blocks(int width)
+{
+    return (width + RF_UPSAMPLE_BLOCK - 1) / RF_UPSAMPLE_BLOCK;
+}
+
 static inline int rf_upsample_samples(int samples, int size)
 {
     return samples < size ? samples : size;
 }
 
 void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool);
+
+/* Spans whose pixels lie the same way are told to have the first one's: of the last
+ * few. */
+void rf_find_spans(struct rf_upsampler *up);
+
+/* Rows y0 to y1 - 1 of pixels, whose taps begin in row `first` of the samples. */
+void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1);
 
 #endif

@@ -12,15 +12,16 @@
 /* Sets the pointers, or with arena->base == NULL only counts. */
 static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
 {
-    const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
+    const uint64_t width = (uint64_t)up->photo->width,
+                   height = (uint64_t)up->photo->height;
     const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
 
     up->coarse_stride = up->columns + 4;
     up->coarse = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
     up->wide_stride = up->photo->width;
     up->wide = rf_arena_take(arena, width * rows, 2);
-    up->raw_stride = up->photo->width + 2;
-    up->raw = rf_arena_take(arena, (width + 2) * height, 2);
+    up->settled_stride = up->photo->width;
+    up->settled = rf_arena_take(arena, width * height, 2);
     up->across = rf_arena_take(arena, width, sizeof *up->across);
     up->down = rf_arena_take(arena, height, sizeof *up->down);
     up->span = rf_arena_take(arena, columns + 2, sizeof *up->span);
@@ -31,9 +32,10 @@ static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
         up->trust = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
     up->sure_stride = up->photo->width;
     up->sure = rf_arena_take(arena, width * height, 1);
+    up->unsure_stride = rf_upsample_blocks(up->photo->width) + 1;
+    up->unsure = rf_arena_take(arena, (uint64_t)up->unsure_stride * height, 2);
     if (arena->base) {
         up->coarse += 2 * up->coarse_stride + 2;
-        up->raw += 1;
         for (int c = 0; c < 3; c++)
             up->colour[c] += 2 * up->colour_stride + 2;
         if (up->confidence)
@@ -41,14 +43,16 @@ static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
     }
 }
 
-static void copy_map(const struct refocus_disparity *map, uint16_t *out, ptrdiff_t stride)
+static void copy_map(const struct refocus_disparity *map, uint16_t *out,
+                     ptrdiff_t stride)
 {
     for (int y = 0; y < map->height; y++) {
         const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
         uint16_t *to = (uint16_t *)((char *)out + y * stride);
 
         for (int x = 0; x < map->width; x++)
-            to[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
+            to[x] =
+                (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
     }
 }
 
@@ -61,7 +65,8 @@ static bool good_params(const struct refocus_upsample_params *params,
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
-int refocus_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
+int refocus_upsample(const struct refocus_image *photo,
+                     const struct refocus_disparity *map,
                      const struct refocus_upsample_params *params, uint16_t *out,
                      ptrdiff_t stride)
 {
@@ -73,8 +78,8 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     void *block;
     int status;
 
-    if (!rf_good_image(photo) || !rf_good_map(map) || !params || !good_params(params, map) ||
-        !out || ((uintptr_t)out & 1) || (stride & 1) ||
+    if (!rf_good_image(photo) || !rf_good_map(map) || !params ||
+        !good_params(params, map) || !out || ((uintptr_t)out & 1) || (stride & 1) ||
         !rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
     threads.threads = params->threads;

@@ -93,8 +93,11 @@ static void blend4(const struct rf_kernels *k, struct rows *r)
 
 static void lean3(const struct rf_kernels *k, struct rows *r)
 {
-    k->lean3(r->shorts[6] + MARGIN, r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
-               r->shorts[2] + MARGIN, r->unsure, N);
+    const uint16_t *const row[3] = {r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
+                                    r->shorts[2] + MARGIN};
+    const uint8_t *const sure[3] = {r->unsure + MARGIN, r->unsure + MARGIN, r->unsure + MARGIN};
+
+    k->lean3(r->shorts[6] + MARGIN, row, sure, N);
 }
 
 static void series_row(const struct rf_kernels *k, struct rows *r)

@@ -10,13 +10,14 @@
 enum {
     TAPS = RF_TAP_COUNT,
     SAMPLES = RF_AROUND * RF_AROUND,
-    GAP = 65535 / 44,  /* largest one between neighbouring disparities of a surface */
+    FIRST = 2 * RF_AROUND + 2, /* tap */
+    GAP = 65535 / 44, /* largest one between neighbouring disparities of a surface */
     WIDEST = 65535 / 8,
     TRUSTED = 128,
-    MANY = 40,         /* samples of a surface */
-    EVEN = 65535 / 256, /* slopes of a surface with less between its low and high are left out */
-    STEEPEST = 16383,  /* a sample */
-    FIRM = 8,          /* weight of "it is flat" in the slopes, of 64 of all taps */
+    MANY = 40, /* samples of a surface */
+    EVEN = 65535 / 256, /* with less between its low and high a surface has no slopes */
+    STEEPEST = 16383, /* a sample */
+    FIRM = 8,         /* weight of "it is flat" in the slopes, of 64 of all taps */
 };
 
 /* Bits of every other of 8 x 8 samples, those of a checkerboard. */
@@ -45,13 +46,14 @@ static inline void order(uint16_t *restrict low, uint16_t *restrict high)
 
 /* Batcher's odd-even merges of runs of 1, 2, 4 and 8. */
 static const uint8_t exchange[63][2] = {
-    {0, 1}, {2, 3}, {4, 5}, {6, 7}, {8, 9}, {10, 11}, {12, 13}, {14, 15}, {0, 2},
-    {1, 3}, {4, 6}, {5, 7}, {8, 10}, {9, 11}, {12, 14}, {13, 15}, {1, 2}, {5, 6},
-    {9, 10}, {13, 14}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {8, 12}, {9, 13}, {10, 14},
-    {11, 15}, {2, 4}, {3, 5}, {10, 12}, {11, 13}, {1, 2}, {3, 4}, {5, 6}, {9, 10},
-    {11, 12}, {13, 14}, {0, 8}, {1, 9}, {2, 10}, {3, 11}, {4, 12}, {5, 13}, {6, 14},
-    {7, 15}, {4, 8}, {5, 9}, {6, 10}, {7, 11}, {2, 4}, {3, 5}, {6, 8}, {7, 9}, {10,
-    12}, {11, 13}, {1, 2}, {3, 4}, {5, 6}, {7, 8}, {9, 10}, {11, 12}, {13, 14}};
+    {0, 1},  {2, 3},  {4, 5},   {6, 7},   {8, 9},   {10, 11}, {12, 13}, {14, 15},
+    {0, 2},  {1, 3},  {4, 6},   {5, 7},   {8, 10},  {9, 11},  {12, 14}, {13, 15},
+    {1, 2},  {5, 6},  {9, 10},  {13, 14}, {0, 4},   {1, 5},   {2, 6},   {3, 7},
+    {8, 12}, {9, 13}, {10, 14}, {11, 15}, {2, 4},   {3, 5},   {10, 12}, {11, 13},
+    {1, 2},  {3, 4},  {5, 6},   {9, 10},  {11, 12}, {13, 14}, {0, 8},   {1, 9},
+    {2, 10}, {3, 11}, {4, 12},  {5, 13},  {6, 14},  {7, 15},  {4, 8},   {5, 9},
+    {6, 10}, {7, 11}, {2, 4},   {3, 5},   {6, 8},   {7, 9},   {10, 12}, {11, 13},
+    {1, 2},  {3, 4},  {5, 6},   {7, 8},   {9, 10},  {11, 12}, {13, 14}};
 
 static void sort(uint16_t sorted[TAPS][RF_CELLS])
 {
@@ -59,13 +61,15 @@ static void sort(uint16_t sorted[TAPS][RF_CELLS])
         order(sorted[exchange[i][0]], sorted[exchange[i][1]]);
 }
 
-static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
+static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS],
+                            int n)
 {
     uint16_t low[RF_CELLS], starts[RF_CELLS];
 
     for (int t = 0; t < TAPS; t++) {
         memset(parts->sorted[t], 0, sizeof parts->sorted[t]);
-        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS, (size_t)n * sizeof(uint16_t));
+        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS,
+               (size_t)n * sizeof(uint16_t));
     }
     sort(parts->sorted);
     for (int i = 0; i < RF_CELLS; i++) {
@@ -73,10 +77,12 @@ static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF
         starts[i] = 1;
     }
     for (int t = 1; t < TAPS; t++) {
-        const uint16_t *restrict last = parts->sorted[t - 1], *restrict d = parts->sorted[t];
+        const uint16_t *restrict last = parts->sorted[t - 1];
+        const uint16_t *restrict d = parts->sorted[t];
 
         for (int i = 0; i < RF_CELLS; i++) {
-            const uint16_t far_off = (uint16_t)((d[i] - last[i] > GAP) | (d[i] - low[i] > WIDEST));
+            const uint16_t far_off =
+                (uint16_t)((d[i] - last[i] > GAP) | (d[i] - low[i] > WIDEST));
 
             starts[i] = (uint16_t)(starts[i] | far_off << t);
             low[i] = far_off ? d[i] : low[i];
@@ -99,26 +105,64 @@ static inline uint64_t within16(const uint16_t *p, uint16_t low, uint16_t width)
 #endif
 }
 
-/* Bits of those of eight bytes whose highest bit is set. */
-static uint64_t high_bits(const uint8_t byte[8])
+static void RF_VEC(rf_turn8)(uint8_t out[RF_AROUND * RF_TURNED],
+                             const uint8_t *const row[RF_AROUND])
 {
-    uint64_t bits = 0;
+    const uint8_t *restrict a = row[0], *restrict b = row[1], *restrict c = row[2];
+    const uint8_t *restrict d = row[3], *restrict e = row[4], *restrict f = row[5];
+    const uint8_t *restrict g = row[6], *restrict h = row[7];
 
-    for (int k = 0; k < 8; k++)
-        bits |= (uint64_t)(byte[k] >> 7) << (8 * k);
-    return bits * UINT64_C(0x0102040810204080) >> 56;
+    for (int x = 0; x < RF_TURNED; x++) {
+        uint8_t *restrict to = out + RF_AROUND * x;
+
+        to[0] = a[x], to[1] = b[x], to[2] = c[x], to[3] = d[x];
+        to[4] = e[x], to[5] = f[x], to[6] = g[x], to[7] = h[x];
+    }
+}
+
+static void RF_VEC(rf_turn16)(uint16_t out[RF_AROUND * RF_TURNED],
+                              const uint16_t *const row[RF_AROUND])
+{
+    const uint16_t *restrict a = row[0], *restrict b = row[1], *restrict c = row[2];
+    const uint16_t *restrict d = row[3], *restrict e = row[4], *restrict f = row[5];
+    const uint16_t *restrict g = row[6], *restrict h = row[7];
+
+    for (int x = 0; x < RF_TURNED; x++) {
+        uint16_t *restrict to = out + RF_AROUND * x;
+
+        to[0] = a[x], to[1] = b[x], to[2] = c[x], to[3] = d[x];
+        to[4] = e[x], to[5] = f[x], to[6] = g[x], to[7] = h[x];
+    }
+}
+
+/* Bits of those of 64 bytes whose highest bit is set. */
+static uint64_t high_bits(const uint8_t *byte)
+{
+    uint64_t all = 0;
+
+    for (int i = 0; i < RF_AROUND; i++) {
+        uint64_t bits = 0;
+
+        for (int k = 0; k < 8; k++)
+            bits |= (uint64_t)(byte[8 * i + k] >> 7) << (8 * k);
+        all |= (bits * UINT64_C(0x0102040810204080) >> 56) << (8 * i);
+    }
+    return all;
 }
 
 static int count(uint64_t bits)
 {
     bits -= bits >> 1 & UINT64_C(0x5555555555555555);
-    bits = (bits & UINT64_C(0x3333333333333333)) + (bits >> 2 & UINT64_C(0x3333333333333333));
+    bits = (bits & UINT64_C(0x3333333333333333)) +
+           (bits >> 2 & UINT64_C(0x3333333333333333));
     bits = (bits + (bits >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
     return (int)(bits * UINT64_C(0x0101010101010101) >> 56);
 }
 
-/* The samples that show what a surface looks like; of many, every other one is enough. How many. */
-static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES], uint64_t trusted)
+/* The samples that show what a surface looks like; of many, every other one is enough.
+ * How many. */
+static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
+                        uint64_t trusted)
 {
     const int under = s->low > GAP / 2 ? s->low - GAP / 2 : 0;
     const int high = s->low + s->range;
@@ -126,26 +170,39 @@ static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
     uint64_t members = 0;
 
     for (int i = 0; i < SAMPLES; i += 16)
-        members |= within16(disparity + i, (uint16_t)under, (uint16_t)(over - under)) << i;
+        members |= within16(disparity + i, (uint16_t)under, (uint16_t)(over - under))
+                   << i;
     s->samples = members & trusted;
     if (count(s->samples) > MANY)
         s->samples &= CHECKERED;
     return count(s->samples);
 }
 
-/* 64 / (n grow), and of equal evidence the nearer surface is up to a fifth better: what is thin
- * is in front. */
+/* What n samples grow by to be 64 to 127, and 64 / (n grow) in Q16. */
+/* clang-format off */
+#define GROW(n, grow) {65536 * 64 / ((n) * (grow)), grow}
+/* clang-format on */
+#define GROW4(n, grow)                                                                 \
+    GROW(n, grow), GROW(n + 1, grow), GROW(n + 2, grow), GROW(n + 3, grow)
+#define GROW16(n, grow)                                                                \
+    GROW4(n, grow), GROW4(n + 4, grow), GROW4(n + 8, grow), GROW4(n + 12, grow)
+static const struct {
+    uint32_t share;
+    uint16_t grow;
+} growth[SAMPLES + 1] = {
+    {0, 0},        GROW(1, 64),   GROW(2, 32),  GROW(3, 32),
+    GROW4(4, 16),  GROW4(8, 8),   GROW4(12, 8), GROW16(16, 4),
+    GROW16(32, 2), GROW16(48, 2), GROW(64, 1),
+};
+
+/* Of equal evidence the nearer surface is up to a fifth better: what is thin is in
+ * front. */
 static void set_scale(struct rf_surface *s, int n)
 {
-    uint64_t scale;
+    const uint64_t scale =
+        (uint64_t)growth[n].share * (5 * 65535u + s->low) * (65536 / 6 + 1) >> 32;
 
-    if (n == 0) {
-        s->grow = s->scale = 0;
-        return;
-    }
-    s->grow = (uint16_t)(1 << (__builtin_clz((unsigned)n) - 25));
-    scale = (uint64_t)(65536u * 64 / ((unsigned)n * s->grow)) * (5 * 65535u + s->low) *
-            (65536 / 6 + 1) >> 32;
+    s->grow = growth[n].grow;
     s->scale = (uint16_t)(scale > 65535 ? 65535 : scale);
 }
 
@@ -171,80 +228,147 @@ static int slope(int along, int spread, int weight)
 
 /* Twice how far a tap is from the middle, and how much it counts there. */
 static const int16_t one[TAPS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-static const int16_t across[TAPS] = {-3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3};
-static const int16_t down[TAPS] = {-3, -3, -3, -3, -1, -1, -1, -1, 1, 1, 1, 1, 3, 3, 3, 3};
+static const int16_t across[TAPS] = {-3, -3, -3, -3, -1, -1, -1, -1,
+                                     1,  1,  1,  1,  3,  3,  3,  3};
+static const int16_t down[TAPS] = {-3, -1, 1, 3, -3, -1, 1, 3,
+                                   -3, -1, 1, 3, -3, -1, 1, 3};
 static const int16_t middle[TAPS] = {256, 768,  768,  256, 768, 2304, 2304, 768,
                                      768, 2304, 2304, 768, 256, 768,  768,  256};
 
-/* Weights and heights of the taps of a surface, 0 of the others. */
-static inline void take_taps(int16_t q[TAPS], int16_t e[TAPS], const struct rf_surface *s,
-                             const uint16_t tap[TAPS], const int16_t weight[TAPS])
+/* middle[] times across[] and down[]. */
+static const int16_t middle_across[TAPS] = {-768,  -2304, -2304, -768, -768, -2304,
+                                            -2304, -768,  768,   2304, 2304, 768,
+                                            768,   2304,  2304,  768};
+static const int16_t middle_down[TAPS] = {-768, -768, 768,   768,   -2304, -2304,
+                                          2304, 2304, -2304, -2304, 2304,  2304,
+                                          -768, -768, 768,   768};
+
+/* Sums over the taps of a surface: weights q, and with e heights above its low, at most
+ * WIDEST. Weights add up to 64 * 256 at the most: all fit 32 bits. */
+struct sums {
+    int q, qx, qy, qxx, qyy; /* x = across, y = down */
+    int qe, qxe, qye;
+};
+
+/* The heights of a surface's taps, 0 of the others, and which those are. */
+static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS],
+                             const struct rf_surface *s, const uint16_t tap[TAPS])
 {
 #if defined(RF_VECTORS)
     for (int i = 0; i < TAPS; i += VEC_U16) {
         const vec_u16 above = vec_u16_sub(vec_u16_load(tap + i), vec_u16_set(s->low));
-        const vec_u16 own = vec_u16_at_most(above, vec_u16_set(s->range));
+        const vec_u16 is_own = vec_u16_at_most(above, vec_u16_set(s->range));
 
-        vec_u16_store(e + i, vec_u16_and(above, own));
-        vec_u16_store(q + i, vec_u16_and(vec_u16_load(weight + i), own));
+        vec_u16_store(e + i, vec_u16_and(above, is_own));
+        vec_u16_store(own + i, is_own);
     }
 #else
     for (int i = 0; i < TAPS; i++) {
         const uint16_t above = (uint16_t)(tap[i] - s->low);
 
-        e[i] = (int16_t)(above <= s->range ? above : 0);
-        q[i] = (int16_t)(above <= s->range ? weight[i] : 0);
+        own[i] = above <= s->range ? 65535 : 0;
+        e[i] = (int16_t)(above & own[i]);
     }
 #endif
 }
 
-/* A plane by least squares over the taps, those in the middle counting most. Weights q add up to
- * 64 * 256 at the most and heights e above the surface's low are at most WIDEST: sums fit 32 bits. */
-static void fit(struct rf_surface *s, const uint16_t tap[TAPS], const int16_t weight[TAPS])
-{
-    int16_t q[TAPS], e[TAPS], qx[TAPS], qy[TAPS];
+/* By rows of a column: bits 0 to 7 the sum of (1, 3, 3, 1), bits 8 to 15 of those times
+ * (-3, -1, 1, 3) and 8, bits 16 to 23 of those times their squares. */
+#define COLUMN(a, b, c, d)                                                             \
+    (((a) + 3 * (b) + 3 * (c) + (d)) +                                                 \
+     ((8 - 3 * (a)-3 * (b) + 3 * (c) + 3 * (d)) << 8) +                                \
+     ((9 * (a) + 3 * (b) + 3 * (c) + 9 * (d)) << 16))
+static const uint32_t column[16] = {
+    COLUMN(0, 0, 0, 0), COLUMN(1, 0, 0, 0), COLUMN(0, 1, 0, 0), COLUMN(1, 1, 0, 0),
+    COLUMN(0, 0, 1, 0), COLUMN(1, 0, 1, 0), COLUMN(0, 1, 1, 0), COLUMN(1, 1, 1, 0),
+    COLUMN(0, 0, 0, 1), COLUMN(1, 0, 0, 1), COLUMN(0, 1, 0, 1), COLUMN(1, 1, 0, 1),
+    COLUMN(0, 0, 1, 1), COLUMN(1, 0, 1, 1), COLUMN(0, 1, 1, 1), COLUMN(1, 1, 1, 1)};
 
-    take_taps(q, e, s, tap, weight);
-    const int w = dot(q, one);
-    int mean = dot(q, e) / w;
+/* Where each tap counts what it does in the middle: what needs no heights by columns.
+ */
+static struct sums sums_of(const struct rf_surface *s, const int16_t e[TAPS])
+{
+    const uint32_t a = column[s->taps & 15], b = column[s->taps >> 4 & 15];
+    const uint32_t c = column[s->taps >> 8 & 15], d = column[s->taps >> 12];
+    const uint32_t all = a + 3 * (b + c) + d;
+    const int p = a & 255, q = b & 255, r = c & 255, t = d & 255;
+
+    return (struct sums){.q = 256 * (int)(all & 255),
+                         .qx = 256 * 3 * (r + t - p - q),
+                         .qy = 256 * ((int)(all >> 8 & 255) - 64),
+                         .qxx = 256 * (9 * (p + t) + 3 * (q + r)),
+                         .qyy = 256 * (int)(all >> 16),
+                         .qe = dot(middle, e),
+                         .qxe = dot(middle_across, e),
+                         .qye = dot(middle_down, e)};
+}
+
+static struct sums sums_by(const int16_t weight[TAPS], const uint16_t own[TAPS],
+                           const int16_t e[TAPS])
+{
+    int16_t q[TAPS], qx[TAPS], qy[TAPS];
+
+    for (int i = 0; i < TAPS; i++) {
+        q[i] = (int16_t)(weight[i] & own[i]);
+        qx[i] = (int16_t)(q[i] * across[i]);
+        qy[i] = (int16_t)(q[i] * down[i]);
+    }
+    return (struct sums){.q = dot(q, one),
+                         .qx = dot(qx, one),
+                         .qy = dot(qy, one),
+                         .qxx = dot(qx, across),
+                         .qyy = dot(qy, down),
+                         .qe = dot(q, e),
+                         .qxe = dot(qx, e),
+                         .qye = dot(qy, e)};
+}
+
+/* A plane by least squares over the taps, those in the middle counting most; weight ==
+ * NULL: all are sure. */
+static void fit(struct rf_surface *s, const uint16_t tap[TAPS], const int16_t *weight)
+{
+    int16_t e[TAPS];
+    uint16_t own[TAPS];
+
+    take_taps(e, own, s, tap);
+    const struct sums sum = weight ? sums_by(weight, own, e) : sums_of(s, e);
+    const int w = sum.q, x = sum.qx, y = sum.qy;
+    int mean = sum.qe / w;
 
     s->mean = (int16_t)mean;
     s->right = s->below = 0;
     if (s->range < EVEN)
         return;
-    for (int i = 0; i < TAPS; i++) {
-        qx[i] = (int16_t)(q[i] * across[i]);
-        qy[i] = (int16_t)(q[i] * down[i]);
-    }
-    const int x = dot(qx, one), y = dot(qy, one);
     const uint32_t u = (uint32_t)(x < 0 ? -x : x), v = (uint32_t)(y < 0 ? -y : y);
-    const int gx = slope(2 * (dot(qx, e) - x * mean),
-                         dot(qx, across) - (int)(u * u / (uint32_t)w), 4 * w);
-    const int gy = slope(2 * (dot(qy, e) - y * mean),
-                         dot(qy, down) - (int)(v * v / (uint32_t)w), 4 * w);
+    const int gx =
+        slope(2 * (sum.qxe - x * mean), sum.qxx - (int)(u * u / (uint32_t)w), 4 * w);
+    const int gy =
+        slope(2 * (sum.qye - y * mean), sum.qyy - (int)(v * v / (uint32_t)w), 4 * w);
 
     mean -= (gx * x + gy * y) / (2 * w);
-    s->mean = (int16_t)(mean < -STEEPEST ? -STEEPEST : mean > STEEPEST ? STEEPEST : mean);
+    s->mean = (int16_t)(mean < -STEEPEST  ? -STEEPEST
+                        : mean > STEEPEST ? STEEPEST
+                                          : mean);
     s->right = (int16_t)gx;
     s->below = (int16_t)gy;
 }
 
-/* Trust of the taps, their weights in a plane, and of all samples whether they are trusted. */
-static uint64_t take_trust(struct rf_cell *cell, int16_t weight[TAPS],
-                           const struct rf_window *window)
+/* Trust of the taps, their weights in a plane, and of all samples whether they are
+ * trusted. */
+static uint64_t take_trust(struct rf_cell *cell, int16_t spare[TAPS],
+                           const int16_t **weight, const struct rf_window *window)
 {
-    uint64_t trusted = 0;
+    uint64_t trusted;
     uint8_t trust[TAPS];
     bool any = false, sure = true;
 
     cell->sure = true;
-    memcpy(weight, middle, sizeof middle);
+    *weight = NULL;
     if (!window->trust)
         return ~UINT64_C(0);
-    for (int j = 0; j < RF_AROUND; j++)
-        trusted |= high_bits(window->trust + j * window->trust_stride) << (RF_AROUND * j);
+    trusted = high_bits(window->trust);
     for (int i = 0; i < TAPS; i++) {
-        trust[i] = window->trust[(i / RF_TAPS + 2) * window->trust_stride + i % RF_TAPS + 2];
+        trust[i] = window->trust[FIRST + i / RF_TAPS * RF_AROUND + i % RF_TAPS];
         any |= trust[i] >= TRUSTED;
         sure &= trust[i] == 255;
     }
@@ -253,35 +377,42 @@ static uint64_t take_trust(struct rf_cell *cell, int16_t weight[TAPS],
     cell->sure = false;
     for (int i = 0; i < TAPS; i++) {
         cell->trust[i] = (uint16_t)(trust[i] < 1 ? 16 : trust[i] * 257);
-        weight[i] = (int16_t)((middle[i] >> 8) * (trust[i] + 1));
+        spare[i] = (int16_t)((middle[i] >> 8) * (trust[i] + 1));
     }
+    *weight = spare;
     return trusted;
 }
 
-static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell, const struct rf_window *window,
+static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell,
+                                     const struct rf_window *window,
                                      const struct rf_parts *parts, int at)
 {
-    int16_t weight[TAPS];
-    uint16_t around[SAMPLES], tap[TAPS];
-    const uint64_t trusted = take_trust(cell, weight, window);
+    int16_t spare[TAPS];
+    uint16_t tap[TAPS];
+    const int16_t *weight;
+    const uint64_t trusted = take_trust(cell, spare, &weight, window);
     unsigned starts = parts->starts[at];
+    int most_taps = 0;
 
-    for (int j = 0; j < RF_AROUND; j++)
-        memcpy(around + j * RF_AROUND, window->disparity + j * window->stride,
-               RF_AROUND * sizeof *around);
-    for (int j = 0; j < RF_TAPS; j++)
-        memcpy(tap + j * RF_TAPS, around + (j + 2) * RF_AROUND + 2, RF_TAPS * sizeof *tap);
+    for (int i = 0; i < RF_TAPS; i++)
+        memcpy(tap + i * RF_TAPS, window->disparity + FIRST + i * RF_AROUND,
+               RF_TAPS * sizeof *tap);
     cell->surfaces = 0;
     while (starts) {
         struct rf_surface *s = &cell->surface[cell->surfaces++];
         const int first = __builtin_ctz(starts);
 
         starts &= starts - 1;
+        const int end = starts ? __builtin_ctz(starts) : TAPS;
+
+        if (end - first > most_taps) {
+            most_taps = end - first;
+            cell->greatest = cell->surfaces - 1;
+        }
         s->low = parts->sorted[first][at];
-        s->range = (uint16_t)(parts->sorted[starts ? __builtin_ctz(starts) - 1 : TAPS - 1][at] -
-                              s->low);
+        s->range = (uint16_t)(parts->sorted[end - 1][at] - s->low);
         s->taps = (uint16_t)within16(tap, s->low, s->range);
-        set_scale(s, find_samples(s, around, trusted));
+        set_scale(s, find_samples(s, window->disparity, trusted));
         fit(s, tap, weight);
     }
 }
@@ -289,5 +420,7 @@ static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell, const struct rf_windo
 void RF_VEC(rf_surfaces_use)(struct rf_kernels *kernels)
 {
     kernels->part = RF_VEC(rf_part);
+    kernels->turn8 = RF_VEC(rf_turn8);
+    kernels->turn16 = RF_VEC(rf_turn16);
     kernels->find_surfaces = RF_VEC(rf_find_surfaces);
 }

@@ -28,7 +28,9 @@ static void RF_VEC(rf_blend4)(uint16_t *restrict out, const uint16_t *const row[
     const uint32_t wa = weight[0], wb = weight[1], wc = weight[2], wd = weight[3];
 
     for (int x = 0; x < n; x++)
-        out[x] = (uint16_t)((a[x] * wa + b[x] * wb + c[x] * wc + d[x] * wd + (1 << 15)) >> 16);
+        out[x] =
+            (uint16_t)((a[x] * wa + b[x] * wb + c[x] * wc + d[x] * wd + (1 << 15)) >>
+                       16);
 }
 
 static inline uint16_t widen(const uint16_t *d, const int16_t *share)
@@ -48,9 +50,10 @@ static void RF_VEC(rf_widen4)(uint16_t *restrict out, const uint16_t *restrict i
 #if defined(RF_VECTORS)
     for (; x + 4 <= n; x += 4) {
         const struct rf_taps *at = taps + x;
-        const uint16_t *const d[4] = {in + at[0].first, in + at[1].first, in + at[2].first,
-                                      in + at[3].first};
-        const int16_t *const share[4] = {at[0].share, at[1].share, at[2].share, at[3].share};
+        const uint16_t *const d[4] = {in + at[0].first, in + at[1].first,
+                                      in + at[2].first, in + at[3].first};
+        const int16_t *const share[4] = {at[0].share, at[1].share, at[2].share,
+                                         at[3].share};
 
         vec_dots4(out + x, d, share);
     }
@@ -59,37 +62,56 @@ static void RF_VEC(rf_widen4)(uint16_t *restrict out, const uint16_t *restrict i
         out[x] = widen(in + taps[x].first, taps[x].share);
 }
 
-static bool RF_VEC(rf_rough)(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
-                             const uint8_t *const trust[RF_TAPS], int step, int n)
+static unsigned RF_VEC(rf_rough)(uint8_t rough[RF_CELLS],
+                                 const uint16_t *const row[RF_TAPS],
+                                 const uint8_t *const trust[RF_TAPS], int step, int n)
 {
     const uint16_t *restrict a = row[0], *restrict b = row[1];
     const uint16_t *restrict c = row[2], *restrict d = row[3];
     uint16_t across[RF_CELLS + RF_TAPS], down[RF_CELLS + RF_TAPS];
+    uint16_t across_inner[RF_CELLS + RF_TAPS], down_inner[RF_CELLS + RF_TAPS];
     uint8_t any = 0;
 
-    for (int x = 0; x < n + RF_TAPS - 1; x++)
-        down[x] = most(most(apart(a[x], b[x]), apart(b[x], c[x])), apart(c[x], d[x]));
-    for (int x = 0; x < n + RF_TAPS - 2; x++)
-        across[x] = most(most(apart(a[x], a[x + 1]), apart(b[x], b[x + 1])),
-                         most(apart(c[x], c[x + 1]), apart(d[x], d[x + 1])));
+    for (int x = 0; x < n + RF_TAPS - 1; x++) {
+        down_inner[x] = apart(b[x], c[x]);
+        down[x] = most(most(apart(a[x], b[x]), down_inner[x]), apart(c[x], d[x]));
+    }
+    for (int x = 0; x < n + RF_TAPS - 2; x++) {
+        across_inner[x] = most(apart(b[x], b[x + 1]), apart(c[x], c[x + 1]));
+        across[x] =
+            most(most(apart(a[x], a[x + 1]), across_inner[x]), apart(d[x], d[x + 1]));
+    }
     if (trust[0])
-        for (int x = 0; x < n + RF_TAPS - 1; x++)
-            if ((trust[0][x] & trust[1][x] & trust[2][x] & trust[3][x]) != 255)
-                down[x] = 65535;
-    for (int x = 0; x < n; x++) {
-        const uint16_t right = most(most(across[x], across[x + 1]), across[x + 2]);
-        const uint16_t below = most(most(down[x], down[x + 1]), most(down[x + 2], down[x + 3]));
+        for (int x = 0; x < n + RF_TAPS - 1; x++) {
+            const uint8_t inner = trust[1][x] & trust[2][x];
 
-        rough[x] = most(right, below) > step;
+            down_inner[x] = inner != 255 ? 65535 : down_inner[x];
+            down[x] = (inner & trust[0][x] & trust[3][x]) != 255 ? 65535 : down[x];
+        }
+    for (int x = 0; x < n; x++) {
+        const uint16_t right =
+            most(most(across_inner[x], across[x + 1]), across_inner[x + 2]);
+        const uint16_t below = most(most(down_inner[x], down[x + 1]),
+                                    most(down[x + 2], down_inner[x + 3]));
+
+        const uint16_t right_all = most(most(across[x], across[x + 1]), across[x + 2]);
+        const uint16_t below_all =
+            most(most(down[x], down[x + 1]), most(down[x + 2], down[x + 3]));
+        const uint8_t is_rough = most(right, below) > step;
+
+        rough[x] = is_rough                            ? RF_ROUGH
+                   : most(right_all, below_all) > step ? RF_ROUGH_CORNER
+                                                       : 0;
         any |= rough[x];
     }
     return any;
 }
 
-static void RF_VEC(rf_quarter)(uint8_t *const out[3], const uint8_t *restrict pixels, int bytes,
-                               int n)
+static void RF_VEC(rf_quarter)(uint8_t *const out[3], const uint8_t *restrict pixels,
+                               int bytes, int n)
 {
-    uint8_t *restrict first = out[0], *restrict second = out[1], *restrict third = out[2];
+    uint8_t *restrict first = out[0], *restrict second = out[1];
+    uint8_t *restrict third = out[2];
 
     if (bytes == 3)
         for (int x = 0; x < n; x++) {
@@ -105,35 +127,110 @@ static void RF_VEC(rf_quarter)(uint8_t *const out[3], const uint8_t *restrict pi
         }
 }
 
-static inline void order(uint16_t *restrict a, uint16_t *restrict b)
+/* Keys are disparities whose lowest bit says whether they are sure. */
+static inline uint16_t key(uint16_t d, uint8_t sure)
 {
-    const uint16_t low = least(*a, *b), high = most(*a, *b);
-
-    *a = low;
-    *b = high;
+    return (uint16_t)((d & ~1) | (sure & 1));
 }
 
-/* What of a network that sorts nine the sixth depends on. */
-static void RF_VEC(rf_lean3)(uint16_t *restrict out, const uint16_t *restrict before,
-                             const uint16_t *restrict row, const uint16_t *restrict after,
-                             const uint8_t *restrict sure, int n)
+static const uint8_t exchange[25][2] = {
+    {0, 3}, {1, 7}, {2, 5}, {4, 8}, {0, 7}, {2, 4}, {3, 8}, {5, 6}, {0, 2},
+    {1, 3}, {4, 5}, {7, 8}, {1, 4}, {3, 6}, {5, 7}, {0, 1}, {2, 4}, {3, 5},
+    {6, 8}, {2, 3}, {4, 5}, {6, 7}, {1, 2}, {3, 4}, {5, 6}};
+
+static uint16_t leaning(uint16_t v[9])
 {
-    for (int x = 0; x < n; x++) {
+    int sures = 0, below, i = 8;
+
+    for (int k = 0; k < 25; k++) {
+        uint16_t *a = &v[exchange[k][0]], *b = &v[exchange[k][1]];
+        const uint16_t low = least(*a, *b), high = most(*a, *b);
+
+        *a = low;
+        *b = high;
+    }
+    for (int k = 0; k < 9; k++)
+        sures += v[k] & 1;
+    below = 45 + 15 * sures; /* the weights up to v[i], times 5 */
+    for (; i > 0; i--) {
+        below -= 5 + 15 * (v[i] & 1);
+        if (below <= 27 + 9 * sures)
+            break;
+    }
+    return (uint16_t)(v[i] & ~1);
+}
+
+#if defined(RF_VECTORS)
+enum { LEAN = 16 };
+
+/* The same of LEAN pixels. */
+static inline void lean_all(uint16_t *out, const uint16_t *own, uint16_t keys[9][LEAN])
+{
+    const vec_u16 one = vec_u16_set(1), even = vec_u16_set(65534),
+                  five = vec_u16_set(5);
+    const vec_u16 fifteen = vec_u16_set(15), nine = vec_u16_set(9);
+
+    for (int x = 0; x < LEAN; x += VEC_U16) {
+        const vec_u16 sure =
+            vec_u16_equal(vec_u16_and(vec_u16_load(keys[4] + x), one), one);
+        vec_u16 v[9], sures = vec_u16_set(0), part, below, result;
+
+        for (int i = 0; i < 9; i++) {
+            v[i] = vec_u16_load(keys[i] + x);
+            sures = vec_u16_add(sures, vec_u16_and(v[i], one));
+        }
+#pragma GCC unroll 25
+        for (int k = 0; k < 25; k++) {
+            const int a = exchange[k][0], b = exchange[k][1];
+            const vec_u16 low = vec_u16_min(v[a], v[b]);
+
+            v[b] = vec_u16_max(v[a], v[b]);
+            v[a] = low;
+        }
+        part = vec_u16_add(vec_u16_set(27), vec_u16_mul(sures, nine));
+        below = vec_u16_add(vec_u16_set(45), vec_u16_mul(sures, fifteen));
+        result = v[8];
+#pragma GCC unroll 8
+        for (int i = 8; i > 2; i--) { /* three never are more than 3/5 */
+            const vec_u16 more = vec_u16_mul(vec_u16_and(v[i], one), fifteen);
+
+            below = vec_u16_sub(below, vec_u16_add(more, five));
+            result = vec_u16_select(vec_u16_at_most(below, part), result, v[i - 1]);
+        }
+        vec_u16_store(out + x, vec_u16_select(sure, vec_u16_load(own + x),
+                                              vec_u16_and(result, even)));
+    }
+}
+#endif
+
+static void RF_VEC(rf_lean3)(uint16_t *restrict out, const uint16_t *const row[3],
+                             const uint8_t *const sure[3], int n)
+{
+    int x = 0;
+
+#if defined(RF_VECTORS)
+    for (; x + LEAN <= n; x += LEAN) {
+        uint16_t keys[9][LEAN];
+
+        for (int i = 0; i < 9; i++) {
+            const uint16_t *restrict d = row[i / 3] + x + i % 3 - 1;
+            const uint8_t *restrict s = sure[i / 3] + x + i % 3 - 1;
+
+            for (int k = 0; k < LEAN; k++)
+                keys[i][k] = key(d[k], s[k]);
+        }
+        lean_all(out + x, row[1] + x, keys);
+    }
+#endif
+    for (; x < n; x++) {
         uint16_t v[9];
 
-        for (int i = 0; i < 3; i++) {
-            v[i] = before[x + i - 1];
-            v[i + 3] = row[x + i - 1];
-            v[i + 6] = after[x + i - 1];
-        }
-        order(&v[0], &v[3]), order(&v[1], &v[7]), order(&v[2], &v[5]), order(&v[4], &v[8]);
-        order(&v[0], &v[7]), order(&v[2], &v[4]), order(&v[3], &v[8]), order(&v[5], &v[6]);
-        order(&v[0], &v[2]), order(&v[1], &v[3]), order(&v[4], &v[5]), order(&v[7], &v[8]);
-        order(&v[1], &v[4]), order(&v[3], &v[6]), order(&v[5], &v[7]);
-        order(&v[2], &v[4]), order(&v[3], &v[5]), order(&v[6], &v[8]);
-        order(&v[4], &v[5]), order(&v[6], &v[7]);
-        order(&v[5], &v[6]);
-        out[x] = sure[x] ? row[x] : v[5];
+        out[x] = row[1][x];
+        if (sure[1][x])
+            continue;
+        for (int i = 0; i < 9; i++)
+            v[i] = key(row[i / 3][x + i % 3 - 1], sure[i / 3][x + i % 3 - 1]);
+        out[x] = leaning(v);
     }
 }
 

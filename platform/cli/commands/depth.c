@@ -186,6 +186,20 @@ static double percent(uint64_t part, const struct refocus_depth_map *map)
     return 100.0 * (double)part / ((double)map->width * map->height);
 }
 
+/* What made the depth, as the lines of text say it. */
+static json_t *with_evidence(json_t *json, const struct refocus_photo_info *info)
+{
+    json_t *lines = info->evidence_count ? json_array() : NULL;
+
+    for (int i = 0; lines && i < info->evidence_count; i++)
+        json_array_append_new(lines, report_text_json(info->evidence[i]));
+    if (lines && json_object_set_new(json, "evidence", lines)) {
+        json_decref(json);
+        return NULL;
+    }
+    return json;
+}
+
 static int print_report(const struct settings *settings, const struct input *input)
 {
     const struct refocus_depth_map *map = &input->depth_from->depth;
@@ -197,7 +211,7 @@ static int print_report(const struct settings *settings, const struct input *inp
                                  report_text_json(settings->output), "width",
                                  input->width, "height", input->height, "depth",
                                  report_depth_json(input->depth_from, report));
-        return report_print_json(json);
+        return report_print_json(with_evidence(json, &input->made.info));
     }
     printf("size     %dx%d\n", input->width, input->height);
     if (report->near_m > 0)

@@ -88,6 +88,8 @@ static void stereo_refuses(void **state)
     }
     assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
     assert_non_null(strstr(reason.text, "match"));
+    assert_int_equal(refocus_cv_stereo(&a, &a, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
+    assert_non_null(strstr(reason.text, "one shift"));
     b.width--;
     assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_cv_stereo(&a, NULL, &params, d, NULL, NULL), REFOCUS_ERR_ARGUMENT);

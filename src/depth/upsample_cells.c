@@ -1,0 +1,361 @@
+#include <string.h>
+
+#include "depth/upsample.h"
+#include "planes/format.h"
+
+enum {
+    PAD = RF_UPSAMPLE_PAD,
+    BLOCK = RF_UPSAMPLE_BLOCK,
+    STEP = 65535 / 24, /* largest one within a surface */
+    RUN = 8,           /* most columns and rows of pixels that are looked at together */
+    SLICE = 128,       /* pixels whose colours are taken together */
+    KINDS = 8,         /* of spans that are remembered */
+};
+
+/* Where pixels of a span lie among the samples, for those that have been looked at
+ * last. */
+struct lies {
+    struct rf_lie lie[KINDS];
+    int alike[KINDS], x[KINDS];
+};
+
+/* The samples around cells side by side, column by column. */
+struct around {
+    uint16_t disparity[RF_AROUND * RF_TURNED];
+    uint8_t colour[3][RF_AROUND * RF_TURNED], trust[RF_AROUND * RF_TURNED];
+};
+
+/* What a worker needs for rows of pixels between the same samples. */
+struct patch {
+    const struct rf_upsampler *up;
+    int row;    /* the first of the taps */
+    int y0, y1; /* rows of pixels, at most RUN */
+    int bytes;  /* of a pixel */
+    int ready;  /* colours of the columns before are in `colour` */
+    int from;   /* the first of them */
+    uint8_t colour[3][RUN][SLICE + RUN];
+    struct rf_parts parts;
+    struct rf_cell cell;
+    struct lies lies;
+    struct around around;
+};
+
+/* The colours of n pixels from column x on, a row after the other. */
+static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *patch,
+                    int x, int n)
+{
+    const struct refocus_image *photo = patch->up->photo;
+    const int rows = patch->y1 - patch->y0;
+
+    if (x < patch->from || x + n > patch->ready) {
+        const int left = photo->width - x;
+
+        patch->from = x;
+        patch->ready = x + (left < SLICE ? left : SLICE);
+        for (int y = patch->y0; y < patch->y1; y++) {
+            const uint8_t *row =
+                photo->plane[0] + y * photo->stride[0] + (ptrdiff_t)x * patch->bytes;
+            uint8_t *const out[3] = {patch->colour[0][y - patch->y0],
+                                     patch->colour[1][y - patch->y0],
+                                     patch->colour[2][y - patch->y0]};
+
+            patch->up->kernels->quarter(out, row, patch->bytes, patch->ready - x);
+            for (int i = SLICE; i < 2 * SLICE && x + i < photo->width; i += 16)
+                __builtin_prefetch(row + i * patch->bytes);
+        }
+    }
+    for (int c = 0; c < 3; c++) { /* copies of 8 cost less than copies of n */
+        for (int j = 0; j < rows; j++)
+            memcpy(colour[c] + j * n, &patch->colour[c][j][x - patch->from], RUN);
+        memset(colour[c] + rows * n, colour[c][0], RF_BATCH_SPARE);
+    }
+}
+
+static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
+{
+    const struct rf_upsampler *up = patch->up;
+    const struct rf_span *span = &up->span[cell];
+    const int kind = span->alike % KINDS, off = x - span->begin;
+    struct rf_lie *lie = &patch->lies.lie[kind];
+
+    if (patch->lies.alike[kind] == span->alike && patch->lies.x[kind] == off)
+        return lie;
+    patch->lies.alike[kind] = span->alike;
+    patch->lies.x[kind] = off;
+    for (int y = patch->y0, at = 0; y < patch->y1; y++)
+        for (int i = 0; i < n; i++, at++) {
+            lie->all[at] = 0;
+            for (int t = 0; t < RF_TAP_COUNT; t++) {
+                const uint32_t near_by =
+                    (uint32_t)up->across[x + i].near_by[t / RF_TAPS] *
+                        up->down[y].near_by[t % RF_TAPS] >>
+                    16;
+
+                lie->near_by[t][at] = (uint16_t)near_by;
+                lie->all[at] = (uint16_t)(lie->all[at] + near_by);
+            }
+            lie->x[at] = up->across[x + i].middle;
+            lie->y[at] = up->down[y].middle;
+        }
+    return lie;
+}
+
+/* n elements of one or two bytes, at most 8 and often 4 or more. */
+static inline void put(void *to, const void *from, int n, int size)
+{
+    if (n >= 4) {
+        memcpy(to, from, 4 * (size_t)size);
+        memcpy((char *)to + (n - 4) * size, (const char *)from + (n - 4) * size,
+               4 * (size_t)size);
+    } else {
+        memcpy(to, from, (size_t)(n * size));
+    }
+}
+
+static int clamp(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+/* Elements of a row from x on, which beyond the border are those at the border. */
+static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
+                            int columns)
+{
+    if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
+        return row + x;
+    const int from = x < 0 ? -x : 0;
+    const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
+
+    if (from < to)
+        memcpy(spare + from, row + x + from, (size_t)(to - from));
+    for (int i = 0; i < from; i++)
+        spare[i] = row[0];
+    for (int i = to < from ? from : to; i < RF_TURNED; i++)
+        spare[i] = row[columns - 1];
+    return spare;
+}
+
+static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, int x,
+                              int columns)
+{
+    if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
+        return row + x;
+    const int from = x < 0 ? -x : 0;
+    const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
+
+    if (from < to)
+        memcpy(spare + from, row + x + from, (size_t)(to - from) * sizeof *row);
+    for (int i = 0; i < from; i++)
+        spare[i] = row[0];
+    for (int i = to < from ? from : to; i < RF_TURNED; i++)
+        spare[i] = row[columns - 1];
+    return spare;
+}
+
+static void turn(const struct patch *patch, uint8_t *out, const uint8_t *samples,
+                 ptrdiff_t stride, int x)
+{
+    const struct rf_upsampler *up = patch->up;
+    uint8_t spare[RF_AROUND][RF_TURNED];
+    const uint8_t *row[RF_AROUND];
+
+    for (int j = 0; j < RF_AROUND; j++)
+        row[j] =
+            take8(spare[j], samples + clamp(patch->row - 2 + j, up->rows - 1) * stride,
+                  x, up->columns);
+    up->kernels->turn8(out, row);
+}
+
+/* The samples around RF_CELLS cells from the first-th on. */
+static void look_around(struct patch *patch, int first)
+{
+    const struct rf_upsampler *up = patch->up;
+    const int x = first - PAD - 2;
+    uint16_t spare[RF_AROUND][RF_TURNED];
+    const uint16_t *row[RF_AROUND];
+
+    for (int j = 0; j < RF_AROUND; j++)
+        row[j] = take16(spare[j],
+                        up->coarse +
+                            clamp(patch->row - 2 + j, up->rows - 1) * up->coarse_stride,
+                        x, up->columns);
+    up->kernels->turn16(patch->around.disparity, row);
+    for (int c = 0; c < 3; c++)
+        turn(patch, patch->around.colour[c], up->colour[c], up->colour_stride, x);
+    if (up->confidence)
+        turn(patch, patch->around.trust, up->trust, up->trust_stride, x);
+}
+
+/* Pixels of the i-th cell of those that have been looked around. */
+static void fill_cell(struct patch *patch, int cell, int i)
+{
+    const struct rf_upsampler *up = patch->up;
+    const struct around *around = &patch->around;
+    const int x1 = up->span[cell + 1].begin, rows = patch->y1 - patch->y0;
+    const int at = RF_AROUND * i;
+    const struct rf_window window = {
+        .disparity = around->disparity + at,
+        .colour = {around->colour[0] + at, around->colour[1] + at,
+                   around->colour[2] + at},
+        .trust = up->confidence ? around->trust + at : NULL};
+    bool found = false;
+
+    for (int x = up->span[cell].begin; x < x1; x += RUN) {
+        const int n = x1 - x < RUN ? x1 - x : RUN;
+        uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], sure[RF_BATCH];
+        uint16_t result[RF_BATCH];
+
+        /* Long before it is read as vectors: that would stall. */
+        collect(colour, patch, x, n);
+        if (!found)
+            up->kernels->find_surfaces(&patch->cell, &window, &patch->parts, i);
+        found = true;
+        up->kernels->surface(result, sure, &patch->cell, &window,
+                             lie_of(patch, cell, x, n), colour, rows * n);
+        for (int j = 0; j < rows; j++) {
+            put(up->out + (patch->y0 + j) * up->out_stride + x, result + j * n, n, 2);
+            put(up->sure + (patch->y0 + j) * up->sure_stride + x, sure + j * n, n, 1);
+        }
+    }
+}
+
+/* Taps in the corners are in the means, but nothing beyond the others is to come of
+ * that. */
+static void clamp_cell(const struct patch *patch, int cell,
+                       const uint16_t *const row[RF_TAPS], int at)
+{
+    const struct rf_upsampler *up = patch->up;
+    uint16_t low = row[1][at], high = low;
+
+    for (int j = 0; j < RF_TAPS; j++) {
+        const bool outer = j == 0 || j == RF_TAPS - 1;
+
+        for (int i = outer; i < RF_TAPS - outer; i++) {
+            const uint16_t d = row[j][at + i];
+
+            low = d < low ? d : low;
+            high = d > high ? d : high;
+        }
+    }
+    for (int y = patch->y0; y < patch->y1; y++) {
+        uint16_t *out = up->out + y * up->out_stride;
+
+        for (int x = up->span[cell].begin; x < up->span[cell + 1].begin; x++)
+            out[x] = out[x] < low ? low : out[x] > high ? high : out[x];
+    }
+}
+
+/* The rough cells among the n from the first-th on. */
+static void fill_cells(struct patch *patch, int first, int n)
+{
+    const struct rf_upsampler *up = patch->up;
+    const uint16_t *row[RF_TAPS];
+    const uint8_t *trust[RF_TAPS] = {NULL};
+    uint8_t rough[RF_CELLS];
+
+    for (int j = 0; j < RF_TAPS; j++) {
+        row[j] = up->coarse + (patch->row + j) * up->coarse_stride + first - PAD;
+        if (up->confidence)
+            trust[j] = up->trust + (patch->row + j) * up->trust_stride + first - PAD;
+    }
+    const unsigned any = up->kernels->rough(rough, row, trust, STEP, n);
+
+    if (any & RF_ROUGH_CORNER)
+        for (int i = 0; i < n; i++)
+            if (rough[i] == RF_ROUGH_CORNER)
+                clamp_cell(patch, first + i, row, i);
+    if (!(any & RF_ROUGH))
+        return;
+    up->kernels->part(&patch->parts, row, n);
+    look_around(patch, first);
+    for (int i = 0; i < n; i++)
+        if (rough[i] == RF_ROUGH &&
+            up->span[first + i].begin < up->span[first + i + 1].begin)
+            fill_cell(patch, first + i, i);
+}
+
+/* Which blocks of a row have pixels that are not sure. */
+static void list_unsure(const struct rf_upsampler *up, int y)
+{
+    const int width = up->photo->width, blocks = rf_upsample_blocks(width);
+    const uint8_t *sure = up->sure + y * up->sure_stride;
+    uint16_t *unsure = up->unsure + y * up->unsure_stride;
+    int n = 0;
+
+    for (int i = 0; i < blocks; i++, sure += BLOCK) {
+        uint64_t half[2];
+
+        if (i == blocks - 1 && width % BLOCK) {
+            memset(half, 255, sizeof half);
+            memcpy(half, sure, (size_t)(width % BLOCK));
+        } else {
+            memcpy(half, sure, sizeof half);
+        }
+        unsure[n + 1] = (uint16_t)i; /* what is not counted is overwritten */
+        n += (half[0] & half[1]) != UINT64_MAX;
+    }
+    unsure[0] = (uint16_t)n;
+}
+
+void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1)
+{
+    const int width = up->photo->width, cells = up->columns + 1;
+    const uint16_t *wide[RF_TAPS];
+    struct patch patch;
+
+    patch.up = up;
+    patch.row = first;
+    patch.bytes = refocus_format_bytes(up->photo->format);
+    for (int i = 0; i < RF_TAPS; i++)
+        wide[i] = up->wide + clamp(first + i, up->rows - 1) * up->wide_stride;
+    for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
+        uint16_t share[RF_TAPS];
+
+        for (int i = 0; i < RF_TAPS; i++)
+            share[i] = (uint16_t)(2 * up->down[y].share[i]);
+        up->kernels->blend4(up->out + y * up->out_stride, wide, share, width);
+        memset(up->sure + y * up->sure_stride, 255, (size_t)width);
+    }
+    for (patch.y0 = y0; patch.y0 < y1; patch.y0 = patch.y1) {
+        patch.y1 = patch.y0 + RUN < y1 ? patch.y0 + RUN : y1;
+        patch.from = patch.ready = 0;
+        for (int i = 0; i < KINDS; i++)
+            patch.lies.alike[i] = -1;
+        for (int i = 0; i < cells && !rf_run_cancelled(up->run); i += RF_CELLS)
+            fill_cells(&patch, i, cells - i < RF_CELLS ? cells - i : RF_CELLS);
+    }
+    for (int y = y0; y < y1; y++)
+        list_unsure(up, y);
+}
+
+static bool lie_alike(const struct rf_upsampler *up, int a, int b)
+{
+    const int from = up->span[a].begin, n = up->span[a + 1].begin - from;
+
+    if (up->span[b + 1].begin - up->span[b].begin != n)
+        return false;
+    for (int i = 0; i < n; i++)
+        if (up->across[from + i].middle != up->across[up->span[b].begin + i].middle)
+            return false;
+    return true;
+}
+
+void rf_find_spans(struct rf_upsampler *up)
+{
+    int x = 0;
+
+    for (int i = 0; i < up->columns + 2; i++) {
+        while (x < up->photo->width && up->across[x].first < i - PAD)
+            x++;
+        up->span[i].begin = x;
+    }
+    for (int i = 0; i <= up->columns; i++) {
+        up->span[i].alike = i;
+        for (int k = i - 1; k >= 0 && k >= i - KINDS; k--) {
+            if (lie_alike(up, k, i)) {
+                up->span[i].alike = up->span[k].alike;
+                break;
+            }
+        }
+    }
+}
