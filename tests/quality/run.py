@@ -79,7 +79,7 @@ THIN = [
     ("met", "highlight=4,sigma=400", "thin things are met by 64 rays"),
     ("drawn", "highlight=4,sigma=400,thin=1", "far before the focus they are drawn: standard"),
     ("met-32", "highlight=4,rays=32", "32 rays"),
-    ("drawn-32", "highlight=4,rays=32,thin=1", "32 rays, drawn: preview"),
+    ("drawn-32", "highlight=4,rays=32,thin=1", "32 rays, drawn"),
     ("met-128", "highlight=8,sigma=400,rays=128", "128 rays"),
     ("drawn-128", "highlight=8,sigma=400,rays=128,thin=1", "128 rays, drawn: best"),
     ("met-512", "highlight=4,sigma=400,rays=512", "512 rays"),

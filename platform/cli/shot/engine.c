@@ -9,10 +9,11 @@ static const struct {
     const char *name, *summary;
     int rays;
     float highlight_gain, sigma;
+    bool thin;
 } qualities[] = {
-    {"preview", "32 rays, plain averages", 32, 4, 1e30f},
-    {"standard", "64 rays, bright samples count more (--sigma 400)", 64, 4, 400},
-    {"best", "128 rays and more light for lamps (--highlights 8)", 128, 8, 400}};
+    {"preview", "32 rays, plain averages, thin things met by rays", 32, 4, 1e30f, false},
+    {"standard", "64 rays, bright samples count more (--sigma 400)", 64, 4, 400, true},
+    {"best", "128 rays and more light for lamps (--highlights 8)", 128, 8, 400, true}};
 
 static const struct {
     const char *name, *summary;
@@ -79,7 +80,7 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     params->highlight_gain = isnan(settings->highlights)
                                  ? qualities[settings->quality].highlight_gain
                                  : (float)settings->highlights;
-    params->thin = !settings->no_thin;
+    params->thin = qualities[settings->quality].thin && !settings->no_thin;
     params->mirror = settings->mirror;
     params->background = settings->background;
     engine->methods = REFOCUS_METHOD_BIT(params->method);
