@@ -388,13 +388,14 @@ struct refocus_render_params {
 
     uint32_t thin;          /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels wide that
                                  are blurred so much before the focus that rays lie 2.25 pixels
-                                 apart (10.2 pixels at 64 rays), and by 8 pixels at the least,
+                                 apart (10.2 pixels at 64 rays, and for every ray), and by 8
+                                 pixels at the least,
                                  with nothing thick as near around them, are drawn as the veil
                                  that they become, and so are their shares of the pixels at their
                                  edges.
                                  Rays, which meet them here and miss them there, would show
                                  streaks. Not with openings of fine structure (masks, figures,
-                                 rings), cat's eyes, fringes, every ray, photos of Y, U and V. 0 = no, the
+                                 rings), cat's eyes, fringes, photos of Y, U and V. 0 = no, the
                                  default */
 };
 

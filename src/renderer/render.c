@@ -146,14 +146,16 @@ static void set_prefilter(struct rf_frame *f)
     }
 }
 
-/* Thin things are met well where rays lie closer than 2.25 pixels. */
+/* Thin things are met well where rays lie closer than 2.25 pixels. A full mask draws what 64 rays
+ * draw, as it is there to tell what so few rays change. */
 static int veil_blur(const struct refocus_render_params *p)
 {
-    const double blur = 256 * 2.25 * sqrt(p->rays / 3.14159265358979);
+    const int rays = p->rays == REFOCUS_RAYS_FULL ? 64 : p->rays;
+    const double blur = 256 * 2.25 * sqrt(rays / 3.14159265358979);
 
-    return p->rays == REFOCUS_RAYS_FULL || blur > INT16_MAX ? INT16_MAX
-           : blur < RF_VEIL_BLUR                            ? RF_VEIL_BLUR
-                                                            : (int)blur;
+    return blur > INT16_MAX      ? INT16_MAX
+           : blur < RF_VEIL_BLUR ? RF_VEIL_BLUR
+                                 : (int)blur;
 }
 
 /* Discs of veils are as large as the opening's rays lie on the average: 1/2 for the mean square of a
