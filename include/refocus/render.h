@@ -93,10 +93,10 @@ struct refocus_renderer_params {
                                   which are of its size, are not copied: they stay as they are and
                                   where they are until the next refocus_prepare() or the
                                   renderer's end. Rendering goes through them twice, block by
-                                  block, and takes longer; the bytes are the same, but that tilts and
-                                  fields whose K is more than half of max_blur_radius may change
-                                  single pixels by a code. For sweep, search, raytrace, jittered
-                                  and blur; not with `previews` */
+                                  block, and takes longer; the bytes are the same, but that
+                                  tilts and fields whose K is more than half of max_blur_radius
+                                  may change single pixels by a code. For sweep, search,
+                                  raytrace, jittered and blur; not with `previews` */
     uint32_t thin;           /**< 1: with memory for `thin` of struct refocus_render_params, which
                                   other renderers, and strip mode, take as 0 */
 };
@@ -386,17 +386,17 @@ struct refocus_render_params {
                                  those of the photo: the result is that of the reduced photo
                                  with K / reduce */
 
-    uint32_t thin;          /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels wide that
-                                 are blurred so much before the focus that rays lie 2.25 pixels
-                                 apart (10.2 pixels at 64 rays, and for every ray), and by 8
-                                 pixels at the least,
-                                 with nothing thick as near around them, are drawn as the veil
-                                 that they become, and so are their shares of the pixels at their
-                                 edges.
-                                 Rays, which meet them here and miss them there, would show
-                                 streaks. Not with openings of fine structure (masks, figures,
-                                 rings), cat's eyes, fringes, photos of Y, U and V. 0 = no, the
-                                 default */
+    uint32_t thin;          /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels
+                                 wide are drawn as the veil that they become, and so are their
+                                 shares of the pixels at their edges, where they are blurred so
+                                 much before the focus that rays lie 2.25 pixels apart (10.2
+                                 pixels at 64 rays; the same of a full mask), 8 pixels at the
+                                 least, with nothing thick as near around them. Rays, which meet
+                                 them here and miss them there, would show streaks. They are
+                                 looked for in the first render of a photo that may need them,
+                                 which takes some frames' time. Not with openings of fine
+                                 structure (masks, figures, rings), cat's eyes, fringes, photos
+                                 of Y, U and V. 0 = no, the default */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole

@@ -135,7 +135,8 @@ static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_VEIL_CELLS][4]
         const int at = 2 * x + 5, i = at >> 3, part = at & 7; /* eighths of a cell */
 
         for (int c = 0; c < 4; c++)
-            out[c][x] = (cell[i][c] * (8 - part) + cell[i + 1][c] * part) >> (RF_VEIL_SHIFT + 3 - 8);
+            out[c][x] = (cell[i][c] * (8 - part) + cell[i + 1][c] * part) >>
+                        (RF_VEIL_SHIFT + 3 - 8);
     }
 }
 

@@ -60,7 +60,8 @@ static inline uint16_t white_at_most(uint16_t mean)
 }
 
 /* L' of each sample; means are at most RF_MEAN_MAX, so two of them fit 16 bits. */
-static ALWAYS_INLINE void mean_light(int32_t *restrict light, const uint16_t *restrict luma, int down)
+static ALWAYS_INLINE void mean_light(int32_t *restrict light,
+                                     const uint16_t *restrict luma, int down)
 {
     for (int y = 0; y < RF_TILE; y += 1 << down) {
         const uint16_t *a = luma + y * RF_TILE, *b = a + down * RF_TILE;

@@ -44,7 +44,8 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
 
     if (!work)
         work = counted;
-#define PLANE(to) ((to) = (plane = rf_arena_take(arena, size, sizeof(float))) ? plane + origin : NULL)
+#define PLANE(to)                                                                      \
+    ((to) = (plane = rf_arena_take(arena, size, sizeof(float))) ? plane + origin : NULL)
     for (int c = 0; c < CHANNELS; c++) {
         PLANE(work->plane[c]);
         PLANE(work->below[c]);

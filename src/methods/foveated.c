@@ -1,15 +1,17 @@
 /* foveated.c: exact where one looks, fast elsewhere, Mulder & van Liere 2000.
  *
- * The centre of attention volume is a cone about the line of sight, cut at two depths. In it
- * the "high resolution" technique works: circles of confusion of diameter 1, 3, 5, ... are
- * spread as uniform discs, all samples whose circle holds a pixel, front to back: the borders of the
- * discs before the focus from the outermost in, the middle, then those behind it from the
- * innermost out. Alpha saturates, so nothing gets too bright, and what is missing at the end
- * is taken from the picture (hypo-intensity correction).
+ * The centre of attention volume is a cone about the line of sight, cut at two depths.
+ * In it the "high resolution" technique works: circles of confusion of diameter 1, 3,
+ * 5, ... are spread as uniform discs, all samples whose circle holds a pixel, front to
+ * back: the borders of the discs before the focus from the outermost in, the middle,
+ * then those behind it from the innermost out. Alpha saturates, so nothing gets too
+ * bright, and what is missing at the end is taken from the picture (hypo-intensity
+ * correction).
  *
- * Outside, two Gaussian pyramids (5 x 5, halved each time) hold what is before and what is
- * behind the focus. A pixel reads its own one where the blur is as large as its circle of
- * confusion, between two levels; what that level does not cover comes from the picture.
+ * Outside, two Gaussian pyramids (5 x 5, halved each time) hold what is before and what
+ * is behind the focus. A pixel reads its own one where the blur is as large as its
+ * circle of confusion, between two levels; what that level does not cover comes from
+ * the picture.
  *
  * Across the side of the volume the one fades into the other.
  */

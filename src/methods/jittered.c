@@ -64,8 +64,9 @@ static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell,
 }
 
 /* Follow the ray through mask pixel (mx, my) for the pixels that drew it. */
-static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_blur_range reach, int mx,
-                   int my, const struct draws *draws, int member, struct rf_exact_sums *sums)
+static void follow(const struct rf_frame *f, struct rf_rect rect,
+                   struct rf_blur_range reach, int mx, int my,
+                   const struct draws *draws, int member, struct rf_exact_sums *sums)
 {
     const double K = f->params->max_blur_radius;
     const int open = rf_aperture_open(f->aperture, mx / K, my / K);

@@ -44,8 +44,9 @@ struct rf_frame {
 };
 
 /*
- * Sums over the rays of the pixels of a tile. Exact: Q12 light, four times white at the most, times Q15 weight
- * (or 1) times a ray weight, 65,025 rays at the most, stays below 2^14 2^15 2^8 2^16 = 2^53.
+ * Sums over the rays of the pixels of a tile. Exact: Q12 light, four times white at the
+ * most, times Q15 weight (or 1) times a ray weight, 65,025 rays at the most, stays
+ * below 2^14 2^15 2^8 2^16 = 2^53.
  */
 struct rf_sums {
     uint64_t light[3][RF_TILE * RF_TILE];
@@ -115,6 +116,7 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
 /* rect: at most RF_TILE x RF_TILE, inside one tile. */
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                         int worker);
-rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile, rf_gather_tile;
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile,
+    rf_jittered_tile, rf_gather_tile;
 
 #endif

@@ -26,13 +26,14 @@ void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan 
                          int y1);
 
 /*
- * Step 0, 1 or 2 of the pre-filter for a row of tiles, whose bins are known: where |s| is above
- * above[step] (Q7.8), the mean of three rows, then of three columns, 2^step pixels apart, of those
- * pixels that are within an eighth of its blur (one pixel to two) of the middle one; the light as it is elsewhere.
- * Borders are extended. Step 2 writes what step 1 read, and leaves out what did not change.
+ * Step 0, 1 or 2 of the pre-filter for a row of tiles, whose bins are known: where |s|
+ * is above above[step] (Q7.8), the mean of three rows, then of three columns, 2^step
+ * pixels apart, of those pixels that are within an eighth of its blur (one pixel to
+ * two) of the middle one; the light as it is elsewhere. Borders are extended. Step 2
+ * writes what step 1 read, and leaves out what did not change.
  *
- * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from
- * 1.5 pixels on; the next close those twice and four times as wide.
+ * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps
+ * from 1.5 pixels on; the next close those twice and four times as wide.
  */
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
                        uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], int step,

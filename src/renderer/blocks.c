@@ -307,8 +307,7 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
             make_behind(f);
         if (need == RF_NEED_LAYERS && !rf_cancelled(r))
             rf_pass_bright(f);
-        if (need == RF_NEED_LAYERS && f->weighted && !rf_cancelled(r) &&
-            f->params->method == REFOCUS_METHOD_SWEEP)
+        if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(r))
             rf_pass_weights(f);
         image =
             image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,

@@ -16,11 +16,14 @@ static bool has_round_aperture(const struct refocus_render_params *p)
 
 static bool good_rays(const struct refocus_renderer *r, const struct refocus_render_params *p)
 {
-    return in(p->focus_disparity, 0, 1) && in(p->max_blur_radius, 0, r->max_blur_radius) &&
-           (p->rays == REFOCUS_RAYS_FULL || (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
+    return in(p->focus_disparity, 0, 1) &&
+           in(p->max_blur_radius, 0, r->max_blur_radius) &&
+           (p->rays == REFOCUS_RAYS_FULL ||
+            (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
            p->blend < RF_BLEND_COUNT && p->sigma >= 1 && p->iterations >= 1 &&
-           p->iterations <= 64 && in(p->highlight_gain, 1, RF_MOST_GAIN) && p->mirror <= 1 && p->background <= 1 && p->thin <= 1 &&
-           p->prefilter <= 1 && p->reserved == 0 && p->cell >= 1 && p->cell <= 16;
+           p->iterations <= 64 && in(p->highlight_gain, 1, RF_MOST_GAIN) &&
+           p->mirror <= 1 && p->background <= 1 && p->thin <= 1 && p->prefilter <= 1 &&
+           p->reserved == 0 && p->cell >= 1 && p->cell <= 16;
 }
 
 static bool good_scatter(const struct refocus_render_params *p)

@@ -29,10 +29,16 @@ enum rf_need {
 void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
                    enum rf_need need, bool whole);
 
+static inline bool rf_is_sweep(const struct rf_frame *f)
+{
+    return f->params->method == REFOCUS_METHOD_SWEEP;
+}
+
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
 void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
 void rf_pass_smooth(struct rf_frame *f);
+void rf_pass_prefilter(struct rf_frame *f); /* of rf_pass_smooth() the smooth light alone */
 void rf_pass_mark(struct rf_frame *f);
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
 void rf_pass_bright(struct rf_frame *f); /* light of lamps beyond 4 times white, at the end */

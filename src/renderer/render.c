@@ -158,16 +158,18 @@ static int veil_blur(const struct refocus_render_params *p)
                                  : (int)blur;
 }
 
-/* Discs of veils are as large as the opening's rays lie on the average: 1/2 for the mean square of a
- * disc's. Openings with fine structure have none, nor those that differ from place to place. */
+/* Discs of veils are as large as the opening's rays lie on the average: 1/2 for the
+ * mean square of a disc's. Openings with fine structure have none, nor those that
+ * differ from place to place. */
 static int veil_scale(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
     int64_t sum = 0;
 
-    if (!p->thin || !f->r->has_thin || p->method != REFOCUS_METHOD_SWEEP || f->r->yuv.on ||
-        (f->plan.plain && f->veil_from > 65535) || p->cat_eye > 0 || p->fringe != 0 || rf_aperture_is_fine(f->aperture))
+    if (!p->thin || !f->r->has_thin || p->method != REFOCUS_METHOD_SWEEP ||
+        f->r->yuv.on || (f->plan.plain && f->veil_from > 65535) || p->cat_eye > 0 ||
+        p->fringe != 0 || rf_aperture_is_fine(f->aperture))
         return 0;
     for (int n = 0; n < set->count; n++)
         sum += set->ray[n].u * set->ray[n].u + set->ray[n].v * set->ray[n].v;

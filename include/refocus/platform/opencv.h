@@ -69,8 +69,8 @@ struct refocus_stereo_report {
  * @param left, right  RGB8, of the same size, at least 64 x 32
  * @param disparity    receives width x height floats, larger = nearer
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (the pictures do not
- *         match, or their disparities differ by less than a pixel), REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the
- *         reason). On an error @p disparity holds nothing of use. Thread-safe.
+ *         match, or their disparities differ by less than a pixel), REFOCUS_ERR_MEMORY,
+ *         REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the reason). On an error @p disparity holds nothing of use. Thread-safe.
  */
 REFOCUS_API int refocus_cv_stereo(const struct refocus_image *left,
                                   const struct refocus_image *right,

@@ -1,0 +1,377 @@
+/* made.c: which passes a frame still needs, and what of the last one serves it as it is. */
+#include "renderer/passes.h"
+
+#include <limits.h>
+#include <string.h>
+
+#include "background/background.h"
+#include "planes/yuv.h"
+#include "renderer/bands.h"
+#include "renderer/reduce.h"
+#include "renderer/render_yuv.h"
+#include "thin/thin.h"
+
+static void reblend_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    uint8_t *blend = &r->photo[r->used].band_blend[band];
+
+    if (*blend == f->params->blend)
+        return;
+    if (r->yuv.on)
+        rf_yuv_reblend_rows(r, (uint8_t *)rf_scratch(r, worker), rf_band_start(band),
+                            rf_band_end(r, band));
+    else
+        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
+                        rf_band_end(r, band));
+    *blend = (uint8_t)f->params->blend;
+}
+
+static bool contains(struct rf_rect a, struct rf_rect b)
+{
+    return a.x0 <= b.x0 && a.y0 <= b.y0 && a.x1 >= b.x1 && a.y1 >= b.y1;
+}
+
+bool rf_same_lens(const struct rf_frame *f, int number)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return m->blur && m->photo == number && !memcmp(&m->plan, &f->plan, sizeof m->plan) &&
+           m->shift == f->scale.shift;
+}
+
+bool rf_same_light(const struct rf_frame *f)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return m->smooth && m->blend == f->params->blend &&
+           m->gain == f->params->highlight_gain &&
+           (!m->lamps || m->rays == f->params->rays) &&
+           !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
+}
+
+void rf_note_light(struct rf_frame *f)
+{
+    struct rf_made *m = &f->r->made;
+
+    m->blend = f->params->blend;
+    m->gain = f->params->highlight_gain;
+    m->lamps = m->gain > 1;
+    m->bright = f->bright;
+    m->rays = f->params->rays;
+    memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
+}
+
+/* What a region needs of the photo. */
+struct parts {
+    struct rf_rect seen; /* where its rays go: the background layer */
+    struct rf_rect bins; /* and the tiles that may reach it */
+};
+
+/* What r->made.thin is for this frame: 0, or the size of discs and the blend. */
+static uint32_t made_thin(const struct rf_frame *f)
+{
+    return f->veils ? (uint32_t)f->veils << 8 | (1 + f->r->blend) : 0;
+}
+
+static bool has_same_thin(const struct rf_frame *f)
+{
+    const struct rf_made *m = &f->r->made;
+
+    return m->thin == made_thin(f) && (!f->veils || m->veil_blur == f->veil_blur);
+}
+
+/* Whether all of that is there. */
+static bool is_there(const struct rf_frame *f, int number, const struct parts *parts,
+                     bool layers)
+{
+    const struct rf_made *m = &f->r->made;
+
+    if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
+        return false;
+    return rf_same_lens(f, number) && contains(m->window, parts->bins) &&
+           has_same_thin(f) &&
+           (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
+                         (!m->weighed || rf_is_sweep(f))
+                   : !m->rims);
+}
+
+/* Blur, bins and rims of the window. */
+static void make_blur(struct rf_frame *f, bool layers)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_made *m = &r->made;
+    const struct rf_rect window = {r->origin_x, r->origin_y, r->origin_x + r->width,
+                                   r->origin_y + r->height};
+
+    if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
+        !contains(window, m->window) || !has_same_thin(f) || (m->rims && !layers) ||
+        (layers && !rf_same_light(f) && (m->lamps || f->params->highlight_gain > 1))) {
+        *m = (struct rf_made){.half = m->half && r->used,
+                              .photo = r->used,
+                              .window = window,
+                              .plan = f->plan,
+                              .shift = f->scale.shift,
+                              .thin = made_thin(f),
+                              .veil_blur = f->veil_blur};
+        rf_pass_blur(f, layers);
+        if (f->veils && !rf_cancelled(r))
+            rf_take_thin_apart(f);
+        m->blur = !rf_cancelled(r);
+    }
+    if (m->blur && layers && !m->rims) {
+        m->blur = false; /* until all rims are in */
+        rf_patch_rims(r, &f->plan, f->scale);
+        m->blur = m->rims = !rf_cancelled(r);
+    }
+}
+
+/* Lamps change the blur: they are marked in one that is new, make_blur(). */
+static void make_smooth(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_made *m = &r->made;
+
+    if (rf_same_light(f)) {
+        f->bright = m->bright;
+        return;
+    }
+    m->smooth = m->behind = false;
+    if (r->used == 0)
+        m->half = false; /* it lies where the background layer does */
+    m->lamps = f->params->highlight_gain > 1;
+    if (m->ranges) {
+        f->bright = RF_WHITE;
+        rf_pass_prefilter(f);
+    } else {
+        rf_pass_smooth(f);
+        m->ranges = !rf_cancelled(r);
+        m->blur = m->ranges; /* else its cells may be gone */
+    }
+    rf_note_light(f);
+    m->smooth = !rf_cancelled(r);
+}
+
+/* `part` of the photo in the window. */
+static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
+{
+    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y,
+                            part.x1 - r->origin_x, part.y1 - r->origin_y};
+}
+
+/* How far beyond a tile something thick decides what becomes of what is thin in it. */
+static int thin_margin(const struct rf_frame *f)
+{
+    return f->veils ? f->r->pad + 2 * RF_TILE : 0;
+}
+
+/* How far from the window's sides the mark and the smooth light are those of the whole
+ * photo: a cone's reach and the three steps of the pre-filter; at the photo's own
+ * sides, all. */
+static struct rf_rect sure_part(const struct rf_frame *f)
+{
+    const struct refocus_renderer *r = f->r;
+    const struct rf_photo *photo = &r->photo[r->used];
+    const int margin = 2 * r->pad + 8 + thin_margin(f);
+
+    return (struct rf_rect){
+        r->origin_x ? margin : 0,
+        r->origin_y ? margin : 0,
+        r->origin_x + r->width < photo->width ? r->width - margin : INT_MAX,
+        r->origin_y + r->height < photo->height ? r->height - margin : INT_MAX,
+    };
+}
+
+/* The background layer of the window; true: `seen` is as if made for the whole photo.
+ */
+static bool make_behind(struct rf_frame *f, struct rf_rect seen)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_made *m = &r->made;
+
+    if (m->behind && contains(m->exact, seen) && (!m->weighed || rf_is_sweep(f)))
+        return true;
+    m->behind = false;
+    if (r->used == 0)
+        m->half = false;
+    rf_pass_mark(f);
+    if (!r->yuv.on)
+        rf_background_push(r, 0, r->levels);
+    if (rf_cancelled(r))
+        return false;
+    if (!contains(m->window, rf_whole(r, r->used)) &&
+        !rf_background_is_exact(r, in_window(r, seen), sure_part(f)))
+        return false;
+    m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
+    rf_pass_behind(f, r->levels);
+    m->behind = !rf_cancelled(r);
+    m->weighed = false;
+    return m->behind;
+}
+
+static int floor_to(int v, int step)
+{
+    return v < 0 ? 0 : v / step * step;
+}
+
+static int ceil_to(int v, int step, int most)
+{
+    return v > most - step ? most : (v + step - 1) / step * step;
+}
+
+/* A part of the photo, grown by so many pixels each way and on to whole `step`s. */
+static struct rf_rect grown(const struct refocus_renderer *r, int number,
+                            struct rf_rect part, int by, int step)
+{
+    const struct rf_photo *photo = &r->photo[number];
+
+    return (struct rf_rect){floor_to(part.x0 - by, step), floor_to(part.y0 - by, step),
+                            ceil_to(part.x1 + by, step, photo->width),
+                            ceil_to(part.y1 + by, step, photo->height)};
+}
+
+/* Large windows save nothing. */
+static bool is_large(const struct refocus_renderer *r, int number,
+                     struct rf_rect window)
+{
+    const struct rf_rect all = rf_whole(r, number);
+    const int64_t part = (int64_t)(window.x1 - window.x0) * (window.y1 - window.y0);
+
+    return 10 * part > 7 * (int64_t)all.x1 * all.y1;
+}
+
+static struct rf_rect around_both(struct rf_rect a, struct rf_rect b)
+{
+    return (struct rf_rect){a.x0 < b.x0 ? a.x0 : b.x0, a.y0 < b.y0 ? a.y0 : b.y0,
+                            a.x1 > b.x1 ? a.x1 : b.x1, a.y1 > b.y1 ? a.y1 : b.y1};
+}
+
+static void make_in_window(struct rf_frame *f, int number, const struct parts *parts,
+                           bool layers)
+{
+    struct refocus_renderer *r = f->r;
+    const struct rf_rect all = rf_whole(r, number);
+    struct rf_rect window = parts->bins;
+    int around = 2 * r->pad, step = RF_TILE;
+
+    if (rf_same_lens(f, number) && contains(r->made.window, all))
+        window = all; /* much of it is there */
+    for (;;) {
+        if (layers && !contains(window, all)) {
+            while (step < around / 2)
+                step *= 2;
+            window = grown(r, number, parts->seen,
+                           2 * r->pad + 8 + thin_margin(f) + around, step);
+            window = around_both(window, grown(r, number, parts->bins, 0, step));
+        }
+        if (is_large(r, number, window))
+            window = all;
+        rf_use(r, number, window);
+        make_blur(f, layers);
+        if (!layers || rf_cancelled(r))
+            return;
+        make_smooth(f);
+        if (rf_cancelled(r) || make_behind(f, parts->seen) || rf_cancelled(r))
+            return;
+        around *= 2;
+    }
+}
+
+/* The sweep takes the background's blur from the bins. */
+static void make_weights(struct rf_frame *f)
+{
+    struct rf_made *m = &f->r->made;
+
+    if (rf_cancelled(f->r) || (m->weighed && m->sigma == f->params->sigma &&
+                               m->premultiplied == f->premultiplied))
+        return;
+    m->weighed = true;
+    m->premultiplied = f->premultiplied;
+    m->sigma = -1; /* until they are all there */
+    rf_pass_weights(f);
+    if (!rf_cancelled(f->r))
+        m->sigma = f->params->sigma;
+}
+
+static void find_part(void *context, int part, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+    const int y0 = part * RF_LAMP_ROWS, y1 = y0 + RF_LAMP_ROWS;
+
+    rf_find_highlights(
+        r, (struct rf_rect){0, y0, r->width, y1 < r->height ? y1 : r->height},
+        rf_scratch(r, worker));
+}
+
+/* The window is all of the photo. */
+static void find_highlights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_photo *photo = &r->photo[r->used];
+
+    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
+        return;
+    photo->highlights_blend = RF_NO_BLEND;
+    rf_forget_highlights(r);
+    rf_pool_run(&r->pool, find_part, f, rf_lamp_parts(r->height));
+    photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
+}
+
+/* The same; nothing of it is in planes of other frames, which are lost. */
+static void find_thin(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+
+    if (!f->veils || r->photo[r->used].thin.blend == r->blend)
+        return;
+    r->made = (struct rf_made){.half = r->made.half};
+    rf_find_thin(r);
+}
+
+void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
+                   enum rf_need need, bool whole)
+{
+    struct refocus_renderer *r = f->r;
+    const bool layers = need == RF_NEED_LAYERS;
+    struct parts parts = {rf_whole(r, number), rf_whole(r, number)};
+
+    if (number == 1 && !r->made.half)
+        rf_reduce_once(r);
+    rf_use(r, number, rf_whole(r, number));
+    f->region = region;
+    if (r->yuv.on)
+        rf_yuv_set_blend(r, f->params->blend);
+    rf_pool_run(&r->pool, reblend_band, f, rf_bands(r));
+    if (rf_cancelled(r))
+        return;
+    r->blend = f->params->blend;
+    rf_set_weights(f);
+    if (layers)
+        find_highlights(f);
+    if (!rf_cancelled(r))
+        find_thin(f);
+    if (need == RF_NEED_LIGHT || rf_cancelled(r))
+        return;
+    if (!whole) {
+        parts.seen = grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad, 1);
+        parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
+    }
+    if (is_there(f, number, &parts, layers)) {
+        rf_use(r, number, r->made.window);
+        f->bright = layers ? r->made.bright : RF_WHITE;
+    } else {
+        /* the background takes smooth light without it */
+        if (r->made.spread || r->made.premultiplied)
+            r->made = (struct rf_made){.half = r->made.half};
+        make_in_window(f, number, &parts, layers);
+    }
+    if (layers && !rf_cancelled(r) && !r->made.spread && f->bright > RF_BRIGHT) {
+        rf_pass_bright(f);
+        r->made.spread = true;
+    }
+    if (layers && f->weighted && rf_is_sweep(f))
+        make_weights(f);
+    f->region = in_window(r, region);
+}
