@@ -255,6 +255,11 @@ typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t 
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
 
+/* soften: rows of RF_TILE means, each the average of itself and that of its neighbours, both half
+ * up: those to the left and right, but at the ends, and then, if `down` is set, those above and
+ * below, but in the first and the last row. */
+typedef void rf_soften_fn(uint16_t *mean, int rows, bool down);
+
 /*
  * lay_veil: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn
  * in cells of 4 x 4 pixels (thin/veil.h): 6 x 6 of them, the first one above and to the
@@ -451,6 +456,7 @@ struct rf_kernels {
     rf_weighed_means_fn *weighed_means;
     rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
+    rf_soften_fn *soften;
     rf_lay_veil_fn *lay_veil;
     rf_brightest_fn *brightest;
     rf_blend4_fn *blend4;

@@ -2,6 +2,8 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
+#include <string.h>
+
 enum { LANES = RF_TILE * RF_TILE };
 
 union number {
@@ -128,6 +130,27 @@ static void RF_VEC(rf_between_rows)(uint16_t *restrict mean, const uint16_t *res
     }
 }
 
+static inline uint16_t average(uint16_t a, uint16_t b)
+{
+    return (uint16_t)((a + b + 1) >> 1);
+}
+
+static void RF_VEC(rf_soften)(uint16_t *restrict mean, int rows, bool down)
+{
+    uint16_t across[RF_TILE * RF_TILE];
+    const int n = rows * RF_TILE;
+
+    for (int i = 1; i < n - 1; i++)
+        across[i] = average(average(mean[i - 1], mean[i + 1]), mean[i]);
+    for (int y = 0; y < n; y += RF_TILE) {
+        across[y] = mean[y];
+        across[y + RF_TILE - 1] = mean[y + RF_TILE - 1];
+    }
+    memcpy(mean, across, (size_t)n * sizeof *mean);
+    for (int i = RF_TILE; down && i < n - RF_TILE; i++)
+        mean[i] = average(average(across[i - RF_TILE], across[i + RF_TILE]), across[i]);
+}
+
 /* A row of cells at the middles of pixels, those of a channel together. */
 static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_VEIL_CELLS][4])
 {
@@ -197,6 +220,7 @@ void RF_VEC(rf_light_use)(struct rf_kernels *kernels)
 {
     kernels->luminance = RF_VEC(rf_luminance);
     kernels->between_rows = RF_VEC(rf_between_rows);
+    kernels->soften = RF_VEC(rf_soften);
     kernels->lay_veil = RF_VEC(rf_lay_veil);
     kernels->brightest = RF_VEC(rf_brightest);
     kernels->weighted_means = RF_VEC(rf_weighted_means);

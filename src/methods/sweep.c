@@ -238,7 +238,9 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
 {
     const struct refocus_renderer *r = f->r;
     const uint32_t count = (uint32_t)tile_rays->set->count;
-    const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind_of(r, tx, ty));
+    const int behind = behind_of(r, tx, ty);
+    const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind);
+    const bool soft = rf_is_soft(f, plan, behind);
     const int lanes = rows.count * RF_TILE;
     uint16_t computed[LANES];
     union tally run;
@@ -257,6 +259,8 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
             r->kernels.weighted_means(out, run.weighted[c], run.weighted[3], lanes);
         else
             r->kernels.means(out, run.sum[c], rf_mean_scale(count), lanes);
+        if (soft)
+            r->kernels.soften(out, rows.count, rows.step == 1);
         if (rows.step > 1)
             r->kernels.between_rows(mean[c], computed, rows.step);
     }
@@ -282,6 +286,8 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
 
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }
+        if (rf_is_soft(f, plan, behind_of(f->r, tx, ty)))
+            f->r->kernels.soften(mean[c], RF_TILE, true);
     }
 }
 
@@ -304,6 +310,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_copy_tile(f, rect);
         return;
     }
+    rf_expect_tile(f, rect);
     rf_tile_rays_make(&rays, f, rf_rays_for(r, plan.reach, plan.lamp), tx, ty);
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
         const int from = pass, to = pass ? 2 : 3; /* all of them, and green again */

@@ -169,7 +169,7 @@ static int veil_scale(const struct rf_frame *f)
 
     if (!p->thin || !f->r->has_thin || p->method != REFOCUS_METHOD_SWEEP ||
         f->r->yuv.on || (f->plan.plain && f->veil_from > 65535) || p->cat_eye > 0 ||
-        p->fringe != 0 || rf_aperture_is_fine(f->aperture))
+        p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)
         sum += set->ray[n].u * set->ray[n].u + set->ray[n].v * set->ray[n].v;
@@ -276,6 +276,7 @@ int refocus_render(struct refocus_renderer *r,
         return status;
     f.params = &own;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
+    f.fine = rf_aperture_is_fine(f.aperture);
     f.focus = rf_focus_of(own.focus_disparity, own.max_blur_radius);
     rf_focus_plan_make(&f.plan, &own, f.focus, r->photo[number].width, r->photo[number].height);
     if (f.plan.surface || f.plan.sharp || f.plan.picture)
