@@ -276,6 +276,9 @@ typedef void rf_lay_veil_fn(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS]
 typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
                                  const uint16_t *blue, int n);
 
+/* tile_brightest: the same of the pixels of a tile, whose rows are `stride` apart. */
+typedef uint16_t rf_tile_brightest_fn(const uint16_t *const light[3], ptrdiff_t stride);
+
 /* blend4: four rows by weights in Q16 that add up to 1, rounded half up. */
 typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
                           const uint16_t weight[4], int n);
@@ -459,6 +462,7 @@ struct rf_kernels {
     rf_soften_fn *soften;
     rf_lay_veil_fn *lay_veil;
     rf_brightest_fn *brightest;
+    rf_tile_brightest_fn *tile_brightest;
     rf_blend4_fn *blend4;
     rf_widen4_fn *widen4;
     rf_rough_fn *rough;

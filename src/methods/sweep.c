@@ -88,11 +88,8 @@ static bool has_wide_sums(const struct rf_frame *f)
 /* How many values a 16-bit sum holds. */
 static int steps_of(const struct rf_frame *f, const struct rf_tile_plan *plan)
 {
-    static const int steps[] = {
-        [RF_WHITE] = 16, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 2, [RF_BRIGHTEST] = 1};
-
-    if (!f->premultiplied)
-        return steps[f->bright];
+    if (!f->premultiplied && f->bright > RF_BRIGHT) /* added since it was noted */
+        return f->bright == RF_BRIGHTER ? 2 : 1;
     return plan->brightest > 65535 / 16 ? 65535 / plan->brightest : 16;
 }
 

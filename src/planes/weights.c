@@ -60,11 +60,29 @@ static int brightest(uint16_t *const light[3], ptrdiff_t at)
     return most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
 }
 
-void rf_note_behind(struct refocus_renderer *r, int ty)
+static uint16_t tile_brightest(const struct refocus_renderer *r, int tx, int ty)
 {
-    for (int tx = 0; tx < r->tiles_x; tx++)
-        r->bins[(size_t)ty * r->tiles_x + tx].behind =
-            r->behind.blur[rf_tile_middle(r, tx, ty)];
+    const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
+    uint16_t most[2];
+
+    for (int layer = 0; layer < 2; layer++) {
+        uint16_t *const *light = layer ? r->behind.light : r->smooth;
+
+        most[layer] = r->kernels.tile_brightest(
+            (const uint16_t *const[3]){light[0] + at, light[1] + at, light[2] + at},
+            r->stride);
+    }
+    return most[0] > most[1] ? most[0] : most[1];
+}
+
+void rf_note_behind(struct refocus_renderer *r, int ty, bool bright)
+{
+    for (int tx = 0; tx < r->tiles_x; tx++) {
+        struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+
+        bins->behind = r->behind.blur[rf_tile_middle(r, tx, ty)];
+        bins->brightest = bright ? tile_brightest(r, tx, ty) : RF_LIGHT_MAX;
+    }
 }
 
 void rf_weigh_rows(struct refocus_renderer *r, int ty)

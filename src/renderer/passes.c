@@ -192,8 +192,10 @@ void rf_pass_smooth(struct rf_frame *f)
 
 static void note_band(void *context, int band, int worker)
 {
+    const struct rf_frame *f = context;
+
     (void)worker;
-    rf_note_behind(context, band);
+    rf_note_behind(f->r, band, f->bright != RF_WHITE && !f->r->yuv.on);
 }
 
 static void weigh_band(void *context, int band, int worker)
@@ -216,7 +218,7 @@ void rf_pass_behind(struct rf_frame *f, int levels)
         rf_background_yuv_fill(r);
     else
         rf_background_pull(r, 0, levels);
-    rf_pool_run(&r->pool, note_band, r, rf_bands(r));
+    rf_pool_run(&r->pool, note_band, f, rf_bands(r));
 }
 
 void rf_pass_weights(struct rf_frame *f)

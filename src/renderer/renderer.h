@@ -144,7 +144,7 @@ struct rf_bins {
     int16_t least, most; /* Q7.8 */
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
     int16_t behind;      /* blur of the background in the middle, once that is filled */
-    uint16_t brightest;  /* light of either layer, once it is premultiplied */
+    uint16_t brightest;  /* light of either layer, as it is summed */
 };
 
 /*
