@@ -14,6 +14,7 @@
 #include "methods/tile_rays.h"
 #include "methods/tile_rows.h"
 #include "renderer/bands.h"
+#include "renderer/passes.h"
 #include "thin/thin.h"
 #include "thin/veil.h"
 
@@ -88,8 +89,8 @@ static bool has_wide_sums(const struct rf_frame *f)
 /* How many values a 16-bit sum holds. */
 static int steps_of(const struct rf_frame *f, const struct rf_tile_plan *plan)
 {
-    if (!f->premultiplied && f->bright > RF_BRIGHT) /* added since it was noted */
-        return f->bright == RF_BRIGHTER ? 2 : 1;
+    if (!f->premultiplied && !rf_needs_brightest(f)) /* white at most */
+        return 16;
     return plan->brightest > 65535 / 16 ? 65535 / plan->brightest : 16;
 }
 

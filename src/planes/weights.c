@@ -75,14 +75,17 @@ static uint16_t tile_brightest(const struct refocus_renderer *r, int tx, int ty)
     return most[0] > most[1] ? most[0] : most[1];
 }
 
-void rf_note_behind(struct refocus_renderer *r, int ty, bool bright)
+void rf_note_brightest(struct refocus_renderer *r, int ty)
 {
-    for (int tx = 0; tx < r->tiles_x; tx++) {
-        struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+    for (int tx = 0; tx < r->tiles_x; tx++)
+        r->bins[(size_t)ty * r->tiles_x + tx].brightest = tile_brightest(r, tx, ty);
+}
 
-        bins->behind = r->behind.blur[rf_tile_middle(r, tx, ty)];
-        bins->brightest = bright ? tile_brightest(r, tx, ty) : RF_LIGHT_MAX;
-    }
+void rf_note_behind(struct refocus_renderer *r, int ty)
+{
+    for (int tx = 0; tx < r->tiles_x; tx++)
+        r->bins[(size_t)ty * r->tiles_x + tx].behind =
+            r->behind.blur[rf_tile_middle(r, tx, ty)];
 }
 
 void rf_weigh_rows(struct refocus_renderer *r, int ty)

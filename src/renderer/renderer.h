@@ -90,6 +90,7 @@ struct rf_made {
     bool weighed; /* but with weights of `sigma` in place of its blur, */
     bool premultiplied; /* and the light of both layers times them */
     float sigma;
+    bool brightest; /* of each tile is noted, for plain sums */
     int rays;    /* that lamps were widened for */
     bool half;   /* photo[1], which lies in memory of the background layer of photo[0] */
     int photo;

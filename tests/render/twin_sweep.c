@@ -24,9 +24,12 @@ struct plan {
     bool sharp;
 };
 
-static double bin_width(double K)
+/* By the largest blur. */
+static double bin_width(const struct twin *t)
 {
-    return K <= 31.5 ? 0.25 : K <= 63.5 ? 0.5 : 1;
+    const double largest = t->K * fmax(t->df, 1 - t->df);
+
+    return largest <= 31.5 ? 0.25 : largest <= 63.5 ? 0.5 : 1;
 }
 
 static int bin_of(double width, double s)
@@ -349,7 +352,7 @@ void twin_sweep(struct twin *t, uint8_t *rgb)
 {
     const int across = (t->width + TWIN_TILE - 1) / TWIN_TILE;
     const int down = (t->height + TWIN_TILE - 1) / TWIN_TILE;
-    const double width = bin_width(t->K);
+    const double width = bin_width(t);
     struct bins *tiles = calloc((size_t)(across * down), sizeof *tiles);
     struct sets sets = make_sets(t);
 
