@@ -1,4 +1,4 @@
-/* edges.h: thin things, and the edges beside them, taken apart.
+/* thin.h: thin things, and the edges beside them, taken apart.
  *
  * A wire of two pixels that is blurred over forty is met by few rays, here by more and
  * there by less: it shows as streaks. And the pixels at its edge that have the depth of
@@ -23,16 +23,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "kernels/thin.h"
+
 struct refocus_renderer;
 struct rf_frame;
-
-struct rf_thin {
-    uint8_t at;    /* 16 y + x in its tile */
-    uint8_t alpha; /* 255 = 1 */
-    uint16_t near_disparity, far_disparity;
-    uint16_t
-        light[3]; /* F, Q12, but while the planes have it: then that of the photo */
-};
 
 /* Those of a tile, of all that are in its row of tiles. */
 struct rf_thin_run {
