@@ -27,7 +27,8 @@ enum {
     ROW = 40,         /* elements of a row of them */
     INNER = SPAN - 2, /* without the first and the last */
     WAYS = 8,
-    BATCH = 32, /* pixels that are looked at together; the compiler unrolls loops of 16 */
+    BATCH = 32,         /* pixels that are looked at together */
+    WIDER = RF_TILE + 8, /* compilers unroll loops of 16, and then do not vectorise them */
 };
 
 static inline uint16_t max16(uint16_t a, uint16_t b)
@@ -51,7 +52,8 @@ struct window {
     uint16_t clean[SPAN][ROW];      /* 65535 of those that are not */
     uint16_t inside[SPAN][ROW];     /* 0 beyond the photo, which is never near */
     uint16_t (*before)[ROW];        /* that, or map */
-    uint16_t most[RF_TILE][RF_TILE], least[RF_TILE][RF_TILE]; /* of 3 x 3, of 7 x 7 */
+    uint16_t most[RF_TILE][WIDER], least[RF_TILE][WIDER]; /* of 3 x 3, of 7 x 7 */
+    bool bright; /* something may shine */
 };
 
 /* Whether disparities of the tile and AROUND it differ by more than a jump; those a little
@@ -125,14 +127,14 @@ static void find_clean(struct window *w)
     for (int y = 0; y < RF_TILE; y++) {
         const uint16_t *restrict here = &most[y + MARGIN][MARGIN];
 
-        for (int x = 0; x < RF_TILE; x++)
+        for (int x = 0; x < WIDER; x++)
             w->most[y][x] = max16(here[x], max16(here[x - 1], here[x + 1]));
     }
 }
 
 static void find_least(struct window *w)
 {
-    enum { FROM = MARGIN - AROUND, COLUMNS = RF_TILE + 2 * AROUND + 2 };
+    enum { FROM = MARGIN - AROUND, COLUMNS = 32 };
     uint16_t column[RF_TILE][COLUMNS];
 
     for (int y = 0; y < RF_TILE; y++) {
@@ -145,7 +147,7 @@ static void find_least(struct window *w)
         }
     }
     for (int y = 0; y < RF_TILE; y++) {
-        for (int x = 0; x < RF_TILE; x++) {
+        for (int x = 0; x < WIDER; x++) {
             uint16_t least = column[y][x];
 
             for (int k = 1; k < THIN; k++)
@@ -400,7 +402,7 @@ static void add_pixel(struct batch *b, const struct row *row, const struct rf_th
 
 static inline uint16_t is_there(uint16_t weight)
 {
-    return weight ? 0xffff : 0;
+    return (uint16_t)-(weight != 0);
 }
 
 /* 0xffff: of one surface. */
@@ -492,9 +494,9 @@ static void add_square(int32_t *restrict sum, const uint16_t *restrict weight,
                        const uint16_t *restrict light, const int32_t *restrict from)
 {
     for (int x = 0; x < BATCH; x++) {
-        const int32_t away = light[x] - from[x];
+        const int32_t away = (light[x] - from[x]) & -(weight[x] != 0);
 
-        sum[x] += weight[x] ? away * away : 0;
+        sum[x] += away * away;
     }
 }
 
@@ -589,49 +591,90 @@ struct sums {
     uint32_t weights, high[3], low[3];
 };
 
-static void add_taps(struct sums *restrict sums, const struct taps *restrict taps,
-                     uint16_t level, const uint32_t behind[3])
+static inline int32_t dot(const int16_t *restrict weight, const uint16_t *restrict light)
 {
-    const uint32_t red = behind[0], green = behind[1], blue = behind[2];
-    uint32_t weights = 0, high0 = 0, high1 = 0, high2 = 0, low0 = 0, low1 = 0, low2 = 0;
+    int32_t sum = 0;
+
+    for (int i = 0; i < TAPS; i++)
+        sum += weight[i] * (int16_t)light[i];
+    return sum;
+}
+
+static void add_taps(struct sums *restrict sums, const struct taps *restrict taps,
+                     uint16_t level, const uint16_t behind[3])
+{
+    const uint16_t red = behind[0], green = behind[1], blue = behind[2];
+    int16_t high[TAPS], low[TAPS]; /* weights, 10 bits each */
+    uint32_t weights = 0;
     uint16_t most = 0;
 
     for (int i = 0; i < TAPS; i++)
         most = max16(most, taps->near[i]);
     for (int i = 0; i < TAPS; i++) {
+        const int16_t r = (int16_t)(taps->light[0][i] - red);
+        const int16_t g = (int16_t)(taps->light[1][i] - green);
+        const int16_t b = (int16_t)(taps->light[2][i] - blue);
         const uint32_t near = taps->near[i] > level ? UINT32_MAX : 0;
-        const uint32_t r = taps->light[0][i], g = taps->light[1][i], b = taps->light[2][i];
-        const uint32_t weight = (((r - red) * (r - red) >> 6) + ((g - green) * (g - green) >> 6) +
-                                 ((b - blue) * (b - blue) >> 6) + 1) & near;
+        const uint32_t weight = (((uint32_t)(r * r) >> 6) + ((uint32_t)(g * g) >> 6) +
+                                 ((uint32_t)(b * b) >> 6) + 1) & near;
 
         weights += weight;
-        high0 += (weight >> 10) * r; /* 20 bits times 12 */
-        high1 += (weight >> 10) * g;
-        high2 += (weight >> 10) * b;
-        low0 += (weight & 1023) * r;
-        low1 += (weight & 1023) * g;
-        low2 += (weight & 1023) * b;
+        high[i] = (int16_t)(weight >> 10);
+        low[i] = (int16_t)(weight & 1023);
     }
-    *sums = (struct sums){most > level ? most : 0, weights, {high0, high1, high2},
-                          {low0, low1, low2}};
+    sums->most = most > level ? most : 0;
+    sums->weights = weights;
+    for (int c = 0; c < 3; c++) {
+        sums->high[c] = (uint32_t)dot(high, taps->light[c]);
+        sums->low[c] = (uint32_t)dot(low, taps->light[c]);
+    }
 }
 
-/* N, and the nearest disparity of it, of those that may be mixtures. */
+/* Whether anything in a tile and around it may shine. */
+static bool is_bright(const struct rf_thin_tile *t)
+{
+    uint16_t most[WIDER] = {0}, all = 0;
+
+    if (t->left < BEFORE || t->right < WIDER - BEFORE)
+        return true;
+    for (int y = t->above < BEFORE ? 0 : -BEFORE; y < RF_TILE + BEFORE && y < t->below; y++) {
+        for (int c = 0; c < 3; c++) {
+            const uint16_t *restrict light = t->light[c] + y * t->stride - BEFORE;
+
+            for (int x = 0; x < WIDER; x++)
+                most[x] = max16(most[x], light[x]);
+        }
+    }
+    for (int x = 0; x < WIDER; x++)
+        all = max16(all, most[x]);
+    return all > SHINES;
+}
+
+/* N, and the nearest disparity of it. What is kept and not mixed needs only the latter, and to
+ * know whether N shines. */
 static void set_near(struct mixture *m, const struct batch *b, const struct rf_thin_tile *t,
                      const struct window *w)
 {
     struct taps taps[BATCH];
     struct sums sums[BATCH];
+    uint8_t wanted[BATCH];
+    int count = 0;
 
-    for (int k = 0; k < b->count; k++)
-        if (b->kept[k] || m->mixed[k])
-            gather(&taps[k], b, k, t, w);
     memset(sums, 0, sizeof sums);
-    for (int k = 0; k < b->count; k++)
-        if (b->kept[k] || m->mixed[k])
-            add_taps(&sums[k], &taps[k], b->level[k],
-                     (const uint32_t[3]){(uint32_t)m->behind[0][k], (uint32_t)m->behind[1][k],
-                                         (uint32_t)m->behind[2][k]});
+    for (int k = 0; k < b->count; k++) {
+        wanted[count] = (uint8_t)k;
+        count += m->mixed[k] || (b->kept[k] && w->bright);
+        sums[k].most = b->kept[k] ? b->own[k] : 0;
+    }
+    for (int i = 0; i < count; i++)
+        gather(&taps[i], b, wanted[i], t, w);
+    for (int i = 0; i < count; i++) {
+        const int k = wanted[i];
+
+        add_taps(&sums[k], &taps[i], b->level[k],
+                 (const uint16_t[3]){(uint16_t)m->behind[0][k], (uint16_t)m->behind[1][k],
+                                     (uint16_t)m->behind[2][k]});
+    }
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < BATCH; k++) {
             const uint32_t by = sums[k].weights ? sums[k].weights : 1;
@@ -662,11 +705,11 @@ static void divide_share(int32_t *restrict alpha, const int32_t *restrict along,
                          const int32_t *restrict square)
 {
     for (int x = 0; x < BATCH; x++) {
-        const int32_t some = along[x] < 0 ? 0 : along[x];
-        const int32_t part = some < square[x] ? some : square[x];
+        const int32_t all = square[x], some = along[x] & ~(along[x] >> 31);
+        const int32_t part = some < all ? some : all;
 
         alpha[x] = quotient(255 * (float)part, 255 * (uint32_t)part,
-                            (uint32_t)(square[x] ? square[x] : 1));
+                            (uint32_t)(all + (all == 0)));
     }
 }
 
@@ -737,7 +780,8 @@ static int take_apart(struct rf_thin *out, int most, struct batch *b,
             .light = {(uint16_t)m.behind[0][k], (uint16_t)m.behind[1][k],
                       (uint16_t)m.behind[2][k]}};
     }
-    memset(b, 0, sizeof *b);
+    memset(b->weight, 0, sizeof b->weight);
+    b->count = 0;
     return count;
 }
 
@@ -755,6 +799,7 @@ static int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *
     find_places(places.window, ROW);
     find_places(places.tile, tile->stride);
     memset(&batch, 0, sizeof batch);
+    w.bright = is_bright(tile);
     for (int y = 0; y < rows; y++) {
         struct row row;
 
