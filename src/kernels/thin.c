@@ -53,7 +53,7 @@ struct window {
     uint16_t inside[SPAN][ROW];     /* 0 beyond the photo, which is never near */
     uint16_t (*before)[ROW];        /* that, or map */
     uint16_t most[RF_TILE][WIDER], least[RF_TILE][WIDER]; /* of 3 x 3, of 7 x 7 */
-    bool bright; /* something may shine */
+    bool bright, asked; /* something may shine; whether that is known */
 };
 
 /* Whether disparities of the tile and AROUND it differ by more than a jump; those a little
@@ -203,17 +203,29 @@ static ptrdiff_t step_of(int i)
     return way[i][1] * ROW + way[i][0];
 }
 
-static bool any_of(const uint16_t *mask, int n)
+static bool any_of(const uint16_t mask[BATCH])
 {
-    unsigned any = 0;
+    uint16_t any = 0;
 
-    for (int x = 0; x < n; x++)
+    for (int x = 0; x < BATCH; x++)
         any |= mask[x];
     return any != 0;
 }
 
+/* A bit for each pixel of a row. */
+static unsigned bits_of(const uint16_t mask[RF_TILE])
+{
+    static const uint16_t bit[RF_TILE] = {1,   2,   4,    8,    16,   32,   64,    128,
+                                          256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+    uint16_t bits = 0;
+
+    for (int x = 0; x < RF_TILE; x++)
+        bits |= mask[x] & bit[x];
+    return bits;
+}
+
 /* Which are looked at. */
-static bool find_level(struct row *row, const struct window *w, int y, int columns)
+static unsigned find_level(struct row *row, const struct window *w, int y, int columns)
 {
     const uint16_t *restrict own = &w->map[y + MARGIN][MARGIN];
 
@@ -225,9 +237,7 @@ static bool find_level(struct row *row, const struct window *w, int y, int colum
         row->look[x] = (uint16_t)(~kept | thin);
         row->level[x] = (uint16_t)(kept ? own[x] - JUMP : own[x] + JUMP);
     }
-    for (int x = columns; x < RF_TILE; x++)
-        row->look[x] = 0;
-    return any_of(row->look, RF_TILE);
+    return bits_of(row->look) & ((1u << columns) - 1);
 }
 
 /* Steps before the first that is at most the level; the same but for the first step, up to
@@ -293,7 +303,7 @@ static inline void count_unclean(uint16_t *restrict unclean, const uint16_t *res
 }
 
 /* Which are thin, or beside what is. */
-static bool find_width(struct row *row)
+static unsigned find_width(struct row *row)
 {
     for (int x = 0; x < RF_TILE; x++) {
         uint16_t own = WIDE, other = WIDE, width;
@@ -307,34 +317,10 @@ static bool find_width(struct row *row)
         }
         width = row->kept[x] ? own : other;
         row->width[x] = width;
-        row->thin[x] = width <= THIN ? row->look[x] : 0;
+        row->thin[x] = width <= THIN ? 0xffff : 0;
     }
-    return any_of(row->thin, RF_TILE);
+    return bits_of(row->thin);
 }
-
-static bool look_at_row(struct row *row, const struct window *w, int y, int columns)
-{
-    if (!find_level(row, w, y, columns))
-        return false;
-    for (int i = 0; i < WAYS; i++)
-        count_near(row->near[i], row->beside[i], &w->map[y + MARGIN][MARGIN], step_of(i),
-                   row->level);
-    if (!find_width(row))
-        return false;
-    for (int i = 0; i < WAYS; i++)
-        count_unclean(row->unclean[i], &w->clean[y + MARGIN][MARGIN], step_of(i), row->level);
-    return true;
-}
-
-/* Pixels, and what is met in all directions, and how much each counts: by the inverse square of
- * its distance. Those beyond `count` meet nothing. */
-struct batch {
-    int count;
-    uint8_t at[BATCH]; /* 16 y + x */
-    uint16_t kept[BATCH], level[BATCH], own[BATCH]; /* disparity */
-    uint16_t light[3][BATCH];                       /* C */
-    uint16_t weight[WAYS][BATCH], disparity[WAYS][BATCH], met[3][WAYS][BATCH];
-};
 
 /* Steps to what is met. A hair of one pixel has nothing clean beside it that is as like what it
  * hides. */
@@ -351,6 +337,35 @@ static void choose_steps(struct row *row)
                                             (row->unclean[i][x] & ~plain));
     }
 }
+
+/* A bit for each pixel that is to be looked at more closely. */
+static unsigned look_at_row(struct row *row, const struct window *w, int y, int columns)
+{
+    unsigned look = find_level(row, w, y, columns);
+
+    if (!look)
+        return 0;
+    for (int i = 0; i < WAYS; i++)
+        count_near(row->near[i], row->beside[i], &w->map[y + MARGIN][MARGIN], step_of(i),
+                   row->level);
+    look &= find_width(row);
+    if (!look)
+        return 0;
+    for (int i = 0; i < WAYS; i++)
+        count_unclean(row->unclean[i], &w->clean[y + MARGIN][MARGIN], step_of(i), row->level);
+    choose_steps(row);
+    return look;
+}
+
+/* Pixels, and what is met in all directions, and how much each counts: by the inverse square of
+ * its distance. Those beyond `count` meet nothing. */
+struct batch {
+    int count;
+    uint8_t at[BATCH]; /* 16 y + x */
+    uint16_t kept[BATCH], level[BATCH], own[BATCH]; /* disparity */
+    uint16_t light[3][BATCH];                       /* C */
+    uint16_t weight[WAYS][BATCH], disparity[WAYS][BATCH], met[3][WAYS][BATCH];
+};
 
 /* By steps less one of the two kinds of directions: weights, */
 #define SQUARES(of) {of(1), of(4), of(9), of(16), of(25), of(36), of(49), of(64), of(81), of(100), 0}
@@ -461,7 +476,7 @@ static void find_surface(struct mixture *m, const struct batch *b)
         m->far[x] = least; /* where it is but one */
         several[x] = (uint16_t)(most > least ? ~same_surface(most, least) : 0);
     }
-    if (!any_of(several, BATCH))
+    if (!any_of(several))
         return;
     for (int i = 0; i < WAYS; i++) {
         uint16_t sum[BATCH] = {0};
@@ -587,8 +602,8 @@ static void gather(struct taps *taps, const struct batch *b, int k,
 }
 
 struct sums {
-    uint16_t most;
-    uint32_t weights, high[3], low[3];
+    uint16_t most[BATCH];
+    uint32_t weights[BATCH], high[3][BATCH], low[3][BATCH];
 };
 
 static inline int32_t dot(const int16_t *restrict weight, const uint16_t *restrict light)
@@ -600,7 +615,7 @@ static inline int32_t dot(const int16_t *restrict weight, const uint16_t *restri
     return sum;
 }
 
-static void add_taps(struct sums *restrict sums, const struct taps *restrict taps,
+static void add_taps(struct sums *restrict sums, int k, const struct taps *restrict taps,
                      uint16_t level, const uint16_t behind[3])
 {
     const uint16_t red = behind[0], green = behind[1], blue = behind[2];
@@ -622,15 +637,15 @@ static void add_taps(struct sums *restrict sums, const struct taps *restrict tap
         high[i] = (int16_t)(weight >> 10);
         low[i] = (int16_t)(weight & 1023);
     }
-    sums->most = most > level ? most : 0;
-    sums->weights = weights;
+    sums->most[k] = most > level ? most : 0;
+    sums->weights[k] = weights;
     for (int c = 0; c < 3; c++) {
-        sums->high[c] = (uint32_t)dot(high, taps->light[c]);
-        sums->low[c] = (uint32_t)dot(low, taps->light[c]);
+        sums->high[c][k] = (uint32_t)dot(high, taps->light[c]);
+        sums->low[c][k] = (uint32_t)dot(low, taps->light[c]);
     }
 }
 
-/* Whether anything in a tile and around it may shine. */
+/* Whether anything in a tile and around it shines, or may. */
 static bool is_bright(const struct rf_thin_tile *t)
 {
     uint16_t most[WIDER] = {0}, all = 0;
@@ -650,43 +665,50 @@ static bool is_bright(const struct rf_thin_tile *t)
     return all > SHINES;
 }
 
+static bool may_shine(struct window *w, const struct rf_thin_tile *t)
+{
+    if (!w->asked)
+        w->bright = is_bright(t);
+    w->asked = true;
+    return w->bright;
+}
+
 /* N, and the nearest disparity of it. What is kept and not mixed needs only the latter, and to
  * know whether N shines. */
 static void set_near(struct mixture *m, const struct batch *b, const struct rf_thin_tile *t,
-                     const struct window *w)
+                     struct window *w)
 {
     struct taps taps[BATCH];
-    struct sums sums[BATCH];
+    struct sums sums;
     uint8_t wanted[BATCH];
     int count = 0;
 
-    memset(sums, 0, sizeof sums);
+    memset(&sums, 0, sizeof sums);
     for (int k = 0; k < b->count; k++) {
         wanted[count] = (uint8_t)k;
-        count += m->mixed[k] || (b->kept[k] && w->bright);
-        sums[k].most = b->kept[k] ? b->own[k] : 0;
+        count += m->mixed[k] || (b->kept[k] && may_shine(w, t));
+        sums.most[k] = b->kept[k] ? b->own[k] : 0;
     }
     for (int i = 0; i < count; i++)
         gather(&taps[i], b, wanted[i], t, w);
     for (int i = 0; i < count; i++) {
         const int k = wanted[i];
 
-        add_taps(&sums[k], &taps[i], b->level[k],
+        add_taps(&sums, k, &taps[i], b->level[k],
                  (const uint16_t[3]){(uint16_t)m->behind[0][k], (uint16_t)m->behind[1][k],
                                      (uint16_t)m->behind[2][k]});
     }
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < BATCH; k++) {
-            const uint32_t by = sums[k].weights ? sums[k].weights : 1;
-            const uint32_t high = sums[k].high[c], low = sums[k].low[c];
+            const uint32_t by = sums.weights[k] + (sums.weights[k] == 0);
+            const uint32_t high = sums.high[c][k], low = sums.low[c][k];
             const float real = (float)(int32_t)high * 1024 + (float)(int32_t)low +
                                (float)(int32_t)(by / 2);
 
             m->before[c][k] = quotient(real, (high << 10) + low + by / 2, by);
         }
     }
-    for (int k = 0; k < BATCH; k++)
-        m->near[k] = sums[k].most;
+    memcpy(m->near, sums.most, sizeof m->near);
 }
 
 static void add_share(int32_t *restrict along, int32_t *restrict square,
@@ -756,7 +778,7 @@ static bool shines(const struct batch *b, const struct mixture *m, int k)
 
 /* Those that are of something thin, or beside it and a mixture. The batch is empty then. */
 static int take_apart(struct rf_thin *out, int most, struct batch *b,
-                      const struct rf_thin_tile *t, const struct window *w)
+                      const struct rf_thin_tile *t, struct window *w)
 {
     struct mixture m;
     int count = 0;
@@ -799,17 +821,12 @@ static int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *
     find_places(places.window, ROW);
     find_places(places.tile, tile->stride);
     memset(&batch, 0, sizeof batch);
-    w.bright = is_bright(tile);
+    w.asked = false;
     for (int y = 0; y < rows; y++) {
         struct row row;
 
-        if (!look_at_row(&row, &w, y, columns))
-            continue;
-        choose_steps(&row);
-        for (int x = 0; x < columns; x++) {
-            if (!row.thin[x])
-                continue;
-            add_pixel(&batch, &row, tile, &w, &places, x, y);
+        for (unsigned look = look_at_row(&row, &w, y, columns); look; look &= look - 1) {
+            add_pixel(&batch, &row, tile, &w, &places, __builtin_ctz(look), y);
             if (batch.count == BATCH)
                 count += take_apart(out + count, most - count, &batch, tile, &w);
         }
