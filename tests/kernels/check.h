@@ -36,6 +36,7 @@ int check_series(const struct subject *subject);
 int check_light(const struct subject *subject);
 int check_yuv(const struct subject *subject);
 int check_surface(const struct subject *subject);
+int check_thin(const struct subject *subject);
 int check_focus(void);
 
 /* Prints a line with the time of each kernel, in plain C and by the subject. */
