@@ -19,7 +19,8 @@ static void find_band(void *context, int band, int worker)
         const ptrdiff_t at = y * r->stride + x;
         const struct rf_thin_tile tile = {
             .disparity = r->disparity + at,
-            .light = {r->front.light[0] + at, r->front.light[1] + at, r->front.light[2] + at},
+            .light = {r->front.light[0] + at, r->front.light[1] + at,
+                      r->front.light[2] + at},
             .stride = r->stride,
             .left = x,
             .above = y,
@@ -27,7 +28,8 @@ static void find_band(void *context, int band, int worker)
             .below = r->height - y,
         };
         const uint64_t room = capacity - count;
-        const int found = r->kernels.find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
+        const int found =
+            r->kernels.find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
 
         list->run[(size_t)band * r->tiles_x + tx] =
             (struct rf_thin_run){.first = count, .count = (uint32_t)found};

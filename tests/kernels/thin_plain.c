@@ -62,8 +62,7 @@ static int steps_to_side(const struct look *l, int i, int most)
 static struct met meet(const struct look *l, int i, bool clean, int most)
 {
     const ptrdiff_t step = way[i][1] * l->p->stride + way[i][0];
-    const uint16_t *const disparity = l->p->disparity, *const near_most =
-                                                           l->p->most3;
+    const uint16_t *const disparity = l->p->disparity, *const near_most = l->p->most3;
     const int above = l->above;
     ptrdiff_t at = place(l, l->x, l->y);
 
