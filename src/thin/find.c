@@ -4,6 +4,19 @@
 #include "renderer/bands.h"
 #include "renderer/renderer.h"
 
+static struct rf_thin_run run_of(const struct rf_thin *thin, uint32_t first, int count)
+{
+    struct rf_thin_run run = {.first = first, .count = (uint16_t)count, .least = 65535};
+
+    for (int i = 0; i < count; i++) {
+        const uint16_t d = thin[i].near_disparity;
+
+        run.least = d < run.least ? d : run.least;
+        run.most = d > run.most ? d : run.most;
+    }
+    return run;
+}
+
 static void find_band(void *context, int band, int worker)
 {
     struct refocus_renderer *r = context;
@@ -31,8 +44,7 @@ static void find_band(void *context, int band, int worker)
         const int found =
             r->kernels.find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
 
-        list->run[(size_t)band * r->tiles_x + tx] =
-            (struct rf_thin_run){.first = count, .count = (uint32_t)found};
+        list->run[(size_t)band * r->tiles_x + tx] = run_of(thin + count, count, found);
         count += (uint32_t)found;
     }
 }

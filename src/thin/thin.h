@@ -30,7 +30,8 @@ struct rf_frame;
 
 /* Those of a tile, of all that are in its row of tiles. */
 struct rf_thin_run {
-    uint32_t first, count;
+    uint32_t first;
+    uint16_t count, least, most; /* near disparities */
 };
 
 /* Room for those of a row of tiles: one pixel in four; further ones stay as they are.
@@ -51,6 +52,7 @@ struct rf_thin_list {
 void rf_find_thin(struct refocus_renderer *r);
 
 /* Those of a tile of the window. */
+const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty);
 struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
                            uint32_t *count);
 
