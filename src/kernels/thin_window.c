@@ -38,21 +38,44 @@ static bool has_jump(const struct rf_thin_tile *t)
     return high - low > JUMP;
 }
 
-/* Rows and columns beyond the photo repeat its last. */
-static void copy_around(struct rf_thin_window *w, const struct rf_thin_tile *t,
-                        bool inside)
-{
-    for (int j = 0; j < SPAN; j++) {
-        const int y = clamp(j - MARGIN, -t->above, t->below - 1);
-        const uint16_t *row = t->disparity + y * t->stride;
+/* Elements of a window that are of the photo. */
+struct part {
+    int x0, x1, y0, y1;
+};
 
-        if (inside) {
-            memcpy(w->map[j], row - MARGIN, sizeof w->map[j]);
+static struct part part_of(const struct rf_thin_tile *t)
+{
+    return (struct part){
+        clamp(MARGIN - t->left, 0, MARGIN), clamp(MARGIN + t->right, 0, ROW),
+        clamp(MARGIN - t->above, 0, MARGIN), clamp(MARGIN + t->below, 0, SPAN)};
+}
+
+static void fill(uint16_t *row, uint16_t with, int first, int end)
+{
+    for (int i = first; i < end; i++)
+        row[i] = with;
+}
+
+/* What is beyond the photo repeats its last row or column. */
+static void copy_around(struct rf_thin_window *w, const struct rf_thin_tile *t,
+                        struct part p)
+{
+    for (int j = p.y0; j < p.y1; j++) {
+        uint16_t *const row = w->map[j];
+        const uint16_t *const from = t->disparity + (j - MARGIN) * t->stride - MARGIN;
+
+        if (p.x1 - p.x0 == ROW) {
+            memcpy(row, from, ROW * sizeof *row);
             continue;
         }
-        for (int i = 0; i < ROW; i++)
-            w->map[j][i] = row[clamp(i - MARGIN, -t->left, t->right - 1)];
+        memcpy(row + p.x0, from + p.x0, (size_t)(p.x1 - p.x0) * sizeof *row);
+        fill(row, row[p.x0], 0, p.x0);
+        fill(row, row[p.x1 - 1], p.x1, ROW);
     }
+    for (int j = 0; j < p.y0; j++)
+        memcpy(w->map[j], w->map[p.y0], sizeof w->map[j]);
+    for (int j = p.y1; j < SPAN; j++)
+        memcpy(w->map[j], w->map[p.y1 - 1], sizeof w->map[j]);
 }
 
 /* Passes go over all of the window, so that no load has to wait for parts of what was
@@ -107,33 +130,34 @@ static void find_least(struct rf_thin_window *w)
     }
 }
 
-static void mark_beyond(struct rf_thin_window *w, const struct rf_thin_tile *t)
+static void mark_beyond(struct rf_thin_window *w, struct part p)
 {
     memcpy(w->inside, w->map, sizeof w->map);
     for (int j = 0; j < SPAN; j++) {
-        for (int i = 0; i < ROW; i++) {
-            const int x = i - MARGIN, y = j - MARGIN;
+        const bool beyond = j < p.y0 || j >= p.y1;
+        const int x0 = beyond ? ROW : p.x0, x1 = beyond ? ROW : p.x1;
 
-            if (x >= -t->left && x < t->right && y >= -t->above && y < t->below)
-                continue;
-            w->map[j][i] = w->clean[j][i] = 65535;
-            w->inside[j][i] = 0;
-        }
+        fill(w->map[j], 65535, 0, x0);
+        fill(w->map[j], 65535, x1, ROW);
+        fill(w->clean[j], 65535, 0, x0);
+        fill(w->clean[j], 65535, x1, ROW);
+        fill(w->inside[j], 0, 0, x0);
+        fill(w->inside[j], 0, x1, ROW);
     }
 }
 
 bool RF_VEC(rf_thin_window)(struct rf_thin_window *w, const struct rf_thin_tile *t)
 {
-    const bool inside = t->left >= MARGIN && t->above >= MARGIN &&
-                        t->right >= ROW - MARGIN && t->below >= SPAN - MARGIN;
+    const struct part part = part_of(t);
+    const bool inside = part.x1 - part.x0 == ROW && part.y1 - part.y0 == SPAN;
 
     if (!has_jump(t))
         return false;
-    copy_around(w, t, inside);
+    copy_around(w, t, part);
     find_clean(w);
     find_least(w);
     if (!inside)
-        mark_beyond(w, t);
+        mark_beyond(w, part);
     w->before = inside ? w->map : w->inside;
     w->asked = false;
     return true;
