@@ -12,7 +12,8 @@
 
 enum { CELLS = RF_TILE / RF_CELL };
 
-const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty)
+const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx,
+                                         int ty)
 {
     const struct rf_photo *photo = &r->photo[r->used];
     const int row = ty + r->origin_y / RF_TILE, column = tx + r->origin_x / RF_TILE;
@@ -148,8 +149,9 @@ static void choose_band(void *context, int band, int worker)
         const int d = farthest_veil(f, tx, band);
 
         *is_drawn(r, tx, band) =
-            d < 65536 && is_alone(r, tx, band,
-                                  blur_of(f, (uint16_t)d, tx * RF_TILE, band * RF_TILE));
+            d < 65536 &&
+            is_alone(r, tx, band,
+                     blur_of(f, (uint16_t)d, tx * RF_TILE, band * RF_TILE));
     }
 }
 
@@ -221,8 +223,9 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
 {
     const struct refocus_renderer *r = f->r;
     const ptrdiff_t stride = r->stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
-    uint16_t *const red = r->front.light[0] + tile, *const green = r->front.light[1] + tile,
-             *const blue = r->front.light[2] + tile;
+    uint16_t *const red = r->front.light[0] + tile,
+                    *const green = r->front.light[1] + tile,
+                    *const blue = r->front.light[2] + tile;
     const bool all = f->plan.plain && rf_thin_run_of(r, tx, ty)->least >= f->veil_from;
     uint32_t count;
     struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
@@ -236,7 +239,8 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
         red[at] = thin[i].light[0];
         green[at] = thin[i].light[1];
         blue[at] = thin[i].light[2];
-        memcpy(thin[i].light, light, sizeof light);
+        for (int c = 0; c < 3; c++)
+            thin[i].light[c] = light[c];
     }
 }
 

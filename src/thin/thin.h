@@ -31,7 +31,8 @@ struct rf_frame;
 /* Those of a tile, of all that are in its row of tiles. */
 struct rf_thin_run {
     uint32_t first;
-    uint16_t count, least, most; /* near disparities */
+    uint16_t count;
+    uint16_t least, most; /* near disparities; 65535 and 0 of none */
 };
 
 /* Room for those of a row of tiles: one pixel in four; further ones stay as they are.
@@ -42,17 +43,18 @@ static inline uint64_t rf_thin_capacity(int width)
 }
 
 struct rf_thin_list {
-    struct rf_thin *pixel;   /* rf_thin_capacity() for each row of tiles */
+    struct rf_thin *pixel; /* rf_thin_capacity() for each row of tiles; while the planes
+                              have F, the light of each is that of the photo */
     struct rf_thin_run *run; /* of each tile */
     uint32_t blend;          /* that they were found in, or RF_NO_BLEND */
 };
 
-/* Find those of the photo in use, all of which is in the window, in r->blend. Planes
- * that passes made are lost. */
+/* Find those of the photo in use, all of which is in the window, in r->blend. */
 void rf_find_thin(struct refocus_renderer *r);
 
 /* Those of a tile of the window. */
-const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty);
+const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx,
+                                         int ty);
 struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
                            uint32_t *count);
 

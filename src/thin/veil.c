@@ -106,7 +106,7 @@ static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int32_
 
     if (i >= cells)
         return;
-    for (int c = 0; c < 4; c++) {
+    for (int c = 0; c < 4; c++) { /* v part / 256 would not fit */
         const int32_t later = (v[c] >> 8) * part + ((v[c] & 255) * part >> 8);
 
         row[i][c] += sign * (v[c] - later);
@@ -194,18 +194,21 @@ static bool get_cells(const struct refocus_renderer *r, int tx, int ty,
                       int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
 {
     const int across = r->tiles_x * CELLS, down = r->tiles_y * CELLS;
+    const bool inside = tx > 0 && tx < r->tiles_x - 1;
     int any = 0;
 
     for (int j = 0; j < RF_VEIL_CELLS; j++) {
         const int y = clamp(ty * CELLS + j - 1, down - 1);
+        int32_t(*const row)[4] = r->veil.cell + (ptrdiff_t)y * r->veil.stride;
 
-        for (int i = 0; i < RF_VEIL_CELLS; i++) {
-            const int x = clamp(tx * CELLS + i - 1, across - 1);
-
-            memcpy(part[j][i], r->veil.cell[(size_t)y * r->veil.stride + x],
-                   sizeof part[j][i]);
+        if (inside)
+            memcpy(part[j], row[tx * CELLS - 1], sizeof part[j]);
+        else
+            for (int i = 0; i < RF_VEIL_CELLS; i++)
+                memcpy(part[j][i], row[clamp(tx * CELLS + i - 1, across - 1)],
+                       sizeof part[j][i]);
+        for (int i = 0; i < RF_VEIL_CELLS; i++)
             any |= part[j][i][3];
-        }
     }
     return any >> RF_VEIL_SHIFT != 0;
 }
