@@ -44,6 +44,7 @@ void bench_rows(const struct subject *subject);
 void bench_aim(const struct subject *subject);
 void bench_search(const struct subject *subject);
 void bench_sweep(const struct subject *subject);
+void bench_thin(const struct subject *subject);
 
 /* Seconds that the fastest of several runs of call(context) takes. */
 double best_time(void (*call)(void *context), void *context);

@@ -78,6 +78,7 @@ int main(int argc, char **argv)
             bench_sweep(&subject);
             bench_search(&subject);
             bench_rows(&subject);
+            bench_thin(&subject);
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) + check_sweep(&subject) +
                         check_light(&subject) + check_search(&subject) +

@@ -134,14 +134,11 @@ static bool same(const struct rf_thin *a, const struct rf_thin *b)
            !memcmp(a->light, b->light, sizeof a->light);
 }
 
-/* How many there are, or -1 after a line on standard output. */
-static int check_tile(const struct subject *subject, const struct photo *p, int tx,
-                      int ty, int most)
+static struct rf_thin_tile tile_of(const struct photo *p, int tx, int ty)
 {
-    enum { ALL = RF_TILE * RF_TILE };
-    static struct rf_thin out[ALL + 1], plain[ALL];
     const ptrdiff_t at = ty * RF_TILE * p->stride + tx * RF_TILE;
-    const struct rf_thin_tile tile = {
+
+    return (struct rf_thin_tile){
         .disparity = p->disparity + at,
         .light = {p->light[0] + at, p->light[1] + at, p->light[2] + at},
         .stride = p->stride,
@@ -150,6 +147,15 @@ static int check_tile(const struct subject *subject, const struct photo *p, int 
         .right = p->width - tx * RF_TILE,
         .below = p->height - ty * RF_TILE,
     };
+}
+
+/* How many there are, or -1 after a line on standard output. */
+static int check_tile(const struct subject *subject, const struct photo *p, int tx,
+                      int ty, int most)
+{
+    enum { ALL = RF_TILE * RF_TILE };
+    static struct rf_thin out[ALL + 1], plain[ALL];
+    const struct rf_thin_tile tile = tile_of(p, tx, ty);
     const int all = find_thin_plain(plain, p, tx, ty), should = all < most ? all : most;
     int count;
 
@@ -211,4 +217,41 @@ int check_thin(const struct subject *subject)
     printf("ok    %-12s %-6s %d pixels of %d scenes\n", "find_thin", subject->cpu,
            found, ROUNDS);
     return 0;
+}
+
+struct bench {
+    rf_find_thin_fn *find;
+    struct photo photo;
+};
+
+static void find_all(void *context)
+{
+    static struct rf_thin out[RF_TILE * RF_TILE];
+    const struct bench *b = context;
+
+    for (int ty = 0; ty * RF_TILE < b->photo.height; ty++) {
+        for (int tx = 0; tx * RF_TILE < b->photo.width; tx++) {
+            const struct rf_thin_tile tile = tile_of(&b->photo, tx, ty);
+
+            b->find(out, &tile, RF_TILE * RF_TILE);
+        }
+    }
+}
+
+/* A photo full of wires. */
+void bench_thin(const struct subject *subject)
+{
+    struct bench c, v;
+    uint32_t seed = 4;
+
+    c.photo = make_photo(&seed, 0);
+    draw_behind(&c.photo, &seed);
+    for (int i = 0; i < 6; i++)
+        draw_line(&c.photo, &seed);
+    v.photo = c.photo;
+    c.find = subject->plain.find_thin;
+    v.find = subject->kernels.find_thin;
+    printf("ok    %-12s %-6s c %.2f  %s %.2f ns/pixel\n", "find_thin", subject->cpu,
+           best_time(find_all, &c) * 1e9 / MOST_SIDE / MOST_SIDE, subject->cpu,
+           best_time(find_all, &v) * 1e9 / MOST_SIDE / MOST_SIDE);
 }
