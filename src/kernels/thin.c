@@ -68,7 +68,7 @@ static bool shines(const struct rf_thin_batch *b, const struct rf_thin_mixture *
 /* Those that are of something thin, or beside it and a mixture. The batch is empty
  * then. */
 static int take_apart(struct rf_thin *out, int most, struct rf_thin_batch *b,
-                      const struct rf_thin_tile *t, struct rf_thin_window *w)
+                      const struct rf_thin_tile *t, const struct rf_thin_window *w)
 {
     struct rf_thin_mixture m;
     int count = 0;

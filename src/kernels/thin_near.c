@@ -77,39 +77,21 @@ static void add_taps(struct sums *restrict sums, int k,
     }
 }
 
-/* Whether anything in a tile and around it shines, or may. */
-static bool is_bright(const struct rf_thin_tile *t)
+/* Whether N may shine. */
+static bool may_shine(const struct taps *taps)
 {
-    uint16_t most[WIDER] = {0}, all = 0;
+    uint16_t most = 0;
 
-    if (t->left < BEFORE || t->right < WIDER - BEFORE)
-        return true;
-    for (int y = t->above < BEFORE ? 0 : -BEFORE; y < RF_TILE + BEFORE && y < t->below;
-         y++) {
-        for (int c = 0; c < 3; c++) {
-            const uint16_t *restrict light = t->light[c] + y * t->stride - BEFORE;
-
-            for (int x = 0; x < WIDER; x++)
-                most[x] = max16(most[x], light[x]);
-        }
-    }
-    for (int x = 0; x < WIDER; x++)
-        all = max16(all, most[x]);
-    return all > SHINES;
-}
-
-static bool may_shine(struct rf_thin_window *w, const struct rf_thin_tile *t)
-{
-    if (!w->asked)
-        w->bright = is_bright(t);
-    w->asked = true;
-    return w->bright;
+    for (int i = 0; i < TAPS; i++)
+        most = max16(most, max16(taps->light[0][i],
+                                 max16(taps->light[1][i], taps->light[2][i])));
+    return most > SHINES;
 }
 
 /* N, and the nearest disparity of it. What is kept and not mixed needs only the latter,
  * and to know whether N shines. */
 static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
-                     const struct rf_thin_tile *t, struct rf_thin_window *w)
+                     const struct rf_thin_tile *t, const struct rf_thin_window *w)
 {
     struct taps taps[BATCH];
     struct sums sums;
@@ -119,7 +101,7 @@ static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
     memset(&sums, 0, sizeof sums);
     for (int k = 0; k < b->count; k++) {
         wanted[count] = (uint8_t)k;
-        count += m->mixed[k] || (b->kept[k] && may_shine(w, t));
+        count += m->mixed[k] || b->kept[k];
         sums.most[k] = b->kept[k] ? b->own[k] : 0;
     }
     for (int i = 0; i < count; i++)
@@ -127,10 +109,11 @@ static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
     for (int i = 0; i < count; i++) {
         const int k = wanted[i];
 
-        add_taps(&sums, k, &taps[i], b->level[k],
-                 (const uint16_t[3]){(uint16_t)m->behind[0][k],
-                                     (uint16_t)m->behind[1][k],
-                                     (uint16_t)m->behind[2][k]});
+        if (m->mixed[k] || may_shine(&taps[i]))
+            add_taps(&sums, k, &taps[i], b->level[k],
+                     (const uint16_t[3]){(uint16_t)m->behind[0][k],
+                                         (uint16_t)m->behind[1][k],
+                                         (uint16_t)m->behind[2][k]});
     }
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < BATCH; k++) {
@@ -203,7 +186,7 @@ static void set_alpha(struct rf_thin_mixture *m, const struct rf_thin_batch *b)
 }
 
 void RF_VEC(rf_thin_near)(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
-                          const struct rf_thin_tile *t, struct rf_thin_window *w)
+                          const struct rf_thin_tile *t, const struct rf_thin_window *w)
 {
     set_near(m, b, t, w);
     set_alpha(m, b);

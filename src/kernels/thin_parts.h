@@ -71,7 +71,6 @@ struct rf_thin_window {
     uint16_t inside[SPAN][ROW]; /* 0 beyond the photo, which is never near */
     uint16_t (*before)[ROW];    /* that, or map */
     uint16_t most[RF_TILE][WIDER], least[RF_TILE][WIDER]; /* of 3 x 3, of 7 x 7 */
-    bool bright, asked; /* something may shine; whether that is known */
 };
 
 /* A row of a tile, pixel by pixel. */
@@ -117,6 +116,6 @@ void RF_VEC(rf_thin_far)(struct rf_thin_mixture *m, struct rf_thin_batch *b);
 
 /* N, as far as it is needed, and alpha. */
 void RF_VEC(rf_thin_near)(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
-                          const struct rf_thin_tile *t, struct rf_thin_window *w);
+                          const struct rf_thin_tile *t, const struct rf_thin_window *w);
 
 #endif

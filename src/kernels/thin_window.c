@@ -159,6 +159,5 @@ bool RF_VEC(rf_thin_window)(struct rf_thin_window *w, const struct rf_thin_tile 
     if (!inside)
         mark_beyond(w, part);
     w->before = inside ? w->map : w->inside;
-    w->asked = false;
     return true;
 }
