@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "colour/yuv.h"
+#include "kernels/thin.h"
 #include "kernels/upsample.h"
 #include "tiles/slab.h"
 
@@ -469,6 +470,7 @@ struct rf_kernels {
     rf_weighed_means_fn *weighed_means;
     rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
+    rf_find_thin_fn *find_thin;
     rf_soften_fn *soften;
     rf_lay_veil_fn *lay_veil;
     rf_brightest_fn *brightest;
@@ -513,7 +515,7 @@ rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_weigh_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
     RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use), RF_ALL_SETS(rf_series_use),
-    RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_yuv_use),
-    RF_ALL_SETS(rf_yuv_codes_use);
+    RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use), RF_ALL_SETS(rf_upsample_use),
+    RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
 
 #endif
