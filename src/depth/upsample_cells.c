@@ -64,11 +64,17 @@ static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *
                 __builtin_prefetch(row + i * patch->bytes);
         }
     }
-    for (int c = 0; c < 3; c++) { /* copies of 8 cost less than copies of n */
-        for (int j = 0; j < rows; j++)
-            memcpy(colour[c] + j * n, &patch->colour[c][j][x - patch->from], RUN);
-        memset(colour[c] + rows * n, colour[c][0], RF_BATCH_SPARE);
+    const size_t left = (size_t)(x - patch->from), step = (size_t)n;
+    size_t at = 0;
+
+    /* Copies of 8 cost less than copies of n. */
+    for (int j = 0; j < rows; j++, at += step) {
+        memcpy(&colour[0][at], &patch->colour[0][j][left], RUN);
+        memcpy(&colour[1][at], &patch->colour[1][j][left], RUN);
+        memcpy(&colour[2][at], &patch->colour[2][j][left], RUN);
     }
+    for (int c = 0; c < 3; c++)
+        memset(&colour[c][at], colour[c][0], RF_BATCH_SPARE);
 }
 
 static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
@@ -100,15 +106,34 @@ static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
     return lie;
 }
 
-/* n elements of one or two bytes, at most 8 and often 4 or more. */
-static inline void put(void *to, const void *from, int n, int size)
+/* n elements of one or two bytes, at most 8 and often 4 or more: then four and four. */
+static inline void put(void *to, const void *from, size_t n, size_t size)
 {
     if (n >= 4) {
-        memcpy(to, from, 4 * (size_t)size);
+        memcpy(to, from, 4 * size);
         memcpy((char *)to + (n - 4) * size, (const char *)from + (n - 4) * size,
-               4 * (size_t)size);
+               4 * size);
     } else {
-        memcpy(to, from, (size_t)(n * size));
+        memcpy(to, from, n * size);
+    }
+}
+
+/* What has been found for columns x to x + n - 1. */
+static inline void put_rows(const struct patch *patch, const uint16_t *result,
+                            const uint8_t *is_sure, int x, size_t n)
+{
+    const struct rf_upsampler *up = patch->up;
+    const ptrdiff_t out_stride = up->out_stride, sure_stride = up->sure_stride;
+    uint16_t *out = up->out + patch->y0 * out_stride + x;
+    uint8_t *sure = up->sure + patch->y0 * sure_stride + x;
+
+    for (int y = patch->y0; y < patch->y1; y++) {
+        put(out, result, n, sizeof *out);
+        put(sure, is_sure, n, sizeof *sure);
+        out += out_stride;
+        sure += sure_stride;
+        result += n;
+        is_sure += n;
     }
 }
 
@@ -212,11 +237,21 @@ static void fill_cell(struct patch *patch, int cell, int i)
         found = true;
         up->kernels->surface(result, sure, &patch->cell, &window,
                              lie_of(patch, cell, x, n), colour, rows * n);
-        for (int j = 0; j < rows; j++) {
-            put(up->out + (patch->y0 + j) * up->out_stride + x, result + j * n, n, 2);
-            put(up->sure + (patch->y0 + j) * up->sure_stride + x, sure + j * n, n, 1);
-        }
+        put_rows(patch, result, sure, x, (size_t)n);
     }
+}
+
+/* RUN pixels, of which n are in the cell. */
+static inline void clamp_run(uint16_t *out, int n, uint16_t low, uint16_t high)
+{
+    uint16_t v[RUN];
+
+    memcpy(v, out, sizeof v);
+    for (int i = 0; i < RUN; i++) {
+        v[i] = v[i] < low ? low : v[i];
+        v[i] = v[i] > high ? high : v[i];
+    }
+    put(out, v, (size_t)n, sizeof *v);
 }
 
 /* Taps in the corners are in the means, but nothing beyond the others is to come of
@@ -225,6 +260,7 @@ static void clamp_cell(const struct patch *patch, int cell,
                        const uint16_t *const row[RF_TAPS], int at)
 {
     const struct rf_upsampler *up = patch->up;
+    const int x1 = up->span[cell + 1].begin;
     uint16_t low = row[1][at], high = low;
 
     for (int j = 0; j < RF_TAPS; j++) {
@@ -239,8 +275,11 @@ static void clamp_cell(const struct patch *patch, int cell,
     }
     for (int y = patch->y0; y < patch->y1; y++) {
         uint16_t *out = up->out + y * up->out_stride;
+        int x = up->span[cell].begin;
 
-        for (int x = up->span[cell].begin; x < up->span[cell + 1].begin; x++)
+        for (; x < x1 && x + RUN <= up->photo->width; x += RUN)
+            clamp_run(out + x, x1 - x < RUN ? x1 - x : RUN, low, high);
+        for (; x < x1; x++)
             out[x] = out[x] < low ? low : out[x] > high ? high : out[x];
     }
 }
@@ -309,11 +348,8 @@ void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1)
     for (int i = 0; i < RF_TAPS; i++)
         wide[i] = up->wide + clamp(first + i, up->rows - 1) * up->wide_stride;
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
-        uint16_t share[RF_TAPS];
-
-        for (int i = 0; i < RF_TAPS; i++)
-            share[i] = (uint16_t)(2 * up->down[y].share[i]);
-        up->kernels->blend4(up->out + y * up->out_stride, wide, share, width);
+        up->kernels->blend4(up->out + y * up->out_stride, wide, up->down[y].share,
+                            width);
         memset(up->sure + y * up->sure_stride, 255, (size_t)width);
     }
     for (patch.y0 = y0; patch.y0 < y1; patch.y0 = patch.y1) {
