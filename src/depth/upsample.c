@@ -173,47 +173,59 @@ static void widen_row(void *context, int y, int worker)
                         up->photo->width);
 }
 
+/* Three rows, of which the middle one is settled. */
+struct three {
+    const uint16_t *row[3];
+    const uint8_t *sure[3];
+    uint16_t *out;
+};
+
 /* n pixels of which some are not sure, from those around; at the border, of one block.
  */
-static void settle_block(const struct rf_upsampler *up, int x, int y, int n)
+static void settle_block(const struct rf_upsampler *up, const struct three *three,
+                         int x, int n)
 {
-    const int right = up->photo->width - 1, last = up->photo->height - 1;
+    const int right = up->photo->width - 1;
     uint16_t near_by[3][BLOCK + 2];
     uint8_t near_sure[3][BLOCK + 2];
     const uint16_t *row[3];
     const uint8_t *sure[3];
+    const bool inside = x > 0 && x + n <= right;
 
     for (int j = 0; j < 3; j++) {
-        const ptrdiff_t v = clamp(y - 1 + j, last);
-
-        row[j] = up->out + v * up->out_stride + x;
-        sure[j] = up->sure + v * up->sure_stride + x;
-        if (x > 0 && x + n <= right)
-            continue;
-        for (int i = -1; i <= n; i++) {
+        row[j] = three->row[j] + x;
+        sure[j] = three->sure[j] + x;
+        for (int i = -1; i <= n && !inside; i++) {
             near_by[j][i + 1] = row[j][clamp(x + i, right) - x];
             near_sure[j][i + 1] = sure[j][clamp(x + i, right) - x];
         }
-        row[j] = near_by[j] + 1;
-        sure[j] = near_sure[j] + 1;
+        row[j] = inside ? row[j] : near_by[j] + 1;
+        sure[j] = inside ? sure[j] : near_sure[j] + 1;
     }
-    up->kernels->lean3(up->settled + y * up->settled_stride + x, row, sure, n);
+    up->kernels->lean3(three->out + x, row, sure, n);
 }
 
 static void settle_row(const struct rf_upsampler *up, int y)
 {
     const uint16_t *unsure = up->unsure + y * up->unsure_stride;
-    const int width = up->photo->width;
+    const int width = up->photo->width, blocks = unsure[0];
+    struct three three = {.out = up->settled + y * up->settled_stride};
 
-    for (int i = 1; i <= unsure[0]; i++) {
+    for (int j = 0; j < 3; j++) {
+        const ptrdiff_t v = clamp(y - 1 + j, up->photo->height - 1);
+
+        three.row[j] = up->out + v * up->out_stride;
+        three.sure[j] = up->sure + v * up->sure_stride;
+    }
+    for (int i = 1; i <= blocks; i++) {
         const int x = unsure[i] * BLOCK;
         int n = width - x < BLOCK ? width - x : BLOCK;
 
-        for (; x > 0 && i < unsure[0] && unsure[i + 1] == unsure[i] + 1 &&
+        for (; x > 0 && i < blocks && unsure[i + 1] == unsure[i] + 1 &&
                x + n + BLOCK < width;
              n += BLOCK)
             i++;
-        settle_block(up, x, y, n);
+        settle_block(up, &three, x, n);
     }
 }
 

@@ -142,12 +142,10 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Elements of a row from x on, which beyond the border are those at the border. */
+/* Elements of a row from x on; beyond the border those at the border. */
 static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
                             int columns)
 {
-    if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
-        return row + x;
     const int from = x < 0 ? -x : 0;
     const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
 
@@ -163,8 +161,6 @@ static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
 static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, int x,
                               int columns)
 {
-    if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
-        return row + x;
     const int from = x < 0 ? -x : 0;
     const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
 
@@ -177,17 +173,17 @@ static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, in
     return spare;
 }
 
+/* Rows of bytes from column x on; `inside`: all of what is taken is there. */
 static void turn(const struct patch *patch, uint8_t *out, const uint8_t *samples,
-                 ptrdiff_t stride, int x)
+                 const ptrdiff_t off[RF_AROUND], int x, bool inside)
 {
     const struct rf_upsampler *up = patch->up;
     uint8_t spare[RF_AROUND][RF_TURNED];
     const uint8_t *row[RF_AROUND];
 
     for (int j = 0; j < RF_AROUND; j++)
-        row[j] =
-            take8(spare[j], samples + clamp(patch->row - 2 + j, up->rows - 1) * stride,
-                  x, up->columns);
+        row[j] = inside ? samples + off[j] + x
+                        : take8(spare[j], samples + off[j], x, up->columns);
     up->kernels->turn8(out, row);
 }
 
@@ -196,19 +192,24 @@ static void look_around(struct patch *patch, int first)
 {
     const struct rf_upsampler *up = patch->up;
     const int x = first - PAD - 2;
+    const bool inside = x >= -PAD && x + RF_TURNED <= up->columns + PAD;
     uint16_t spare[RF_AROUND][RF_TURNED];
     const uint16_t *row[RF_AROUND];
+    ptrdiff_t of_colour[RF_AROUND], of_trust[RF_AROUND];
 
-    for (int j = 0; j < RF_AROUND; j++)
-        row[j] = take16(spare[j],
-                        up->coarse +
-                            clamp(patch->row - 2 + j, up->rows - 1) * up->coarse_stride,
-                        x, up->columns);
+    for (int j = 0; j < RF_AROUND; j++) {
+        const int y = clamp(patch->row - 2 + j, up->rows - 1);
+        const uint16_t *samples = up->coarse + y * up->coarse_stride;
+
+        row[j] = inside ? samples + x : take16(spare[j], samples, x, up->columns);
+        of_colour[j] = y * up->colour_stride;
+        of_trust[j] = y * up->trust_stride;
+    }
     up->kernels->turn16(patch->around.disparity, row);
     for (int c = 0; c < 3; c++)
-        turn(patch, patch->around.colour[c], up->colour[c], up->colour_stride, x);
+        turn(patch, patch->around.colour[c], up->colour[c], of_colour, x, inside);
     if (up->confidence)
-        turn(patch, patch->around.trust, up->trust, up->trust_stride, x);
+        turn(patch, patch->around.trust, up->trust, of_trust, x, inside);
 }
 
 /* Pixels of the i-th cell of those that have been looked around. */

@@ -509,8 +509,9 @@ rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_sweep_weighted_use),
     RF_VECTOR_SETS(rf_weigh_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
-    RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use), RF_ALL_SETS(rf_series_use),
-    RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_yuv_use),
+    RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
+    RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use),
+    RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_yuv_use),
     RF_ALL_SETS(rf_yuv_codes_use);
 
 #endif

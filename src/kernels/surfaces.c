@@ -325,29 +325,29 @@ static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell,
     const int16_t *weight;
     const uint64_t trusted = take_trust(cell, spare, &weight, window);
     unsigned starts = parts->starts[at];
-    int most_taps = 0;
+    int most_taps = 0, greatest = 0, n = 0;
 
     for (int i = 0; i < RF_TAPS; i++)
         memcpy(tap + i * RF_TAPS, window->disparity + FIRST + i * RF_AROUND,
                RF_TAPS * sizeof *tap);
-    cell->surfaces = 0;
     while (starts) {
-        struct rf_surface *s = &cell->surface[cell->surfaces++];
+        struct rf_surface *s = &cell->surface[n];
         const int first = __builtin_ctz(starts);
 
         starts &= starts - 1;
         const int end = starts ? __builtin_ctz(starts) : TAPS;
 
-        if (end - first > most_taps) {
-            most_taps = end - first;
-            cell->greatest = cell->surfaces - 1;
-        }
+        greatest = end - first > most_taps ? n : greatest;
+        most_taps = end - first > most_taps ? end - first : most_taps;
         s->low = parts->sorted[first][at];
         s->range = (uint16_t)(parts->sorted[end - 1][at] - s->low);
         s->taps = (uint16_t)within16(tap, s->low, s->range);
         set_scale(s, find_samples(s, window->disparity, trusted));
         fit(s, tap, weight);
+        n++;
     }
+    cell->surfaces = n;
+    cell->greatest = greatest;
 }
 
 void RF_VEC(rf_surfaces_use)(struct rf_kernels *kernels)
