@@ -17,7 +17,13 @@ struct heic {
 static int fail_heif(const struct rf_read *read, struct heif_error error)
 {
     int status = REFOCUS_ERR_FORMAT;
+    size_t length = strlen(error.message);
 
+    while (length > 0 && strchr(" \n", error.message[length - 1]))
+        length--;
+    if (error.subcode == heif_suberror_End_of_data)
+        return rf_fail(read->reason, status,
+                       "damaged HEIC: it ends too early; copy it again");
     if (error.subcode == heif_suberror_Security_limit_exceeded) {
         status = REFOCUS_ERR_SIZE;
     } else if (error.code == heif_error_Memory_allocation_error) {
@@ -27,7 +33,8 @@ static int fail_heif(const struct rf_read *read, struct heif_error error)
                error.subcode == heif_suberror_Unsupported_codec) {
         status = REFOCUS_ERR_UNSUPPORTED;
     }
-    return rf_fail(read->reason, status, "HEIC: %.200s", error.message);
+    return rf_fail(read->reason, status, "HEIC: %.*s", length < 200 ? (int)length : 200,
+                   error.message);
 }
 
 /* Copy rows out of libheif; bytes is what a row needs. */

@@ -11,20 +11,20 @@ enum {
 };
 
 /* Cubic B-spline, for means: it smooths noise, and keeps slopes. t in Q8, result in Q24
- * / 6. */
+ * / 6: four of them, one apart, add up to 6 << 24. */
 static int mean_weight(int t)
 {
-    const int64_t a = abs(t), left = 512 - a;
+    const int a = abs(t), left = 512 - a;
 
     if (a >= 512)
         return 0;
-    return (int)(a >= 256 ? left * left * left
-                          : 4 * (1 << 24) - 6 * 256 * a * a + 3 * a * a * a);
+    return a >= 256 ? left * left * left
+                    : 4 * (1 << 24) - 6 * 256 * a * a + 3 * a * a * a;
 }
 
 /* 0.465 (1 - (t / 2)^2)^2 in Q16 for what is expected before the photo is looked at:
  * four of them add up to less than 1. t in Q8. */
-static uint16_t nearness(int64_t t)
+static uint16_t nearness(int t)
 {
     const int64_t fall = 65536 - t * t / 4;
 
@@ -41,16 +41,13 @@ static struct rf_taps taps_at(int x, int size, int samples)
 {
     const int64_t at = position(x, size, samples);
     struct rf_taps taps = {.first = (int32_t)((at + 256) >> 8) - 2};
-    int weight[RF_TAPS], sum = 0, left = 32768, greatest = 0;
+    const int off = (int)(at - (int64_t)taps.first * 256); /* 256 to 511 */
+    int left = 32768, greatest = 0;
 
+    taps.middle = (int16_t)((off - 256 - 128) * 128);
     for (int i = 0; i < RF_TAPS; i++) {
-        weight[i] = mean_weight((int)(at - ((int64_t)taps.first + i) * 256));
-        sum += weight[i];
-        taps.near_by[i] = nearness(at - ((int64_t)taps.first + i) * 256);
-    }
-    taps.middle = (int16_t)((at - ((int64_t)taps.first + 1) * 256 - 128) * 128);
-    for (int i = 0; i < RF_TAPS; i++) {
-        taps.share[i] = (int16_t)(((int64_t)weight[i] << 15) / sum);
+        taps.near_by[i] = nearness(off - i * 256);
+        taps.share[i] = (int16_t)(mean_weight(off - i * 256) / (6 << (24 - 15)));
         left -= taps.share[i];
         greatest = taps.share[i] > taps.share[greatest] ? i : greatest;
     }
@@ -97,14 +94,20 @@ static void load_colours(const struct rf_upsampler *up, int y)
     const int bytes = refocus_format_bytes(photo->format), n = up->columns;
     const uint8_t *row =
         photo->plane[0] + place(y, up->rows, photo->height) * photo->stride[0];
-    struct walk walk = walk_from_0(n, photo->width);
+    const struct rf_span *restrict span = up->span;
     uint8_t *const out[3] = {up->colour[0] + y * up->colour_stride,
                              up->colour[1] + y * up->colour_stride,
                              up->colour[2] + y * up->colour_stride};
+    uint8_t *restrict first = out[0], *restrict second = out[1],
+                      *restrict third = out[2];
 
-    for (int x = 0; x < n; x++, walk_on(&walk))
-        for (int c = 0; c < 3; c++)
-            out[c][x] = (uint8_t)(row[walk.at * bytes + c] >> QUARTER);
+    for (int x = 0; x < n; x++) {
+        const uint8_t *restrict pixel = row + (ptrdiff_t)span[x].shown * bytes;
+
+        first[x] = (uint8_t)(pixel[0] >> QUARTER);
+        second[x] = (uint8_t)(pixel[1] >> QUARTER);
+        third[x] = (uint8_t)(pixel[2] >> QUARTER);
+    }
     for (int c = 0; c < 3; c++) {
         memset(out[c] - PAD, out[c][0], PAD);
         memset(out[c] + n, out[c][n - 1], PAD);
@@ -124,6 +127,21 @@ static void load_trust(const struct rf_upsampler *up, int y)
     memset(out + up->columns, out[up->columns - 1], PAD);
 }
 
+/* As many samples as the map has columns, or fewer. */
+static void load_samples(const struct rf_upsampler *up, uint16_t *out, const void *in)
+{
+    struct walk walk = walk_from_0(up->columns, up->map->width);
+
+    if (up->map->bits == 16 && up->columns == up->map->width)
+        memcpy(out, in, (size_t)up->columns * sizeof *out);
+    else if (up->map->bits == 16)
+        for (int x = 0; x < up->columns; x++, walk_on(&walk))
+            out[x] = ((const uint16_t *)in)[walk.at];
+    else
+        for (int x = 0; x < up->columns; x++, walk_on(&walk))
+            out[x] = (uint16_t)(((const uint8_t *)in)[walk.at] * 257);
+}
+
 /* A row of samples, what the photo shows there, and how sure they are. */
 static void load_row(void *context, int item, int worker)
 {
@@ -132,13 +150,10 @@ static void load_row(void *context, int item, int worker)
     const int y = item - PAD, n = up->columns;
     const uint8_t *in =
         (const uint8_t *)map->samples + place(y, up->rows, map->height) * map->stride;
-    struct walk walk = walk_from_0(n, map->width);
     uint16_t *out = up->coarse + y * up->coarse_stride;
 
     (void)worker;
-    for (int x = 0; x < n; x++, walk_on(&walk))
-        out[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[walk.at]
-                                            : in[walk.at] * 257);
+    load_samples(up, out, in);
     for (int i = 1; i <= PAD; i++) {
         out[-i] = out[0];
         out[n - 1 + i] = out[n - 1];
@@ -158,47 +173,59 @@ static void widen_row(void *context, int y, int worker)
                         up->photo->width);
 }
 
+/* Three rows, of which the middle one is settled. */
+struct three {
+    const uint16_t *row[3];
+    const uint8_t *sure[3];
+    uint16_t *out;
+};
+
 /* n pixels of which some are not sure, from those around; at the border, of one block.
  */
-static void settle_block(const struct rf_upsampler *up, int x, int y, int n)
+static void settle_block(const struct rf_upsampler *up, const struct three *three,
+                         int x, int n)
 {
-    const int right = up->photo->width - 1, last = up->photo->height - 1;
+    const int right = up->photo->width - 1;
     uint16_t near_by[3][BLOCK + 2];
     uint8_t near_sure[3][BLOCK + 2];
     const uint16_t *row[3];
     const uint8_t *sure[3];
+    const bool inside = x > 0 && x + n <= right;
 
     for (int j = 0; j < 3; j++) {
-        const ptrdiff_t v = clamp(y - 1 + j, last);
-
-        row[j] = up->out + v * up->out_stride + x;
-        sure[j] = up->sure + v * up->sure_stride + x;
-        if (x > 0 && x + n <= right)
-            continue;
-        for (int i = -1; i <= n; i++) {
+        row[j] = three->row[j] + x;
+        sure[j] = three->sure[j] + x;
+        for (int i = -1; i <= n && !inside; i++) {
             near_by[j][i + 1] = row[j][clamp(x + i, right) - x];
             near_sure[j][i + 1] = sure[j][clamp(x + i, right) - x];
         }
-        row[j] = near_by[j] + 1;
-        sure[j] = near_sure[j] + 1;
+        row[j] = inside ? row[j] : near_by[j] + 1;
+        sure[j] = inside ? sure[j] : near_sure[j] + 1;
     }
-    up->kernels->lean3(up->settled + y * up->settled_stride + x, row, sure, n);
+    up->kernels->lean3(three->out + x, row, sure, n);
 }
 
 static void settle_row(const struct rf_upsampler *up, int y)
 {
     const uint16_t *unsure = up->unsure + y * up->unsure_stride;
-    const int width = up->photo->width;
+    const int width = up->photo->width, blocks = unsure[0];
+    struct three three = {.out = up->settled + y * up->settled_stride};
 
-    for (int i = 1; i <= unsure[0]; i++) {
+    for (int j = 0; j < 3; j++) {
+        const ptrdiff_t v = clamp(y - 1 + j, up->photo->height - 1);
+
+        three.row[j] = up->out + v * up->out_stride;
+        three.sure[j] = up->sure + v * up->sure_stride;
+    }
+    for (int i = 1; i <= blocks; i++) {
         const int x = unsure[i] * BLOCK;
         int n = width - x < BLOCK ? width - x : BLOCK;
 
-        for (; x > 0 && i < unsure[0] && unsure[i + 1] == unsure[i] + 1 &&
+        for (; x > 0 && i < blocks && unsure[i + 1] == unsure[i] + 1 &&
                x + n + BLOCK < width;
              n += BLOCK)
             i++;
-        settle_block(up, x, y, n);
+        settle_block(up, &three, x, n);
     }
 }
 
@@ -288,7 +315,11 @@ void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
     const int width = up->photo->width, height = up->photo->height;
     const int bands = (up->rows + SPAN) / SPAN; /* of rows + 1 */
 
+    struct walk walk = walk_from_0(up->columns, width);
+
     up->run = pool->run;
+    for (int i = 0; i < up->columns; i++, walk_on(&walk))
+        up->span[i].shown = (int32_t)walk.at;
     for (int x = 0; x < width; x++)
         up->across[x] = taps_at(x, width, up->columns);
     rf_find_spans(up);

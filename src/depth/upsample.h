@@ -17,6 +17,7 @@ enum {
 struct rf_span {
     int32_t begin;
     int32_t alike; /* the first one whose pixels lie the same way */
+    int32_t shown; /* the one in the middle of the column of samples of this number */
 };
 
 /*

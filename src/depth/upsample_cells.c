@@ -64,11 +64,17 @@ static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *
                 __builtin_prefetch(row + i * patch->bytes);
         }
     }
-    for (int c = 0; c < 3; c++) { /* copies of 8 cost less than copies of n */
-        for (int j = 0; j < rows; j++)
-            memcpy(colour[c] + j * n, &patch->colour[c][j][x - patch->from], RUN);
-        memset(colour[c] + rows * n, colour[c][0], RF_BATCH_SPARE);
+    const size_t left = (size_t)(x - patch->from), step = (size_t)n;
+    size_t at = 0;
+
+    /* Copies of 8 cost less than copies of n. */
+    for (int j = 0; j < rows; j++, at += step) {
+        memcpy(&colour[0][at], &patch->colour[0][j][left], RUN);
+        memcpy(&colour[1][at], &patch->colour[1][j][left], RUN);
+        memcpy(&colour[2][at], &patch->colour[2][j][left], RUN);
     }
+    for (int c = 0; c < 3; c++)
+        memset(&colour[c][at], colour[c][0], RF_BATCH_SPARE);
 }
 
 static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
@@ -100,15 +106,34 @@ static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
     return lie;
 }
 
-/* n elements of one or two bytes, at most 8 and often 4 or more. */
-static inline void put(void *to, const void *from, int n, int size)
+/* n elements of one or two bytes, at most 8 and often 4 or more: then four and four. */
+static inline void put(void *to, const void *from, size_t n, size_t size)
 {
     if (n >= 4) {
-        memcpy(to, from, 4 * (size_t)size);
+        memcpy(to, from, 4 * size);
         memcpy((char *)to + (n - 4) * size, (const char *)from + (n - 4) * size,
-               4 * (size_t)size);
+               4 * size);
     } else {
-        memcpy(to, from, (size_t)(n * size));
+        memcpy(to, from, n * size);
+    }
+}
+
+/* What has been found for columns x to x + n - 1. */
+static inline void put_rows(const struct patch *patch, const uint16_t *result,
+                            const uint8_t *is_sure, int x, size_t n)
+{
+    const struct rf_upsampler *up = patch->up;
+    const ptrdiff_t out_stride = up->out_stride, sure_stride = up->sure_stride;
+    uint16_t *out = up->out + patch->y0 * out_stride + x;
+    uint8_t *sure = up->sure + patch->y0 * sure_stride + x;
+
+    for (int y = patch->y0; y < patch->y1; y++) {
+        put(out, result, n, sizeof *out);
+        put(sure, is_sure, n, sizeof *sure);
+        out += out_stride;
+        sure += sure_stride;
+        result += n;
+        is_sure += n;
     }
 }
 
@@ -117,12 +142,10 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Elements of a row from x on, which beyond the border are those at the border. */
+/* Elements of a row from x on; beyond the border those at the border. */
 static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
                             int columns)
 {
-    if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
-        return row + x;
     const int from = x < 0 ? -x : 0;
     const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
 
@@ -138,8 +161,6 @@ static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
 static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, int x,
                               int columns)
 {
-    if (x >= -RF_UPSAMPLE_PAD && x + RF_TURNED <= columns + RF_UPSAMPLE_PAD)
-        return row + x;
     const int from = x < 0 ? -x : 0;
     const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
 
@@ -152,17 +173,17 @@ static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, in
     return spare;
 }
 
+/* Rows of bytes from column x on; `inside`: all of what is taken is there. */
 static void turn(const struct patch *patch, uint8_t *out, const uint8_t *samples,
-                 ptrdiff_t stride, int x)
+                 const ptrdiff_t off[RF_AROUND], int x, bool inside)
 {
     const struct rf_upsampler *up = patch->up;
     uint8_t spare[RF_AROUND][RF_TURNED];
     const uint8_t *row[RF_AROUND];
 
     for (int j = 0; j < RF_AROUND; j++)
-        row[j] =
-            take8(spare[j], samples + clamp(patch->row - 2 + j, up->rows - 1) * stride,
-                  x, up->columns);
+        row[j] = inside ? samples + off[j] + x
+                        : take8(spare[j], samples + off[j], x, up->columns);
     up->kernels->turn8(out, row);
 }
 
@@ -171,19 +192,24 @@ static void look_around(struct patch *patch, int first)
 {
     const struct rf_upsampler *up = patch->up;
     const int x = first - PAD - 2;
+    const bool inside = x >= -PAD && x + RF_TURNED <= up->columns + PAD;
     uint16_t spare[RF_AROUND][RF_TURNED];
     const uint16_t *row[RF_AROUND];
+    ptrdiff_t of_colour[RF_AROUND], of_trust[RF_AROUND];
 
-    for (int j = 0; j < RF_AROUND; j++)
-        row[j] = take16(spare[j],
-                        up->coarse +
-                            clamp(patch->row - 2 + j, up->rows - 1) * up->coarse_stride,
-                        x, up->columns);
+    for (int j = 0; j < RF_AROUND; j++) {
+        const int y = clamp(patch->row - 2 + j, up->rows - 1);
+        const uint16_t *samples = up->coarse + y * up->coarse_stride;
+
+        row[j] = inside ? samples + x : take16(spare[j], samples, x, up->columns);
+        of_colour[j] = y * up->colour_stride;
+        of_trust[j] = y * up->trust_stride;
+    }
     up->kernels->turn16(patch->around.disparity, row);
     for (int c = 0; c < 3; c++)
-        turn(patch, patch->around.colour[c], up->colour[c], up->colour_stride, x);
+        turn(patch, patch->around.colour[c], up->colour[c], of_colour, x, inside);
     if (up->confidence)
-        turn(patch, patch->around.trust, up->trust, up->trust_stride, x);
+        turn(patch, patch->around.trust, up->trust, of_trust, x, inside);
 }
 
 /* Pixels of the i-th cell of those that have been looked around. */
@@ -212,11 +238,21 @@ static void fill_cell(struct patch *patch, int cell, int i)
         found = true;
         up->kernels->surface(result, sure, &patch->cell, &window,
                              lie_of(patch, cell, x, n), colour, rows * n);
-        for (int j = 0; j < rows; j++) {
-            put(up->out + (patch->y0 + j) * up->out_stride + x, result + j * n, n, 2);
-            put(up->sure + (patch->y0 + j) * up->sure_stride + x, sure + j * n, n, 1);
-        }
+        put_rows(patch, result, sure, x, (size_t)n);
     }
+}
+
+/* RUN pixels, of which n are in the cell. */
+static inline void clamp_run(uint16_t *out, int n, uint16_t low, uint16_t high)
+{
+    uint16_t v[RUN];
+
+    memcpy(v, out, sizeof v);
+    for (int i = 0; i < RUN; i++) {
+        v[i] = v[i] < low ? low : v[i];
+        v[i] = v[i] > high ? high : v[i];
+    }
+    put(out, v, (size_t)n, sizeof *v);
 }
 
 /* Taps in the corners are in the means, but nothing beyond the others is to come of
@@ -225,6 +261,7 @@ static void clamp_cell(const struct patch *patch, int cell,
                        const uint16_t *const row[RF_TAPS], int at)
 {
     const struct rf_upsampler *up = patch->up;
+    const int x1 = up->span[cell + 1].begin;
     uint16_t low = row[1][at], high = low;
 
     for (int j = 0; j < RF_TAPS; j++) {
@@ -239,8 +276,11 @@ static void clamp_cell(const struct patch *patch, int cell,
     }
     for (int y = patch->y0; y < patch->y1; y++) {
         uint16_t *out = up->out + y * up->out_stride;
+        int x = up->span[cell].begin;
 
-        for (int x = up->span[cell].begin; x < up->span[cell + 1].begin; x++)
+        for (; x < x1 && x + RUN <= up->photo->width; x += RUN)
+            clamp_run(out + x, x1 - x < RUN ? x1 - x : RUN, low, high);
+        for (; x < x1; x++)
             out[x] = out[x] < low ? low : out[x] > high ? high : out[x];
     }
 }
@@ -309,11 +349,8 @@ void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1)
     for (int i = 0; i < RF_TAPS; i++)
         wide[i] = up->wide + clamp(first + i, up->rows - 1) * up->wide_stride;
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
-        uint16_t share[RF_TAPS];
-
-        for (int i = 0; i < RF_TAPS; i++)
-            share[i] = (uint16_t)(2 * up->down[y].share[i]);
-        up->kernels->blend4(up->out + y * up->out_stride, wide, share, width);
+        up->kernels->blend4(up->out + y * up->out_stride, wide, up->down[y].share,
+                            width);
         memset(up->sure + y * up->sure_stride, 255, (size_t)width);
     }
     for (patch.y0 = y0; patch.y0 < y1; patch.y0 = patch.y1) {

@@ -51,7 +51,7 @@ static inline void look(uint16_t alike[VEC_U8], const vec_u8 colour[3],
     vec_u16 sum[HALVES] = {vec_u16_set(0), vec_u16_set(0)};
 
     for (; samples; samples &= samples - 1) {
-        const int i = __builtin_ctzll(samples);
+        const size_t i = (size_t)__builtin_ctzll(samples);
         const vec_u8 d0 = vec_u8_apart(colour[0], vec_u8_set(sample[0][i]));
         const vec_u8 d1 = vec_u8_apart(colour[1], vec_u8_set(sample[1][i]));
         const vec_u8 d2 = vec_u8_apart(colour[2], vec_u8_set(sample[2][i]));

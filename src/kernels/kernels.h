@@ -290,10 +290,6 @@ typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
 /* tile_brightest: the same of the pixels of a tile, whose rows are `stride` apart. */
 typedef uint16_t rf_tile_brightest_fn(const uint16_t *const light[3], ptrdiff_t stride);
 
-/* blend4: four rows by weights in Q16 that add up to 1, rounded half up. */
-typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
-                          const uint16_t weight[4], int n);
-
 /*
  * search: rays of one strip by the randomized intersection search, plain sums.
  *
@@ -514,8 +510,8 @@ rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_sweep_weighted_use),
     RF_VECTOR_SETS(rf_weigh_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
-    RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use), RF_ALL_SETS(rf_series_use),
-    RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use), RF_ALL_SETS(rf_upsample_use),
-    RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
+    RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
+    RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use),
+    RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
 
 #endif

@@ -88,7 +88,7 @@ static void blend4(const struct rf_kernels *k, struct rows *r)
 {
     const uint16_t *const row[4] = {r->shorts[0], r->shorts[1], r->shorts[2], r->shorts[3]};
 
-    k->blend4(r->shorts[6], row, (const uint16_t[4]){8000, 24000, 25000, 8535}, N);
+    k->blend4(r->shorts[6], row, (const int16_t[4]){4000, 12000, 12500, 4268}, N);
 }
 
 static void lean3(const struct rf_kernels *k, struct rows *r)

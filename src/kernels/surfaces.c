@@ -1,4 +1,4 @@
-/* surfaces.c: coarse samples sorted into surfaces.
+/* surfaces.c: what is known of the surfaces of a cell.
  *
  * Compiled once as plain C and once for each instruction set, like rows.c.
  */
@@ -11,85 +11,15 @@ enum {
     TAPS = RF_TAP_COUNT,
     SAMPLES = RF_AROUND * RF_AROUND,
     FIRST = 2 * RF_AROUND + 2, /* tap */
-    GAP = 65535 / 44, /* largest one between neighbouring disparities of a surface */
-    WIDEST = 65535 / 8,
     TRUSTED = 128,
-    MANY = 40, /* samples of a surface */
+    MANY = 40,          /* samples of a surface */
     EVEN = 65535 / 256, /* with less between its low and high a surface has no slopes */
-    STEEPEST = 16383, /* a sample */
-    FIRM = 8,         /* weight of "it is flat" in the slopes, of 64 of all taps */
+    STEEPEST = 16383,   /* a sample */
+    FIRM = 8,           /* weight of "it is flat" in the slopes, of 64 of all taps */
 };
 
 /* Bits of every other of 8 x 8 samples, those of a checkerboard. */
 #define CHECKERED UINT64_C(0xaa55aa55aa55aa55)
-
-static inline uint16_t least(uint16_t a, uint16_t b)
-{
-    return a < b ? a : b;
-}
-
-static inline uint16_t most(uint16_t a, uint16_t b)
-{
-    return a > b ? a : b;
-}
-
-/* Cells side by side: a tap of them all lies in a row. */
-static inline void order(uint16_t *restrict low, uint16_t *restrict high)
-{
-    for (int i = 0; i < RF_CELLS; i++) {
-        const uint16_t a = low[i], b = high[i];
-
-        low[i] = least(a, b);
-        high[i] = most(a, b);
-    }
-}
-
-/* Batcher's odd-even merges of runs of 1, 2, 4 and 8. */
-static const uint8_t exchange[63][2] = {
-    {0, 1},  {2, 3},  {4, 5},   {6, 7},   {8, 9},   {10, 11}, {12, 13}, {14, 15},
-    {0, 2},  {1, 3},  {4, 6},   {5, 7},   {8, 10},  {9, 11},  {12, 14}, {13, 15},
-    {1, 2},  {5, 6},  {9, 10},  {13, 14}, {0, 4},   {1, 5},   {2, 6},   {3, 7},
-    {8, 12}, {9, 13}, {10, 14}, {11, 15}, {2, 4},   {3, 5},   {10, 12}, {11, 13},
-    {1, 2},  {3, 4},  {5, 6},   {9, 10},  {11, 12}, {13, 14}, {0, 8},   {1, 9},
-    {2, 10}, {3, 11}, {4, 12},  {5, 13},  {6, 14},  {7, 15},  {4, 8},   {5, 9},
-    {6, 10}, {7, 11}, {2, 4},   {3, 5},   {6, 8},   {7, 9},   {10, 12}, {11, 13},
-    {1, 2},  {3, 4},  {5, 6},   {7, 8},   {9, 10},  {11, 12}, {13, 14}};
-
-static void sort(uint16_t sorted[TAPS][RF_CELLS])
-{
-    for (size_t i = 0; i < sizeof exchange / sizeof *exchange; i++)
-        order(sorted[exchange[i][0]], sorted[exchange[i][1]]);
-}
-
-static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS],
-                            int n)
-{
-    uint16_t low[RF_CELLS], starts[RF_CELLS];
-
-    for (int t = 0; t < TAPS; t++) {
-        memset(parts->sorted[t], 0, sizeof parts->sorted[t]);
-        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS,
-               (size_t)n * sizeof(uint16_t));
-    }
-    sort(parts->sorted);
-    for (int i = 0; i < RF_CELLS; i++) {
-        low[i] = parts->sorted[0][i];
-        starts[i] = 1;
-    }
-    for (int t = 1; t < TAPS; t++) {
-        const uint16_t *restrict last = parts->sorted[t - 1];
-        const uint16_t *restrict d = parts->sorted[t];
-
-        for (int i = 0; i < RF_CELLS; i++) {
-            const uint16_t far_off =
-                (uint16_t)((d[i] - last[i] > GAP) | (d[i] - low[i] > WIDEST));
-
-            starts[i] = (uint16_t)(starts[i] | far_off << t);
-            low[i] = far_off ? d[i] : low[i];
-        }
-    }
-    memcpy(parts->starts, starts, sizeof starts);
-}
 
 /* Bits of 16 elements from low to low + width. */
 static inline uint64_t within16(const uint16_t *p, uint16_t low, uint16_t width)
@@ -105,34 +35,17 @@ static inline uint64_t within16(const uint16_t *p, uint16_t low, uint16_t width)
 #endif
 }
 
-static void RF_VEC(rf_turn8)(uint8_t out[RF_AROUND * RF_TURNED],
-                             const uint8_t *const row[RF_AROUND])
+static inline uint64_t within64(const uint16_t *p, uint16_t low, uint16_t width)
 {
-    const uint8_t *restrict a = row[0], *restrict b = row[1], *restrict c = row[2];
-    const uint8_t *restrict d = row[3], *restrict e = row[4], *restrict f = row[5];
-    const uint8_t *restrict g = row[6], *restrict h = row[7];
+#if defined(RF_VECTORS)
+    return vec_within64(p, low, width);
+#else
+    uint64_t bits = 0;
 
-    for (int x = 0; x < RF_TURNED; x++) {
-        uint8_t *restrict to = out + RF_AROUND * x;
-
-        to[0] = a[x], to[1] = b[x], to[2] = c[x], to[3] = d[x];
-        to[4] = e[x], to[5] = f[x], to[6] = g[x], to[7] = h[x];
-    }
-}
-
-static void RF_VEC(rf_turn16)(uint16_t out[RF_AROUND * RF_TURNED],
-                              const uint16_t *const row[RF_AROUND])
-{
-    const uint16_t *restrict a = row[0], *restrict b = row[1], *restrict c = row[2];
-    const uint16_t *restrict d = row[3], *restrict e = row[4], *restrict f = row[5];
-    const uint16_t *restrict g = row[6], *restrict h = row[7];
-
-    for (int x = 0; x < RF_TURNED; x++) {
-        uint16_t *restrict to = out + RF_AROUND * x;
-
-        to[0] = a[x], to[1] = b[x], to[2] = c[x], to[3] = d[x];
-        to[4] = e[x], to[5] = f[x], to[6] = g[x], to[7] = h[x];
-    }
+    for (int i = 0; i < SAMPLES; i += 16)
+        bits |= within16(p + i, low, width) << i;
+    return bits;
+#endif
 }
 
 /* Bits of those of 64 bytes whose highest bit is set. */
@@ -164,23 +77,22 @@ static int count(uint64_t bits)
 static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
                         uint64_t trusted)
 {
-    const int under = s->low > GAP / 2 ? s->low - GAP / 2 : 0;
+    const int under = s->low > RF_GAP / 2 ? s->low - RF_GAP / 2 : 0;
     const int high = s->low + s->range;
-    const int over = high < 65535 - GAP / 2 ? high + GAP / 2 : 65535;
-    uint64_t members = 0;
+    const int over = high < 65535 - RF_GAP / 2 ? high + RF_GAP / 2 : 65535;
+    uint64_t members = within64(disparity, (uint16_t)under, (uint16_t)(over - under));
 
-    for (int i = 0; i < SAMPLES; i += 16)
-        members |= within16(disparity + i, (uint16_t)under, (uint16_t)(over - under))
-                   << i;
-    s->samples = members & trusted;
-    if (count(s->samples) > MANY)
-        s->samples &= CHECKERED;
+    members &= trusted;
+    /* No branch: nobody could foretell it. */
+    const uint64_t few = (uint64_t)(count(members) - MANY - 1) >> 63;
+
+    s->samples = members & (CHECKERED | -few);
     return count(s->samples);
 }
 
-/* What n samples grow by to be 64 to 127, and 64 / (n grow) in Q16. */
+/* What n samples grow by to be 64 to 127, and 64 / (6 n grow) in Q32. */
 /* clang-format off */
-#define GROW(n, grow) {65536 * 64 / ((n) * (grow)), grow}
+#define GROW(n, grow) {65536 * 64 / ((n) * (grow)) * (65536 / 6 + 1), grow}
 /* clang-format on */
 #define GROW4(n, grow)                                                                 \
     GROW(n, grow), GROW(n + 1, grow), GROW(n + 2, grow), GROW(n + 3, grow)
@@ -199,8 +111,7 @@ static const struct {
  * front. */
 static void set_scale(struct rf_surface *s, int n)
 {
-    const uint64_t scale =
-        (uint64_t)growth[n].share * (5 * 65535u + s->low) * (65536 / 6 + 1) >> 32;
+    const uint64_t scale = (uint64_t)growth[n].share * (5 * 65535u + s->low) >> 32;
 
     s->grow = growth[n].grow;
     s->scale = (uint16_t)(scale > 65535 ? 65535 : scale);
@@ -244,8 +155,9 @@ static const int16_t middle_down[TAPS] = {-768, -768, 768,   768,   -2304, -2304
                                           -768, -768, 768,   768};
 
 /* Sums over the taps of a surface: weights q, and with e heights above its low, at most
- * WIDEST. Weights add up to 64 * 256 at the most: all fit 32 bits. */
+ * RF_WIDEST. Weights add up to 64 * 256 at the most: all fit 32 bits. */
 struct sums {
+    uint32_t part; /* where q is 256 m: 2^31 / m, of which n / m is found; else 0 */
     int q, qx, qy, qxx, qyy; /* x = across, y = down */
     int qe, qxe, qye;
 };
@@ -284,6 +196,27 @@ static const uint32_t column[16] = {
     COLUMN(0, 0, 0, 1), COLUMN(1, 0, 0, 1), COLUMN(0, 1, 0, 1), COLUMN(1, 1, 0, 1),
     COLUMN(0, 0, 1, 1), COLUMN(1, 0, 1, 1), COLUMN(0, 1, 1, 1), COLUMN(1, 1, 1, 1)};
 
+/* Just more than 2^31 / m: times n it is 2^31 n / m, and less than 2^31 / m more where
+ * n m < 2^31. */
+#define PART(m)  ((1u << 31) / (m) + 1)
+#define PART4(m) PART(m), PART((m) + 1), PART((m) + 2), PART((m) + 3)
+static const uint32_t part[SAMPLES + 1] = {
+    0,         PART4(1),  PART4(5),  PART4(9),  PART4(13), PART4(17),
+    PART4(21), PART4(25), PART4(29), PART4(33), PART4(37), PART4(41),
+    PART4(45), PART4(49), PART4(53), PART4(57), PART4(61)};
+
+/* n / q; for q = 256 m that is n / 256 / m. */
+static inline int over(uint32_t n, const struct sums *sum)
+{
+    return (int)(sum->part ? (uint64_t)(n >> 8) * sum->part >> 31
+                           : n / (uint32_t)sum->q);
+}
+
+static inline uint32_t magnitude(int v)
+{
+    return (uint32_t)(v < 0 ? -v : v);
+}
+
 /* Where each tap counts what it does in the middle: what needs no heights by columns.
  */
 static struct sums sums_of(const struct rf_surface *s, const int16_t e[TAPS])
@@ -293,7 +226,8 @@ static struct sums sums_of(const struct rf_surface *s, const int16_t e[TAPS])
     const uint32_t all = a + 3 * (b + c) + d;
     const int p = a & 255, q = b & 255, r = c & 255, t = d & 255;
 
-    return (struct sums){.q = 256 * (int)(all & 255),
+    return (struct sums){.part = part[all & 255],
+                         .q = 256 * (int)(all & 255),
                          .qx = 256 * 3 * (r + t - p - q),
                          .qy = 256 * ((int)(all >> 8 & 255) - 64),
                          .qxx = 256 * (9 * (p + t) + 3 * (q + r)),
@@ -333,19 +267,18 @@ static void fit(struct rf_surface *s, const uint16_t tap[TAPS], const int16_t *w
     take_taps(e, own, s, tap);
     const struct sums sum = weight ? sums_by(weight, own, e) : sums_of(s, e);
     const int w = sum.q, x = sum.qx, y = sum.qy;
-    int mean = sum.qe / w;
+    int mean = over((uint32_t)sum.qe, &sum);
 
     s->mean = (int16_t)mean;
     s->right = s->below = 0;
     if (s->range < EVEN)
         return;
-    const uint32_t u = (uint32_t)(x < 0 ? -x : x), v = (uint32_t)(y < 0 ? -y : y);
-    const int gx =
-        slope(2 * (sum.qxe - x * mean), sum.qxx - (int)(u * u / (uint32_t)w), 4 * w);
-    const int gy =
-        slope(2 * (sum.qye - y * mean), sum.qyy - (int)(v * v / (uint32_t)w), 4 * w);
+    const uint32_t u = magnitude(x), v = magnitude(y);
+    const int gx = slope(2 * (sum.qxe - x * mean), sum.qxx - over(u * u, &sum), 4 * w);
+    const int gy = slope(2 * (sum.qye - y * mean), sum.qyy - over(v * v, &sum), 4 * w);
+    const int off = gx * x + gy * y, back = over(magnitude(off) / 2, &sum);
 
-    mean -= (gx * x + gy * y) / (2 * w);
+    mean += off < 0 ? back : -back;
     s->mean = (int16_t)(mean < -STEEPEST  ? -STEEPEST
                         : mean > STEEPEST ? STEEPEST
                                           : mean);
@@ -392,35 +325,32 @@ static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell,
     const int16_t *weight;
     const uint64_t trusted = take_trust(cell, spare, &weight, window);
     unsigned starts = parts->starts[at];
-    int most_taps = 0;
+    int most_taps = 0, greatest = 0, n = 0;
 
     for (int i = 0; i < RF_TAPS; i++)
         memcpy(tap + i * RF_TAPS, window->disparity + FIRST + i * RF_AROUND,
                RF_TAPS * sizeof *tap);
-    cell->surfaces = 0;
     while (starts) {
-        struct rf_surface *s = &cell->surface[cell->surfaces++];
+        struct rf_surface *s = &cell->surface[n];
         const int first = __builtin_ctz(starts);
 
         starts &= starts - 1;
         const int end = starts ? __builtin_ctz(starts) : TAPS;
 
-        if (end - first > most_taps) {
-            most_taps = end - first;
-            cell->greatest = cell->surfaces - 1;
-        }
+        greatest = end - first > most_taps ? n : greatest;
+        most_taps = end - first > most_taps ? end - first : most_taps;
         s->low = parts->sorted[first][at];
         s->range = (uint16_t)(parts->sorted[end - 1][at] - s->low);
         s->taps = (uint16_t)within16(tap, s->low, s->range);
         set_scale(s, find_samples(s, window->disparity, trusted));
         fit(s, tap, weight);
+        n++;
     }
+    cell->surfaces = n;
+    cell->greatest = greatest;
 }
 
 void RF_VEC(rf_surfaces_use)(struct rf_kernels *kernels)
 {
-    kernels->part = RF_VEC(rf_part);
-    kernels->turn8 = RF_VEC(rf_turn8);
-    kernels->turn16 = RF_VEC(rf_turn16);
     kernels->find_surfaces = RF_VEC(rf_find_surfaces);
 }

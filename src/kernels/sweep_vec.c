@@ -206,6 +206,7 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
     RF_VEC(rf_rows_use)(kernels);
     RF_VEC(rf_search_use)(kernels);
     RF_VEC(rf_series_use)(kernels);
+    RF_VEC(rf_part_use)(kernels);
     RF_VEC(rf_surfaces_use)(kernels);
     RF_VEC(rf_thin_use)(kernels);
     RF_VEC(rf_sweep1_use)(kernels);

@@ -20,17 +20,27 @@ static inline uint16_t apart(uint16_t a, uint16_t b)
     return (uint16_t)(most(a, b) - least(a, b));
 }
 
-static void RF_VEC(rf_blend4)(uint16_t *restrict out, const uint16_t *const row[4],
-                              const uint16_t weight[4], int n)
+static void RF_VEC(rf_blend4)(uint16_t *restrict out,
+                              const uint16_t *const row[RF_TAPS],
+                              const int16_t share[RF_TAPS], int n)
 {
     const uint16_t *restrict a = row[0], *restrict b = row[1];
     const uint16_t *restrict c = row[2], *restrict d = row[3];
-    const uint32_t wa = weight[0], wb = weight[1], wc = weight[2], wd = weight[3];
+    const uint32_t sa = (uint16_t)share[0], sb = (uint16_t)share[1];
+    const uint32_t sc = (uint16_t)share[2], sd = (uint16_t)share[3];
+    int x = 0;
 
-    for (int x = 0; x < n; x++)
-        out[x] =
-            (uint16_t)((a[x] * wa + b[x] * wb + c[x] * wc + d[x] * wd + (1 << 15)) >>
-                       16);
+#if defined(RF_VECTORS)
+    for (; x + (int)VEC_U16 <= n; x += VEC_U16)
+        vec_u16_store(out + x,
+                      vec_u16_mix4(vec_u16_load(a + x), vec_u16_load(b + x),
+                                   vec_u16_load(c + x), vec_u16_load(d + x), share));
+#endif
+    for (; x < n; x++) {
+        const uint32_t sum = a[x] * sa + b[x] * sb + c[x] * sc + d[x] * sd;
+
+        out[x] = (uint16_t)((sum + (1 << 14)) >> 15);
+    }
 }
 
 static inline uint16_t widen(const uint16_t *d, const int16_t *share)
@@ -161,45 +171,45 @@ static uint16_t leaning(uint16_t v[9])
 }
 
 #if defined(RF_VECTORS)
-enum { LEAN = 16 };
-
-/* The same of LEAN pixels. */
-static inline void lean_all(uint16_t *out, const uint16_t *own, uint16_t keys[9][LEAN])
+/* The same of VEC_U16 pixels. With c of nine left off from the top, t of them sure, the
+ * weights at or below are more than 3/5 as long as
+ *
+ *     5 (9 - c + 3 (sures - t)) > 3 (9 + 3 sures)
+ *
+ * and three never are. */
+static inline vec_u16 lean(const uint16_t *const row[3], const uint8_t *const sure[3],
+                           int x)
 {
-    const vec_u16 one = vec_u16_set(1), even = vec_u16_set(65534),
-                  five = vec_u16_set(5);
-    const vec_u16 fifteen = vec_u16_set(15), nine = vec_u16_set(9);
+    const vec_u16 one = vec_u16_set(1), even = vec_u16_set(65534);
+    const vec_u16 fifteen = vec_u16_set(15);
+    vec_u16 v[9], left = vec_u16_set(0), result, is_sure;
 
-    for (int x = 0; x < LEAN; x += VEC_U16) {
-        const vec_u16 sure =
-            vec_u16_equal(vec_u16_and(vec_u16_load(keys[4] + x), one), one);
-        vec_u16 v[9], sures = vec_u16_set(0), part, below, result;
+    for (int i = 0; i < 9; i++) {
+        const int at = x + i % 3 - 1;
+        const vec_u16 bit = vec_u16_and(vec_u16_from_bytes(sure[i / 3] + at), one);
 
-        for (int i = 0; i < 9; i++) {
-            v[i] = vec_u16_load(keys[i] + x);
-            sures = vec_u16_add(sures, vec_u16_and(v[i], one));
-        }
-#pragma GCC unroll 25
-        for (int k = 0; k < 25; k++) {
-            const int a = exchange[k][0], b = exchange[k][1];
-            const vec_u16 low = vec_u16_min(v[a], v[b]);
-
-            v[b] = vec_u16_max(v[a], v[b]);
-            v[a] = low;
-        }
-        part = vec_u16_add(vec_u16_set(27), vec_u16_mul(sures, nine));
-        below = vec_u16_add(vec_u16_set(45), vec_u16_mul(sures, fifteen));
-        result = v[8];
-#pragma GCC unroll 8
-        for (int i = 8; i > 2; i--) { /* three never are more than 3/5 */
-            const vec_u16 more = vec_u16_mul(vec_u16_and(v[i], one), fifteen);
-
-            below = vec_u16_sub(below, vec_u16_add(more, five));
-            result = vec_u16_select(vec_u16_at_most(below, part), result, v[i - 1]);
-        }
-        vec_u16_store(out + x, vec_u16_select(sure, vec_u16_load(own + x),
-                                              vec_u16_and(result, even)));
+        v[i] = vec_u16_or(vec_u16_and(vec_u16_load(row[i / 3] + at), even), bit);
+        left = vec_u16_add(left, bit);
     }
+    is_sure = vec_u16_equal(vec_u16_and(v[4], one), one);
+    left = vec_u16_add(vec_u16_mul(left, vec_u16_set(6)), vec_u16_set(18));
+#pragma GCC unroll 25
+    for (int k = 0; k < 25; k++) {
+        const int a = exchange[k][0], b = exchange[k][1];
+        const vec_u16 low = vec_u16_min(v[a], v[b]);
+
+        v[b] = vec_u16_max(v[a], v[b]);
+        v[a] = low;
+    }
+    result = v[8];
+#pragma GCC unroll 6
+    for (int c = 1; c < 7; c++) {
+        const vec_u16 end = vec_u16_set((uint16_t)(5 * c + 1));
+
+        left = vec_u16_sub(left, vec_u16_mul(vec_u16_and(v[9 - c], one), fifteen));
+        result = vec_u16_min(result, vec_u16_or(v[8 - c], vec_s16_less(left, end)));
+    }
+    return vec_u16_select(is_sure, vec_u16_load(row[1] + x), vec_u16_and(result, even));
 }
 #endif
 
@@ -209,18 +219,8 @@ static void RF_VEC(rf_lean3)(uint16_t *restrict out, const uint16_t *const row[3
     int x = 0;
 
 #if defined(RF_VECTORS)
-    for (; x + LEAN <= n; x += LEAN) {
-        uint16_t keys[9][LEAN];
-
-        for (int i = 0; i < 9; i++) {
-            const uint16_t *restrict d = row[i / 3] + x + i % 3 - 1;
-            const uint8_t *restrict s = sure[i / 3] + x + i % 3 - 1;
-
-            for (int k = 0; k < LEAN; k++)
-                keys[i][k] = key(d[k], s[k]);
-        }
-        lean_all(out + x, row[1] + x, keys);
-    }
+    for (; x + (int)VEC_U16 <= n; x += VEC_U16)
+        vec_u16_store(out + x, lean(row, sure, x));
 #endif
     for (; x < n; x++) {
         uint16_t v[9];

@@ -14,6 +14,10 @@ struct rf_taps {
     int16_t middle; /* where it lies between the second and the third, -1/2 to 1/2 in Q15 */
 };
 
+/* blend4: four rows by shares in Q15 that are not negative and add up to 1, rounded half up. */
+typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[RF_TAPS],
+                          const int16_t share[RF_TAPS], int n);
+
 /* widen4: n pixels of a row out of samples, 2^15 + sum of share[k] (in[first + k] - 2^15), half
  * up. */
 typedef void rf_widen4_fn(uint16_t *out, const uint16_t *in, const struct rf_taps *taps, int n);
@@ -37,8 +41,9 @@ typedef unsigned rf_rough_fn(uint8_t rough[RF_CELLS], const uint16_t *const row[
 /*
  * part: the taps of n cells side by side, ascending, and where they are parted: where one is more
  * than 1/44 of the range above the last, or more than 1/8 above the first of its surface. Rows as
- * for rough; all RF_CELLS columns of `parts` are written.
+ * for rough; those columns of `parts` from n on are of no meaning.
  */
+enum { RF_GAP = 65535 / 44, RF_WIDEST = 65535 / 8 };
 struct rf_parts {
     uint16_t sorted[RF_TAP_COUNT][RF_CELLS];
     uint16_t starts[RF_CELLS]; /* bit i: sorted[i] is the first of a surface */

@@ -4,6 +4,7 @@
  * defined as its name; RF_VEC(f) is then f_NAME. A vector holds VEC_U16 lanes.
  *
  *     vec_u16_load(p)         lane i = p[i], any alignment of whole elements
+ *     vec_u16_from_bytes(p)   lane i = p[i], of bytes
  *     vec_u16_store(p, v)     p[i] = lane i
  *     vec_u16_set(x)          every lane = x
  *     vec_u16_add(a, b)       (uint16_t)(a + b)
@@ -38,11 +39,16 @@
  *     vec_u16_select(m, a, b) m ? a : b, for lanes of m that are 0xffff or 0
  *     vec_within16(p, low, width)
  *                             bit i: (uint16_t)(p[i] - low) <= width, of 16 elements
+ *     vec_within64(p, low, width)
+ *                             the same of 64 elements
  *     vec_dot16(p, q)         sum of p[i] * q[i] of 16 signed elements, of 32 bits
  *     vec_dots4(out, p, share)
  *                             of four groups of four elements: out[i] = 2^15 +
  *                             (sum of (p[i][k] - 2^15) * share[i][k] + 2^14) >> 15, shares not
  *                             negative and of sum 2^15
+ *
+ *     vec_u16_mix4(a, b, c, d, share)
+ *                             the same of lane i of a, b, c and d with one share[4]
  *
  * A vec_mask has lanes that are on or off:
  *

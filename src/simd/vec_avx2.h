@@ -15,6 +15,11 @@ static inline vec_u16 vec_u16_load(const void *p)
     return _mm256_loadu_si256((const __m256i *)p);
 }
 
+static inline vec_u16 vec_u16_from_bytes(const uint8_t *p)
+{
+    return _mm256_cvtepu8_epi16(_mm_loadu_si128((const __m128i *)p));
+}
+
 static inline void vec_u16_store(void *p, vec_u16 v)
 {
     _mm256_storeu_si256((__m256i *)p, v);
@@ -188,6 +193,28 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
     return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
 }
 
+/* Both halves of registers unpack and pack alike: lanes stay where they were. */
+static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                   const int16_t share[4])
+{
+    const __m256i sign = _mm256_set1_epi16(-32768), half = _mm256_set1_epi32(1 << 14);
+    const __m256i ab = _mm256_set1_epi32(vec_pair(share[0], share[1]));
+    const __m256i cd = _mm256_set1_epi32(vec_pair(share[2], share[3]));
+    __m256i low, high;
+
+    a = _mm256_xor_si256(a, sign);
+    b = _mm256_xor_si256(b, sign);
+    c = _mm256_xor_si256(c, sign);
+    d = _mm256_xor_si256(d, sign);
+    low = _mm256_add_epi32(_mm256_madd_epi16(_mm256_unpacklo_epi16(a, b), ab),
+                           _mm256_madd_epi16(_mm256_unpacklo_epi16(c, d), cd));
+    high = _mm256_add_epi32(_mm256_madd_epi16(_mm256_unpackhi_epi16(a, b), ab),
+                            _mm256_madd_epi16(_mm256_unpackhi_epi16(c, d), cd));
+    low = _mm256_srai_epi32(_mm256_add_epi32(low, half), 15);
+    high = _mm256_srai_epi32(_mm256_add_epi32(high, half), 15);
+    return _mm256_xor_si256(_mm256_packs_epi32(low, high), sign);
+}
+
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
 {
     const __m256i above = _mm256_sub_epi16(vec_u16_load(p), vec_u16_set(low));
@@ -196,6 +223,24 @@ static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t wi
 
     return (uint32_t)_mm_movemask_epi8(_mm_packs_epi16(_mm256_castsi256_si128(within),
                                                        _mm256_extracti128_si256(within, 1)));
+}
+
+static inline uint32_t vec_within32(const uint16_t *p, __m256i low, __m256i width)
+{
+    const __m256i zero = _mm256_setzero_si256();
+    const __m256i a = _mm256_subs_epu16(_mm256_sub_epi16(vec_u16_load(p), low), width);
+    const __m256i b = _mm256_subs_epu16(_mm256_sub_epi16(vec_u16_load(p + 16), low), width);
+    const __m256i within =
+        _mm256_packs_epi16(_mm256_cmpeq_epi16(a, zero), _mm256_cmpeq_epi16(b, zero));
+
+    return (uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(within, 0xd8));
+}
+
+static inline uint64_t vec_within64(const uint16_t *p, uint16_t low, uint16_t width)
+{
+    const __m256i l = vec_u16_set(low), w = vec_u16_set(width);
+
+    return vec_within32(p, l, w) | (uint64_t)vec_within32(p + 32, l, w) << 32;
 }
 
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)

@@ -13,6 +13,11 @@ static inline vec_u16 vec_u16_load(const void *p)
     return vld1q_u16((const uint16_t *)p);
 }
 
+static inline vec_u16 vec_u16_from_bytes(const uint8_t *p)
+{
+    return vmovl_u8(vld1_u8(p));
+}
+
 static inline void vec_u16_store(void *p, vec_u16 v)
 {
     vst1q_u16((uint16_t *)p, v);
@@ -207,6 +212,24 @@ static inline void vec_dots4(uint16_t out[4], const uint16_t *const p[4],
     vst1_u16(out, veor_u16(vreinterpret_u16_s16(vqrshrn_n_s32(sums, 15)), sign));
 }
 
+/* Without signs: sums are below 2^31, and shares add up to what 2^15 is taken times. */
+static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                   const int16_t share[4])
+{
+    const uint16_t s0 = (uint16_t)share[0], s1 = (uint16_t)share[1];
+    const uint16_t s2 = (uint16_t)share[2], s3 = (uint16_t)share[3];
+    uint32x4_t low = vmull_n_u16(vget_low_u16(a), s0);
+    uint32x4_t high = vmull_n_u16(vget_high_u16(a), s0);
+
+    low = vmlal_n_u16(low, vget_low_u16(b), s1);
+    high = vmlal_n_u16(high, vget_high_u16(b), s1);
+    low = vmlal_n_u16(low, vget_low_u16(c), s2);
+    high = vmlal_n_u16(high, vget_high_u16(c), s2);
+    low = vmlal_n_u16(low, vget_low_u16(d), s3);
+    high = vmlal_n_u16(high, vget_high_u16(d), s3);
+    return vcombine_u16(vrshrn_n_u32(low, 15), vrshrn_n_u32(high, 15));
+}
+
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
 {
     static const uint8_t bits[16] = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
@@ -218,6 +241,15 @@ static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t wi
 
     sum = vpadd_u8(sum, sum);
     return vget_lane_u16(vreinterpret_u16_u8(vpadd_u8(sum, sum)), 0);
+}
+
+static inline uint64_t vec_within64(const uint16_t *p, uint16_t low, uint16_t width)
+{
+    uint64_t bits = 0;
+
+    for (int i = 0; i < 64; i += 16)
+        bits |= (uint64_t)vec_within16(p + i, low, width) << i;
+    return bits;
 }
 
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)

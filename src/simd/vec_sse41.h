@@ -15,6 +15,11 @@ static inline vec_u16 vec_u16_load(const void *p)
     return _mm_loadu_si128((const __m128i *)p);
 }
 
+static inline vec_u16 vec_u16_from_bytes(const uint8_t *p)
+{
+    return _mm_cvtepu8_epi16(_mm_loadl_epi64((const __m128i *)p));
+}
+
 static inline void vec_u16_store(void *p, vec_u16 v)
 {
     _mm_storeu_si128((__m128i *)p, v);
@@ -181,6 +186,27 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
     return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
 }
 
+static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                   const int16_t share[4])
+{
+    const __m128i sign = _mm_set1_epi16(-32768), half = _mm_set1_epi32(1 << 14);
+    const __m128i ab = _mm_set1_epi32(vec_pair(share[0], share[1]));
+    const __m128i cd = _mm_set1_epi32(vec_pair(share[2], share[3]));
+    __m128i low, high;
+
+    a = _mm_xor_si128(a, sign);
+    b = _mm_xor_si128(b, sign);
+    c = _mm_xor_si128(c, sign);
+    d = _mm_xor_si128(d, sign);
+    low = _mm_add_epi32(_mm_madd_epi16(_mm_unpacklo_epi16(a, b), ab),
+                        _mm_madd_epi16(_mm_unpacklo_epi16(c, d), cd));
+    high = _mm_add_epi32(_mm_madd_epi16(_mm_unpackhi_epi16(a, b), ab),
+                         _mm_madd_epi16(_mm_unpackhi_epi16(c, d), cd));
+    low = _mm_srai_epi32(_mm_add_epi32(low, half), 15);
+    high = _mm_srai_epi32(_mm_add_epi32(high, half), 15);
+    return _mm_xor_si128(_mm_packs_epi32(low, high), sign);
+}
+
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
 {
     const __m128i a = _mm_sub_epi16(vec_u16_load(p), vec_u16_set(low));
@@ -190,6 +216,15 @@ static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t wi
         _mm_cmpeq_epi16(_mm_subs_epu16(b, vec_u16_set(width)), _mm_setzero_si128()));
 
     return (uint32_t)_mm_movemask_epi8(within);
+}
+
+static inline uint64_t vec_within64(const uint16_t *p, uint16_t low, uint16_t width)
+{
+    uint64_t bits = 0;
+
+    for (int i = 0; i < 64; i += 16)
+        bits |= (uint64_t)vec_within16(p + i, low, width) << i;
+    return bits;
 }
 
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)

@@ -5,6 +5,12 @@
 #include <immintrin.h>
 #include <stdint.h>
 
+/* Of 16 bits each, for both halves of lanes of 32. */
+static inline int vec_pair(int16_t low, int16_t high)
+{
+    return (int)((uint32_t)(uint16_t)high << 16 | (uint16_t)low);
+}
+
 /* Two groups of four elements, 2^15 less. */
 static inline __m128i vec_two_fours(const uint16_t *a, const uint16_t *b)
 {

@@ -859,8 +859,10 @@ class DepthAndInfo(Case):
 
 class Failures(Case):
     def test_inputs(self):
-        self.fails(1, 'photo.ppm: it carries no depth; give a depth map to --depth', 'render',
-                   'photo.ppm', '-o', 'out.ppm')
+        for command, out in (('render', 'out.ppm'), ('depth', 'out.png'), ('depth', 'out.pgm')):
+            self.fails(1, 'photo.ppm: it carries no depth; give a depth map to --depth, or make '
+                       "one by 'refocus depth PHOTO -o MAP.png' with --estimate MODEL.onnx or "
+                       '--strokes FILE.json', command, 'photo.ppm', '-o', out)
         self.fails(1, re.compile('^refocus: missing.jpg: .*No such file'), 'render',
                    'missing.jpg', '-o', 'out.ppm')
         self.fails(1, re.compile('^refocus: missing.png: .*No such file'), 'render',

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """refocus depth with damaged, mismatched, empty and huge files in every place that takes one: one
 clear line, nothing written. Usage: test_depth_inputs.py REFOCUS [unittest arguments]"""
+import os
 import re
 import struct
 import unittest
 
 import pictures
-from case import Case, H, W
+from case import Case, H, PHOTOS, W
 
 # file: what is said of it
 PICTURES = {
@@ -86,6 +87,35 @@ class DepthInputs(Case):
                      '--depth', 'photo.ppm')
         self.refused('metres.pfm', '(it|a PFM file) is a depth map, not a photo', 'metres.pfm', '--depth',
                      'depth.pgm')
+
+    def test_shape(self):
+        """The map of another picture, or one on its side; a few samples may be of any shape."""
+        pictures.pgm('side.pgm', H, W, lambda x, y: 9 * x & 255)
+        pictures.pgm('long.pgm', 80, 16, lambda x, y: x)
+        pictures.pgm('4to3.pgm', 40, 30, lambda x, y: x)
+        pictures.pgm('few.pgm', 1, 15, lambda x, y: 16 * y)
+        for name, size in (('side.pgm', '32x48'), ('long.pgm', '80x16')):
+            why = 'its %s samples have another shape than the photo of 48x32 pixels; give the ' \
+                  'map of this photo, as upright as the photo is' % size
+            self.refused(name, why, 'photo.ppm', '--depth', name)
+            self.refused(name, why, 'photo.ppm', '--depth', name, '--full')
+            for command in 'render', 'sheet':
+                self.fails(1, '%s: %s' % (name, why), command, 'photo.ppm', '--depth', name, '-o',
+                           'new.ppm')
+            self.succeeds('depth', name, '-o', 'made.pgm')
+        for name in '4to3.pgm', 'few.pgm':
+            self.succeeds('depth', 'photo.ppm', '--depth', name, '--full', '-o', 'made.pgm')
+
+    def test_cut_heic(self):
+        whole = os.path.join(PHOTOS, 'stereo', 'spatial-photo.heic')
+        if not os.path.exists(whole):
+            self.skipTest('no photos')
+        if self.run_it('info', whole).returncode:
+            self.skipTest('this build does not read HEIC')
+        write('cut.heic', pictures.read_bytes(whole)[:100000])
+        why = 'damaged HEIC: it ends too early; copy it again'
+        for arguments in ('cut.heic',), ('cut.heic', '--full'), ('photo.ppm', '--depth', 'cut.heic'):
+            self.refused('cut.heic', why, *arguments)
 
     def test_snap(self):
         for name, why in PICTURES.items():

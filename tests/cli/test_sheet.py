@@ -180,10 +180,12 @@ class Sheet(Case):
         self.fails(2, re.compile('^refocus: --region: 40,0,9,9 does not lie within the 48x32'),
                    *self.sheet('--region', '40,0,9,9'))
         pictures.ppm('wide.ppm', 8000, 2, lambda x, y: (x & 255, y, 0))
+        pictures.pgm('wide.pgm', 8, 2, lambda x, y: 30 * x)
         self.fails(1, 's.ppm: the sheet would be too large; give a smaller --cell-width or fewer '
-                   'values', 'sheet', 'wide.ppm', '--depth', 'depth.pgm', '-o', 's.ppm',
+                   'values', 'sheet', 'wide.ppm', '--depth', 'wide.pgm', '-o', 's.ppm',
                    '--cell-width', '8000', '--blurs', '1', '--focuses', '0,0,0,0,0,0,0,0,0')
         os.remove('wide.ppm')
+        os.remove('wide.pgm')
 
     def test_outputs(self):
         self.fails(2, '-o: the output has no name; give -o OUT', 'sheet', 'photo.ppm')

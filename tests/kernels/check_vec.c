@@ -302,6 +302,27 @@ static int check_operation(int i)
     return 0;
 }
 
+static int check_from_bytes(void)
+{
+    uint32_t seed = 15;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint8_t in[MOST_LANES + 1];
+        uint16_t out[MOST_LANES];
+
+        for (int i = 0; i <= (int)VEC_U16; i++)
+            in[i] = (uint8_t)noise(&seed);
+        vec_u16_store(out, vec_u16_from_bytes(in + round % 2));
+        for (int lane = 0; lane < (int)VEC_U16; lane++)
+            if (out[lane] != in[round % 2 + lane]) {
+                printf("FAIL  vec_u16_from_bytes, %s: round %d\n", TEXT(RF_VEC_SET),
+                       round);
+                return 1;
+            }
+    }
+    return 0;
+}
+
 static int check_set(void)
 {
     for (int x = 0; x <= 0xffff; x++) {
@@ -481,21 +502,27 @@ static int check_sixteen(void)
     uint32_t seed = 13;
 
     for (int round = 0; round < ROUNDS; round++) {
-        uint16_t p[17], out[4];
+        uint16_t p[65], out[4];
         int16_t a[17], b[17], share[4][4];
         const uint16_t low = (uint16_t)noise(&seed), width = (uint16_t)(noise(&seed) >> round % 17);
-        uint32_t within = 0;
+        uint64_t within = 0;
         int32_t dot = 0;
 
         for (int i = 1; i <= 16; i++) { /* products as large as kernels have them */
             p[i] = round % 2 ? pick(round / 2, i, 0, &seed) : (uint16_t)(low + noise(&seed) % 999);
             a[i] = (int16_t)noise_between(&seed, -6912, 6912);
             b[i] = (int16_t)noise_between(&seed, -8191, 8191);
-            within |= (uint32_t)((uint16_t)(p[i] - low) <= width) << (i - 1);
             dot += a[i] * b[i];
         }
-        if (vec_within16(p + 1, low, width) != within || vec_dot16(a + 1, b + 1) != dot) {
-            printf("FAIL  vec_within16 or dot16, %s: round %d\n", TEXT(RF_VEC_SET), round);
+        for (int i = 17; i <= 64; i++)
+            p[i] = (uint16_t)(i % 3 ? low + noise(&seed) % 999 : noise(&seed));
+        for (int i = 1; i <= 64; i++)
+            within |= (uint64_t)((uint16_t)(p[i] - low) <= width) << (i - 1);
+        if (vec_within16(p + 1, low, width) != (within & 65535) ||
+            vec_within64(p + 1, low, width) != within ||
+            vec_dot16(a + 1, b + 1) != dot) {
+            printf("FAIL  vec_within16, within64 or dot16, %s: round %d\n",
+                   TEXT(RF_VEC_SET), round);
             return 1;
         }
         const uint16_t *const from[4] = {p + 1, p + 4, p + 9, p + 13};
@@ -517,6 +544,43 @@ static int check_sixteen(void)
                 sum += (from[i][k] - 32768) * share[i][k];
             if (out[i] != (uint16_t)((sum >> 15) + 32768)) {
                 printf("FAIL  vec_dots4, %s: round %d\n", TEXT(RF_VEC_SET), round);
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* Lanes of four vectors by one share each. */
+static int check_mix(void)
+{
+    uint32_t seed = 14;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t in[4][MOST_LANES], out[MOST_LANES];
+        const int some = noise_between(&seed, 1, 32767), least = round / 4 % 3;
+        int16_t share[4] = {0};
+
+        share[round % 4] = (int16_t)(round % 5 ? some : 32767);
+        share[(round + 1 + least) % 4] = (int16_t)(32768 - share[round % 4]);
+        if (round % 3 == 0) {
+            share[round % 4] = (int16_t)(share[round % 4] / 2);
+            share[(round + 1 + (least + 1) % 3) % 4] =
+                (int16_t)(32768 - share[round % 4] - share[(round + 1 + least) % 4]);
+        }
+        for (int k = 0; k < 4; k++)
+            for (int i = 0; i < (int)VEC_U16; i++)
+                in[k][i] = pick(round, i, k % 2, &seed);
+        vec_u16_store(out,
+                      vec_u16_mix4(vec_u16_load(in[0]), vec_u16_load(in[1]),
+                                   vec_u16_load(in[2]), vec_u16_load(in[3]), share));
+        for (int i = 0; i < (int)VEC_U16; i++) {
+            int64_t sum = 1 << 14;
+
+            for (int k = 0; k < 4; k++)
+                sum += (int64_t)in[k][i] * share[k];
+            if (out[i] != sum >> 15) {
+                printf("FAIL  vec_u16_mix4, %s: round %d\n", TEXT(RF_VEC_SET), round);
                 return 1;
             }
         }
@@ -561,12 +625,13 @@ int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
     int failures = check_set() + check_order() + check_add_to() + check_products() +
-                   check_bytes() + check_together() + check_sixteen();
+                   check_bytes() + check_together() + check_sixteen() + check_mix() +
+                   check_from_bytes();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
-        printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET),
-               count + 7, (int)VEC_U16);
+        printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16",
+               TEXT(RF_VEC_SET), count + 9, (int)VEC_U16);
     return failures;
 }

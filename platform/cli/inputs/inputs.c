@@ -244,6 +244,15 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     return worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
 }
 
+static int report_no_depth(const char *photo)
+{
+    return report_failure(EXIT_FAILED, photo,
+                          "it carries no depth; give a depth map to --depth, or make "
+                          "one by 'refocus depth PHOTO -o MAP.png' with --estimate "
+                          "MODEL.onnx or --strokes FILE.json");
+}
+
+/* The file may be the photo itself. */
 static int read_side(struct input *input, const char *file,
                      const struct depth_settings *settings)
 {
@@ -255,6 +264,8 @@ static int read_side(struct input *input, const char *file,
         refocus_depth_read(&input->side, file, settings->unit,
                            given(settings->near_m) ? settings->near_m : 0,
                            given(settings->far_m) ? settings->far_m : 0, NULL, &reason);
+    if (status == REFOCUS_ERR_NO_DEPTH && file == input->photo_name)
+        return report_no_depth(file);
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -280,6 +291,19 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
     return EXIT_DONE;
 }
 
+/* A map of another picture, or one that lies on its side: neither is stretched to fit.
+ * Cameras' 4:3 and 16:9 go together; of a few samples the shape says nothing. */
+static bool has_another_shape(const struct refocus_depth_map *map,
+                              const struct refocus_image *photo)
+{
+    enum { FEWEST = 16 };
+    const int64_t wide = (int64_t)map->width * photo->height;
+    const int64_t high = (int64_t)map->height * photo->width;
+
+    return map->width >= FEWEST && map->height >= FEWEST &&
+           (2 * wide > 3 * high || 2 * high > 3 * wide);
+}
+
 int input_read(struct input *input, const char *photo,
                const struct depth_settings *settings)
 {
@@ -289,12 +313,20 @@ int input_read(struct input *input, const char *photo,
         return status;
     if (settings->file) {
         status = read_side(input, settings->file, settings);
+        if (status == EXIT_DONE &&
+            has_another_shape(&input->side->depth, &input->photo->image))
+            return report_failure(EXIT_FAILED, settings->file,
+                                  "its %dx%d samples have another shape than the photo "
+                                  "of %dx%d pixels; give the map of this photo, as "
+                                  "upright as the photo is",
+                                  input->side->depth.width, input->side->depth.height,
+                                  input->photo->image.width,
+                                  input->photo->image.height);
     } else {
         if (!input->photo->depth.samples && settings->optional)
             return EXIT_DONE;
         if (!input->photo->depth.samples)
-            return report_failure(EXIT_FAILED, photo,
-                                  "it carries no depth; give a depth map to --depth");
+            return report_no_depth(photo);
         input->depth_name = photo;
         input->depth_from = input->photo;
         status = settle_embedded(input, settings);
