@@ -48,7 +48,8 @@ vector_at(const uint16_t *first, const struct layout *layout, int j, const int r
 
 /* What ray n of `tests` tests sees, added. */
 static ALWAYS_INLINE void sweep_ray(struct sums *sums, const struct state *s, int n,
-                                    const int tests, const int rows, const bool weighted)
+                                    const int tests, const int rows,
+                                    const bool weighted)
 {
     const struct rf_sorted_rays *rays = s->job->rays;
     const uint16_t *const blur = (const uint16_t *)s->job->blur + s->light.first;
@@ -74,8 +75,8 @@ static ALWAYS_INLINE void sweep_ray(struct sums *sums, const struct state *s, in
             value[j] = vec_u16_load_where(hit, value[j],
                                           vector_at(light + q, &s->light, j, rows));
             if (weighted)
-                times[j] = vec_u16_load_where(hit, times[j],
-                                              vector_at(weight + p, &s->weight, j, rows));
+                times[j] = vec_u16_load_where(
+                    hit, times[j], vector_at(weight + p, &s->weight, j, rows));
         }
     }
     for (int j = 0; j < vecs; j++) {
@@ -85,12 +86,13 @@ static ALWAYS_INLINE void sweep_ray(struct sums *sums, const struct state *s, in
     }
 }
 
-static ALWAYS_INLINE void sweep_some(struct sums *sums, const struct state *s, int first,
-                                     int end, const int tests, const int rows,
-                                     const bool weighted)
+static ALWAYS_INLINE void sweep_some(struct sums *sums, const struct state *s,
+                                     int first, int end, const int tests,
+                                     const int rows, const bool weighted)
 {
     for (int n = first; n < end; n++)
-        sweep_ray(sums, s, n, tests < FEW ? tests : s->job->rays->tests[n], rows, weighted);
+        sweep_ray(sums, s, n, tests < FEW ? tests : s->job->rays->tests[n], rows,
+                  weighted);
 }
 
 /* Adds sums to those of 32 bits, whose second half begins at `half`, and clears them.
@@ -162,10 +164,12 @@ static ALWAYS_INLINE void sweep_rows(const struct target *to, const struct state
         flush_all(to, &sums, s, rows, weighted);
 }
 
-static ALWAYS_INLINE void sweep_from(uint32_t *sum, uint32_t *weight_sum, struct state *s,
-                                     int row, const int rows, const bool weighted)
+static ALWAYS_INLINE void sweep_from(uint32_t *sum, uint32_t *weight_sum,
+                                     struct state *s, int row, const int rows,
+                                     const bool weighted)
 {
-    const struct target to = {sum + row * RF_TILE, weighted ? weight_sum + row * RF_TILE : NULL,
+    const struct target to = {sum + row * RF_TILE,
+                              weighted ? weight_sum + row * RF_TILE : NULL,
                               s->job->rows / 2 * RF_TILE};
 
     s->light.first = row * s->light.apart;
@@ -223,8 +227,8 @@ static void RF_VEC(rf_sweep1)(uint32_t *sum, uint32_t *weight_sum,
     };
 
     for (int tests = 0; tests < RF_SORTED_TESTS; tests++)
-        s.end[tests] = chroma ? rays->begin[tests] + rays->shared[tests]
-                              : rays->begin[tests + 1];
+        s.end[tests] =
+            chroma ? rays->begin[tests] + rays->shared[tests] : rays->begin[tests + 1];
     if (weight_sum)
         sweep_with_weights(sum, weight_sum, &s);
     else

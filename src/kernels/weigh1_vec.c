@@ -11,7 +11,8 @@ enum { TILES = 16, RUN = TILES * (int)RF_TILE };
 static void look(uint16_t *at, const uint16_t *light)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16)
-        vec_u16_store(at + x, vec_u16_min(vec_u16_load(light + x), vec_u16_set(RF_LIGHT_MAX)));
+        vec_u16_store(at + x,
+                      vec_u16_min(vec_u16_load(light + x), vec_u16_set(RF_LIGHT_MAX)));
 }
 
 static bool are_same(const uint16_t *near, const uint16_t *far)
@@ -19,7 +20,8 @@ static bool are_same(const uint16_t *near, const uint16_t *far)
     vec_u16 differ = vec_u16_set(0);
 
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16)
-        differ = vec_u16_or(differ, vec_u16_xor(vec_u16_load(near + x), vec_u16_load(far + x)));
+        differ = vec_u16_or(differ,
+                            vec_u16_xor(vec_u16_load(near + x), vec_u16_load(far + x)));
     return !vec_u16_any(differ);
 }
 
@@ -79,7 +81,8 @@ static void weigh_tiles(const struct rf_weigh1_job *job, int first, int tiles)
             job->far_weight[first + x] = job->light_weight[far[x]] >> 3;
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
         uint16_t *most = &job->brightest[x / RF_TILE];
-        vec_u16 brightest = multiply(job->near + x, job->near_weight + x, vec_u16_set(0));
+        vec_u16 brightest =
+            multiply(job->near + x, job->near_weight + x, vec_u16_set(0));
 
         if (same[i]) {
             copy(job->far_weight + x, job->near_weight + x);
@@ -95,7 +98,7 @@ static void RF_VEC(rf_weigh1)(const struct rf_weigh1_job *job, int n)
 {
     const int tiles = n / RF_TILE, whole = tiles * RF_TILE;
     const struct rf_weigh1_job rest = {
-        job->near + whole,       job->far + whole,         job->near_weight + whole,
+        job->near + whole,       job->far + whole,       job->near_weight + whole,
         job->far_weight + whole, job->brightest + tiles, job->light_weight};
 
     for (int i = 0; i < tiles; i += TILES)
@@ -108,9 +111,10 @@ static void RF_VEC(rf_weigh_chroma)(uint16_t *chroma, const uint16_t *weight, in
     int i = 0;
 
     for (; i + (int)VEC_U16 <= 2 * n; i += (int)VEC_U16)
-        vec_u16_store(chroma + i,
-                      vec_s16_scale(vec_u16_load(chroma + i),
-                                    eight_times(vec_u16_twice(vec_u16_load(weight + i)))));
+        vec_u16_store(
+            chroma + i,
+            vec_s16_scale(vec_u16_load(chroma + i),
+                          eight_times(vec_u16_twice(vec_u16_load(weight + i)))));
     rf_weigh_chroma_c(chroma + i, weight + i, n - i / 2);
 }
 

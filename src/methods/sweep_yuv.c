@@ -92,8 +92,8 @@ static void sweep_plane(const struct tile *tile, bool chroma,
         r->kernels.sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma],
                                    &job);
     else
-        r->kernels.sweep1(sums->run[chroma], tile->weight ? sums->run_weight[chroma] : NULL,
-                          &job);
+        r->kernels.sweep1(sums->run[chroma],
+                          tile->weight ? sums->run_weight[chroma] : NULL, &job);
 }
 
 /* Rays, of which chroma shares the first so many. Strips of a tile together: of one
@@ -162,7 +162,8 @@ static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
         for (int i = 0; i < lanes[p]; i++) {
             const bool wide = has_wide_sums(tile);
 
-            sums->sum[p][i] += weight * (wide ? sums->weighted_run[p][i] : sums->run[p][i]);
+            sums->sum[p][i] +=
+                weight * (wide ? sums->weighted_run[p][i] : sums->run[p][i]);
             sums->weight[p][i] += weight * (wide           ? sums->weight_run[p][i]
                                             : tile->weight ? sums->run_weight[p][i]
                                                            : (uint64_t)rays[p]);
@@ -211,7 +212,8 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
     for (int i = 0; tile->f->premultiplied && chroma && i < lanes; i++)
         sums->run[1][i] *= 2; /* Q12 to Q13 */
     if (tile->f->premultiplied)
-        kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma], lanes);
+        kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma],
+                               lanes);
     else if (tile->weight)
         kernels->weighted_means(computed, sums->weighted_run[chroma],
                                 sums->weight_run[chroma], lanes);
@@ -255,8 +257,9 @@ static void sweep_sums(struct tile *tile, struct sums *sums,
     sweep_rays(tile, sums);
     for (int p = 0; p < 2; p++)
         for (int i = 0; i < lanes[p]; i++)
-            mean[p][i] = (uint16_t)((unit[p] * sums->sum[p][i] + sums->weight[p][i] / 2) /
-                                    sums->weight[p][i]);
+            mean[p][i] =
+                (uint16_t)((unit[p] * sums->sum[p][i] + sums->weight[p][i] / 2) /
+                           sums->weight[p][i]);
 }
 
 /* How many values of luma a 16-bit sum holds. */
