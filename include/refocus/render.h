@@ -274,7 +274,8 @@ struct refocus_render_params {
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
     uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
     uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
-    uint8_t prefilter;      /**< sweep: 1 = smooth the input between rays that lie far apart */
+    uint8_t prefilter;      /**< sweep: 1 = smooth the input between rays that lie far apart,
+                                 and the result where all that is seen is blurred */
     uint8_t reserved;       /**< 0 */
     const struct refocus_aperture *aperture; /**< NULL = a disc, the only one that scatter,
                                  foveated, interpolated and diffusion know */

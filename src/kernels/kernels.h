@@ -271,6 +271,11 @@ typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t 
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
 
+/* soften: rows of RF_TILE means, each the average of itself and that of its neighbours, both half
+ * up: those to the left and right, but at the ends, and then, if `down` is set, those above and
+ * below, but in the first and the last row. */
+typedef void rf_soften_fn(uint16_t *mean, int rows, bool down);
+
 /*
  * lay_veil: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn
  * in cells of 4 x 4 pixels (thin/veil.h): 6 x 6 of them, the first one above and to the
@@ -286,6 +291,9 @@ typedef void rf_lay_veil_fn(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS]
 /* brightest: the largest value of any channel of a row. */
 typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
                                  const uint16_t *blue, int n);
+
+/* tile_brightest: the same of the pixels of a tile, whose rows are `stride` apart. */
+typedef uint16_t rf_tile_brightest_fn(const uint16_t *const light[3], ptrdiff_t stride);
 
 /* blend4: four rows by weights in Q16 that add up to 1, rounded half up. */
 typedef void rf_blend4_fn(uint16_t *out, const uint16_t *const row[4],
@@ -473,8 +481,10 @@ struct rf_kernels {
     rf_weighed_means_fn *weighed_means;
     rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
+    rf_soften_fn *soften;
     rf_lay_veil_fn *lay_veil;
     rf_brightest_fn *brightest;
+    rf_tile_brightest_fn *tile_brightest;
     rf_blend4_fn *blend4;
     rf_widen4_fn *widen4;
     rf_rough_fn *rough;

@@ -2,6 +2,8 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
+#include <string.h>
+
 enum { LANES = RF_TILE * RF_TILE };
 
 union number {
@@ -128,6 +130,27 @@ static void RF_VEC(rf_between_rows)(uint16_t *restrict mean, const uint16_t *res
     }
 }
 
+static inline uint16_t average(uint16_t a, uint16_t b)
+{
+    return (uint16_t)((a + b + 1) >> 1);
+}
+
+static void RF_VEC(rf_soften)(uint16_t *restrict mean, int rows, bool down)
+{
+    uint16_t across[RF_TILE * RF_TILE];
+    const int n = rows * RF_TILE;
+
+    for (int i = 1; i < n - 1; i++)
+        across[i] = average(average(mean[i - 1], mean[i + 1]), mean[i]);
+    for (int y = 0; y < n; y += RF_TILE) {
+        across[y] = mean[y];
+        across[y + RF_TILE - 1] = mean[y + RF_TILE - 1];
+    }
+    memcpy(mean, across, (size_t)n * sizeof *mean);
+    for (int i = RF_TILE; down && i < n - RF_TILE; i++)
+        mean[i] = average(average(across[i - RF_TILE], across[i + RF_TILE]), across[i]);
+}
+
 /* A row of cells at the middles of pixels, those of a channel together. */
 static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_VEIL_CELLS][4])
 {
@@ -193,12 +216,31 @@ static uint16_t RF_VEC(rf_brightest)(const uint16_t *restrict red,
     return most;
 }
 
+static uint16_t RF_VEC(rf_tile_brightest)(const uint16_t *const light[3], ptrdiff_t stride)
+{
+    uint16_t most[RF_TILE] = {0}, all = 0;
+
+    for (int y = 0; y < RF_TILE; y++) {
+        const uint16_t *restrict red = light[0] + y * stride;
+        const uint16_t *restrict green = light[1] + y * stride;
+        const uint16_t *restrict blue = light[2] + y * stride;
+
+        for (int x = 0; x < RF_TILE; x++)
+            most[x] = max16(max16(most[x], red[x]), max16(green[x], blue[x]));
+    }
+    for (int x = 0; x < RF_TILE; x++)
+        all = max16(all, most[x]);
+    return all;
+}
+
 void RF_VEC(rf_light_use)(struct rf_kernels *kernels)
 {
     kernels->luminance = RF_VEC(rf_luminance);
     kernels->between_rows = RF_VEC(rf_between_rows);
+    kernels->soften = RF_VEC(rf_soften);
     kernels->lay_veil = RF_VEC(rf_lay_veil);
     kernels->brightest = RF_VEC(rf_brightest);
+    kernels->tile_brightest = RF_VEC(rf_tile_brightest);
     kernels->weighted_means = RF_VEC(rf_weighted_means);
     kernels->weighed_means = RF_VEC(rf_weighed_means);
 }

@@ -13,6 +13,18 @@ static uint8_t code_of(const uint8_t *to_code, uint64_t mean)
     return to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
 }
 
+void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect)
+{
+    const int bytes = rf_order_of(f->out->format).bytes;
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        const uint8_t *out = pixel(f, bytes, rect.x0, y);
+
+        __builtin_prefetch(out, 1);
+        __builtin_prefetch(out + (rect.x1 - rect.x0) * bytes - 1, 1);
+    }
+}
+
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
 {
     const struct rf_order o = rf_order_of(f->out->format);

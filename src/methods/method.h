@@ -36,6 +36,7 @@ struct rf_frame {
     int veil_from;          /* which is this disparity: rf_veil_from() */
     bool weighted;          /* eq. 5 weights differ from 1, */
     bool premultiplied;     /* and little enough for light times weight in 16 bits */
+    bool fine;              /* the opening is: rf_aperture_is_fine() */
     int row_gap;            /* see methods/tile_rows.h */
     bool stars, grain;      /* lamps have spikes; blur has grain */
     bool finish_ready;      /* both are found out */
@@ -90,6 +91,9 @@ int rf_rays_alike(const struct rf_ray_set *set, int first);
 /* The ray set for a reach (Q7.8): enough rays for it, at most the preset, or a denser one where
  * a highlight is in reach. */
 const struct rf_ray_set *rf_rays_for(const struct refocus_renderer *r, int reach, bool lamp);
+
+/* A tile of the output picture will be written soon. */
+void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect);
 
 /* Means of a tile into the output picture. */
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);

@@ -14,6 +14,7 @@
 #include "methods/tile_rays.h"
 #include "methods/tile_rows.h"
 #include "renderer/bands.h"
+#include "renderer/passes.h"
 #include "thin/thin.h"
 #include "thin/veil.h"
 
@@ -88,11 +89,8 @@ static bool has_wide_sums(const struct rf_frame *f)
 /* How many values a 16-bit sum holds. */
 static int steps_of(const struct rf_frame *f, const struct rf_tile_plan *plan)
 {
-    static const int steps[] = {
-        [RF_WHITE] = 16, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 2, [RF_BRIGHTEST] = 1};
-
-    if (!f->premultiplied)
-        return steps[f->bright];
+    if (!f->premultiplied && !rf_needs_brightest(f)) /* white at most */
+        return 16;
     return plan->brightest > 65535 / 16 ? 65535 / plan->brightest : 16;
 }
 
@@ -238,7 +236,9 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
 {
     const struct refocus_renderer *r = f->r;
     const uint32_t count = (uint32_t)tile_rays->set->count;
-    const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind_of(r, tx, ty));
+    const int behind = behind_of(r, tx, ty);
+    const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind);
+    const bool soft = rf_is_soft(f, plan, behind);
     const int lanes = rows.count * RF_TILE;
     uint16_t computed[LANES];
     union tally run;
@@ -257,6 +257,8 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
             r->kernels.weighted_means(out, run.weighted[c], run.weighted[3], lanes);
         else
             r->kernels.means(out, run.sum[c], rf_mean_scale(count), lanes);
+        if (soft)
+            r->kernels.soften(out, rows.count, rows.step == 1);
         if (rows.step > 1)
             r->kernels.between_rows(mean[c], computed, rows.step);
     }
@@ -282,6 +284,8 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
 
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }
+        if (rf_is_soft(f, plan, behind_of(f->r, tx, ty)))
+            f->r->kernels.soften(mean[c], RF_TILE, true);
     }
 }
 
@@ -304,6 +308,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_copy_tile(f, rect);
         return;
     }
+    rf_expect_tile(f, rect);
     rf_tile_rays_make(&rays, f, rf_rays_for(r, plan.reach, plan.lamp), tx, ty);
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
         const int from = pass, to = pass ? 2 : 3; /* all of them, and green again */

@@ -5,6 +5,7 @@
 enum {
     ROW_BLUR = 384, /* 1.5 pixels of blur, Q7.8, for rows a pixel apart */
     MOST_RAYS = 64, /* more are for those who want the best */
+    SOFT_BLUR = 640, /* 2.5 pixels */
 };
 
 int rf_row_gap(const struct rf_frame *f)
@@ -14,18 +15,30 @@ int rf_row_gap(const struct rf_frame *f)
     int height = 1; /* half the opening's, Q15 */
 
     if (p->rays == REFOCUS_RAYS_FULL || p->rays > MOST_RAYS || p->cat_eye > 0 ||
-        p->fringe != 0 || rf_aperture_is_fine(f->aperture))
+        p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)
         height = abs(set->ray[n].v) > height ? abs(set->ray[n].v) : height;
     return (ROW_BLUR << 15) / height;
 }
 
+/* The least blur of all that is seen from a tile. */
+static int least_blur(const struct rf_tile_plan *plan, int behind)
+{
+    return plan->least < abs(behind) ? plan->least : abs(behind);
+}
+
+bool rf_is_soft(const struct rf_frame *f, const struct rf_tile_plan *plan, int behind)
+{
+    return plan->reach >= f->prefilter_above[0] && least_blur(plan, behind) >= SOFT_BLUR &&
+           !f->fine;
+}
+
 struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
                                  int behind)
 {
     static const struct rf_tile_rows sparse[] = {{5, 4}, {3, 6}, {2, 8}};
-    const int least = plan->least < abs(behind) ? plan->least : abs(behind);
+    const int least = least_blur(plan, behind);
 
     for (int i = 0; f->row_gap && !plan->lamp && i < 3; i++)
         if (least / sparse[i].step >= f->row_gap)
@@ -36,7 +49,7 @@ struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_
 struct rf_tile_rows rf_chroma_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
                                    int behind)
 {
-    const int least = plan->least < abs(behind) ? plan->least : abs(behind);
+    const int least = least_blur(plan, behind);
 
     if (f->row_gap && !plan->lamp && least / 4 >= f->row_gap)
         return (struct rf_tile_rows){2, 4};

@@ -25,6 +25,14 @@ static inline int rf_row_at(struct rf_tile_rows rows, int i)
  * by the settings or by an opening with fine structure. */
 int rf_row_gap(const struct rf_frame *f);
 
+/*
+ * Whether means of a tile are softened (kernels->soften): where rays of the preset lie 1.5 pixels
+ * and more apart, each pixel meets others than its neighbours, which shows as a fine weave. Where
+ * everything in reach is blurred by 2.5 pixels the picture has nothing as fine. Rows and columns
+ * at a tile's border stay, as their neighbours are in other tiles.
+ */
+bool rf_is_soft(const struct rf_frame *f, const struct rf_tile_plan *plan, int behind);
+
 /* For a tile; the background's blur there is `behind`. */
 struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
                                  int behind);

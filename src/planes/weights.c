@@ -60,6 +60,27 @@ static int brightest(uint16_t *const light[3], ptrdiff_t at)
     return most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
 }
 
+static uint16_t tile_brightest(const struct refocus_renderer *r, int tx, int ty)
+{
+    const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
+    uint16_t most[2];
+
+    for (int layer = 0; layer < 2; layer++) {
+        uint16_t *const *light = layer ? r->behind.light : r->smooth;
+
+        most[layer] = r->kernels.tile_brightest(
+            (const uint16_t *const[3]){light[0] + at, light[1] + at, light[2] + at},
+            r->stride);
+    }
+    return most[0] > most[1] ? most[0] : most[1];
+}
+
+void rf_note_brightest(struct refocus_renderer *r, int ty)
+{
+    for (int tx = 0; tx < r->tiles_x; tx++)
+        r->bins[(size_t)ty * r->tiles_x + tx].brightest = tile_brightest(r, tx, ty);
+}
+
 void rf_note_behind(struct refocus_renderer *r, int ty)
 {
     for (int tx = 0; tx < r->tiles_x; tx++)

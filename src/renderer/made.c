@@ -206,7 +206,7 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
     rf_pass_behind(f, r->levels);
     m->behind = !rf_cancelled(r);
-    m->weighed = false;
+    m->weighed = m->brightest = false;
     return m->behind;
 }
 
@@ -373,5 +373,9 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     }
     if (layers && f->weighted && rf_is_sweep(f))
         make_weights(f);
+    if (layers && rf_needs_brightest(f) && !r->made.brightest && !rf_cancelled(r)) {
+        rf_pass_brightest(f);
+        r->made.brightest = !rf_cancelled(r);
+    }
     f->region = in_window(r, region);
 }

@@ -198,6 +198,12 @@ static void note_band(void *context, int band, int worker)
     rf_note_behind(context, band);
 }
 
+static void brightest_band(void *context, int band, int worker)
+{
+    (void)worker;
+    rf_note_brightest(context, band);
+}
+
 static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -221,6 +227,11 @@ void rf_pass_behind(struct rf_frame *f, int levels)
     else
         rf_background_pull(r, 0, levels);
     rf_pool_run(&r->pool, note_band, r, rf_bands(r));
+}
+
+void rf_pass_brightest(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, brightest_band, f->r, rf_bands(f->r));
 }
 
 void rf_pass_weights(struct rf_frame *f)

@@ -34,6 +34,12 @@ static inline bool rf_is_sweep(const struct rf_frame *f)
     return f->params->method == REFOCUS_METHOD_SWEEP;
 }
 
+/* Plain 16-bit sums of light that may exceed white are widened as a tile's brightest asks for. */
+static inline bool rf_needs_brightest(const struct rf_frame *f)
+{
+    return rf_is_sweep(f) && !f->r->yuv.on && !f->weighted && f->bright != RF_WHITE;
+}
+
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
 void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
@@ -43,6 +49,7 @@ void rf_pass_mark(struct rf_frame *f);
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
 void rf_pass_bright(struct rf_frame *f); /* light of lamps beyond 4 times white, at the end */
 void rf_pass_weights(struct rf_frame *f);
+void rf_pass_brightest(struct rf_frame *f); /* after all light is there */
 
 /* Whether what r->made tells of is for this lens, and its light for this frame's; note
  * the frame's there. */

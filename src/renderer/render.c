@@ -169,7 +169,7 @@ static int veil_scale(const struct rf_frame *f)
 
     if (!p->thin || !f->r->has_thin || p->method != REFOCUS_METHOD_SWEEP ||
         f->r->yuv.on || (f->plan.plain && f->veil_from > 65535) || p->cat_eye > 0 ||
-        p->fringe != 0 || rf_aperture_is_fine(f->aperture))
+        p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)
         sum += set->ray[n].u * set->ray[n].u + set->ray[n].v * set->ray[n].v;
@@ -190,6 +190,15 @@ static void run_tiles(struct rf_frame *f)
     set_tiles(f);
     rf_finish_begin(f);
     rf_pool_run(&f->r->pool, tile_item, f, f->count_tx * f->count_ty);
+}
+
+/* The largest blur there can be, pixels. Of a lens the farther of both ends has it. */
+static float largest_blur(const struct rf_frame *f)
+{
+    const int df = f->focus.disparity, farther = larger(df, UINT16_MAX - df);
+
+    return f->plan.plain ? ((float)farther * f->focus.radius / 65536 + 1) / 256
+                         : f->params->max_blur_radius;
 }
 
 static void run(struct rf_frame *f, int number, struct rf_rect region)
@@ -276,11 +285,12 @@ int refocus_render(struct refocus_renderer *r,
         return status;
     f.params = &own;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
+    f.fine = rf_aperture_is_fine(f.aperture);
     f.focus = rf_focus_of(own.focus_disparity, own.max_blur_radius);
     rf_focus_plan_make(&f.plan, &own, f.focus, r->photo[number].width, r->photo[number].height);
     if (f.plan.surface || f.plan.sharp || f.plan.picture)
         f.plan.number = ++r->renders;
-    f.scale = rf_bin_scale_of(own.max_blur_radius);
+    f.scale = rf_bin_scale_of(largest_blur(&f));
     f.stars = own.star_spikes > 0 && own.star_strength > 0 && own.star_length > 0 &&
               own.method == REFOCUS_METHOD_SWEEP && own.max_blur_radius > 0;
     f.grain = own.grain > 0 && own.max_blur_radius > 0;

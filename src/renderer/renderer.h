@@ -90,6 +90,7 @@ struct rf_made {
     bool weighed; /* but with weights of `sigma` in place of its blur, */
     bool premultiplied; /* and the light of both layers times them */
     float sigma;
+    bool brightest; /* of each tile is noted, for plain sums */
     int rays;    /* that lamps were widened for */
     bool half;   /* photo[1], which lies in memory of the background layer of photo[0] */
     int photo;
@@ -144,7 +145,7 @@ struct rf_bins {
     int16_t least, most; /* Q7.8 */
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
     int16_t behind;      /* blur of the background in the middle, once that is filled */
-    uint16_t brightest;  /* light of either layer, once it is premultiplied */
+    uint16_t brightest;  /* light of either layer, as it is summed */
 };
 
 /*

@@ -6,9 +6,9 @@
 
 enum { HALF = 128, OVERLAP = 32 }; /* Q7.8 pixels */
 
-struct rf_bin_scale rf_bin_scale_of(float max_blur_radius)
+struct rf_bin_scale rf_bin_scale_of(float largest_blur)
 {
-    const int shift = max_blur_radius <= 31.5f ? 6 : max_blur_radius <= 63.5f ? 7 : 8;
+    const int shift = largest_blur <= 31.5f ? 6 : largest_blur <= 63.5f ? 7 : 8;
 
     /* Then -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
      * shift 7, -127 .. 127 bins 0 .. 254 at shift 8. */

@@ -6,7 +6,8 @@
 #include "tiles/slab.h"
 
 /*
- * Bins of signed blur: a quarter pixel wide up to K = 31.5, then half, then whole pixels.
+ * Bins of signed blur: a quarter pixel wide where none exceeds 31.5 pixels, half up to 63.5,
+ * then whole pixels.
  * Their edges lie so that |s| < 1/2 pixel, the blurs that leave a pixel as it is, are
  * whole bins.
  */
@@ -15,7 +16,7 @@ struct rf_bin_scale {
     int focus;      /* first bin of |s| < 1/2 pixel */
     int focus_bins; /* and how many there are */
 };
-struct rf_bin_scale rf_bin_scale_of(float max_blur_radius);
+struct rf_bin_scale rf_bin_scale_of(float largest_blur);
 
 enum { RF_MAX_SLABS = RF_BINS };
 

@@ -299,6 +299,33 @@ static int check_brightest(const struct subject *subject)
     return 0;
 }
 
+/* What lies between and behind a tile's rows does not count. */
+static int check_tile_brightest(const struct subject *subject)
+{
+    enum { STRIDE = 3 * RF_TILE };
+    uint16_t plane[3][RF_TILE * STRIDE];
+    uint32_t seed = 17;
+
+    for (int round = 0; round < 300; round++) {
+        const unsigned limit = 1 + noise(&seed) % 65535;
+        uint16_t most = 0, is;
+
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < RF_TILE * STRIDE; i++) {
+                const bool inside = i % STRIDE < RF_TILE;
+
+                plane[c][i] = (uint16_t)(inside ? noise(&seed) % limit : 65535);
+                if (inside && plane[c][i] > most)
+                    most = plane[c][i];
+            }
+        is = subject->kernels.tile_brightest(
+            (const uint16_t *const[3]){plane[0], plane[1], plane[2]}, STRIDE);
+        if (is != most)
+            return wrong(subject, "tile_brightest", "of a tile", is, most);
+    }
+    return 0;
+}
+
 /* The cubic through four of the computed rows, by Lagrange; its shares are rounded to Q14. */
 static double cubic(const uint16_t *computed, const int *at, int rows, int x, int y)
 {
@@ -345,6 +372,46 @@ static int check_between(const struct subject *subject)
             if (k % RF_TILE == 0 ? mean[k] != computed[0] : off > 8 || off < -8)
                 return wrong(subject, "between_rows", "a pixel", mean[k], should);
         }
+    }
+    return 0;
+}
+
+/* The average of line[i] and its two neighbours `step` apart, unless it is the first or the last
+ * of n. */
+static unsigned softened(const uint16_t *line, int step, int i, int n)
+{
+    return i == 0 || i == n - 1
+               ? line[i * step]
+               : ((line[(i - 1) * step] + line[(i + 1) * step] + 1u) / 2 + line[i * step] + 1) / 2;
+}
+
+/* Every number of rows; nothing written after them. */
+static int check_soften(const struct subject *subject)
+{
+    uint32_t seed = 16;
+
+    for (int round = 0; round < 200; round++) {
+        const int rows = 1 + round % RF_TILE;
+        const bool down = round / RF_TILE % 2;
+        uint16_t mean[LANES + 1], all[LANES], across[LANES];
+
+        for (int i = 0; i < LANES; i++)
+            mean[i] = all[i] = (uint16_t)(noise(&seed) % 8 ? noise(&seed) % 65536 : 65535);
+        mean[LANES] = 12345;
+        for (int i = 0; i < LANES; i++)
+            across[i] = (uint16_t)softened(all + i / RF_TILE * RF_TILE, 1, i % RF_TILE, RF_TILE);
+        subject->kernels.soften(mean, rows, down);
+        for (int i = 0; i < LANES; i++) {
+            const int x = i % RF_TILE, y = i / RF_TILE;
+            const unsigned should = y >= rows ? all[i]
+                                    : down    ? softened(across + x, RF_TILE, y, rows)
+                                              : across[i];
+
+            if (mean[i] != should)
+                return wrong(subject, "soften", "a pixel", mean[i], should);
+        }
+        if (mean[LANES] != 12345)
+            return wrong(subject, "soften", "what lies behind", mean[LANES], 12345);
     }
     return 0;
 }
@@ -401,11 +468,13 @@ static int check_veil(const struct subject *subject)
 int check_light(const struct subject *subject)
 {
     const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject) +
-                         check_between(subject) + check_weigh(subject) + check_weigh1(subject) +
-                         check_weigh_chroma(subject) +
+                         check_tile_brightest(subject) + check_between(subject) +
+                         check_soften(subject) + check_weigh(subject) +
+                         check_weigh1(subject) + check_weigh_chroma(subject) +
                          check_weighed_means(subject) + check_veil(subject);
 
     if (!failures)
-        printf("ok    %-12s %-6s means with weights, weights, brightest, rows between, veils\n", "light", subject->cpu);
+        printf("ok    %-12s %-6s means, weights, brightest, rows between, softening, veils\n",
+               "light", subject->cpu);
     return failures;
 }

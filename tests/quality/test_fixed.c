@@ -124,7 +124,7 @@ static void sweep_ray(const struct scene *s, const struct refocus_renderer *r,
 static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
                       const double light[256], uint8_t *out)
 {
-    const struct rf_bin_scale scale = rf_bin_scale_of((float)s->K);
+    const struct rf_bin_scale scale = rf_bin_scale_of((float)(s->K * fmax(s->df, 1 - s->df)));
     struct rf_reach reach;
     struct rf_tile_plan plan;
 

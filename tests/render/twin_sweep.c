@@ -24,9 +24,12 @@ struct plan {
     bool sharp;
 };
 
-static double bin_width(double K)
+/* By the largest blur. */
+static double bin_width(const struct twin *t)
 {
-    return K <= 31.5 ? 0.25 : K <= 63.5 ? 0.5 : 1;
+    const double largest = t->K * fmax(t->df, 1 - t->df);
+
+    return largest <= 31.5 ? 0.25 : largest <= 63.5 ? 0.5 : 1;
 }
 
 static int bin_of(double width, double s)
@@ -202,14 +205,27 @@ struct rows {
     int count, at[TWIN_TILE];
 };
 
-static struct rows rows_of(const struct twin *t, const struct plan *plan,
-                           const struct sets *sets, double behind)
+/* Of all that is seen from a tile, pixels. */
+static double least_blur(const struct plan *plan, double behind)
+{
+    double least = fabs(behind);
+
+    for (int i = 0; i < plan->slabs; i++) {
+        const struct slab *slab = &plan->slab[i];
+
+        if (slab->centre == 0)
+            return 0;
+        least = fmin(least, slab->centre > 0 ? slab->least : -slab->most);
+    }
+    return least;
+}
+
+static struct rows rows_of(const struct twin *t, const struct sets *sets, double least)
 {
     static const struct rows sparse[] = {
         {4, {0, 5, 10, 15}}, {6, {0, 3, 6, 9, 12, 15}}, {8, {0, 2, 4, 6, 9, 11, 13, 15}}};
     static const double step[] = {5, 3, 2};
     struct rows all = {TWIN_TILE, {0}};
-    double least = fabs(behind);
     int tallest = 0; /* Q15 */
 
     for (int y = 0; y < TWIN_TILE; y++)
@@ -219,17 +235,19 @@ static struct rows rows_of(const struct twin *t, const struct plan *plan,
     for (int n = 0; n < sets->count[sets->sets - 1]; n++)
         if (abs(sets->ray[sets->sets - 1][n].v) > tallest)
             tallest = abs(sets->ray[sets->sets - 1][n].v);
-    for (int i = 0; i < plan->slabs; i++) {
-        const struct slab *slab = &plan->slab[i];
-
-        if (slab->centre == 0)
-            return all;
-        least = fmin(least, slab->centre > 0 ? slab->least : -slab->most);
-    }
     for (int i = 0; i < 3; i++)
         if (least * tallest / 32768 >= 1.5 * step[i])
             return sparse[i];
     return all;
+}
+
+/* Whether rays lie 1.5 pixels apart and more, and nothing is as fine. */
+static bool is_soft(const struct twin *t, const struct plan *plan, double least)
+{
+    const double gap = sqrt(3.14159265358979 / t->params->rays);
+
+    return t->params->prefilter && t->params->rays != REFOCUS_RAYS_FULL && t->K * gap > 1.5 &&
+           plan->reach * gap >= 1.5 && least >= 2.5;
 }
 
 /* Lagrange's share of row k in the cubic through rows first to first + 3. */
@@ -265,45 +283,67 @@ static void between(const struct rows *rows, const struct twin_sum row[TWIN_TILE
     }
 }
 
-static void sweep_column(const struct twin *t, const struct plan *plan,
-                         const struct sets *sets, double behind, const struct rows *rows,
-                         int x, int y0, uint8_t *rgb)
+/* The average of sums[0] and those beside it. */
+static struct twin_sum average(const struct twin_sum *sums, ptrdiff_t beside)
 {
-    const int set = set_for(sets, plan->reach);
-    struct twin_sum sum[TWIN_TILE];
+    struct twin_sum sum = {{0}, 1};
 
-    for (int k = 0; k < rows->count; k++) {
-        sum[k] = (struct twin_sum){{0}, 0};
-        for (int n = 0; n < sets->count[set]; n++)
-            trace(t, plan, x, y0 + rows->at[k], sets->ray[set][n], behind, &sum[k]);
-    }
-    for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
-        struct twin_sum own;
+    for (int c = 0; c < 3; c++)
+        sum.light[c] = (sums[-beside].light[c] / sums[-beside].weight +
+                        2 * sums[0].light[c] / sums[0].weight +
+                        sums[beside].light[c] / sums[beside].weight) / 4;
+    return sum;
+}
 
-        if (rows->count < TWIN_TILE)
-            between(rows, sum, y, &own);
-        else
-            own = sum[y];
-        twin_encode(t, &own, rgb + 3 * ((y0 + y) * t->width + x));
-    }
+/* Rows of a tile one after the other: across, and down if all rows are there. */
+static void soften(struct twin_sum sums[TWIN_TILE * TWIN_TILE], int rows)
+{
+    struct twin_sum own[TWIN_TILE * TWIN_TILE];
+
+    memcpy(own, sums, sizeof own);
+    for (int i = 0; i < rows * TWIN_TILE; i++)
+        if (i % TWIN_TILE > 0 && i % TWIN_TILE < TWIN_TILE - 1)
+            sums[i] = average(own + i, 1);
+    memcpy(own, sums, sizeof own);
+    for (int i = TWIN_TILE; rows == TWIN_TILE && i < (TWIN_TILE - 1) * TWIN_TILE; i++)
+        sums[i] = average(own + i, TWIN_TILE);
+}
+
+static void sharp_tile(const struct twin *t, int tx, int ty, uint8_t *rgb)
+{
+    for (int y = ty * TWIN_TILE; y < (ty + 1) * TWIN_TILE && y < t->height; y++)
+        for (int x = tx * TWIN_TILE; x < (tx + 1) * TWIN_TILE && x < t->width; x++) {
+            struct twin_sum sum = {{0}, 0};
+
+            twin_add(t, &sum, t->light, y * t->width + x, 1);
+            twin_encode(t, &sum, rgb + 3 * (y * t->width + x));
+        }
 }
 
 static void sweep_tile(const struct twin *t, const struct plan *plan, const struct sets *sets,
                        int tx, int ty, uint8_t *rgb)
 {
-    const double behind = t->behind_blur[twin_at(t, tx * TWIN_TILE + TWIN_TILE / 2,
-                                                 ty * TWIN_TILE + TWIN_TILE / 2)];
-    const struct rows rows = rows_of(t, plan, sets, behind);
+    const int x0 = tx * TWIN_TILE, y0 = ty * TWIN_TILE, set = set_for(sets, plan->reach);
+    const double behind = t->behind_blur[twin_at(t, x0 + TWIN_TILE / 2, y0 + TWIN_TILE / 2)];
+    const double least = least_blur(plan, behind);
+    const struct rows rows = rows_of(t, sets, least);
+    struct twin_sum sums[TWIN_TILE * TWIN_TILE] = {{{0}, 0}};
 
-    for (int x = tx * TWIN_TILE; x < (tx + 1) * TWIN_TILE && x < t->width; x++) {
-        if (!plan->sharp)
-            sweep_column(t, plan, sets, behind, &rows, x, ty * TWIN_TILE, rgb);
-        for (int y = ty * TWIN_TILE; plan->sharp && y < (ty + 1) * TWIN_TILE && y < t->height;
-             y++) {
-            struct twin_sum sum = {{0}, 0};
+    for (int i = 0; i < rows.count * TWIN_TILE; i++)
+        for (int n = 0; n < sets->count[set]; n++)
+            trace(t, plan, x0 + i % TWIN_TILE, y0 + rows.at[i / TWIN_TILE], sets->ray[set][n],
+                  behind, &sums[i]);
+    if (is_soft(t, plan, least))
+        soften(sums, rows.count);
+    for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
+        for (int x = 0; x < TWIN_TILE && x0 + x < t->width; x++) {
+            struct twin_sum column[TWIN_TILE], own = sums[y * TWIN_TILE + x];
 
-            twin_add(t, &sum, t->light, y * t->width + x, 1);
-            twin_encode(t, &sum, rgb + 3 * (y * t->width + x));
+            for (int k = 0; k < rows.count; k++)
+                column[k] = sums[k * TWIN_TILE + x];
+            if (rows.count < TWIN_TILE)
+                between(&rows, column, y, &own);
+            twin_encode(t, &own, rgb + 3 * ((y0 + y) * t->width + x0 + x));
         }
     }
 }
@@ -312,7 +352,7 @@ void twin_sweep(struct twin *t, uint8_t *rgb)
 {
     const int across = (t->width + TWIN_TILE - 1) / TWIN_TILE;
     const int down = (t->height + TWIN_TILE - 1) / TWIN_TILE;
-    const double width = bin_width(t->K);
+    const double width = bin_width(t);
     struct bins *tiles = calloc((size_t)(across * down), sizeof *tiles);
     struct sets sets = make_sets(t);
 
@@ -326,7 +366,10 @@ void twin_sweep(struct twin *t, uint8_t *rgb)
             reach_of_tile(t, tiles, across, down, width, i % across, i / across);
         const struct plan plan = cover(&reach, width);
 
-        sweep_tile(t, &plan, &sets, i % across, i / across, rgb);
+        if (plan.sharp)
+            sharp_tile(t, i % across, i / across, rgb);
+        else
+            sweep_tile(t, &plan, &sets, i % across, i / across, rgb);
     }
     for (int i = 0; i < sets.sets; i++)
         free(sets.ray[i]);
