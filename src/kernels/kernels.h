@@ -369,6 +369,10 @@ typedef void rf_sweep1_fn(uint32_t *sum, uint32_t *weight_sum, const struct rf_s
 typedef void rf_sweep1_weighted_fn(uint64_t *sum, uint64_t *weight,
                                    const struct rf_sweep1_job *job);
 
+/* soften_chroma: soften, of means of chroma: the neighbours are two elements away, and those of
+ * the two at either end of a row stay. */
+typedef void rf_soften_chroma_fn(uint16_t *mean, int rows, bool down);
+
 /* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
 typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);
 
@@ -450,6 +454,7 @@ struct rf_kernels {
     rf_sweep1_fn *sweep1;
     rf_sweep1_weighted_fn *sweep1_weighted;
     rf_between_chroma_fn *between_chroma;
+    rf_soften_chroma_fn *soften_chroma;
     rf_smooth1_fn *smooth1;
     rf_aim_chroma_fn *aim_chroma;
     rf_sharpest4_fn *sharpest4;

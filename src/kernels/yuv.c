@@ -2,6 +2,8 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
+#include <string.h>
+
 static inline uint16_t size(int16_t s)
 {
     return (uint16_t)(s < 0 ? -s : s);
@@ -103,6 +105,28 @@ static void RF_VEC(rf_between_chroma)(uint16_t *restrict mean, const uint16_t *r
     }
 }
 
+static inline uint16_t average(uint16_t a, uint16_t b)
+{
+    return (uint16_t)((a + b + 1) >> 1);
+}
+
+static void RF_VEC(rf_soften_chroma)(uint16_t *restrict mean, int rows, bool down)
+{
+    uint16_t across[RF_TILE * RF_TILE];
+    const int n = rows * RF_TILE;
+
+    for (int i = 2; i < n - 2; i++)
+        across[i] = average(average(mean[i - 2], mean[i + 2]), mean[i]);
+    for (int y = 0; y < n; y += RF_TILE)
+        for (int i = 0; i < 2; i++) {
+            across[y + i] = mean[y + i];
+            across[y + RF_TILE - 1 - i] = mean[y + RF_TILE - 1 - i];
+        }
+    memcpy(mean, across, (size_t)n * sizeof *mean);
+    for (int i = RF_TILE; down && i < n - RF_TILE; i++)
+        mean[i] = average(average(across[i - RF_TILE], across[i + RF_TILE]), across[i]);
+}
+
 /* floor((u s + 2^(22 + shift)) / 2^(23 + shift)), by the high half of the product. */
 static inline int16_t rounded(int16_t u, int16_t blur, int shift)
 {
@@ -131,5 +155,6 @@ void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)
     kernels->split2 = RF_VEC(rf_split2);
     kernels->join2 = RF_VEC(rf_join2);
     kernels->between_chroma = RF_VEC(rf_between_chroma);
+    kernels->soften_chroma = RF_VEC(rf_soften_chroma);
     RF_VEC(rf_yuv_codes_use)(kernels);
 }

@@ -220,6 +220,13 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
     else
         kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays),
                        lanes);
+    if (rf_is_soft(tile->f, &tile->plan, tile->behind)) {
+        if (chroma)
+            kernels->soften_chroma(computed, plane->computed.count,
+                                   plane->computed.count == plane->rows);
+        else
+            kernels->soften(computed, plane->computed.count, plane->computed.step == 1);
+    }
     if (computed == memory && plane->rows == RF_TILE)
         kernels->between_rows(mean, computed, plane->computed.step);
     else if (computed == memory)
