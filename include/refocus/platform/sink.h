@@ -60,9 +60,9 @@ REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int hei
 
 /**
  * Whether pictures of a format can be written as they are, without a detour by R, G
- * and B: 0 or 1. RGB8 is taken by every sink; formats of Y, U and V by `null` and `y4m`,
- * by `raw` where its FORMAT is `own` or one of Y, U and V, and by `v4l2` where the node
- * has such a format: the same one, else with as many samples, else as `raw` has it.
+ * and B: 0 or 1. RGB8 is taken by every sink; formats of Y, U and V by `null` and
+ * `y4m`, by `raw` where its FORMAT is `own` or one of Y, U and V, and by `v4l2` where
+ * the node has such a format: the same one, else one with as many samples, else any.
  */
 REFOCUS_API int refocus_sink_takes(struct refocus_sink *sink, uint32_t format);
 
