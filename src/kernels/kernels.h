@@ -162,7 +162,18 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
  * its own, but at least one pixel (256) and less than two (511), of it; the pixel
  * itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows written
  * are not among those read.
+ *
+ * The mean comes in over a quarter of `least`, so that nothing jumps as the focus moves: of how
+ * far it is from the pixel itself, rf_fade_left() / 65536 are taken off, rounded down.
  */
+static inline uint16_t rf_fade_left(int blur, int least)
+{
+    const int above = (blur < 0 ? -blur : blur) - least;
+    const int whole = least / 4 > 1 ? least / 4 : 1;
+    const int left = whole - (above < 0 ? 0 : above < whole ? above : whole);
+
+    return (uint16_t)(left * (65535 / whole));
+}
 typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
                            const int16_t *blur, ptrdiff_t apart, int least, int n);
 
@@ -271,10 +282,10 @@ typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t 
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
 
-/* soften: rows of RF_TILE means, each the average of itself and that of its neighbours, both half
- * up: those to the left and right, but at the ends, and then, if `down` is set, those above and
- * below, but in the first and the last row. */
-typedef void rf_soften_fn(uint16_t *mean, int rows, bool down);
+/* soften: rows of RF_TILE means, each moved by half of share / 65536, rounded down, of how far the
+ * average, half up, of its neighbours is: those to the left and right, but at the ends, and then,
+ * if `down` is set, those above and below, but in the first and the last row. */
+typedef void rf_soften_fn(uint16_t *mean, int rows, bool down, uint16_t share);
 
 /*
  * lay_veil: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn
@@ -371,7 +382,7 @@ typedef void rf_sweep1_weighted_fn(uint64_t *sum, uint64_t *weight,
 
 /* soften_chroma: soften, of means of chroma: the neighbours are two elements away, and those of
  * the two at either end of a row stay. */
-typedef void rf_soften_chroma_fn(uint16_t *mean, int rows, bool down);
+typedef void rf_soften_chroma_fn(uint16_t *mean, int rows, bool down, uint16_t share);
 
 /* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
 typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);

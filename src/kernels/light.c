@@ -130,25 +130,32 @@ static void RF_VEC(rf_between_rows)(uint16_t *restrict mean, const uint16_t *res
     }
 }
 
-static inline uint16_t average(uint16_t a, uint16_t b)
+/* A value moved towards the average of two. */
+static inline uint16_t moved(uint16_t own, uint16_t a, uint16_t b, uint32_t share)
 {
-    return (uint16_t)((a + b + 1) >> 1);
+    const uint16_t average = (uint16_t)((a + b + 1) >> 1);
+    const uint16_t up = (uint16_t)(average > own ? average - own : 0);
+    const uint16_t down = (uint16_t)(own > average ? own - average : 0);
+    const uint16_t more = (uint16_t)((uint16_t)(up * share >> 16) >> 1);
+    const uint16_t less = (uint16_t)((uint16_t)(down * share >> 16) >> 1);
+
+    return (uint16_t)(own + more - less);
 }
 
-static void RF_VEC(rf_soften)(uint16_t *restrict mean, int rows, bool down)
+static void RF_VEC(rf_soften)(uint16_t *restrict mean, int rows, bool down, uint16_t share)
 {
     uint16_t across[RF_TILE * RF_TILE];
     const int n = rows * RF_TILE;
 
     for (int i = 1; i < n - 1; i++)
-        across[i] = average(average(mean[i - 1], mean[i + 1]), mean[i]);
+        across[i] = moved(mean[i], mean[i - 1], mean[i + 1], share);
     for (int y = 0; y < n; y += RF_TILE) {
         across[y] = mean[y];
         across[y + RF_TILE - 1] = mean[y + RF_TILE - 1];
     }
     memcpy(mean, across, (size_t)n * sizeof *mean);
     for (int i = RF_TILE; down && i < n - RF_TILE; i++)
-        mean[i] = average(average(across[i - RF_TILE], across[i + RF_TILE]), across[i]);
+        mean[i] = moved(across[i], across[i - RF_TILE], across[i + RF_TILE], share);
 }
 
 /* A row of cells at the middles of pixels, those of a channel together. */

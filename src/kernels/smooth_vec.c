@@ -9,14 +9,27 @@ struct use {
     vec_u16 before, after, neither;
     vec_u16 bias;   /* rounding: 1, and 2 for a mean of two */
     vec_u16 factor; /* see mean() */
+    vec_u16 left;   /* rf_fade_left(), */
+    bool fades;     /* which is not 0 everywhere */
 };
 
-/* |s| / 8, from one pixel to two; of s and -s the lesser is |s|, which is below 2^15. */
-static inline vec_u16 tolerance(vec_u16 s)
-{
-    const vec_u16 own = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s));
+/* From which blur on, and how the mean comes in. */
+struct fade {
+    vec_u16 least, whole, factor;
+};
 
-    return vec_u16_min(vec_u16_max(vec_u16_half(vec_u16_half(vec_u16_half(own))),
+static inline struct fade fade_of(int least)
+{
+    const int whole = least / 4 > 1 ? least / 4 : 1;
+
+    return (struct fade){vec_u16_set((uint16_t)least), vec_u16_set((uint16_t)whole),
+                         vec_u16_set((uint16_t)(65535 / whole))};
+}
+
+/* |s| / 8, from one pixel to two. */
+static inline vec_u16 tolerance(vec_u16 size)
+{
+    return vec_u16_min(vec_u16_max(vec_u16_half(vec_u16_half(vec_u16_half(size))),
                                    vec_u16_set(PIXEL)),
                        vec_u16_set(TWO_PIXELS));
 }
@@ -27,11 +40,14 @@ static inline vec_u16 within(vec_u16 a, vec_u16 b, vec_u16 tolerance)
                            vec_u16_add(tolerance, tolerance));
 }
 
-static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, vec_u16 least)
+static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, const struct fade *fade)
 {
-    const vec_u16 s = vec_u16_load(blur), t = tolerance(s);
-    /* |s| <= least; s + least stays below 2^16 + s, and |s| <= 32512 */
-    const vec_u16 narrow = vec_u16_at_most(vec_u16_add(s, least), vec_u16_add(least, least));
+    const vec_u16 s = vec_u16_load(blur);
+    /* of s and -s the lesser is |s|, which is below 2^15 */
+    const vec_u16 size = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s)), t = tolerance(size);
+    const vec_u16 narrow = vec_u16_at_most(size, fade->least);
+    const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
+    const vec_u16 left = vec_u16_sub(fade->whole, vec_u16_min(above, fade->whole));
     const vec_u16 before =
         vec_u16_without(within(vec_u16_load(blur - apart), s, t), narrow);
     const vec_u16 after =
@@ -44,6 +60,8 @@ static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, vec_u16 le
         .neither = vec_u16_without(vec_u16_set(0xffff), vec_u16_or(before, after)),
         .bias = vec_u16_sub(vec_u16_set(1), vec_u16_xor(before, after)),
         .factor = vec_u16_sub(vec_u16_set(65535), vec_u16_and(three, vec_u16_set(21844))),
+        .left = vec_u16_mul(left, fade->factor),
+        .fades = vec_u16_any(vec_u16_without(left, narrow)),
     };
 }
 
@@ -52,11 +70,16 @@ static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, vec_u16 le
 static inline vec_u16 mean(const uint16_t *light, ptrdiff_t apart, const struct use *use)
 {
     const vec_u16 own = vec_u16_load(light);
-    vec_u16 sum = vec_u16_add(own, vec_u16_and(own, use->neither));
+    vec_u16 sum = vec_u16_add(own, vec_u16_and(own, use->neither)), all, most;
 
     sum = vec_u16_add(sum, vec_u16_and(vec_u16_load(light - apart), use->before));
     sum = vec_u16_add(sum, vec_u16_and(vec_u16_load(light + apart), use->after));
-    return vec_u16_half(vec_u16_mul_high(vec_u16_add(sum, use->bias), use->factor));
+    all = vec_u16_half(vec_u16_mul_high(vec_u16_add(sum, use->bias), use->factor));
+    if (!use->fades)
+        return all;
+    most = vec_u16_max(all, own);
+    return vec_u16_add(vec_u16_sub(all, vec_u16_mul_high(vec_u16_sub(most, own), use->left)),
+                       vec_u16_mul_high(vec_u16_sub(most, all), use->left));
 }
 
 static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const light[3],
@@ -64,7 +87,7 @@ static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const lig
 {
     uint16_t *const red = out[0], *const green = out[1], *const blue = out[2];
     const uint16_t *const r = light[0], *const g = light[1], *const b = light[2];
-    const vec_u16 from = vec_u16_set((uint16_t)least);
+    const struct fade fade = fade_of(least);
 
     if (n < (int)VEC_U16) {
         rf_smooth3_c(out, light, blur, apart, least, n);
@@ -72,7 +95,7 @@ static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const lig
     }
     for (int x = 0; x < n; x += VEC_U16) {
         const int at = x + (int)VEC_U16 <= n ? x : n - (int)VEC_U16; /* some twice */
-        const struct use use = use_of(blur + at, apart, from);
+        const struct use use = use_of(blur + at, apart, &fade);
 
         vec_u16_store(red + at, mean(r + at, apart, &use));
         vec_u16_store(green + at, mean(g + at, apart, &use));
@@ -83,7 +106,7 @@ static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const lig
 static void RF_VEC(rf_smooth1)(uint16_t *out, const uint16_t *light, const int16_t *blur,
                                ptrdiff_t apart, int least, int n)
 {
-    const vec_u16 from = vec_u16_set((uint16_t)least);
+    const struct fade fade = fade_of(least);
 
     if (n < (int)VEC_U16) {
         rf_smooth1_c(out, light, blur, apart, least, n);
@@ -91,7 +114,7 @@ static void RF_VEC(rf_smooth1)(uint16_t *out, const uint16_t *light, const int16
     }
     for (int x = 0; x < n; x += VEC_U16) {
         const int at = x + (int)VEC_U16 <= n ? x : n - (int)VEC_U16; /* some twice */
-        const struct use use = use_of(blur + at, apart, from);
+        const struct use use = use_of(blur + at, apart, &fade);
 
         vec_u16_store(out + at, mean(light + at, apart, &use));
     }

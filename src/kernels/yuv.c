@@ -105,18 +105,26 @@ static void RF_VEC(rf_between_chroma)(uint16_t *restrict mean, const uint16_t *r
     }
 }
 
-static inline uint16_t average(uint16_t a, uint16_t b)
+/* A value moved towards the average of two, as in light.c. */
+static inline uint16_t moved(uint16_t own, uint16_t a, uint16_t b, uint32_t share)
 {
-    return (uint16_t)((a + b + 1) >> 1);
+    const uint16_t average = (uint16_t)((a + b + 1) >> 1);
+    const uint16_t up = (uint16_t)(average > own ? average - own : 0);
+    const uint16_t down = (uint16_t)(own > average ? own - average : 0);
+    const uint16_t more = (uint16_t)((uint16_t)(up * share >> 16) >> 1);
+    const uint16_t less = (uint16_t)((uint16_t)(down * share >> 16) >> 1);
+
+    return (uint16_t)(own + more - less);
 }
 
-static void RF_VEC(rf_soften_chroma)(uint16_t *restrict mean, int rows, bool down)
+static void RF_VEC(rf_soften_chroma)(uint16_t *restrict mean, int rows, bool down,
+                                     uint16_t share)
 {
     uint16_t across[RF_TILE * RF_TILE];
     const int n = rows * RF_TILE;
 
     for (int i = 2; i < n - 2; i++)
-        across[i] = average(average(mean[i - 2], mean[i + 2]), mean[i]);
+        across[i] = moved(mean[i], mean[i - 2], mean[i + 2], share);
     for (int y = 0; y < n; y += RF_TILE)
         for (int i = 0; i < 2; i++) {
             across[y + i] = mean[y + i];
@@ -124,7 +132,7 @@ static void RF_VEC(rf_soften_chroma)(uint16_t *restrict mean, int rows, bool dow
         }
     memcpy(mean, across, (size_t)n * sizeof *mean);
     for (int i = RF_TILE; down && i < n - RF_TILE; i++)
-        mean[i] = average(average(across[i - RF_TILE], across[i + RF_TILE]), across[i]);
+        mean[i] = moved(across[i], across[i - RF_TILE], across[i + RF_TILE], share);
 }
 
 /* floor((u s + 2^(22 + shift)) / 2^(23 + shift)), by the high half of the product. */

@@ -238,7 +238,7 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
     const uint32_t count = (uint32_t)tile_rays->set->count;
     const int behind = behind_of(r, tx, ty);
     const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind);
-    const bool soft = rf_is_soft(f, plan, behind);
+    const uint16_t softness = rf_softness(f, plan, behind);
     const int lanes = rows.count * RF_TILE;
     uint16_t computed[LANES];
     union tally run;
@@ -257,8 +257,8 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
             r->kernels.weighted_means(out, run.weighted[c], run.weighted[3], lanes);
         else
             r->kernels.means(out, run.sum[c], rf_mean_scale(count), lanes);
-        if (soft)
-            r->kernels.soften(out, rows.count, rows.step == 1);
+        if (softness)
+            r->kernels.soften(out, rows.count, rows.step == 1, softness);
         if (rows.step > 1)
             r->kernels.between_rows(mean[c], computed, rows.step);
     }
@@ -271,6 +271,7 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
 {
     const uint64_t most = RF_PLAIN_GAIN * 4 * RF_LIGHT_MAX;
     const uint64_t unit = f->premultiplied ? 8192 : 4; /* of Q13 times Q12, or Q12 */
+    const uint16_t softness = rf_softness(f, plan, behind_of(f->r, tx, ty));
     struct rf_sums sums;
     union tally run;
 
@@ -284,8 +285,8 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
 
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }
-        if (rf_is_soft(f, plan, behind_of(f->r, tx, ty)))
-            f->r->kernels.soften(mean[c], RF_TILE, true);
+        if (softness)
+            f->r->kernels.soften(mean[c], RF_TILE, true, softness);
     }
 }
 

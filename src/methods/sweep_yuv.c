@@ -207,6 +207,7 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
     const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
     const int rays = chroma ? tile->set->shared : tile->set->count;
     const int lanes = plane->computed.count * RF_TILE;
+    const uint16_t softness = rf_softness(tile->f, &tile->plan, tile->behind);
     uint16_t memory[LANES], *computed = plane->computed.step == 1 ? mean : memory;
 
     for (int i = 0; tile->f->premultiplied && chroma && i < lanes; i++)
@@ -220,13 +221,11 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
     else
         kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays),
                        lanes);
-    if (rf_is_soft(tile->f, &tile->plan, tile->behind)) {
-        if (chroma)
-            kernels->soften_chroma(computed, plane->computed.count,
-                                   plane->computed.count == plane->rows);
-        else
-            kernels->soften(computed, plane->computed.count, plane->computed.step == 1);
-    }
+    if (softness && chroma)
+        kernels->soften_chroma(computed, plane->computed.count,
+                               plane->computed.count == plane->rows, softness);
+    else if (softness)
+        kernels->soften(computed, plane->computed.count, plane->computed.step == 1, softness);
     if (computed == memory && plane->rows == RF_TILE)
         kernels->between_rows(mean, computed, plane->computed.step);
     else if (computed == memory)

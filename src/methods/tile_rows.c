@@ -28,10 +28,20 @@ static int least_blur(const struct rf_tile_plan *plan, int behind)
     return plan->least < abs(behind) ? plan->least : abs(behind);
 }
 
-bool rf_is_soft(const struct rf_frame *f, const struct rf_tile_plan *plan, int behind)
+/* From 0 at `from` to 65535 at 5/4 of that. */
+static int64_t share_above(int from, int blur)
 {
-    return plan->reach >= f->prefilter_above[0] && least_blur(plan, behind) >= SOFT_BLUR &&
-           !f->fine;
+    const int64_t share = INT64_C(65535) * 4 * (blur - from) / from;
+
+    return share < 0 ? 0 : share < 65535 ? share : 65535;
+}
+
+uint16_t rf_softness(const struct rf_frame *f, const struct rf_tile_plan *plan, int behind)
+{
+    const int64_t far_apart = share_above(f->prefilter_above[0], plan->reach);
+    const int64_t blurred = share_above(SOFT_BLUR, least_blur(plan, behind));
+
+    return (uint16_t)(f->fine ? 0 : far_apart < blurred ? far_apart : blurred);
 }
 
 struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,

@@ -26,12 +26,13 @@ static inline int rf_row_at(struct rf_tile_rows rows, int i)
 int rf_row_gap(const struct rf_frame *f);
 
 /*
- * Whether means of a tile are softened (kernels->soften): where rays of the preset lie 1.5 pixels
- * and more apart, each pixel meets others than its neighbours, which shows as a fine weave. Where
- * everything in reach is blurred by 2.5 pixels the picture has nothing as fine. Rows and columns
- * at a tile's border stay, as their neighbours are in other tiles.
+ * How much means of a tile are softened (kernels->soften), Q16: where rays of the preset lie 1.5
+ * pixels and more apart, each pixel meets others than its neighbours, which shows as a fine weave.
+ * Where everything in reach is blurred by 2.5 pixels the picture has nothing as fine. Wholly from
+ * 5/4 of both on, so that nothing jumps as the focus moves. Rows and columns at a tile's border
+ * stay, as their neighbours are in other tiles.
  */
-bool rf_is_soft(const struct rf_frame *f, const struct rf_tile_plan *plan, int behind);
+uint16_t rf_softness(const struct rf_frame *f, const struct rf_tile_plan *plan, int behind);
 
 /* For a tile; the background's blur there is `behind`. */
 struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,

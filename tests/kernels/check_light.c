@@ -376,13 +376,18 @@ static int check_between(const struct subject *subject)
     return 0;
 }
 
-/* The average of line[i] and its two neighbours `step` apart, unless it is the first or the last
- * of n. */
-static unsigned softened(const uint16_t *line, int step, int i, int n)
+/* line[i] moved towards the average of its two neighbours `step` apart, unless it is the first or
+ * the last of n. */
+static unsigned softened(const uint16_t *line, int step, int i, int n, unsigned share)
 {
-    return i == 0 || i == n - 1
-               ? line[i * step]
-               : ((line[(i - 1) * step] + line[(i + 1) * step] + 1u) / 2 + line[i * step] + 1) / 2;
+    const unsigned own = line[i * step];
+
+    if (i == 0 || i == n - 1)
+        return own;
+    const unsigned average = (line[(i - 1) * step] + line[(i + 1) * step] + 1u) / 2;
+
+    return average > own ? own + (average - own) * share / 131072
+                         : own - (own - average) * share / 131072;
 }
 
 /* Every number of rows; nothing written after them. */
@@ -393,18 +398,20 @@ static int check_soften(const struct subject *subject)
     for (int round = 0; round < 200; round++) {
         const int rows = 1 + round % RF_TILE;
         const bool down = round / RF_TILE % 2;
+        const uint16_t share = (uint16_t)(noise(&seed) % 3 ? noise(&seed) % 65536 : 65535);
         uint16_t mean[LANES + 1], all[LANES], across[LANES];
 
         for (int i = 0; i < LANES; i++)
             mean[i] = all[i] = (uint16_t)(noise(&seed) % 8 ? noise(&seed) % 65536 : 65535);
         mean[LANES] = 12345;
         for (int i = 0; i < LANES; i++)
-            across[i] = (uint16_t)softened(all + i / RF_TILE * RF_TILE, 1, i % RF_TILE, RF_TILE);
-        subject->kernels.soften(mean, rows, down);
+            across[i] = (uint16_t)softened(all + i / RF_TILE * RF_TILE, 1, i % RF_TILE, RF_TILE,
+                                          share);
+        subject->kernels.soften(mean, rows, down, share);
         for (int i = 0; i < LANES; i++) {
             const int x = i % RF_TILE, y = i / RF_TILE;
             const unsigned should = y >= rows ? all[i]
-                                    : down    ? softened(across + x, RF_TILE, y, rows)
+                                    : down    ? softened(across + x, RF_TILE, y, rows, share)
                                               : across[i];
 
             if (mean[i] != should)

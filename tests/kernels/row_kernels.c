@@ -63,24 +63,30 @@ static bool alike(int own, int other)
     return abs(other - own) <= most;
 }
 
+/* A pixel and its two neighbours as smooth3 has it. */
+static uint16_t smoothed(const uint16_t *light, const int16_t *blur, int parameter)
+{
+    const int apart = apart_of(parameter), whole = parameter < 8 ? 1 : parameter / 4;
+    const int left = whole + parameter - abs(blur[0]);
+    int sum = 0, count = 0, mean, off;
+
+    for (int i = -apart; i <= apart; i += apart) {
+        if (i == 0 || (abs(blur[0]) > parameter && alike(blur[0], blur[i]))) {
+            sum += light[i];
+            count++;
+        }
+    }
+    mean = (2 * sum + count) / (2 * count);
+    off = left > 0 ? (int)((int64_t)abs(mean - light[0]) * left * (65535 / whole) / 65536) : 0;
+    return (uint16_t)(mean < light[0] ? mean + off : mean - off);
+}
+
 static void expect_smooth3(void *const *row, int parameter, int n)
 {
-    const int16_t *blur = row[6];
-
-    for (int i = 0; i < 3 * n; i++) {
-        const int c = i / n, x = i % n;
-        const uint16_t *light = row[3 + c];
-        int sum = 0, count = 0;
-
-        for (int at = x - apart_of(parameter); at <= x + apart_of(parameter);
-             at += apart_of(parameter)) {
-            if (at == x || (abs(blur[x]) > parameter && alike(blur[x], blur[at]))) {
-                sum += light[at];
-                count++;
-            }
-        }
-        ((uint16_t *)row[c])[x] = (uint16_t)((2 * sum + count) / (2 * count));
-    }
+    for (int c = 0; c < 3; c++)
+        for (int x = 0; x < n; x++)
+            ((uint16_t *)row[c])[x] = smoothed((const uint16_t *)row[3 + c] + x,
+                                               (const int16_t *)row[6] + x, parameter);
 }
 
 /* The result is moved to the first row, whichever it is in. */
@@ -286,22 +292,9 @@ static void run_smooth1(const struct rf_kernels *k, void *const *row, int parame
 
 static void expect_smooth1(void *const *row, int parameter, int n)
 {
-    const int apart = (int)apart_of(parameter);
-    uint16_t *out = row[0];
-
-    for (int x = 0; x < n; x++) {
-        const int16_t *blur = (const int16_t *)row[2] + x;
-        const uint16_t *light = (const uint16_t *)row[1] + x;
-        int sum = 0, count = 0;
-
-        for (int i = -apart; i <= apart; i += apart) {
-            if (i == 0 || (abs(blur[0]) > parameter && alike(blur[0], blur[i]))) {
-                sum += light[i];
-                count++;
-            }
-        }
-        out[x] = (uint16_t)((2 * sum + count) / (2 * count));
-    }
+    for (int x = 0; x < n; x++)
+        ((uint16_t *)row[0])[x] =
+            smoothed((const uint16_t *)row[1] + x, (const int16_t *)row[2] + x, parameter);
 }
 
 static void run_sharpest4(const struct rf_kernels *k, void *const *row, int parameter, int n)

@@ -70,7 +70,8 @@ void twin_destroy(struct twin *t)
 }
 
 /* Along one axis: the mean of a pixel and of those neighbours, `step` pixels away, whose
- * blur is within an eighth, one pixel to two, of its own; the pixel itself where it is blurred by `above` or less. */
+ * blur is within an eighth, one pixel to two, of its own; the pixel itself where it is
+ * blurred by `above` or less, and a part of both up to 5/4 of that. */
 static void smooth(const struct twin *t, double *out, const double *in, int step_x, int step_y,
                    double above)
 {
@@ -90,7 +91,8 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
                     count++;
                 }
             }
-            out[p] = sum / count;
+            out[p] = in[p] + (sum / count - in[p]) *
+                                 fmin(fmax((fabs(t->blur[p]) - above) / (above / 4), 0), 1);
         }
     }
 }

@@ -241,13 +241,15 @@ static struct rows rows_of(const struct twin *t, const struct sets *sets, double
     return all;
 }
 
-/* Whether rays lie 1.5 pixels apart and more, and nothing is as fine. */
-static bool is_soft(const struct twin *t, const struct plan *plan, double least)
+/* 1 from where rays lie 5/4 of 1.5 pixels apart on, if nothing is as fine; 0 from 1.5 down. */
+static double softness(const struct twin *t, const struct plan *plan, double least)
 {
     const double gap = sqrt(3.14159265358979 / t->params->rays);
+    const double far_apart = 4 * (plan->reach * gap / 1.5 - 1), blurred = 4 * (least / 2.5 - 1);
 
-    return t->params->prefilter && t->params->rays != REFOCUS_RAYS_FULL && t->K * gap > 1.5 &&
-           plan->reach * gap >= 1.5 && least >= 2.5;
+    if (!t->params->prefilter || t->params->rays == REFOCUS_RAYS_FULL || t->K * gap <= 1.5)
+        return 0;
+    return fmin(fmax(fmin(far_apart, blurred), 0), 1);
 }
 
 /* Lagrange's share of row k in the cubic through rows first to first + 3. */
@@ -283,30 +285,33 @@ static void between(const struct rows *rows, const struct twin_sum row[TWIN_TILE
     }
 }
 
-/* The average of sums[0] and those beside it. */
-static struct twin_sum average(const struct twin_sum *sums, ptrdiff_t beside)
+/* sums[0], half moved to the average of those beside it, or a part of that. */
+static struct twin_sum moved(const struct twin_sum *sums, ptrdiff_t beside, double part)
 {
     struct twin_sum sum = {{0}, 1};
 
-    for (int c = 0; c < 3; c++)
-        sum.light[c] = (sums[-beside].light[c] / sums[-beside].weight +
-                        2 * sums[0].light[c] / sums[0].weight +
-                        sums[beside].light[c] / sums[beside].weight) / 4;
+    for (int c = 0; c < 3; c++) {
+        const double own = sums[0].light[c] / sums[0].weight;
+        const double average = (sums[-beside].light[c] / sums[-beside].weight +
+                                sums[beside].light[c] / sums[beside].weight) / 2;
+
+        sum.light[c] = own + part / 2 * (average - own);
+    }
     return sum;
 }
 
 /* Rows of a tile one after the other: across, and down if all rows are there. */
-static void soften(struct twin_sum sums[TWIN_TILE * TWIN_TILE], int rows)
+static void soften(struct twin_sum sums[TWIN_TILE * TWIN_TILE], int rows, double part)
 {
     struct twin_sum own[TWIN_TILE * TWIN_TILE];
 
     memcpy(own, sums, sizeof own);
     for (int i = 0; i < rows * TWIN_TILE; i++)
         if (i % TWIN_TILE > 0 && i % TWIN_TILE < TWIN_TILE - 1)
-            sums[i] = average(own + i, 1);
+            sums[i] = moved(own + i, 1, part);
     memcpy(own, sums, sizeof own);
     for (int i = TWIN_TILE; rows == TWIN_TILE && i < (TWIN_TILE - 1) * TWIN_TILE; i++)
-        sums[i] = average(own + i, TWIN_TILE);
+        sums[i] = moved(own + i, TWIN_TILE, part);
 }
 
 static void sharp_tile(const struct twin *t, int tx, int ty, uint8_t *rgb)
@@ -333,8 +338,7 @@ static void sweep_tile(const struct twin *t, const struct plan *plan, const stru
         for (int n = 0; n < sets->count[set]; n++)
             trace(t, plan, x0 + i % TWIN_TILE, y0 + rows.at[i / TWIN_TILE], sets->ray[set][n],
                   behind, &sums[i]);
-    if (is_soft(t, plan, least))
-        soften(sums, rows.count);
+    soften(sums, rows.count, softness(t, plan, least));
     for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
         for (int x = 0; x < TWIN_TILE && x0 + x < t->width; x++) {
             struct twin_sum column[TWIN_TILE], own = sums[y * TWIN_TILE + x];
