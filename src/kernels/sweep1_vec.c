@@ -133,7 +133,9 @@ static ALWAYS_INLINE void sweep_rows(const struct target *to, const struct state
     int left = s->job->steps;
 
     for (int j = 0; j < 2 * rows * EACH; j++)
-        sums.light[j] = sums.weight[j] = vec_u16_set(0);
+        sums.light[j] = vec_u16_set(0);
+    for (int j = 0; weighted && j < 2 * rows * EACH; j++)
+        sums.weight[j] = vec_u16_set(0);
     for (int tests = 0; tests < RF_SORTED_TESTS; tests++) {
         for (int n = s->job->rays->begin[tests], end; n < s->end[tests]; n = end) {
             end = s->end[tests] < n + left ? s->end[tests] : n + left;
@@ -177,7 +179,7 @@ static ALWAYS_INLINE void sweep_from(uint32_t *sum, uint32_t *weight_sum,
     sweep_rows(&to, s, rows, weighted);
 }
 
-static void sweep_plain(uint32_t *sum, struct state *s)
+static ALWAYS_INLINE void sweep_plain(uint32_t *sum, struct state *s)
 {
     const int half = s->job->rows / 2;
     int row = 0;
@@ -196,7 +198,7 @@ static void sweep_plain(uint32_t *sum, struct state *s)
         sweep_from(sum, NULL, s, row, 1, false);
 }
 
-static void sweep_with_weights(uint32_t *sum, uint32_t *weight_sum, struct state *s)
+static ALWAYS_INLINE void sweep_with_weights(uint32_t *sum, uint32_t *weight_sum, struct state *s)
 {
     const int half = s->job->rows / 2;
     int row = 0;
