@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "colour/yuv.h"
+#include "kernels/thin.h"
 #include "kernels/upsample.h"
 #include "tiles/slab.h"
 
@@ -163,19 +164,18 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
  * itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows written
  * are not among those read.
  *
- * The mean comes in over a quarter of `least`, so that nothing jumps as the focus moves: of how
- * far it is from the pixel itself, rf_fade_left() / 65536 are taken off, rounded down.
+ * The mean comes in over the next `over` of blur, 1 at least: of how far it is from the pixel
+ * itself, rf_fade_left() / 65536 are taken off, rounded down.
  */
-static inline uint16_t rf_fade_left(int blur, int least)
+static inline uint16_t rf_fade_left(int blur, int least, int over)
 {
     const int above = (blur < 0 ? -blur : blur) - least;
-    const int whole = least / 4 > 1 ? least / 4 : 1;
-    const int left = whole - (above < 0 ? 0 : above < whole ? above : whole);
+    const int left = over - (above < 0 ? 0 : above < over ? above : over);
 
-    return (uint16_t)(left * (65535 / whole));
+    return (uint16_t)(left * (65535 / over));
 }
 typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
-                           const int16_t *blur, ptrdiff_t apart, int least, int n);
+                           const int16_t *blur, ptrdiff_t apart, int least, int over, int n);
 
 /* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
 enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
@@ -389,7 +389,7 @@ typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);
 
 /* smooth1: smooth3, of one plane. */
 typedef void rf_smooth1_fn(uint16_t *out, const uint16_t *light, const int16_t *blur,
-                           ptrdiff_t apart, int least, int n);
+                           ptrdiff_t apart, int least, int over, int n);
 
 /*
  * aim_chroma: offsets, as aim, of samples of chroma that are two pixels apart across and 1 << down
@@ -497,6 +497,7 @@ struct rf_kernels {
     rf_weighed_means_fn *weighed_means;
     rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
+    rf_find_thin_fn *find_thin;
     rf_soften_fn *soften;
     rf_lay_veil_fn *lay_veil;
     rf_brightest_fn *brightest;
@@ -543,7 +544,7 @@ rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_weigh_use), RF_VECTOR_SETS(rf_weigh1_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
     RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_rows_use), RF_ALL_SETS(rf_series_use),
-    RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_yuv_use),
-    RF_ALL_SETS(rf_yuv_codes_use);
+    RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use), RF_ALL_SETS(rf_upsample_use),
+    RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
 
 #endif

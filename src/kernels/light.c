@@ -170,6 +170,27 @@ static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_VEIL_CELLS][4]
     }
 }
 
+/* All channels between two rows of cells. */
+static void down_cells(int32_t *restrict out, const int32_t *restrict above,
+                       const int32_t *restrict below, int part)
+{
+    for (int k = 0; k < 4 * RF_TILE; k++)
+        out[k] = (above[k] * (8 - part) + below[k] * part) >> 8;
+}
+
+static void lay_row(uint16_t *restrict out, const int32_t *restrict light,
+                    const int32_t *restrict cover)
+{
+    for (int x = 0; x < RF_TILE; x++) {
+        const int32_t some = cover[x] < 0 ? 0 : cover[x];
+        const uint32_t part = (uint32_t)(some > 32768 ? 32768 : some);
+        const int32_t v =
+            out[x] + (light[x] >> 1) - (int32_t)((out[x] * part + 16384) >> 15);
+
+        out[x] = (uint16_t)(v < 0 ? 0 : v > 65535 ? 65535 : v);
+    }
+}
+
 static void RF_VEC(rf_lay_veil)(uint16_t *const mean[3],
                                 int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
 {
@@ -179,23 +200,11 @@ static void RF_VEC(rf_lay_veil)(uint16_t *const mean[3],
         across_cells(row[i], cell[i]);
     for (int y = 0; y < RF_TILE; y++) {
         const int at = 2 * y + 5, i = at >> 3, part = at & 7;
-        uint32_t cover[RF_TILE];
+        int32_t veil[4 * RF_TILE]; /* Q15 */
 
-        for (int x = 0; x < RF_TILE; x++) { /* Q15 */
-            const int32_t v = (row[i][3][x] * (8 - part) + row[i + 1][3][x] * part) >> 8;
-
-            cover[x] = (uint32_t)(v < 0 ? 0 : v > 32768 ? 32768 : v);
-        }
-        for (int c = 0; c < 3; c++) {
-            uint16_t *restrict out = mean[c] + y * RF_TILE;
-
-            for (int x = 0; x < RF_TILE; x++) {
-                const int32_t light = (row[i][c][x] * (8 - part) + row[i + 1][c][x] * part) >> 9;
-                const int32_t v = out[x] + light - (int32_t)((out[x] * cover[x] + 16384) >> 15);
-
-                out[x] = (uint16_t)(v < 0 ? 0 : v > 65535 ? 65535 : v);
-            }
-        }
+        down_cells(veil, row[i][0], row[i + 1][0], part);
+        for (int c = 0; c < 3; c++)
+            lay_row(mean[c] + y * RF_TILE, veil + c * RF_TILE, veil + 3 * RF_TILE);
     }
 }
 

@@ -35,7 +35,7 @@ static void smooth3(const struct rf_kernels *k, struct rows *r)
     const uint16_t *const light[3] = {r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
                                       r->shorts[2] + MARGIN};
 
-    k->smooth3(out, light, r->blur[0] + MARGIN, 1, 3 << 8, N);
+    k->smooth3(out, light, r->blur[0] + MARGIN, 1, 3 << 8, 1, N);
 }
 
 static void spread_row(const struct rf_kernels *k, struct rows *r)

@@ -68,6 +68,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_choose_use_c(kernels);
     rf_series_use_c(kernels);
     rf_surfaces_use_c(kernels);
+    rf_thin_use_c(kernels);
 #if defined(RF_WITH_NEON)
     if (*cpu == REFOCUS_CPU_NEON)
         rf_kernels_use_neon(kernels);

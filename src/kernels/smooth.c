@@ -22,16 +22,16 @@ static uint16_t mean(const uint16_t *light, ptrdiff_t apart, bool before, bool a
 }
 
 void rf_smooth1_c(uint16_t *out, const uint16_t *light, const int16_t *blur, ptrdiff_t apart,
-                  int least, int n)
+                  int least, int over, int n)
 {
     for (int x = 0; x < n; x++)
         out[x] = mean(light + x, apart, is_like(blur[x - apart], blur[x], least),
-                      is_like(blur[x + apart], blur[x], least), rf_fade_left(blur[x], least));
+                      is_like(blur[x + apart], blur[x], least), rf_fade_left(blur[x], least, over));
 }
 
 void rf_smooth3_c(uint16_t *const out[3], const uint16_t *const light[3], const int16_t *blur,
-                  ptrdiff_t apart, int least, int n)
+                  ptrdiff_t apart, int least, int over, int n)
 {
     for (int c = 0; c < 3; c++)
-        rf_smooth1_c(out[c], light[c], blur, apart, least, n);
+        rf_smooth1_c(out[c], light[c], blur, apart, least, over, n);
 }

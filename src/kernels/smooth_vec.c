@@ -15,17 +15,17 @@ struct use {
 
 /* From which blur on, and how the mean comes in. */
 struct fade {
-    vec_u16 least, whole, factor;
+    vec_u16 least, over, factor;
     vec_u16 most; /* blur that it is not wholly there at */
 };
 
-static inline struct fade fade_of(int least)
+static inline struct fade fade_of(int least, int over)
 {
-    const int whole = least / 4 > 1 ? least / 4 : 1;
+    const int whole = least + over;
 
-    return (struct fade){vec_u16_set((uint16_t)least), vec_u16_set((uint16_t)whole),
-                         vec_u16_set((uint16_t)(65535 / whole)),
-                         vec_u16_set((uint16_t)(least + whole - 1))};
+    return (struct fade){vec_u16_set((uint16_t)least), vec_u16_set((uint16_t)over),
+                         vec_u16_set((uint16_t)(65535 / over)),
+                         vec_u16_set((uint16_t)(whole < 65536 ? whole - 1 : 65535))};
 }
 
 /* |s| / 8, from one pixel to two. */
@@ -51,11 +51,11 @@ static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, const stru
     vec_u16 after = within(vec_u16_load(blur + apart), s, t), left = vec_u16_set(0);
     bool fades = false;
 
-    if (vec_u16_any(vec_u16_at_most(size, fade->most))) { /* rarely */
+    if (vec_u16_any(vec_u16_at_most(size, fade->most))) {
         const vec_u16 narrow = vec_u16_at_most(size, fade->least);
         const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
 
-        left = vec_u16_sub(fade->whole, vec_u16_min(above, fade->whole));
+        left = vec_u16_sub(fade->over, vec_u16_min(above, fade->over));
         before = vec_u16_without(before, narrow);
         after = vec_u16_without(after, narrow);
         fades = vec_u16_any(vec_u16_without(left, narrow));
@@ -91,14 +91,14 @@ static inline vec_u16 mean(const uint16_t *light, ptrdiff_t apart, const struct 
 }
 
 static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const light[3],
-                               const int16_t *blur, ptrdiff_t apart, int least, int n)
+                               const int16_t *blur, ptrdiff_t apart, int least, int over, int n)
 {
     uint16_t *const red = out[0], *const green = out[1], *const blue = out[2];
     const uint16_t *const r = light[0], *const g = light[1], *const b = light[2];
-    const struct fade fade = fade_of(least);
+    const struct fade fade = fade_of(least, over);
 
     if (n < (int)VEC_U16) {
-        rf_smooth3_c(out, light, blur, apart, least, n);
+        rf_smooth3_c(out, light, blur, apart, least, over, n);
         return;
     }
     for (int x = 0; x < n; x += VEC_U16) {
@@ -112,12 +112,12 @@ static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const lig
 }
 
 static void RF_VEC(rf_smooth1)(uint16_t *out, const uint16_t *light, const int16_t *blur,
-                               ptrdiff_t apart, int least, int n)
+                               ptrdiff_t apart, int least, int over, int n)
 {
-    const struct fade fade = fade_of(least);
+    const struct fade fade = fade_of(least, over);
 
     if (n < (int)VEC_U16) {
-        rf_smooth1_c(out, light, blur, apart, least, n);
+        rf_smooth1_c(out, light, blur, apart, least, over, n);
         return;
     }
     for (int x = 0; x < n; x += VEC_U16) {

@@ -208,6 +208,7 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
     RF_VEC(rf_search_use)(kernels);
     RF_VEC(rf_series_use)(kernels);
     RF_VEC(rf_surfaces_use)(kernels);
+    RF_VEC(rf_thin_use)(kernels);
     RF_VEC(rf_sweep1_use)(kernels);
     RF_VEC(rf_sweep1_weighted_use)(kernels);
     RF_VEC(rf_upsample_use)(kernels);

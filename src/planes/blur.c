@@ -38,7 +38,8 @@ enum { RUN = 256, MARGIN = 1 << (RF_PREFILTER_STEPS - 1) }; /* columns at a time
 
 /* n columns of a row, from `at` on, n at most RUN: three rows to one, then columns. */
 static void smooth_run(const struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], ptrdiff_t at, int step, int least, int n)
+                       uint16_t *const in[3], ptrdiff_t at, int step, int least, int over,
+                       int n)
 {
     const ptrdiff_t from = at - step;
     const int16_t *s = r->front.blur;
@@ -46,10 +47,10 @@ static void smooth_run(const struct refocus_renderer *r, uint16_t *const out[3],
 
     r->kernels.smooth3((uint16_t *const[3]){row[0], row[1], row[2]},
                        (const uint16_t *const[3]){in[0] + from, in[1] + from, in[2] + from},
-                       s + from, step * r->stride, least, n + 2 * step);
+                       s + from, step * r->stride, least, over, n + 2 * step);
     r->kernels.smooth3((uint16_t *const[3]){out[0] + at, out[1] + at, out[2] + at},
                        (const uint16_t *const[3]){row[0] + step, row[1] + step, row[2] + step},
-                       s + at, step, least, n);
+                       s + at, step, least, over, n);
 }
 
 static bool is_wide_near(const struct refocus_renderer *r, int tx, int ty, int least)
@@ -77,18 +78,19 @@ enum rf_task rf_prefilter_task(const struct refocus_renderer *r, const int above
 
 static void do_task(const struct refocus_renderer *r, enum rf_task task,
                     uint16_t *const out[3], uint16_t *const in[3], ptrdiff_t at, int step,
-                    int least, int n)
+                    int least, int over, int n)
 {
     for (int x = 0; task == RF_FILTER && x < n; x += RUN)
-        smooth_run(r, out, in, at + x, 1 << step, least, n - x < RUN ? n - x : RUN);
+        smooth_run(r, out, in, at + x, 1 << step, least, over, n - x < RUN ? n - x : RUN);
     for (int c = 0; task == RF_COPY && c < 3; c++)
         memcpy(out[c] + at, in[c] + at, (size_t)n * 2);
 }
 
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], int step,
-                       int ty)
+                       uint16_t *const in[3], const int above[RF_PREFILTER_STEPS],
+                       bool fades, int step, int ty)
 {
+    const int over = rf_prefilter_over(above[step], fades);
     const int y0 = ty * RF_TILE, y1 = y0 + RF_TILE < r->height ? y0 + RF_TILE : r->height;
 
     for (int tx = 0, end; tx < r->tiles_x; tx = end) {
@@ -101,7 +103,7 @@ void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
             end++;
         n = (end * RF_TILE < r->width ? end * RF_TILE : r->width) - x0;
         for (int y = y0; y < y1; y++)
-            do_task(r, task, out, in, y * r->stride + x0, step, above[step], n);
+            do_task(r, task, out, in, y * r->stride + x0, step, above[step], over, n);
     }
     for (int c = 0; c < 3; c++)
         rf_extend_rows(r, out[c], y0, y1);

@@ -34,10 +34,18 @@ void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan 
  *
  * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps
  * from 1.5 pixels on; the next close those twice and four times as wide.
+ *
+ * If it fades, a step comes in over rf_prefilter_over() more of |s|, so that nothing jumps while
+ * the focus moves.
  */
 void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], int step,
-                       int ty);
+                       uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], bool fades,
+                       int step, int ty);
+
+static inline int rf_prefilter_over(int above, bool fades)
+{
+    return fades && above >= 8 ? above / 4 : 1;
+}
 
 /* What a step does with a tile. */
 enum rf_task { RF_SKIP, RF_COPY, RF_FILTER };

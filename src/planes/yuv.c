@@ -267,6 +267,7 @@ struct filter {
     const uint16_t *in;
     const int16_t *blur;
     const int *above; /* |s| that the steps begin at */
+    bool fades;       /* see rf_prefilter_rows() */
     int number;       /* of this one */
     int across;       /* elements from neighbour to neighbour; rows are 1 << number */
     uint16_t *scratch;
@@ -277,13 +278,14 @@ static void smooth_run(const struct refocus_renderer *r, const struct filter *f,
                        int n)
 {
     const int step = f->across, least = f->above[f->number];
+    const int over = rf_prefilter_over(least, f->fades);
     const ptrdiff_t down = r->stride << f->number;
     const uint16_t *from = f->in + at - step;
     const int16_t *s = f->blur + at;
     uint16_t *const row = f->scratch + step;
 
-    r->kernels.smooth1(row - step, from, s - step, down, least, n + 2 * step);
-    r->kernels.smooth1(f->out + at, row, s, step, least, n);
+    r->kernels.smooth1(row - step, from, s - step, down, least, over, n + 2 * step);
+    r->kernels.smooth1(f->out + at, row, s, step, least, over, n);
 }
 
 /* Rows y0 to y1 - 1, as wide as w, of a row of tiles. */
@@ -311,20 +313,22 @@ static void smooth_rows(const struct refocus_renderer *r, const struct filter *f
 }
 
 void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                           const int above[RF_PREFILTER_STEPS], int step, uint16_t *scratch,
+                           const int above[RF_PREFILTER_STEPS], bool fades, int step,
+                           uint16_t *scratch,
                            int ty)
 {
-    const struct filter filter = {out, in, r->front.blur, above, step, 1 << step, scratch};
+    const struct filter filter = {out, in, r->front.blur, above, fades, step, 1 << step, scratch};
 
     smooth_rows(r, &filter, ty, rf_band_start(ty), rf_band_end(r, ty), r->width);
     rf_extend_rows(r, out, rf_band_start(ty), rf_band_end(r, ty));
 }
 
 void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                             const int above[RF_PREFILTER_STEPS], int step, uint16_t *scratch,
+                             const int above[RF_PREFILTER_STEPS], bool fades, int step,
+                           uint16_t *scratch,
                              int ty)
 {
-    const struct filter filter = {out, in, r->yuv.blur, above, step, 2 << step, scratch};
+    const struct filter filter = {out, in, r->yuv.blur, above, fades, step, 2 << step, scratch};
     const int c0 = rf_band_start(ty) >> r->yuv.down;
     const int c1 = rf_chroma_end(r, rf_band_end(r, ty));
 

@@ -319,14 +319,13 @@ static void find_highlights(struct rf_frame *f)
     photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
 }
 
-/* The same; nothing of it is in planes of other frames, which are lost. */
+/* The same. */
 static void find_thin(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
 
     if (!f->veils || r->photo[r->used].thin.blend == r->blend)
         return;
-    r->made = (struct rf_made){.half = r->made.half};
     rf_find_thin(r);
 }
 

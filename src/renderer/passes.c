@@ -89,7 +89,7 @@ static void smooth_band(void *context, int band, int worker)
     if (r->yuv.on)
         rf_smooth_yuv_band(f, band, worker);
     else
-        rf_prefilter_rows(r, out, in, f->prefilter_above, i, band);
+        rf_prefilter_rows(r, out, in, f->prefilter_above, f->prefilter_fades, i, band);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */

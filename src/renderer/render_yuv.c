@@ -67,9 +67,9 @@ void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
     int above[RF_PREFILTER_STEPS];
 
     set_chroma_above(f, above);
-    rf_yuv_prefilter_luma(r, luma[to], luma[i], f->prefilter_above, i, rf_scratch(r, worker),
-                          band);
+    rf_yuv_prefilter_luma(r, luma[to], luma[i], f->prefilter_above, f->prefilter_fades, i,
+                          rf_scratch(r, worker), band);
     if (i == 0 || largest_blur(f) > above[1]) /* else no tile would be touched */
-        rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], above, i, rf_scratch(r, worker),
-                                band);
+        rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], above, f->prefilter_fades, i,
+                                rf_scratch(r, worker), band);
 }

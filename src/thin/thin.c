@@ -12,17 +12,35 @@
 
 enum { CELLS = RF_TILE / RF_CELL };
 
-struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
-                           uint32_t *count)
+const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx,
+                                         int ty)
 {
     const struct rf_photo *photo = &r->photo[r->used];
     const int row = ty + r->origin_y / RF_TILE, column = tx + r->origin_x / RF_TILE;
     const int across = (photo->width + RF_TILE - 1) / RF_TILE;
-    const struct rf_thin_run *run = &photo->thin.run[(size_t)row * across + column];
+
+    return &photo->thin.run[(size_t)row * across + column];
+}
+
+struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
+                           uint32_t *count)
+{
+    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_thin_run *run = rf_thin_run_of(r, tx, ty);
+    const int row = ty + r->origin_y / RF_TILE;
 
     *count = run->count;
     return photo->thin.pixel + (uint64_t)row * rf_thin_capacity(photo->width) +
            run->first;
+}
+
+/* signed_blur of one. */
+static int plain_blur(struct rf_focus focus, uint16_t disparity)
+{
+    const int away = disparity - focus.disparity;
+    const uint32_t blur = (uint32_t)(away < 0 ? -away : away) * focus.radius + 0x8000;
+
+    return away > 0 ? -(int)(blur >> 16) : (int)(blur >> 16);
 }
 
 /* Blur of a disparity at a pixel. */
@@ -31,10 +49,9 @@ static int blur_of(const struct rf_frame *f, uint16_t disparity, int x, int y)
     int16_t blur;
 
     if (f->plan.plain)
-        f->r->kernels.signed_blur(&blur, &disparity, f->plan.focus, 1);
-    else
-        rf_focus_row(&f->plan, &blur, &disparity, f->r->origin_x + x,
-                     f->r->origin_y + y, 1);
+        return plain_blur(f->plan.focus, disparity);
+    rf_focus_row(&f->plan, &blur, &disparity, f->r->origin_x + x, f->r->origin_y + y,
+                 1);
     return blur;
 }
 
@@ -55,9 +72,12 @@ static bool is_filled(const struct refocus_renderer *r, int tx, int ty, int blur
     enum { FEW = 3 };
     int filled = 0;
 
-    for (int y = ty * CELLS; y < (ty + 1) * CELLS; y++)
-        for (int x = tx * CELLS; x < (tx + 1) * CELLS; x++)
-            filled += rf_cell_most(r, y)[x] <= blur;
+    for (int j = 0; j < CELLS; j++) {
+        const int16_t *most = rf_cell_most(r, ty * CELLS + j) + tx * CELLS;
+
+        for (int i = 0; i < CELLS; i++)
+            filled += most[i] <= blur;
+    }
     return filled > FEW;
 }
 
@@ -101,6 +121,24 @@ int rf_veil_from(const struct rf_frame *f)
     return low;
 }
 
+/* Of those of a tile that are to be drawn the farthest near disparity; 65536: none. */
+static int farthest_veil(const struct rf_frame *f, int tx, int ty)
+{
+    const struct rf_thin_run *run = rf_thin_run_of(f->r, tx, ty);
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(f->r, tx, ty, &count);
+    int least = 65536;
+
+    if (f->plan.plain && (count == 0 || run->most < f->veil_from))
+        return least;
+    if (f->plan.plain && run->least >= f->veil_from)
+        return run->least;
+    for (uint32_t i = 0; i < count; i++)
+        if (rf_is_veil(f, &thin[i], tx, ty) && thin[i].near_disparity < least)
+            least = thin[i].near_disparity;
+    return least;
+}
+
 static void choose_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -108,16 +146,12 @@ static void choose_band(void *context, int band, int worker)
 
     (void)worker;
     for (int tx = 0; tx < r->tiles_x; tx++) {
-        const struct rf_thin *farthest = NULL;
-        uint32_t count;
-        const struct rf_thin *thin = rf_thin_of(r, tx, band, &count);
+        const int d = farthest_veil(f, tx, band);
 
-        for (uint32_t i = 0; i < count; i++)
-            if (rf_is_veil(f, &thin[i], tx, band) &&
-                (!farthest || thin[i].near_disparity < farthest->near_disparity))
-                farthest = &thin[i];
         *is_drawn(r, tx, band) =
-            farthest && is_alone(r, tx, band, rf_near_blur(f, farthest, tx, band));
+            d < 65536 &&
+            is_alone(r, tx, band,
+                     blur_of(f, (uint16_t)d, tx * RF_TILE, band * RF_TILE));
     }
 }
 
@@ -177,27 +211,36 @@ void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
         for (int i = 0; i < RF_TILE * RF_TILE; i++)
             mean[c][i] = (uint16_t)(4 * r->front.light[c][at + i / RF_TILE * r->stride +
                                                           i % RF_TILE]);
-    for (uint32_t i = 0; *is_drawn(r, tx, ty) && i < count; i++)
-        for (int c = 0; rf_is_veil(f, &thin[i], tx, ty) && c < 3; c++)
+    for (uint32_t i = 0; *is_drawn(r, tx, ty) && i < count; i++) {
+        if (!rf_is_veil(f, &thin[i], tx, ty))
+            continue;
+        for (int c = 0; c < 3; c++)
             mean[c][thin[i].at] = (uint16_t)(4 * thin[i].light[c]);
+    }
 }
 
 static void swap_tile(const struct rf_frame *f, int tx, int ty)
 {
     const struct refocus_renderer *r = f->r;
+    const ptrdiff_t stride = r->stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
+    uint16_t *const red = r->front.light[0] + tile,
+                    *const green = r->front.light[1] + tile,
+                    *const blue = r->front.light[2] + tile;
+    const bool all = f->plan.plain && rf_thin_run_of(r, tx, ty)->least >= f->veil_from;
     uint32_t count;
     struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
 
     for (uint32_t i = 0; i < count; i++) {
-        const ptrdiff_t at = (ty * RF_TILE + thin[i].at / RF_TILE) * r->stride +
-                             tx * RF_TILE + thin[i].at % RF_TILE;
+        const ptrdiff_t at = thin[i].at / RF_TILE * stride + thin[i].at % RF_TILE;
+        const uint16_t light[3] = {red[at], green[at], blue[at]};
 
-        for (int c = 0; rf_is_veil(f, &thin[i], tx, ty) && c < 3; c++) {
-            const uint16_t light = r->front.light[c][at];
-
-            r->front.light[c][at] = thin[i].light[c];
-            thin[i].light[c] = light;
-        }
+        if (!all && !rf_is_veil(f, &thin[i], tx, ty))
+            continue;
+        red[at] = thin[i].light[0];
+        green[at] = thin[i].light[1];
+        blue[at] = thin[i].light[2];
+        for (int c = 0; c < 3; c++)
+            thin[i].light[c] = light[c];
     }
 }
 

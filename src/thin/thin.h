@@ -1,4 +1,4 @@
-/* edges.h: thin things, and the edges beside them, taken apart.
+/* thin.h: thin things, and the edges beside them, taken apart.
  *
  * A wire of two pixels that is blurred over forty is met by few rays, here by more and
  * there by less: it shows as streaks. And the pixels at its edge that have the depth of
@@ -23,20 +23,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "kernels/thin.h"
+
 struct refocus_renderer;
 struct rf_frame;
 
-struct rf_thin {
-    uint8_t at;    /* 16 y + x in its tile */
-    uint8_t alpha; /* 255 = 1 */
-    uint16_t near_disparity, far_disparity;
-    uint16_t
-        light[3]; /* F, Q12, but while the planes have it: then that of the photo */
-};
-
 /* Those of a tile, of all that are in its row of tiles. */
 struct rf_thin_run {
-    uint32_t first, count;
+    uint32_t first;
+    uint16_t count;
+    uint16_t least, most; /* near disparities; 65535 and 0 of none */
 };
 
 /* Room for those of a row of tiles: one pixel in four; further ones stay as they are.
@@ -47,16 +43,18 @@ static inline uint64_t rf_thin_capacity(int width)
 }
 
 struct rf_thin_list {
-    struct rf_thin *pixel;   /* rf_thin_capacity() for each row of tiles */
+    struct rf_thin *pixel; /* rf_thin_capacity() for each row of tiles; while the planes
+                              have F, the light of each is that of the photo */
     struct rf_thin_run *run; /* of each tile */
     uint32_t blend;          /* that they were found in, or RF_NO_BLEND */
 };
 
-/* Find those of the photo in use, all of which is in the window, in r->blend. Planes
- * that passes made are lost. */
+/* Find those of the photo in use, all of which is in the window, in r->blend. */
 void rf_find_thin(struct refocus_renderer *r);
 
 /* Those of a tile of the window. */
+const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx,
+                                         int ty);
 struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
                            uint32_t *count);
 

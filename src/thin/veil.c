@@ -45,15 +45,15 @@ static const uint16_t half_chord[33] = {
     30771, 30377, 29942, 29466, 28945, 28378, 27762, 27092, 26367, 25580, 24725,
     23796, 22783, 21674, 20454, 19102, 17588, 15864, 13852, 11403, 8128,  0};
 
-static int chord(int dy, int radius) /* Q8 both */
+static int chord(int dy, int radius) /* Q8 both, below 2^16 */
 {
-    const int64_t at = ((int64_t)dy << 13) / radius; /* Q8 of 1/32 */
-    const int i = (int)(at >> 8), part = (int)(at & 255);
+    const uint32_t at = ((uint32_t)dy << 13) / (uint32_t)radius; /* Q8 of 1/32 */
+    const uint32_t i = at >> 8, part = at & 255;
 
     if (i >= 32)
         return 0;
-    return (int)(((int64_t)(half_chord[i] * (256 - part) + half_chord[i + 1] * part) *
-                  radius) >>
+    return (int)(((uint64_t)(half_chord[i] * (256 - part) + half_chord[i + 1] * part) *
+                  (uint32_t)radius) >>
                  23);
 }
 
@@ -99,15 +99,15 @@ static void gather_band(void *context, int ty, int worker)
     r->veil.sources[ty] = sources;
 }
 
-/* Adds v from cell x on, Q8. */
-static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int sign)
+/* Adds v, or takes it away, from cell x on, Q8. */
+static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int32_t sign)
 {
     const int i = x < 0 ? 0 : x >> 8, part = x < 0 ? 0 : x & 255;
 
     if (i >= cells)
         return;
-    for (int c = 0; c < 4; c++) {
-        const int32_t later = (int32_t)((int64_t)v[c] * part >> 8);
+    for (int c = 0; c < 4; c++) { /* v part / 256 would not fit */
+        const int32_t later = (v[c] >> 8) * part + ((v[c] & 255) * part >> 8);
 
         row[i][c] += sign * (v[c] - later);
         row[i + 1][c] += sign * later;
@@ -141,11 +141,13 @@ static void draw_reflected(const struct refocus_renderer *r,
     const int x[] = {s->x, -1 - s->x, 2 * right - 1 - s->x};
     const int y[] = {s->y, -1 - s->y, 2 * below - 1 - s->y};
 
-    for (int j = 0; j < 3; j++)
+    for (int j = 0; j < 3; j++) {
+        if (y[j] + rows < first || y[j] - rows >= end || y[j] >= below + rows)
+            continue;
         for (int i = 0; i < 3; i++)
-            if (x[i] >= -rows - 1 && x[i] <= right + rows && y[j] >= -rows &&
-                y[j] < below + rows)
+            if (x[i] >= -rows - 1 && x[i] <= right + rows)
                 draw(r, x[i], y[j], s->radius, s->each, first, end);
+    }
 }
 
 static void draw_band(void *context, int band, int worker)
@@ -192,18 +194,21 @@ static bool get_cells(const struct refocus_renderer *r, int tx, int ty,
                       int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
 {
     const int across = r->tiles_x * CELLS, down = r->tiles_y * CELLS;
+    const bool inside = tx > 0 && tx < r->tiles_x - 1;
     int any = 0;
 
     for (int j = 0; j < RF_VEIL_CELLS; j++) {
         const int y = clamp(ty * CELLS + j - 1, down - 1);
+        int32_t(*const row)[4] = r->veil.cell + (ptrdiff_t)y * r->veil.stride;
 
-        for (int i = 0; i < RF_VEIL_CELLS; i++) {
-            const int x = clamp(tx * CELLS + i - 1, across - 1);
-
-            memcpy(part[j][i], r->veil.cell[(size_t)y * r->veil.stride + x],
-                   sizeof part[j][i]);
+        if (inside)
+            memcpy(part[j], row[tx * CELLS - 1], sizeof part[j]);
+        else
+            for (int i = 0; i < RF_VEIL_CELLS; i++)
+                memcpy(part[j][i], row[clamp(tx * CELLS + i - 1, across - 1)],
+                       sizeof part[j][i]);
+        for (int i = 0; i < RF_VEIL_CELLS; i++)
             any |= part[j][i][3];
-        }
     }
     return any >> RF_VEIL_SHIFT != 0;
 }

@@ -47,12 +47,18 @@ static int apart_of(int parameter)
     return 1 + parameter % 4;
 }
 
+/* And over how much the mean comes in. */
+static int over_of(int parameter)
+{
+    return parameter % 3 ? 1 + parameter / 4 : 1;
+}
+
 static void run_smooth3(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
     uint16_t *const out[3] = {row[0], row[1], row[2]};
     const uint16_t *const light[3] = {row[3], row[4], row[5]};
 
-    k->smooth3(out, light, row[6], apart_of(parameter), parameter, n);
+    k->smooth3(out, light, row[6], apart_of(parameter), parameter, over_of(parameter), n);
 }
 
 /* Whether two blurs are alike for the first: within an eighth of it, one pixel to two. */
@@ -66,8 +72,8 @@ static bool alike(int own, int other)
 /* A pixel and its two neighbours as smooth3 has it. */
 static uint16_t smoothed(const uint16_t *light, const int16_t *blur, int parameter)
 {
-    const int apart = apart_of(parameter), whole = parameter < 8 ? 1 : parameter / 4;
-    const int left = whole + parameter - abs(blur[0]);
+    const int apart = apart_of(parameter), over = over_of(parameter);
+    const int left = over + parameter - abs(blur[0]);
     int sum = 0, count = 0, mean, off;
 
     for (int i = -apart; i <= apart; i += apart) {
@@ -77,7 +83,7 @@ static uint16_t smoothed(const uint16_t *light, const int16_t *blur, int paramet
         }
     }
     mean = (2 * sum + count) / (2 * count);
-    off = left > 0 ? (int)((int64_t)abs(mean - light[0]) * left * (65535 / whole) / 65536) : 0;
+    off = left > 0 ? (int)((int64_t)abs(mean - light[0]) * left * (65535 / over) / 65536) : 0;
     return (uint16_t)(mean < light[0] ? mean + off : mean - off);
 }
 
@@ -287,7 +293,7 @@ static void expect_luminance(void *const *row, int parameter, int n)
 
 static void run_smooth1(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    k->smooth1(row[0], row[1], row[2], apart_of(parameter), parameter, n);
+    k->smooth1(row[0], row[1], row[2], apart_of(parameter), parameter, over_of(parameter), n);
 }
 
 static void expect_smooth1(void *const *row, int parameter, int n)

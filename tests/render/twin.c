@@ -71,13 +71,15 @@ void twin_destroy(struct twin *t)
 
 /* Along one axis: the mean of a pixel and of those neighbours, `step` pixels away, whose
  * blur is within an eighth, one pixel to two, of its own; the pixel itself where it is
- * blurred by `above` or less, and a part of both up to 5/4 of that. */
+ * blurred by `above` or less, and, of at most 64 rays, a part of both up to 5/4
+ * of that. */
 static void smooth(const struct twin *t, double *out, const double *in, int step_x, int step_y,
                    double above)
 {
     for (int y = 0; y < t->height; y++) {
         for (int x = 0; x < t->width; x++) {
             const int p = y * t->width + x;
+            const double part = 4 * (fabs(t->blur[p]) / above - 1);
             double sum = 0;
             int count = 0;
 
@@ -92,7 +94,7 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
                 }
             }
             out[p] = in[p] + (sum / count - in[p]) *
-                                 fmin(fmax((fabs(t->blur[p]) - above) / (above / 4), 0), 1);
+                                 (t->params->rays > 64 ? 1 : fmin(fmax(part, 0), 1));
         }
     }
 }
