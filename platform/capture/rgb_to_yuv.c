@@ -111,20 +111,6 @@ uint32_t rf_frame_format_of(uint32_t image_format)
     }
 }
 
-void rf_copy_frame(const struct refocus_image *image, const struct refocus_frame *frame)
-{
-    for (int i = 0; i < rf_format_planes(rf_frame_format_of(image->format)); i++) {
-        const size_t bytes =
-            (size_t)rf_plane_row(rf_frame_format_of(image->format), i, image->width);
-
-        for (int y = 0;
-             y < rf_plane_rows(rf_frame_format_of(image->format), i, image->height);
-             y++)
-            memcpy(plane_row(frame, i, y), image->plane[i] + y * image->stride[i],
-                   bytes);
-    }
-}
-
 bool rf_can_encode(uint32_t format)
 {
     return format >= REFOCUS_FRAME_YUYV && format <= REFOCUS_FRAME_BGRX;

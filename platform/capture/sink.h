@@ -42,10 +42,6 @@ bool rf_can_encode(uint32_t format);
 /* The frame format of a picture's; REFOCUS_FRAME_ANY for none. */
 uint32_t rf_frame_format_of(uint32_t image_format);
 
-/* The rows of a picture of Y, U and V into a frame of the same format. */
-void rf_copy_frame(const struct refocus_image *image,
-                   const struct refocus_frame *frame);
-
 /* samples.c: Y, U or V of frames, wherever they lie. */
 struct rf_samples {
     uint8_t *first;
@@ -54,10 +50,20 @@ struct rf_samples {
 };
 void rf_samples_of(struct rf_samples samples[3], uint32_t format,
                    const uint8_t *const plane[3], const ptrdiff_t stride[3]);
-/* Frames with as many samples: the rows of Y, and those of U and V. */
-void rf_copy_samples(const struct rf_samples to[3], const struct rf_samples from[3],
-                     int width, int height, int chroma_rows);
-/* Whether two frame formats of Y, U and V hold as many samples: both 4:2:0 or 4:2:2. */
+/* Codes of Y as they are, and those of U and V, of which there are so many rows: where
+ * one has twice as many, rows are repeated, or become the mean of two, half up. */
+void rf_copy_samples(const struct rf_samples to[3], int to_rows,
+                     const struct rf_samples from[3], int from_rows, int width,
+                     int height);
+/* Whether a frame format is of such samples; whether two hold as many: both 4:2:0 or
+ * 4:2:2. */
+bool rf_has_samples(uint32_t format);
 bool rf_same_samples(uint32_t format, uint32_t other);
+/* Rows of U and V of a frame format. */
+int rf_rows_of_chroma(uint32_t format, int height);
+/* A picture of Y, U and V into a frame of such a format that has that many rows of U
+ * and V. */
+void rf_rearrange(const struct refocus_image *image, const struct refocus_frame *frame,
+                  int chroma_rows);
 
 #endif

@@ -169,7 +169,8 @@ static bool raw_takes(const struct refocus_sink *sink, uint32_t format)
 {
     const struct stream *stream = sink->state;
 
-    return stream->own || rf_same_samples(stream->layout, rf_frame_format_of(format));
+    (void)format;
+    return stream->own || rf_has_samples(stream->layout);
 }
 
 /* The frames that pictures of the sink's format become. */
@@ -206,19 +207,6 @@ static bool lay_out(struct stream *stream, uint32_t layout, int width, int heigh
     if (stream->tall)
         frame->plane[2] = frame->plane[1] + half * (size_t)height;
     return true;
-}
-
-static void rearrange(const struct refocus_image *image,
-                      const struct refocus_frame *frame)
-{
-    const uint32_t format = rf_frame_format_of(image->format);
-    const uint8_t *const plane[3] = {image->plane[0], image->plane[1], image->plane[2]};
-    struct rf_samples from[3], to[3];
-
-    rf_samples_of(from, format, plane, image->stride);
-    rf_samples_of(to, frame->format, frame->plane, frame->stride);
-    rf_copy_samples(to, from, image->width, image->height,
-                    is_422(image->format) ? image->height : (image->height + 1) / 2);
 }
 
 static int start_stream(struct refocus_sink *sink, int width, int height, double fps,
@@ -265,7 +253,10 @@ static int write_stream(struct refocus_sink *sink, const struct refocus_image *i
     if (image->format == REFOCUS_FORMAT_RGB8)
         rf_encode(image, &stream->frame);
     else
-        rearrange(image, &stream->frame);
+        rf_rearrange(image, &stream->frame,
+                     stream->tall
+                         ? image->height
+                         : rf_rows_of_chroma(stream->frame.format, image->height));
     if (stream->y4m)
         status = write_all(stream, "FRAME\n", 6, reason);
     if (status == REFOCUS_OK)

@@ -273,7 +273,8 @@ static int read_tall(struct stream *stream, uint8_t *memory,
                   (const ptrdiff_t[3]){(ptrdiff_t)w, (ptrdiff_t)half, (ptrdiff_t)half});
     rf_samples_of(to, REFOCUS_FRAME_YUYV, (const uint8_t *const[3]){memory, NULL, NULL},
                   (const ptrdiff_t[3]){4 * (ptrdiff_t)half, 0, 0});
-    rf_copy_samples(to, from, stream->width, stream->height, stream->height);
+    rf_copy_samples(to, stream->height, from, stream->height, stream->width,
+                    stream->height);
     return REFOCUS_OK;
 }
 

@@ -30,16 +30,18 @@ static int open_output(struct refocus_sink *sink, const char *rest,
     return REFOCUS_OK;
 }
 
+/* Any order of Y, U and V: codes only change places. */
 static bool takes(const struct refocus_sink *sink, uint32_t format)
 {
     const struct output *output = sink->state;
 
+    (void)format;
     for (uint32_t i = 0; i < 64; i++) {
         struct v4l2_fmtdesc desc = {.index = i, .type = output->device.type};
 
         if (rf_v4l2_ioctl(output->device.fd, VIDIOC_ENUM_FMT, &desc) != 0)
             return false;
-        if (rf_v4l2_format_of(desc.pixelformat) == rf_frame_format_of(format))
+        if (rf_has_samples(rf_v4l2_format_of(desc.pixelformat)))
             return true;
     }
     return false;
@@ -55,25 +57,38 @@ static bool try_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int h
            device->width == width && device->height == height;
 }
 
-/* That of the pictures themselves. */
+/* That of the pictures themselves, else one with as many samples, else any of Y, U and
+ * V. */
 static int choose_yuv(struct rf_v4l2 *device, uint32_t format, int width, int height,
                       struct refocus_reason *reason)
 {
+    static const uint32_t formats[] = {REFOCUS_FRAME_NV12, REFOCUS_FRAME_YUV420,
+                                       REFOCUS_FRAME_NV21, REFOCUS_FRAME_YUYV,
+                                       REFOCUS_FRAME_UYVY};
+    enum { OWN, AS_MANY, ANY };
+    const uint32_t own = rf_frame_format_of(format);
     int status = REFOCUS_OK;
     uint32_t fourcc;
 
-    for (int n = 0; (fourcc = rf_v4l2_fourcc_of(rf_frame_format_of(format), n)); n++)
-        if (try_format(device, fourcc, width, height, reason, &status) &&
-            device->format == rf_frame_format_of(format))
-            return REFOCUS_OK;
+    for (int round = OWN; round <= ANY; round++)
+        for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+            const int rank = formats[i] == own                  ? OWN
+                             : rf_same_samples(formats[i], own) ? AS_MANY
+                                                                : ANY;
+
+            for (int n = 0;
+                 rank == round && (fourcc = rf_v4l2_fourcc_of(formats[i], n)); n++)
+                if (try_format(device, fourcc, width, height, reason, &status) &&
+                    device->format == formats[i])
+                    return REFOCUS_OK;
+        }
     if (status != REFOCUS_OK && status != REFOCUS_ERR_UNSUPPORTED)
         return status;
-    return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                           "%s: it takes no %s frames of %dx%d; set its size or the "
-                           "camera's",
-                           device->path,
-                           refocus_frame_format_name(rf_frame_format_of(format)), width,
-                           height);
+    return rf_capture_fail(
+        reason, REFOCUS_ERR_UNSUPPORTED,
+        "%s: it takes no frames of Y, U and V of %dx%d; set its size or the "
+        "camera's",
+        device->path, width, height);
 }
 
 /* The format that the node is set to, if it is one of ours, else the first that
@@ -179,7 +194,7 @@ static int write_frame(struct refocus_sink *sink, const struct refocus_image *im
     if (image->format == REFOCUS_FORMAT_RGB8)
         rf_encode(image, &frame);
     else
-        rf_copy_frame(image, &frame);
+        rf_rearrange(image, &frame, rf_rows_of_chroma(frame.format, image->height));
     error = rf_v4l2_queue(device, index, rf_now_ns());
     if (error)
         return rf_v4l2_fail(device, reason, error, "queuing a frame");

@@ -13,10 +13,20 @@ enum {
                   REFOCUS_DEPTH_2047_IS_UNKNOWN,
 };
 
+/* Of large maps of whole numbers each value is converted once. REFOCUS_MAX_SIDE is below 2^16, so
+ * 32 bits hold their number. */
+enum { VALUES = 65536, LARGE = VALUES };
+struct values {
+    uint32_t count[VALUES];
+    uint16_t disparity[VALUES];
+    uint8_t state[VALUES];
+};
+
 /* A sample is first brought to a number that is linear in d, its rank: the sample itself for
  * disparities, 1/z for distances. */
 struct conversion {
     const struct refocus_depth_map *map;
+    struct values *values; /* NULL: of samples one by one */
     double rank_near, rank_far; /* of d = 1 and d = 0 */
     double scale;               /* from ranks to 65535 d; 0 for a map of one depth */
     uint64_t unknown, clamped, specks;
@@ -90,28 +100,30 @@ static bool is_code(const struct refocus_depth_map *map, double v)
            (v == 2047 && (map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN));
 }
 
-/* Rank of sample (x, y); NAN when it holds no value. Samples lie at any address. */
-static double rank_of(const struct refocus_depth_map *map, const char *row, int x)
+/* Sample x of a row, which lies at any address. */
+static uint16_t whole_of(const struct refocus_depth_map *map, const char *row, int x)
 {
-    double v;
+    uint16_t u16;
 
-    switch (map->sample) {
-    case REFOCUS_SAMPLE_U8:
-        v = (unsigned char)row[x];
-        break;
-    case REFOCUS_SAMPLE_U16: {
-        uint16_t u16;
-        memcpy(&u16, row + (size_t)x * sizeof u16, sizeof u16);
-        v = u16;
-        break;
-    }
-    default: {
-        float f32;
-        memcpy(&f32, row + (size_t)x * sizeof f32, sizeof f32);
-        v = f32;
-        break;
-    }
-    }
+    if (map->sample == REFOCUS_SAMPLE_U8)
+        return (unsigned char)row[x];
+    memcpy(&u16, row + (size_t)x * sizeof u16, sizeof u16);
+    return u16;
+}
+
+static double value_of(const struct refocus_depth_map *map, const char *row, int x)
+{
+    float f32;
+
+    if (map->sample != REFOCUS_SAMPLE_F32)
+        return whole_of(map, row, x);
+    memcpy(&f32, row + (size_t)x * sizeof f32, sizeof f32);
+    return f32;
+}
+
+/* Rank of a value; NAN when it is none. */
+static double rank_of(const struct refocus_depth_map *map, double v)
+{
     if (!isfinite(v) || (map->flags && is_code(map, v)))
         return NAN;
     if (map->meaning == REFOCUS_DEPTH_DISPARITY)
@@ -126,28 +138,50 @@ static const char *row_of(const struct refocus_depth_map *map, int y)
     return (const char *)map->samples + y * map->stride;
 }
 
+/* So many samples of a value: a rank of its own, or unknown ones more. */
+static void note_value(struct conversion *conversion, double v, uint32_t count)
+{
+    const double rank = rank_of(conversion->map, v);
+
+    if (isnan(rank)) {
+        conversion->unknown += count;
+        return;
+    }
+    if (rank < conversion->rank_far)
+        conversion->rank_far = rank;
+    if (rank > conversion->rank_near)
+        conversion->rank_near = rank;
+}
+
+static void count_values(struct values *values, const struct refocus_depth_map *map)
+{
+    memset(values->count, 0, sizeof values->count);
+    for (int y = 0; y < map->height; y++) {
+        const char *row = row_of(map, y);
+
+        for (int x = 0; x < map->width; x++)
+            values->count[whole_of(map, row, x)]++;
+    }
+}
+
 /* Count what is unknown and find the greatest and the least rank. */
 static int measure(struct conversion *conversion)
 {
     const struct refocus_depth_map *map = conversion->map;
-    double least = INFINITY, greatest = -INFINITY;
+    struct values *values = conversion->values;
 
-    for (int y = 0; y < map->height; y++) {
-        const char *row = row_of(map, y);
-        for (int x = 0; x < map->width; x++) {
-            const double rank = rank_of(map, row, x);
-            if (isnan(rank)) {
-                conversion->unknown++;
-                continue;
-            }
-            least = rank < least ? rank : least;
-            greatest = rank > greatest ? rank : greatest;
-        }
-    }
+    conversion->rank_near = -INFINITY;
+    conversion->rank_far = INFINITY;
+    if (values)
+        count_values(values, map);
+    for (int v = 0; values && v < VALUES; v++)
+        if (values->count[v])
+            note_value(conversion, v, values->count[v]);
+    for (int y = 0; !values && y < map->height; y++)
+        for (int x = 0; x < map->width; x++)
+            note_value(conversion, value_of(map, row_of(map, y), x), 1);
     if (conversion->unknown == (uint64_t)map->width * (uint64_t)map->height)
         return REFOCUS_ERR_NO_DEPTH;
-    conversion->rank_near = greatest;
-    conversion->rank_far = least;
     return REFOCUS_OK;
 }
 
@@ -180,32 +214,60 @@ static void choose_range(struct conversion *conversion)
     conversion->scale = span != 0 && isfinite(scale) ? scale : 0;
 }
 
+/* The disparity of a value that so many samples have; *state tells whether it is one. */
+static uint16_t convert_value(struct conversion *conversion, double v, uint32_t count,
+                              uint8_t *state)
+{
+    const double near = conversion->rank_near, far = conversion->rank_far;
+    const double least = near < far ? near : far, greatest = near < far ? far : near;
+    const double rank = rank_of(conversion->map, v);
+    double d;
+
+    *state = isnan(rank) ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN;
+    if (isnan(rank))
+        return 0;
+    if (rank < least || rank > greatest)
+        conversion->clamped += count;
+    d = (rank - far) * conversion->scale + 0.5;
+    return d >= 65535 ? 65535 : d > 0 ? (uint16_t)d : 0;
+}
+
+/* Row y by the values, each of which is converted. */
+static void look_up_row(const struct conversion *conversion, int y, uint16_t *out,
+                        uint8_t *state)
+{
+    const struct refocus_depth_map *map = conversion->map;
+    const struct values *values = conversion->values;
+    const char *row = row_of(map, y);
+
+    for (int x = 0; x < map->width; x++)
+        out[x] = values->disparity[whole_of(map, row, x)];
+    for (int x = 0; state && x < map->width; x++)
+        state[x] = values->state[whole_of(map, row, x)];
+}
+
 /* Convert all rows; @p state tells known from unknown samples unless it is NULL. */
 static void convert(struct conversion *conversion, uint16_t *disparity, ptrdiff_t stride,
                     uint8_t *state)
 {
     const struct refocus_depth_map *map = conversion->map;
-    const double near = conversion->rank_near, far = conversion->rank_far;
-    const double scale = conversion->scale;
-    const double least = near < far ? near : far, greatest = near < far ? far : near;
+    struct values *values = conversion->values;
+    uint8_t unasked;
 
+    for (int v = 0; values && v < VALUES; v++)
+        if (values->count[v])
+            values->disparity[v] =
+                convert_value(conversion, v, values->count[v], &values->state[v]);
     for (int y = 0; y < map->height; y++) {
         const char *row = row_of(map, y);
         uint16_t *out = (uint16_t *)((char *)disparity + y * stride);
+        uint8_t *known = state ? state + (size_t)y * (size_t)map->width : NULL;
 
-        for (int x = 0; x < map->width; x++) {
-            const double rank = rank_of(map, row, x);
-            const bool unknown = isnan(rank);
-            double d = 0;
-
-            if (!unknown) {
-                conversion->clamped += rank < least || rank > greatest;
-                d = (rank - far) * scale + 0.5;
-            }
-            out[x] = d >= 65535 ? 65535 : d > 0 ? (uint16_t)d : 0;
-            if (state)
-                *state++ = unknown ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN;
-        }
+        if (values)
+            look_up_row(conversion, y, out, known);
+        for (int x = 0; !values && x < map->width; x++)
+            out[x] = convert_value(conversion, value_of(map, row, x), 1,
+                                   known ? known + x : &unasked);
     }
 }
 
@@ -229,6 +291,16 @@ static void fill_report(const struct conversion *conversion,
     report->unknown = conversion->unknown;
     report->clamped = conversion->clamped;
     report->specks = conversion->specks;
+}
+
+static int take_values(struct conversion *conversion)
+{
+    const struct refocus_depth_map *map = conversion->map;
+
+    if (map->sample == REFOCUS_SAMPLE_F32 || (int64_t)map->width * map->height < LARGE)
+        return REFOCUS_OK;
+    conversion->values = malloc(sizeof *conversion->values);
+    return conversion->values ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
 }
 
 /* Memory for the state of samples, and with @p specks for finding patches. */
@@ -281,16 +353,18 @@ int refocus_depth_repair(const struct refocus_depth_map *map,
     if (status == REFOCUS_OK && !good_repair(params, map))
         status = REFOCUS_ERR_ARGUMENT;
     if (status == REFOCUS_OK)
+        status = take_values(&conversion);
+    if (status == REFOCUS_OK)
         status = measure(&conversion);
     if (status != REFOCUS_OK)
-        return status;
+        goto done;
     choose_range(&conversion);
     /* A map of one depth is all 0, holes and all. */
     if ((conversion.unknown > 0 && (conversion.scale != 0 || params->confidence)) ||
         params->speckle > 1) {
         status = take_memory(map, params->speckle > 1, &state, &work);
         if (status != REFOCUS_OK)
-            return status;
+            goto done;
     }
     convert(&conversion, disparity, stride, state);
     if (work)
@@ -307,11 +381,13 @@ int refocus_depth_repair(const struct refocus_depth_map *map,
         write_confidence(map, state, params);
     if (state && conversion.scale != 0)
         rf_fill_holes(disparity, stride, map->width, map->height, state);
-    free(work);
-    free(state);
     if (report)
         fill_report(&conversion, report);
-    return REFOCUS_OK;
+done:
+    free(work);
+    free(state);
+    free(conversion.values);
+    return status;
 }
 
 int refocus_depth_to_disparity(const struct refocus_depth_map *map, uint16_t *disparity,

@@ -1,4 +1,5 @@
 #include <stdlib.h>
+#include <string.h>
 #include "depth/fill.h"
 
 enum {
@@ -26,6 +27,36 @@ static uint16_t *disparity_row(const struct holes *holes, int y)
 static uint8_t *state_row(const struct holes *holes, int y)
 {
     return holes->state + (size_t)y * (size_t)holes->width;
+}
+
+enum { EIGHT = 8 }; /* states that are looked at together: most are known */
+
+static int all_known(const uint8_t *state)
+{
+    uint64_t eight;
+
+    memcpy(&eight, state, sizeof eight);
+    return eight == 0; /* RF_SAMPLE_KNOWN */
+}
+
+/* The first sample from x on that is not known, or the width. */
+static int unknown_from(const uint8_t *state, int x, int width)
+{
+    while (x + EIGHT <= width && all_known(state + x))
+        x += EIGHT;
+    while (x < width && state[x] == RF_SAMPLE_KNOWN)
+        x++;
+    return x;
+}
+
+/* The last one up to x, or -1. */
+static int unknown_to(const uint8_t *state, int x)
+{
+    while (x + 1 >= EIGHT && all_known(state + x + 1 - EIGHT))
+        x -= EIGHT;
+    while (x >= 0 && state[x] == RF_SAMPLE_KNOWN)
+        x--;
+    return x;
 }
 
 /* |p - q| + w d(q) in units of 1/65535 half sample: below 2^30 + 2^24. */
@@ -66,9 +97,7 @@ static void spread(const struct holes *holes, int down)
             const uint16_t *last = disparity_row(holes, down ? y - 1 : y + 1);
             const uint8_t *last_state = state_row(holes, down ? y - 1 : y + 1);
 
-            for (int x = 0; x < width; x++) {
-                if (state[x] == RF_SAMPLE_KNOWN)
-                    continue;
+            for (int x = -1; (x = unknown_from(state, x + 1, width)) < width;) {
                 spread_from(holes, d + x, state + x, last[x], last_state[x], STRAIGHT);
                 if (x > 0)
                     spread_from(holes, d + x, state + x, last[x - 1], last_state[x - 1],
@@ -78,12 +107,10 @@ static void spread(const struct holes *holes, int down)
                                 DIAGONAL);
             }
         }
-        for (int x = 1; x < width; x++)
-            if (state[x] != RF_SAMPLE_KNOWN)
-                spread_from(holes, d + x, state + x, d[x - 1], state[x - 1], STRAIGHT);
-        for (int x = width - 2; x >= 0; x--)
-            if (state[x] != RF_SAMPLE_KNOWN)
-                spread_from(holes, d + x, state + x, d[x + 1], state[x + 1], STRAIGHT);
+        for (int x = 0; (x = unknown_from(state, x + 1, width)) < width;)
+            spread_from(holes, d + x, state + x, d[x - 1], state[x - 1], STRAIGHT);
+        for (int x = width - 1; (x = unknown_to(state, x - 1)) >= 0;)
+            spread_from(holes, d + x, state + x, d[x + 1], state[x + 1], STRAIGHT);
     }
 }
 
@@ -116,11 +143,13 @@ static void smooth(const struct holes *holes, int step, int forwards)
         uint16_t *d = disparity_row(holes, y);
         const uint8_t *state = state_row(holes, y);
 
-        for (int j = 0; j < holes->width; j++) {
-            const int x = forwards ? j : holes->width - 1 - j;
+        for (int x = -1;
+             forwards && (x = unknown_from(state, x + 1, holes->width)) < holes->width;)
             if (state[x] >= step * STRAIGHT)
                 d[x] = smoothed(holes, x, y, step);
-        }
+        for (int x = holes->width; !forwards && (x = unknown_to(state, x - 1)) >= 0;)
+            if (state[x] >= step * STRAIGHT)
+                d[x] = smoothed(holes, x, y, step);
     }
 }
 

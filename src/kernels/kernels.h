@@ -252,6 +252,22 @@ struct rf_weigh_job {
 };
 typedef void rf_weigh_fn(const struct rf_weigh_job *job, int n);
 
+/*
+ * weigh1: the same of one plane, all of whose light is
+ *
+ *     light = round(2 weight light)                                                        Q13
+ *
+ * and at most 4 RF_LIGHT_MAX. weigh_chroma: n samples of two values, at most 2^15 - 1, times the
+ * weight of the first of every two pixels: round(weight value / 4096), halves up. */
+struct rf_weigh1_job {
+    uint16_t *near, *far;
+    uint16_t *near_weight, *far_weight;
+    uint16_t *brightest;
+    const uint16_t *light_weight;
+};
+typedef void rf_weigh1_fn(const struct rf_weigh1_job *job, int n);
+typedef void rf_weigh_chroma_fn(uint16_t *chroma, const uint16_t *weight, int n);
+
 /* weighed_means: Q14 means of n sums below 2^31 of Q13 light times Q12 weight, and of the
  * weights: 2^13 sum / weight half up, at most 65520. In single precision, one operation after
  * the other: within 1/2 + 2^-6. */
@@ -346,16 +362,23 @@ struct rf_sweep1_job {
     bool chroma;
     const struct rf_sorted_rays *rays;
 
-    const uint16_t *weight; /* of sweep1_weighted, of the tile's first pixel */
+    const uint16_t *weight; /* of the tile's first pixel; at most 4095 but for sweep1_weighted */
     int down;               /* rows of weights are 1 << down times as far apart */
 };
-typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
+
+/* With weight_sum, not NULL, the weights of what is hit are added up there: no more than that, and
+ * lying as those of sweep1_weighted. */
+typedef void rf_sweep1_fn(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job);
 
 /* sweep1_weighted: the same, where light counts weight times, 1 to RF_WEIGHT_MAX, and sums of
  * weights. Those of luma lie as its light; elements 2 i and 2 i + 1 of chroma count as the pixel
  * of the first, at chroma_weight_offset. */
 typedef void rf_sweep1_weighted_fn(uint64_t *sum, uint64_t *weight,
                                    const struct rf_sweep1_job *job);
+
+/* soften_chroma: soften, of means of chroma: the neighbours are two elements away, and those of
+ * the two at either end of a row stay. */
+typedef void rf_soften_chroma_fn(uint16_t *mean, int rows, bool down, uint16_t share);
 
 /* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
 typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);
@@ -403,7 +426,7 @@ typedef void rf_encode_fn(uint16_t *const out[2], uint16_t *chroma, const uint8_
  *
  * with L' the mean of the luminances of the pixels that share a sample: of 2 x 2 if `down`, of
  * 2 x 1 else. Means above white are white. Pixels whose luminance and chroma are what they
- * were, 4 times `own`, keep their codes; samples all of whose pixels do, too.
+ * were, `within` of 4 times `own`, keep their codes; samples all of whose pixels do, too.
  */
 struct rf_decode_job {
     const struct rf_yuv_curve *curve;
@@ -411,6 +434,7 @@ struct rf_decode_job {
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE]; /* rows of RF_TILE, Q14 */
     const uint16_t *own_luma, *own_chroma; /* Q12, of the tile's first element */
     ptrdiff_t stride;                      /* of both */
+    uint16_t within[2];                    /* of luma and of chroma; 15 at most */
     uint8_t y[RF_TILE * RF_TILE], uv[RF_TILE * RF_TILE]; /* in: codes that were; out */
 };
 typedef void rf_decode_fn(struct rf_decode_job *job);
@@ -437,6 +461,7 @@ struct rf_kernels {
     rf_sweep1_fn *sweep1;
     rf_sweep1_weighted_fn *sweep1_weighted;
     rf_between_chroma_fn *between_chroma;
+    rf_soften_chroma_fn *soften_chroma;
     rf_smooth1_fn *smooth1;
     rf_aim_chroma_fn *aim_chroma;
     rf_sharpest4_fn *sharpest4;
@@ -463,6 +488,8 @@ struct rf_kernels {
     rf_means_fn *means;
     rf_weighted_means_fn *weighted_means;
     rf_weigh_fn *weigh;
+    rf_weigh1_fn *weigh1;
+    rf_weigh_chroma_fn *weigh_chroma;
     rf_weighed_means_fn *weighed_means;
     rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
@@ -499,6 +526,8 @@ rf_pull_fn rf_pull_c;
 rf_pull_blur_fn rf_pull_blur_c;
 rf_sweep_weighted_fn rf_sweep_weighted_c;
 rf_weigh_fn rf_weigh_c;
+rf_weigh1_fn rf_weigh1_c;
+rf_weigh_chroma_fn rf_weigh_chroma_c;
 
 /* Each set overwrites what it does better; rf_kernels_use() calls the others of its set. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
@@ -508,7 +537,7 @@ rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
     RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep1_weighted_use),
     RF_VECTOR_SETS(rf_sweep_weighted_use),
-    RF_VECTOR_SETS(rf_weigh_use);
+    RF_VECTOR_SETS(rf_weigh_use), RF_VECTOR_SETS(rf_weigh1_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
     RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
     RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use),

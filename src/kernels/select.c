@@ -52,6 +52,8 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     kernels->sweep1 = rf_sweep1_c;
     kernels->sweep1_weighted = rf_sweep1_weighted_c;
     kernels->weigh = rf_weigh_c;
+    kernels->weigh1 = rf_weigh1_c;
+    kernels->weigh_chroma = rf_weigh_chroma_c;
     kernels->smooth1 = rf_smooth1_c;
     kernels->smooth3 = rf_smooth3_c;
     kernels->push = rf_push_c;

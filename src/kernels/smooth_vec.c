@@ -16,12 +16,16 @@ struct use {
 /* From which blur on, and how the mean comes in. */
 struct fade {
     vec_u16 least, over, factor;
+    vec_u16 most; /* blur that it is not wholly there at */
 };
 
 static inline struct fade fade_of(int least, int over)
 {
+    const int whole = least + over;
+
     return (struct fade){vec_u16_set((uint16_t)least), vec_u16_set((uint16_t)over),
-                         vec_u16_set((uint16_t)(65535 / over))};
+                         vec_u16_set((uint16_t)(65535 / over)),
+                         vec_u16_set((uint16_t)(whole < 65536 ? whole - 1 : 65535))};
 }
 
 /* |s| / 8, from one pixel to two. */
@@ -43,13 +47,19 @@ static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, const stru
     const vec_u16 s = vec_u16_load(blur);
     /* of s and -s the lesser is |s|, which is below 2^15 */
     const vec_u16 size = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s)), t = tolerance(size);
-    const vec_u16 narrow = vec_u16_at_most(size, fade->least);
-    const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
-    const vec_u16 left = vec_u16_sub(fade->over, vec_u16_min(above, fade->over));
-    const vec_u16 before =
-        vec_u16_without(within(vec_u16_load(blur - apart), s, t), narrow);
-    const vec_u16 after =
-        vec_u16_without(within(vec_u16_load(blur + apart), s, t), narrow);
+    vec_u16 before = within(vec_u16_load(blur - apart), s, t);
+    vec_u16 after = within(vec_u16_load(blur + apart), s, t), left = vec_u16_set(0);
+    bool fades = false;
+
+    if (vec_u16_any(vec_u16_at_most(size, fade->most))) {
+        const vec_u16 narrow = vec_u16_at_most(size, fade->least);
+        const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
+
+        left = vec_u16_sub(fade->over, vec_u16_min(above, fade->over));
+        before = vec_u16_without(before, narrow);
+        after = vec_u16_without(after, narrow);
+        fades = vec_u16_any(vec_u16_without(left, narrow));
+    }
     const vec_u16 three = vec_u16_and(before, after);
 
     return (struct use){
@@ -59,7 +69,7 @@ static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, const stru
         .bias = vec_u16_sub(vec_u16_set(1), vec_u16_xor(before, after)),
         .factor = vec_u16_sub(vec_u16_set(65535), vec_u16_and(three, vec_u16_set(21844))),
         .left = vec_u16_mul(left, fade->factor),
-        .fades = vec_u16_any(vec_u16_without(left, narrow)),
+        .fades = fades,
     };
 }
 

@@ -10,39 +10,15 @@ static ptrdiff_t at(const struct rf_sweep1_job *job, int i)
            i % RF_TILE;
 }
 
-void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
+/* End of the rays of a class of tests that count. */
+static int end_of(const struct rf_sweep1_job *job, int class)
 {
     const struct rf_sorted_rays *rays = job->rays;
-    const int32_t(*const offset)[RF_RAY_CHUNK] =
-        job->chroma ? (const int32_t(*)[RF_RAY_CHUNK])rays->chroma_offset
-                    : (const int32_t(*)[RF_RAY_CHUNK])rays->offset;
-    const int lanes = job->rows * RF_TILE;
-    int class = 0; /* of tests */
 
-    for (int n = 0; n < rays->rays; n++) {
-        uint16_t value[RF_TILE * RF_TILE];
-
-        while (n == rays->begin[class + 1])
-            class ++;
-        if (job->chroma && n - rays->begin[class] >= rays->shared[class])
-            continue;
-        /* from the last to the nearest, which overwrites what lies behind it */
-        for (int i = 0; i < lanes; i++)
-            value[i] = (job->chroma ? rays->chroma_last : rays->last)[n][at(job, i)];
-        for (int t = rays->tests[n] - 1; t >= 0; t--) {
-            for (int i = 0; i < lanes; i++) {
-                const ptrdiff_t q = at(job, i) + offset[t][n];
-
-                if (rf_in_range(rays->from[t][n], rays->to[t][n], job->blur[q]))
-                    value[i] = job->light[q];
-            }
-        }
-        for (int i = 0; i < lanes; i++)
-            sum[i] += value[i];
-    }
+    return job->chroma ? rays->begin[class] + rays->shared[class] : rays->begin[class + 1];
 }
 
-/* Light and weight that ray n meets at lane i. */
+/* Light, and weight if not NULL, that ray n meets at lane i. */
 static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light,
                  uint16_t *weight)
 {
@@ -62,12 +38,36 @@ static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light,
 
         if (rf_in_range(rays->from[t][n], rays->to[t][n], job->blur[q])) {
             *light = job->light[q];
-            *weight = job->weight[own + pixel[t][n]];
+            if (weight)
+                *weight = job->weight[own + pixel[t][n]];
             return;
         }
     }
     *light = (job->chroma ? rays->chroma_last : rays->last)[n][p];
-    *weight = (job->chroma ? rays->chroma_last_weight : rays->last_weight)[n][own];
+    if (weight)
+        *weight = (job->chroma ? rays->chroma_last_weight : rays->last_weight)[n][own];
+}
+
+static void sweep_ray(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job,
+                      int n)
+{
+    for (int i = 0; i < job->rows * RF_TILE; i++) {
+        uint16_t light, weight;
+
+        meet(job, n, i, &light, weight_sum ? &weight : NULL);
+        sum[i] += light;
+        if (weight_sum)
+            weight_sum[i] += weight;
+    }
+}
+
+void rf_sweep1_c(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job)
+{
+    const struct rf_sorted_rays *rays = job->rays;
+
+    for (int class = 0; class < RF_SORTED_TESTS; class ++)
+        for (int n = rays->begin[class]; n < end_of(job, class); n++)
+            sweep_ray(sum, weight_sum, job, n);
 }
 
 void rf_sweep1_weighted_c(uint64_t *sum, uint64_t *weight_sum,
@@ -76,11 +76,7 @@ void rf_sweep1_weighted_c(uint64_t *sum, uint64_t *weight_sum,
     const struct rf_sorted_rays *rays = job->rays;
 
     for (int class = 0; class < RF_SORTED_TESTS; class ++) {
-        const int begin = rays->begin[class];
-        const int end =
-            job->chroma ? begin + rays->shared[class] : rays->begin[class + 1];
-
-        for (int n = begin; n < end; n++) {
+        for (int n = rays->begin[class]; n < end_of(job, class); n++) {
             for (int i = 0; i < job->rows * RF_TILE; i++) {
                 uint16_t light, weight;
 

@@ -140,13 +140,19 @@ static ALWAYS_INLINE void decode_luma(uint8_t *restrict y, const uint16_t *restr
         y[i] = to_code[at[i]];
 }
 
-/* What rows of a tile differ by from 4 times what they were. */
+/* Where rows of a tile are not `within` of 4 times what they were: not 0. Modulo 2^16, as both are
+ * 65520 at most: 16 short of what could be taken for near. */
 static ALWAYS_INLINE void differences(uint16_t *restrict differs, const uint16_t *restrict mean,
-                        const uint16_t *own, ptrdiff_t stride, int rows)
+                        const uint16_t *own, ptrdiff_t stride, uint16_t within, int rows)
 {
+    const uint16_t most = (uint16_t)(2 * within);
+
     for (int i = 0; i < rows * RF_TILE; i += RF_TILE, own += stride)
-        for (int x = 0; x < RF_TILE; x++)
-            differs[i + x] = (uint16_t)(mean[i + x] ^ (uint16_t)(4 * own[x]));
+        for (int x = 0; x < RF_TILE; x++) {
+            const uint16_t above = (uint16_t)(mean[i + x] - (uint16_t)(4 * own[x]) + within);
+
+            differs[i + x] = (uint16_t)(above > most ? above - most : 0);
+        }
 }
 
 static ALWAYS_INLINE void choose(uint8_t *restrict to, const uint16_t *restrict differs,
@@ -174,8 +180,8 @@ static ALWAYS_INLINE void put_codes(struct rf_decode_job *job, const uint8_t *y,
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE];
     uint32_t of_pixels[SAMPLES], of_samples[SAMPLES], wide[SAMPLES], any[SAMPLES];
 
-    differences(luma, job->luma, job->own_luma, job->stride, RF_TILE);
-    differences(chroma, job->chroma, job->own_chroma, job->stride, rows);
+    differences(luma, job->luma, job->own_luma, job->stride, job->within[0], RF_TILE);
+    differences(chroma, job->chroma, job->own_chroma, job->stride, job->within[1], rows);
     memcpy(of_pixels, luma, sizeof luma);
     memcpy(of_samples, chroma, (size_t)n * sizeof chroma[0]);
     widen(of_samples, n / 2);
@@ -226,13 +232,29 @@ static void RF_VEC(rf_decode)(struct rf_decode_job *job)
 
 enum { RUN = 128 }; /* samples that are worked on together */
 
-/* Light of the pixels of n samples. */
-static void row_light(uint16_t *restrict light, const uint8_t *restrict luma,
-                      const uint16_t *restrict light_of_luma, int n)
+/* Copies of a whole run are of a fixed size, which takes no call. */
+static ALWAYS_INLINE void copy_run(void *restrict to, const void *restrict from, int run,
+                                   const int bytes)
 {
-    UNROLLED
-    for (int i = 0; i < 2 * n; i++)
-        light[i] = light_of_luma[luma[i]];
+    if (run == RUN)
+        memcpy(to, from, (size_t)bytes * RUN);
+    else
+        memcpy(to, from, (size_t)bytes * (size_t)run);
+}
+
+/* Light of the pixels of a run of samples. */
+static ALWAYS_INLINE void row_light(uint16_t *restrict light, const uint8_t *restrict luma,
+                                    const uint16_t *restrict light_of_luma, int run)
+{
+    uint8_t codes[2 * RUN] = {0};
+    int32_t at[2 * RUN];
+
+    copy_run(codes, luma, run, 2);
+    for (int i = 0; i < 2 * RUN; i++)
+        at[i] = codes[i];
+    look_up(at, (const int16_t *)light_of_luma, 2 * RUN);
+    for (int i = 0; i < 2 * RUN; i++)
+        light[i] = (uint16_t)at[i];
 }
 
 /* rf_chroma_of() of RUN samples; of the excess, pairs of the same. */
@@ -292,19 +314,21 @@ static void RF_VEC(rf_encode)(uint16_t *const out[2], uint16_t *chroma,
     uint32_t chroma_pair[RUN], excess[RUN], pair[2][RUN];
     int32_t mean[RUN];
 
-    for (int at = 0; at < n; at += RUN) {
-        const int run = n - at < RUN ? n - at : RUN;
+    for (int next = 0; next < n; next += RUN) {
+        /* the last samples of a long row with some before them, twice */
+        const int at = next + RUN <= n || n < RUN ? next : n - RUN;
+        const int run = n < RUN ? n : RUN;
 
         row_light(light[0], luma[0] + 2 * at, curve->light_of_luma, run);
         if (two)
             row_light(light[1], luma[1] + 2 * at, curve->light_of_luma, run);
-        memcpy(uv_pair, uv + 2 * at, 2 * (size_t)run);
+        copy_run(uv_pair, uv + 2 * at, run, 2);
         memcpy(pair[0], light[0], sizeof pair[0]);
         memcpy(pair[1], light[two], sizeof pair[1]);
         for (int i = 0; i < RUN; i++)
             mean[i] = (sum_of(pair[0][i]) + sum_of(pair[1][i]) + 2) >> 2;
         encode_chroma(chroma_pair, excess, mean, uv_pair, curve);
-        memcpy(chroma + 2 * at, chroma_pair, 4 * (size_t)run);
+        copy_run(chroma + 2 * at, chroma_pair, run, 4);
         add_excess(out[0] + 2 * at, light[0], excess, run);
         if (two)
             add_excess(out[1] + 2 * at, light[1], excess, run);

@@ -1,5 +1,6 @@
 #include "methods/method.h"
 #include "planes/format.h"
+#include "planes/yuv.h"
 
 #include <string.h>
 
@@ -146,8 +147,10 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
 
     job->curve = &yuv->curve;
     job->down = yuv->down;
-    job->own_luma = r->smooth[0] + y0 * r->stride + x0;
-    job->own_chroma = yuv->smooth + c0 * r->stride + x0;
+    job->own_luma = (f->premultiplied ? r->front.light[0] : r->smooth[0]) + y0 * r->stride + x0;
+    job->own_chroma = (f->premultiplied ? yuv->light : yuv->smooth) + c0 * r->stride + x0;
+    for (int p = 0; p < 2; p++)
+        job->within[p] = f->premultiplied ? rf_yuv_within(r, p) : 0;
     job->stride = r->stride;
     take(job->y, yuv->y + y0 * yuv->y_stride + x0, yuv->y_stride, w, h);
     take(job->uv, yuv->uv + c0 * yuv->uv_stride + x0, yuv->uv_stride, w + w % 2, rows);

@@ -59,10 +59,16 @@ static void set_rays(struct sight *sight, const struct rf_ray_set *set, int firs
 /* Sums of luma and of chroma, of rays of one weight: of light, or of light times
  * weights of eq. 5 and those weights; and in `sum` of all rays. */
 struct sums {
-    uint32_t run[2][LANES];
+    uint32_t run[2][LANES], run_weight[2][LANES]; /* light times weight in 16 bits */
     uint64_t weighted_run[2][LANES], weight_run[2][LANES];
     uint64_t sum[2][LANES], weight[2][LANES];
 };
+
+/* Weights that differ too much for products of 16 bits. */
+static bool has_wide_sums(const struct tile *tile)
+{
+    return tile->weight && !tile->f->premultiplied;
+}
 
 static void sweep_plane(const struct tile *tile, bool chroma,
                         const struct rf_sorted_rays *rays, struct sums *sums)
@@ -82,11 +88,12 @@ static void sweep_plane(const struct tile *tile, bool chroma,
         .down = plane->down,
     };
 
-    if (tile->weight)
+    if (has_wide_sums(tile))
         r->kernels.sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma],
                                    &job);
     else
-        r->kernels.sweep1(sums->run[chroma], &job);
+        r->kernels.sweep1(sums->run[chroma],
+                          tile->weight ? sums->run_weight[chroma] : NULL, &job);
 }
 
 /* Rays, of which chroma shares the first so many. Strips of a tile together: of one
@@ -134,11 +141,13 @@ static void clear_run(const struct tile *tile, struct sums *sums)
     for (int p = 0; p < 2; p++) {
         const size_t lanes = (size_t)plane[p]->computed.count * RF_TILE;
 
-        if (tile->weight) {
+        if (has_wide_sums(tile)) {
             memset(sums->weighted_run[p], 0, lanes * sizeof sums->weighted_run[p][0]);
             memset(sums->weight_run[p], 0, lanes * sizeof sums->weight_run[p][0]);
         } else {
             memset(sums->run[p], 0, lanes * sizeof sums->run[p][0]);
+            if (tile->weight)
+                memset(sums->run_weight[p], 0, lanes * sizeof sums->run_weight[p][0]);
         }
     }
 }
@@ -151,10 +160,13 @@ static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
 
     for (int p = 0; p < 2; p++) {
         for (int i = 0; i < lanes[p]; i++) {
+            const bool wide = has_wide_sums(tile);
+
             sums->sum[p][i] +=
-                weight * (tile->weight ? sums->weighted_run[p][i] : sums->run[p][i]);
-            sums->weight[p][i] +=
-                weight * (tile->weight ? sums->weight_run[p][i] : (uint64_t)rays[p]);
+                weight * (wide ? sums->weighted_run[p][i] : sums->run[p][i]);
+            sums->weight[p][i] += weight * (wide           ? sums->weight_run[p][i]
+                                            : tile->weight ? sums->run_weight[p][i]
+                                                           : (uint64_t)rays[p]);
         }
     }
     clear_run(tile, sums);
@@ -188,21 +200,32 @@ static void sweep_rays(const struct tile *tile, struct sums *sums)
 }
 
 /* Means of rays that weigh the same, of some rows and then of those between. */
-static void take_means(const struct tile *tile, bool chroma, const struct sums *sums,
+static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
                        uint16_t mean[LANES])
 {
     const struct rf_kernels *kernels = &tile->f->r->kernels;
     const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
     const int rays = chroma ? tile->set->shared : tile->set->count;
     const int lanes = plane->computed.count * RF_TILE;
+    const uint16_t softness = rf_softness(tile->f, &tile->plan, tile->behind);
     uint16_t memory[LANES], *computed = plane->computed.step == 1 ? mean : memory;
 
-    if (tile->weight)
+    for (int i = 0; tile->f->premultiplied && chroma && i < lanes; i++)
+        sums->run[1][i] *= 2; /* Q12 to Q13 */
+    if (tile->f->premultiplied)
+        kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma],
+                               lanes);
+    else if (tile->weight)
         kernels->weighted_means(computed, sums->weighted_run[chroma],
                                 sums->weight_run[chroma], lanes);
     else
         kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays),
                        lanes);
+    if (softness && chroma)
+        kernels->soften_chroma(computed, plane->computed.count,
+                               plane->computed.count == plane->rows, softness);
+    else if (softness)
+        kernels->soften(computed, plane->computed.count, plane->computed.step == 1, softness);
     if (computed == memory && plane->rows == RF_TILE)
         kernels->between_rows(mean, computed, plane->computed.step);
     else if (computed == memory)
@@ -228,6 +251,9 @@ static void sweep_sums(struct tile *tile, struct sums *sums,
                        struct rf_decode_job *means)
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
+    /* of Q12; of Q13, or Q12 of chroma, times Q12 */
+    const uint64_t plain[2] = {4, 4}, premultiplied[2] = {1 << 13, 1 << 14};
+    const uint64_t *unit = tile->f->premultiplied ? premultiplied : plain;
     uint16_t *const mean[2] = {means->luma, means->chroma};
 
     tile->luma.computed = (struct rf_tile_rows){1, tile->luma.rows};
@@ -237,8 +263,19 @@ static void sweep_sums(struct tile *tile, struct sums *sums,
     sweep_rays(tile, sums);
     for (int p = 0; p < 2; p++)
         for (int i = 0; i < lanes[p]; i++)
-            mean[p][i] = (uint16_t)((4 * sums->sum[p][i] + sums->weight[p][i] / 2) /
-                                    sums->weight[p][i]);
+            mean[p][i] =
+                (uint16_t)((unit[p] * sums->sum[p][i] + sums->weight[p][i] / 2) /
+                           sums->weight[p][i]);
+}
+
+/* How many values of luma a 16-bit sum holds. */
+static int luma_steps(const struct tile *tile)
+{
+    const int most = tile->plan.brightest;
+
+    if (!tile->f->premultiplied)
+        return tile->f->bright ? 4 : 16;
+    return most > 65535 / 16 ? 65535 / most : 16;
 }
 
 static void set_planes(struct tile *tile, int tx, int ty)
@@ -256,7 +293,7 @@ static void set_planes(struct tile *tile, int tx, int ty)
         .light = r->smooth[0] + origin,
         .behind = r->behind.light[0] + origin,
         .rows = RF_TILE,
-        .steps = tile->f->bright ? 4 : 16,
+        .steps = luma_steps(tile),
     };
     tile->chroma = (struct plane){
         .blur = yuv->blur + at,

@@ -261,28 +261,6 @@ void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)
     rf_extend_chroma(r, yuv->blur, c0, c1);
 }
 
-/* Most of the background is what is seen. */
-void rf_yuv_weigh_rows(struct refocus_renderer *r, int ty)
-{
-    const int y0 = ty * RF_TILE - (ty == 0 ? r->border.y0 : 0);
-    const int y1 = ty + 1 < r->tiles_y ? (ty + 1) * RF_TILE : r->height + r->border.y1;
-    const int x1 = r->tiles_x * RF_TILE + r->border.x1;
-    const uint16_t *const of_light = r->light_weight;
-
-    for (int y = y0; y < y1; y++) {
-        const ptrdiff_t row = y * r->stride;
-        const uint16_t *seen = r->smooth[0] + row, *behind = r->behind.light[0] + row;
-        uint16_t *near = r->yuv.weight + row, *far = (uint16_t *)r->behind.blur + row;
-
-        for (int x = -r->border.x0; x < x1; x++)
-            near[x] = of_light[seen[x] < RF_LIGHT_MAX ? seen[x] : RF_LIGHT_MAX];
-        for (int x = -r->border.x0; x < x1; x++)
-            far[x] = behind[x] == seen[x]
-                         ? near[x]
-                         : of_light[behind[x] < RF_LIGHT_MAX ? behind[x] : RF_LIGHT_MAX];
-    }
-}
-
 /* A plane and its blur, and how far apart neighbours are. */
 struct filter {
     uint16_t *out;

@@ -47,6 +47,21 @@ void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const ui
  * blur. */
 void rf_yuv_weigh_rows(struct refocus_renderer *r, int ty);
 
+/* The same as kernels.h, weigh1, has it: light of both layers is times the weight then, and chroma
+ * times that of the first pixel of a sample. Notes the brightest of each tile. */
+void rf_yuv_premultiply_rows(struct refocus_renderer *r, uint16_t *scratch, int ty);
+
+/*
+ * How far the mean of light, or of chroma, that is the same everywhere may be from 4 times that
+ * when both layers are premultiplied: 1/2 of Q13 times Q12, or of Q12 times Q12, by the least
+ * weight, and 1/2. Of weights of RF_YUV_LEAST_WEIGHT / 4096 and more it is at most 15.
+ */
+enum { RF_YUV_LEAST_WEIGHT = 586 };
+static inline uint16_t rf_yuv_within(const struct refocus_renderer *r, int chroma)
+{
+    return (uint16_t)(1 + (4096 << chroma) / (r->light_weight[0] >> 3));
+}
+
 /* rf_extend_rows() of rows c0 to c1 - 1 of a plane of chroma. */
 void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int c1);
 

@@ -17,7 +17,9 @@ static bool may_premultiply(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
 
-    return rf_is_sweep(f) && !f->r->yuv.on && p->highlight_gain <= 2 * RF_PLAIN_GAIN &&
+    if (f->r->yuv.on && f->r->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
+        return false;
+    return rf_is_sweep(f) && p->highlight_gain <= 2 * RF_PLAIN_GAIN &&
            p->rays != REFOCUS_RAYS_FULL && p->rays <= 8192;
 }
 
@@ -206,7 +208,9 @@ static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
 
-    if (f->r->yuv.on)
+    if (f->r->yuv.on && f->premultiplied)
+        rf_yuv_premultiply_rows(f->r, rf_scratch(f->r, worker), band);
+    else if (f->r->yuv.on)
         rf_yuv_weigh_rows(f->r, band);
     else if (f->premultiplied)
         rf_premultiply_rows(f->r, rf_scratch(f->r, worker), band);

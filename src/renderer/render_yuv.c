@@ -47,6 +47,14 @@ static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_ST
     }
 }
 
+/* No blur is larger. Of a lens the farther of both ends has it. */
+static int largest_blur(const struct rf_frame *f)
+{
+    const int64_t df = f->focus.disparity, farther = df > UINT16_MAX - df ? df : UINT16_MAX - df;
+
+    return f->plan.plain ? (int)(farther * f->focus.radius >> 16) + 1 : INT16_MAX;
+}
+
 /* From the photo to r->smooth, and from there by way of the background's planes. */
 void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
 {
@@ -61,6 +69,7 @@ void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
     set_chroma_above(f, above);
     rf_yuv_prefilter_luma(r, luma[to], luma[i], f->prefilter_above, f->prefilter_fades, i,
                           rf_scratch(r, worker), band);
-    rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], above, f->prefilter_fades, i,
-                            rf_scratch(r, worker), band);
+    if (i == 0 || largest_blur(f) > above[1]) /* else no tile would be touched */
+        rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], above, f->prefilter_fades, i,
+                                rf_scratch(r, worker), band);
 }

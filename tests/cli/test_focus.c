@@ -118,11 +118,37 @@ static void points_are_asked_for_once(void **state)
     pthread_mutex_destroy(&focus.lock);
 }
 
+static void points_lie_in_the_picture(void **state)
+{
+    static const char *const outside[] = {"focus-at 64,3", "pull-at 3,48 1", "focus-at -1,0",
+                                          "focus-at 0,-0.5"};
+    struct live_focus focus;
+    double point[2], seconds;
+
+    (void)state;
+    begin(&focus, 0.5);
+    command(&focus, "focus-at 9999,9"); /* no picture yet: its edge serves */
+    assert_true(live_focus_point(&focus, point, &seconds));
+    live_focus_size(&focus, 64, 48);
+    command(&focus, "focus-at 63,47");
+    assert_true(live_focus_point(&focus, point, &seconds));
+    for (int i = 0; i < 4; i++) {
+        char why[200] = "";
+        bool quit = false;
+
+        assert_false(live_focus_command(&focus, outside[i], &quit, why, sizeof why));
+        assert_non_null(strstr(why, "64x48"));
+        assert_false(live_focus_point(&focus, point, &seconds));
+    }
+    pthread_mutex_destroy(&focus.lock);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pulls_are_smooth),
                                        cmocka_unit_test(one_takes_over_from_another),
-                                       cmocka_unit_test(points_are_asked_for_once)};
+                                       cmocka_unit_test(points_are_asked_for_once),
+                                       cmocka_unit_test(points_lie_in_the_picture)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

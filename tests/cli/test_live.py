@@ -124,11 +124,13 @@ class Live(unittest.TestCase):
             self.report('--camera', 'raw:sharp.raw,%s,64x48,30' % form, *args, '--blur', '0',
                         '--out', 'raw:again.raw,own')
             self.assertEqual(content('again.raw'), sharp)
-        # Another sampling is rendered in RGB and converted; another order is not.
+        # Neither another sampling nor another order takes a detour by RGB.
         camera = ['--camera', 'replay::format NV12;size 64x48;frames 4']
         r = self.report(*camera, *args, '--out', 'raw:packed.raw,YUYV')
         self.assertEqual((r['rendered_in'], len(content('packed.raw'))),
-                         ('RGB24', 4 * sizes['YUYV']))
+                         ('NV12', 4 * sizes['YUYV']))
+        r = self.report(*camera, *args, '--out', 'raw:packed.raw,RGBX')
+        self.assertEqual(r['rendered_in'], 'RGB24')
         r = self.report(*camera, *args, '--out', 'raw:planes.raw,yuv420')
         self.assertEqual((r['rendered_in'], len(content('planes.raw'))),
                          ('NV12', 4 * sizes['NV12']))

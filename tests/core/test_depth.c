@@ -1,6 +1,7 @@
 /* refocus_depth_to_disparity(): samples, meanings, ranges, strides, holes. */
 #include <math.h>
 #include <setjmp.h>
+#include <stdbool.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -179,6 +180,64 @@ static void test_unknown_samples(void **state)
     map = distances_of(REFOCUS_SAMPLE_U8, zeros, 4, 3);
     assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report),
                      REFOCUS_ERR_NO_DEPTH);
+}
+
+/* Large maps of whole numbers go by a table: the same as their rows by themselves. */
+static void large_like_rows(uint32_t sample, uint32_t meaning)
+{
+    enum { W = 331, H = 260 };
+    static uint16_t samples[W * H], out[W * H], row[W];
+    static uint8_t bytes[W * H], confidence[W * H], row_confidence[W];
+    const bool u8 = sample == REFOCUS_SAMPLE_U8;
+    struct refocus_repair_params params = refocus_repair_params_default();
+    struct refocus_depth_report all, one;
+    uint64_t unknown = 0, clamped = 0;
+    struct refocus_depth_map map;
+
+    for (int i = 0; i < W * H; i++) {
+        samples[i] = (uint16_t)((uint32_t)i * 2654435761u >> 16);
+        if (i / W % 3) /* and rows without extremes */
+            samples[i] = (uint16_t)(20000 + samples[i] % 9000);
+        if (i % 89 == 0)
+            samples[i] = (uint16_t)(i % 2 ? 0 : 65535);
+        bytes[i] = (uint8_t)(samples[i] >> 8);
+    }
+    map = map_of(sample, u8 ? (const void *)bytes : samples, W, H);
+    map.meaning = meaning;
+    map.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN | REFOCUS_DEPTH_MAX_IS_UNKNOWN;
+    map.metres_per_unit = 0.001;
+    map.near_m = u8 ? 0.02 : 8;
+    map.far_m = u8 ? 0.2 : 60;
+    map.value_near = u8 ? 250 : 60000;
+    map.value_far = 5;
+    params.confidence = confidence;
+    params.confidence_stride = W;
+    assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, &all), REFOCUS_OK);
+    params.confidence = row_confidence;
+    for (int y = 0; y < H; y++) {
+        struct refocus_depth_map part = map;
+
+        part.height = 1;
+        part.samples = (const char *)map.samples + y * map.stride;
+        assert_int_equal(refocus_depth_repair(&part, &params, row, 2 * W, &one), REFOCUS_OK);
+        unknown += one.unknown;
+        clamped += one.clamped;
+        assert_memory_equal(row_confidence, confidence + y * W, W);
+        for (int x = 0; x < W; x++)
+            if (row_confidence[x])
+                assert_int_equal(row[x], out[y * W + x]);
+    }
+    assert_true(unknown > W && unknown == all.unknown);
+    assert_true(clamped > W && clamped == all.clamped);
+}
+
+static void test_large_maps(void **state)
+{
+    (void)state;
+    large_like_rows(REFOCUS_SAMPLE_U16, REFOCUS_DEPTH_DISPARITY);
+    large_like_rows(REFOCUS_SAMPLE_U16, REFOCUS_DEPTH_DISTANCE);
+    large_like_rows(REFOCUS_SAMPLE_U8, REFOCUS_DEPTH_DISPARITY);
+    large_like_rows(REFOCUS_SAMPLE_U8, REFOCUS_DEPTH_DISTANCE);
 }
 
 static void test_one_depth(void **state)
@@ -409,6 +468,7 @@ int main(void)
         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_bad_arguments),
         cmocka_unit_test(test_long_rows),
+        cmocka_unit_test(test_large_maps),
         cmocka_unit_test(test_fill_takes_the_farther_side),
         cmocka_unit_test(test_fill_leaves_no_streaks),
     };

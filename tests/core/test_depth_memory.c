@@ -83,6 +83,29 @@ static int repair(void)
     return refocus_depth_repair(&map, &params, out, 2 * W, NULL);
 }
 
+/* Large maps have tables. */
+static int repair_large(void)
+{
+    enum { SIDE = 260 };
+    static uint16_t large[SIDE * SIDE], to[SIDE * SIDE];
+    struct refocus_repair_params params = refocus_repair_params_default();
+    const struct refocus_depth_map map = {.samples = large,
+                                          .width = SIDE,
+                                          .height = SIDE,
+                                          .stride = 2 * SIDE,
+                                          .sample = REFOCUS_SAMPLE_U16,
+                                          .meaning = REFOCUS_DEPTH_DISPARITY,
+                                          .flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN};
+    int status;
+
+    for (int i = 0; i < SIDE * SIDE; i++)
+        large[i] = (uint16_t)(i % 97 * 300);
+    params.speckle = 4;
+    status = refocus_depth_repair(&map, &params, to, 2 * SIDE, NULL);
+    memcpy(out, to, sizeof out);
+    return status;
+}
+
 static int filter(void)
 {
     const struct refocus_temporal_params params = refocus_temporal_params_default(W, H);
@@ -159,6 +182,7 @@ static void failing_repair(void **state)
 {
     (void)state;
     fail_each(repair, 2, 0);
+    fail_each(repair_large, 3, 0);
 }
 
 static void failing_filter(void **state)

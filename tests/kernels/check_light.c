@@ -159,6 +159,88 @@ static int check_weigh(const struct subject *subject)
     return 0;
 }
 
+struct layer1 {
+    uint16_t row[ROW + 1], before[ROW + 1], weight[ROW + 1];
+};
+
+/* n pixels of a layer after `weigh1`. */
+static int check_layer1(const struct subject *subject, const struct layer1 *l,
+                        const uint16_t *light_weight, int n, uint16_t *brightest)
+{
+    for (int x = 0; x <= ROW; x++) {
+        const unsigned v = l->before[x];
+        const unsigned w = x < n ? light_weight[v < 4095 ? v : 4095] / 8u : 4321;
+        const unsigned should = x < n ? (2 * v * w + 2048) / 4096 : v;
+
+        if (l->weight[x] != w)
+            return wrong(subject, "weigh1", "a weight", l->weight[x], w);
+        if (l->row[x] != should)
+            return wrong(subject, "weigh1", "light", l->row[x], should);
+        if (x < n && should > brightest[x / RF_TILE])
+            brightest[x / RF_TILE] = (uint16_t)should;
+    }
+    return 0;
+}
+
+static int check_weigh1(const struct subject *subject)
+{
+    static uint16_t table[4096];
+    static struct layer1 layer[2];
+    uint32_t seed = 21;
+
+    for (int round = 0; round < 500; round++) {
+        const int n = (int)(noise(&seed) % (ROW + 1)), most = noise(&seed) % 2 ? 4 * 4095 : 20;
+        uint16_t is[ROW / RF_TILE + 2], brightest[ROW / RF_TILE + 2];
+        const struct rf_weigh1_job job = {layer[0].row,    layer[1].row, layer[0].weight,
+                                          layer[1].weight, is,           table};
+
+        for (int i = 0; i < 4096; i++)
+            table[i] = (uint16_t)noise_between(&seed, 8, RF_WEIGHT_MAX);
+        for (int i = 0; i < ROW / RF_TILE + 2; i++)
+            is[i] = brightest[i] = (uint16_t)(noise(&seed) % 2 * (noise(&seed) % 65536));
+        for (int x = 0; x <= ROW; x++)
+            for (int k = 0; k < 2; k++) {
+                layer[k].before[x] = (uint16_t)noise_between(&seed, 0, most);
+                if (k == 1 && (x / RF_TILE + round) % 3 && noise(&seed) % 100)
+                    layer[1].before[x] = layer[0].before[x];
+                layer[k].row[x] = layer[k].before[x];
+                layer[k].weight[x] = 4321;
+            }
+        subject->kernels.weigh1(&job, n);
+        for (int k = 0; k < 2; k++)
+            if (check_layer1(subject, &layer[k], table, n, brightest))
+                return 1;
+        for (int i = 0; i < ROW / RF_TILE + 2; i++)
+            if (is[i] != brightest[i])
+                return wrong(subject, "weigh1", "the brightest", is[i], brightest[i]);
+    }
+    return 0;
+}
+
+static int check_weigh_chroma(const struct subject *subject)
+{
+    uint16_t chroma[ROW + 1], before[ROW + 1], weight[ROW + 1];
+    uint32_t seed = 22;
+
+    for (int round = 0; round < 500; round++) {
+        const int n = (int)(noise(&seed) % (ROW / 2 + 1));
+
+        for (int i = 0; i <= ROW; i++) {
+            chroma[i] = before[i] = (uint16_t)noise_between(&seed, 0, 32767);
+            weight[i] = (uint16_t)noise_between(&seed, 1, 4095);
+        }
+        subject->kernels.weigh_chroma(chroma, weight, n);
+        for (int i = 0; i <= ROW; i++) {
+            const unsigned product = before[i] * (unsigned)weight[i / 2 * 2];
+            const unsigned should = i < 2 * n ? (product + 2048) / 4096 : before[i];
+
+            if (chroma[i] != should)
+                return wrong(subject, "weigh_chroma", "a value", chroma[i], should);
+        }
+    }
+    return 0;
+}
+
 /* The operations one after the other, rounded to single precision each. */
 static int check_weighed_means(const struct subject *subject)
 {
@@ -395,6 +477,7 @@ int check_light(const struct subject *subject)
     const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject) +
                          check_tile_brightest(subject) + check_between(subject) +
                          check_soften(subject) + check_weigh(subject) +
+                         check_weigh1(subject) + check_weigh_chroma(subject) +
                          check_weighed_means(subject) + check_veil(subject);
 
     if (!failures)

@@ -86,8 +86,8 @@ static int check_sample(const struct subject *subject, uint32_t seed, const stru
 {
     const int rows = 1 << in->down, at = row * RF_TILE + 2 * x;
     const uint16_t *own = in->own_chroma + row * in->stride + 2 * x;
-    const bool same_chroma =
-        in->chroma[at] == 4 * own[0] && in->chroma[at + 1] == 4 * own[1];
+    const bool same_chroma = abs(in->chroma[at] - 4 * own[0]) <= in->within[1] &&
+                             abs(in->chroma[at + 1] - 4 * own[1]) <= in->within[1];
     bool same = same_chroma;
     struct rf_chroma_code expected;
     int light = 0;
@@ -99,7 +99,8 @@ static int check_sample(const struct subject *subject, uint32_t seed, const stru
     for (int k = 0; k < 2 * rows; k++) {
         const int y = row * rows + k / 2, p = y * RF_TILE + 2 * x + k % 2;
         const bool kept =
-            same_chroma && in->luma[p] == 4 * in->own_luma[y * in->stride + 2 * x + k % 2];
+            same_chroma && abs(in->luma[p] - 4 * in->own_luma[y * in->stride + 2 * x + k % 2]) <=
+                               in->within[0];
         const int mean = clipped(in->luma[p], RF_MEAN_MAX) - expected.excess;
         const int should = kept ? in->y[p] : in->curve->to_code[clipped(mean, RF_MEAN_MAX)];
 
@@ -125,6 +126,8 @@ static int check_decode(const struct subject *subject)
         rf_yuv_curve_init(&curve, seed % 2, seed / 4 % 2, seed / 8 % 3);
         in = (struct rf_decode_job){.curve = &curve, .down = down, .own_luma = own[0],
                                     .own_chroma = own[1], .stride = STRIDE};
+        for (int i = 0; i < 2; i++)
+            in.within[i] = (uint16_t)(seed % 3 ? noise(&state) % 16 : 0);
         for (int i = 0; i < LANES; i++) {
             const int at = i / RF_TILE * STRIDE + i % RF_TILE;
 
@@ -137,6 +140,13 @@ static int check_decode(const struct subject *subject)
             in.chroma[i] = (uint16_t)(i % 4 < 2 || noise(&state) % 4 == 0
                                           ? 4 * own[1][at]
                                           : noise_between(&state, 4, 4 * RF_CHROMA_MAX));
+            for (int k = 0; in.within[0] && k < 2; k++) { /* near it, and not */
+                uint16_t *v = k ? &in.chroma[i] : &in.luma[i];
+                const int to = *v + noise_between(&state, -18, 18);
+
+                if (noise(&state) % 2 && *v == 4 * own[k][at] && to >= 4 * k && to <= 65520)
+                    *v = (uint16_t)to;
+            }
             in.y[i] = (uint8_t)noise(&state);
             in.uv[i] = (uint8_t)noise(&state);
         }
@@ -192,7 +202,7 @@ struct stage {
     struct rf_slab slab[RF_BINS];
     struct rf_sorted_rays rays;
     struct rf_sweep1_job job;
-    uint32_t sum[LANES], expected[LANES];
+    uint32_t sum[LANES], expected[LANES], weights[LANES], expected_weights[LANES];
     uint64_t weighted[2][LANES], expected_weighted[2][LANES]; /* products, weights */
 };
 
@@ -272,8 +282,8 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
         .steps = step,
         .chroma = chroma,
         .rays = &s->rays,
-        .weight = make_plane(&s->weight, place, (rows + jump) << down, &state, 1, RF_WEIGHT_MAX,
-                             seed % 4 == 0),
+        .weight = make_plane(&s->weight, place, (rows + jump) << down, &state, 1,
+                             seed % 2 ? 4095 : RF_WEIGHT_MAX, seed % 4 == 0),
         .down = down,
     };
     for (int y = -PAD; y < rows + jump + PAD; y++)
@@ -298,6 +308,7 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
     set_classes(s, light, &state);
     for (int i = 0; i < LANES; i++) {
         s->sum[i] = s->expected[i] = noise(&state);
+        s->weights[i] = s->expected_weights[i] = noise(&state);
         for (int k = 0; k < 2; k++)
             s->weighted[k][i] = s->expected_weighted[k][i] = noise(&state);
     }
@@ -306,6 +317,7 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
 static void expect(struct stage *s, int i, uint16_t light, uint16_t weight)
 {
     s->expected[i] += light;
+    s->expected_weights[i] += weight;
     s->expected_weighted[0][i] += (uint64_t)light * weight;
     s->expected_weighted[1][i] += weight;
 }
@@ -351,10 +363,14 @@ static int check_sweep1(const struct subject *subject)
             for (int n = 0; n < s.rays.rays; n++)
                 if (counts(&s, n))
                     follow(&s, i, n);
-        subject->kernels.sweep1(s.sum, &s.job);
+        subject->kernels.sweep1(s.sum, seed % 2 ? s.weights : NULL, &s.job);
         for (int i = 0; i < LANES && !failures; i++)
             if (s.sum[i] != s.expected[i])
                 failures = fail(subject, "sweep1", seed, i, (int)s.sum[i], (int)s.expected[i]);
+        for (int i = 0; seed % 2 && i < LANES && !failures; i++)
+            if (s.weights[i] != s.expected_weights[i])
+                failures = fail(subject, "sweep1, weights", seed, i, (int)s.weights[i],
+                                (int)s.expected_weights[i]);
         subject->kernels.sweep1_weighted(s.weighted[0], s.weighted[1], &s.job);
         for (int i = 0; i < 2 * LANES && !failures; i++)
             if (s.weighted[i / LANES][i % LANES] != s.expected_weighted[i / LANES][i % LANES])
@@ -413,11 +429,57 @@ static int check_between(const struct subject *subject)
     return 0;
 }
 
+/* Value i of n that lie `apart`, by the contract of soften. */
+static int softened(const uint16_t *v, int apart, int i, int n, uint32_t share)
+{
+    const int own = v[i * apart];
+    int average, way;
+
+    if (i == 0 || i == n - 1)
+        return own;
+    average = (v[(i - 1) * apart] + v[(i + 1) * apart] + 1) / 2;
+    way = (int)((uint32_t)abs(average - own) * share >> 17);
+    return average > own ? own + way : own - way;
+}
+
+static int check_soften(const struct subject *subject)
+{
+    uint32_t state = 23;
+
+    for (uint32_t seed = 1; seed <= 200; seed++) {
+        const int rows = 1 + (int)(seed % RF_TILE);
+        const bool down = seed / RF_TILE % 2;
+        const uint16_t share = (uint16_t)(seed % 3 ? noise_between(&state, 0, 65535) : 65535);
+        uint16_t mean[LANES + 1], all[LANES], across[LANES];
+
+        for (int i = 0; i < LANES; i++)
+            mean[i] = all[i] =
+                (uint16_t)(noise(&state) % 8 ? noise_between(&state, 0, 65535) : 65535);
+        mean[LANES] = 12345;
+        for (int i = 0; i < LANES; i++)
+            across[i] = (uint16_t)softened(all + i / RF_TILE * RF_TILE + i % 2, 2,
+                                           i % RF_TILE / 2, RF_TILE / 2, share);
+        subject->kernels.soften_chroma(mean, rows, down, share);
+        for (int i = 0; i <= LANES; i++) {
+            const int y = i / RF_TILE;
+            const int should = i == LANES  ? 12345
+                               : y >= rows ? all[i]
+                               : down      ? softened(across + i % RF_TILE, RF_TILE, y, rows, share)
+                                           : across[i];
+
+            if (mean[i] != should)
+                return fail(subject, "soften_chroma", seed, i, mean[i], should);
+        }
+    }
+    printf("ok    %-12s %-6s 200 cases\n", "softening", subject->cpu);
+    return 0;
+}
+
 int check_yuv(const struct subject *subject)
 {
     struct guarded g[6];
     int failures = check_decode(subject) + check_aim_chroma(subject) +
-                   check_sweep1(subject) + check_between(subject);
+                   check_sweep1(subject) + check_between(subject) + check_soften(subject);
     int made = 0;
 
     while (made < 6 && guarded_create(&g[made], 4 * MOST + 64))

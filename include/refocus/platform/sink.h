@@ -13,8 +13,9 @@
  *                            (default), BGR24, RGBX, BGRX, NV12, NV21, YUV420, YUYV or
  *                            UYVY; or `own`: that of the pictures, RGB24 of RGB8.
  *                            RGB8 becomes BT.601 limited range where it is one of Y, U
- *                            and V; pictures of Y, U and V with as many samples keep
- *                            their codes
+ *                            and V; pictures of Y, U and V keep their codes, but
+ *                            those of U and V where 4:2:0 becomes 4:2:2 (rows twice)
+ *                            or 4:2:2 becomes 4:2:0 (the mean of two rows)
  *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0
  *
  * FILE may be "-" for standard output, or a pipe. Of raw: the last comma of the name
@@ -58,10 +59,10 @@ REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int hei
                                    double fps, struct refocus_reason *reason);
 
 /**
- * Whether pictures of a format can be written without a change of their codes: 0 or 1.
- * RGB8 is taken by every sink; formats of Y, U and V by `null` and `y4m`, by `raw` where
- * its FORMAT is `own` or has as many samples (4:2:0 or 4:2:2), in whatever order, and by
- * `v4l2` where the node has that format.
+ * Whether pictures of a format can be written as they are, without a detour by R, G
+ * and B: 0 or 1. RGB8 is taken by every sink; formats of Y, U and V by `null` and
+ * `y4m`, by `raw` where its FORMAT is `own` or one of Y, U and V, and by `v4l2` where
+ * the node has such a format: the same one, else one with as many samples, else any.
  */
 REFOCUS_API int refocus_sink_takes(struct refocus_sink *sink, uint32_t format);
 

@@ -131,6 +131,7 @@ struct live_focus {
     int64_t begin_ns, duration_ns;
     bool at_given, follow_lens;
     double at[2], at_seconds;
+    int width, height; /* of the pictures; 0: none has come */
 };
 
 void live_focus_init(struct live_focus *focus, const struct live_settings *settings);
@@ -141,6 +142,8 @@ bool live_focus_command(struct live_focus *focus, const char *line, bool *quit, 
 void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity, double *blur);
 /* Whether a point is asked for whose disparity live_focus_pull() shall get: once. */
 bool live_focus_point(struct live_focus *focus, double point[2], double *seconds);
+/* The size of the pictures, beyond which points are refused. */
+void live_focus_size(struct live_focus *focus, int width, int height);
 void live_focus_pull(struct live_focus *focus, double disparity, double seconds);
 
 /* live_steady.c: depth that does not flicker ---------------------------------------------- */

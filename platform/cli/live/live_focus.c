@@ -59,6 +59,14 @@ bool live_focus_point(struct live_focus *focus, double point[2], double *seconds
     return given;
 }
 
+void live_focus_size(struct live_focus *focus, int width, int height)
+{
+    pthread_mutex_lock(&focus->lock);
+    focus->width = width;
+    focus->height = height;
+    pthread_mutex_unlock(&focus->lock);
+}
+
 void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity,
                     double *blur)
 {
@@ -91,6 +99,12 @@ static bool parse_values(const char *text, int count, double values[2], double *
     return *text == '\0';
 }
 
+static bool is_inside(const struct live_focus *focus, const double at[2])
+{
+    return !focus->width || (at[0] >= 0 && at[0] < focus->width && at[1] >= 0 &&
+                             at[1] < focus->height);
+}
+
 static bool apply(struct live_focus *focus, const char *word, const char *rest,
                   char *why, size_t size)
 {
@@ -115,6 +129,10 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest,
             return false;
         }
         focus->blur = values[0];
+    } else if (point && !is_inside(focus, values)) {
+        snprintf(why, size, "%g,%g is outside of pictures of %dx%d", values[0], values[1],
+                 focus->width, focus->height);
+        return false;
     } else if (point) {
         focus->at_given = true;
         focus->follow_lens = false;

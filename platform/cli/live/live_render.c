@@ -38,6 +38,7 @@ static void find_focus(struct live *live, int width, int height)
     double point[2], seconds;
     int x, y;
 
+    live_focus_size(&live->focus, width, height);
     if (!live_focus_point(&live->focus, point, &seconds))
         return;
     x = isnan(point[0]) ? width / 2 : (int)fmin(fmax(point[0], 0), width - 1);

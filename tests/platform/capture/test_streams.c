@@ -375,9 +375,71 @@ static void raw_formats(void **state)
     assert_int_equal(access("x", F_OK), -1); /* nothing was begun */
     assert_status(refocus_sink_open(&sink, "raw:half.yuv,NV12", NULL), REFOCUS_OK);
     assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_I420), 1);
+    assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_YUYV), 1);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_open(&sink, "raw:rgbx.raw,RGBX", NULL), REFOCUS_OK);
     assert_int_equal(refocus_sink_takes(sink, REFOCUS_FORMAT_YUYV), 0);
     assert_status(refocus_sink_start_image(sink, &yuv, 25, NULL), REFOCUS_ERR_UNSUPPORTED);
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+}
+
+/* A code of U or V of a picture in a format with other rows of them, by the words of sink.h. */
+static int chroma_as(const struct refocus_image *image, bool tall, int i, int x, int y)
+{
+    if (tall || image->format != REFOCUS_FORMAT_YUYV)
+        return *sample_of(image, i, x, y);
+    y = y / 2 * 2;
+    return (*sample_of(image, i, x, y) +
+            *sample_of(image, i, x, y + 1 < image->height ? y + 1 : y) + 1) / 2;
+}
+
+/* 4:2:0 into 4:2:2 and back: codes of Y stay, rows of U and V come twice or are mixed. */
+static void raw_of_other_samples(void **state)
+{
+    static const struct {
+        uint32_t from, to;
+        const char *name;
+    } kinds[] = {{REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_YUYV, "YUYV"},
+                 {REFOCUS_FORMAT_NV21, REFOCUS_FORMAT_YUYV, "YUYV"},
+                 {REFOCUS_FORMAT_I420, REFOCUS_FORMAT_YUYV, "UYVY"},
+                 {REFOCUS_FORMAT_YUYV, REFOCUS_FORMAT_NV12, "NV12"},
+                 {REFOCUS_FORMAT_YUYV, REFOCUS_FORMAT_NV21, "NV21"},
+                 {REFOCUS_FORMAT_YUYV, REFOCUS_FORMAT_I420, "YUV420"}};
+    static uint8_t memory[3][32 * RAW_H];
+    struct refocus_converter *converter;
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        const struct refocus_image image = noisy(kinds[k].from, memory, 1);
+        const bool tall = kinds[k].to == REFOCUS_FORMAT_YUYV;
+        uint8_t bytes[2 * (RAW_W + 1) * RAW_H];
+        struct refocus_image back = refocus_image_planar(kinds[k].to, bytes, RAW_W, RAW_H);
+        const struct refocus_frame *frame;
+        struct refocus_source *source;
+        struct refocus_sink *sink = NULL;
+        char path[80];
+
+        snprintf(path, sizeof path, "raw:other.raw,%s", kinds[k].name);
+        assert_status(refocus_sink_open(&sink, path, NULL), REFOCUS_OK);
+        assert_int_equal(refocus_sink_takes(sink, kinds[k].from), 1);
+        assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_OK);
+        assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_OK);
+        assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+        snprintf(path, sizeof path, "raw:other.raw,%s,7x5", kinds[k].name);
+        source = started(path, REFOCUS_SOURCE_FAST);
+        assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
+        assert_status(refocus_convert_copy(converter, frame, &back, NULL), REFOCUS_OK);
+        for (int y = 0; y < RAW_H; y++)
+            for (int x = 0; x < RAW_W; x++)
+                for (int i = 0; i < 3; i++)
+                    assert_int_equal(*sample_of(&back, i, x, y),
+                                     i ? chroma_as(&image, tall, i, x, y)
+                                       : *sample_of(&image, 0, x, y));
+        refocus_source_release(source, frame);
+        refocus_source_close(&source);
+    }
+    refocus_converter_destroy(&converter);
 }
 
 /* 4:2:2 comes back from y4m as the YUYV that it was. */
@@ -467,7 +529,8 @@ int main(void)
         cmocka_unit_test(wrong_names_are_refused),
         cmocka_unit_test(a_closed_pipe_is_a_status),
         cmocka_unit_test(y4m_keeps_codes), cmocka_unit_test(raw_keeps_codes),
-        cmocka_unit_test(raw_formats), cmocka_unit_test(y4m_422_comes_back),
+        cmocka_unit_test(raw_formats), cmocka_unit_test(raw_of_other_samples),
+        cmocka_unit_test(y4m_422_comes_back),
         cmocka_unit_test(sinks_refuse_what_is_wrong),
         cmocka_unit_test(replay_replays),
     };
