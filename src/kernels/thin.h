@@ -32,24 +32,29 @@ struct rf_thin_tile {
  *
  * With J = 65535 / 32, and where only pixels of the photo count:
  *
- *     kept      the greatest disparity of the 3 x 3 around is no more than J above its
- * own level     own - J of a pixel that is kept, own + J of others near, far above the
- * level, at most the level clean     far, and kept
+ *     kept        the greatest disparity of the 3 x 3 around is no more than J above its own
+ *     level       own - J of a pixel that is kept, own + J of others
+ *     near, far   above the level, at most the level
+ *     clean       far, and kept
  *
- * Looked at are those that are not kept, and those that are J above the least of the 7
- * x 7 around them. In eight directions, up to RF_THIN_REACH steps:
+ * Looked at are those that are not kept, and those that are J above the least of the 7 x 7
+ * around them. In eight directions, up to RF_THIN_REACH steps:
  *
- *     width     kept: steps from far pixel to far pixel less one, the least of four
- * axes; others: pixels in a row that are near, begin at the first or the second step
- *               and end before a far one: the least of eight directions. At most 7,
- * else none. met       the first clean pixel of each direction, one of them at 4 steps
- * or nearer; else, or if the width is 1, the first far one weight    1440 / squared
- * distance, rounded down surface   the met disparity d with the most weight within 2 J
- * of it, the least of equals F, spread mean by weight of those met within 2 J of it,
- * half up; mean of their squared distances from F, rounded down N         mean, half
- * up, of near pixels of the 5 x 5 around by 1 + sum of (L - F)^2 / 64, each rounded
- * down alpha     255 (N - F)(C - F) / (N - F)^2, rounded down; 0 if (N - F)^2 < 2304;
- * else no less than keeps C - (1 - alpha) F between 0 and alpha white
+ *     width       of what is kept: steps from far pixel to far pixel less one, the least of
+ *                 four axes; of others: pixels in a row that are near, begin at the first or
+ *                 the second step and end before a far one, the least of eight directions.
+ *                 At most 7, else none
+ *     met         the first clean pixel of each direction, one of them at 4 steps or nearer;
+ *                 else, or if the width is 1, the first far one
+ *     weight      1440 / squared distance, rounded down
+ *     surface     the met disparity d with the most weight within 2 J of it, the least of
+ *                 equals
+ *     F, spread   mean by weight of those met within 2 J of it, half up; mean of their
+ *                 squared distances from F, rounded down
+ *     N           mean, half up, of near pixels of the 5 x 5 around by 1 + sum of
+ *                 (L - F)^2 / 64, each rounded down
+ *     alpha       255 (N - F)(C - F) / (N - F)^2, rounded down; 0 if (N - F)^2 < 2304; else
+ *                 no less than keeps C - (1 - alpha) F between 0 and alpha white
  *
  * None is what has no N, or has light above 4000 in N or C; what is not kept and has an
  * alpha below 12, or (C - F)^2 < 2 spread + 144. What is kept has then, and with 0, an
