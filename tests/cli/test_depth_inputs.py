@@ -89,7 +89,8 @@ class DepthInputs(Case):
                      'depth.pgm')
 
     def test_shape(self):
-        """The map of another picture, or one on its side; a few samples may be of any shape."""
+        """The map of another picture, or one on its side; squares, as networks make them, and a
+        few samples are for any shape."""
         pictures.pgm('side.pgm', H, W, lambda x, y: 9 * x & 255)
         pictures.pgm('long.pgm', 80, 16, lambda x, y: x)
         pictures.pgm('4to3.pgm', 40, 30, lambda x, y: x)
@@ -105,6 +106,9 @@ class DepthInputs(Case):
             self.succeeds('depth', name, '-o', 'made.pgm')
         for name in '4to3.pgm', 'few.pgm':
             self.succeeds('depth', 'photo.ppm', '--depth', name, '--full', '-o', 'made.pgm')
+        pictures.ppm('wide.ppm', 64, 32, lambda x, y: (x, y, 0))
+        pictures.pgm('square.pgm', 32, 32, lambda x, y: x)
+        self.succeeds('depth', 'wide.ppm', '--depth', 'square.pgm', '--full', '-o', 'made.pgm')
 
     def test_cut_heic(self):
         whole = os.path.join(PHOTOS, 'stereo', 'spatial-photo.heic')

@@ -292,7 +292,8 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
 }
 
 /* A map of another picture, or one that lies on its side: neither is stretched to fit.
- * Cameras' 4:3 and 16:9 go together; of a few samples the shape says nothing. */
+ * Cameras' 4:3 and 16:9 go together, and a square is what networks make of any picture;
+ * of a few samples the shape says nothing. */
 static bool has_another_shape(const struct refocus_depth_map *map,
                               const struct refocus_image *photo)
 {
@@ -300,7 +301,7 @@ static bool has_another_shape(const struct refocus_depth_map *map,
     const int64_t wide = (int64_t)map->width * photo->height;
     const int64_t high = (int64_t)map->height * photo->width;
 
-    return map->width >= FEWEST && map->height >= FEWEST &&
+    return map->width >= FEWEST && map->height >= FEWEST && map->width != map->height &&
            (2 * wide > 3 * high || 2 * high > 3 * wide);
 }
 
