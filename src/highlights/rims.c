@@ -94,28 +94,29 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
     }
 }
 
-/* Brightest value of n pixels. Signed: baseline x86 has a signed 16-bit maximum
- * only. Of Y, U and V there is luminance alone. */
-static int brightest(const struct refocus_renderer *r, ptrdiff_t at, int n)
+/* Whether disparities in and around a run of a row differ by a jump. Signed: baseline x86 has
+ * signed 16-bit extremes only. */
+static bool has_jump(const struct refocus_renderer *r, int x0, int x1, int y)
 {
-    const int16_t *a = (const int16_t *)r->front.light[0] + at;
-    const int16_t *b = (const int16_t *)r->front.light[1] + at;
-    const int16_t *c = (const int16_t *)r->front.light[2] + at;
-    int16_t most = 0;
+    const int from = x0 > 0 ? x0 - 1 : 0, n = (x1 < r->width ? x1 + 1 : x1) - from;
+    int16_t least = INT16_MAX, most = INT16_MIN;
 
-    for (int x = 0; r->yuv.on && x < n; x++)
-        most = a[x] > most ? a[x] : most;
-    for (int x = 0; !r->yuv.on && x < n; x++) {
-        most = a[x] > most ? a[x] : most;
-        most = b[x] > most ? b[x] : most;
-        most = c[x] > most ? c[x] : most;
+    for (int j = y > 0 ? y - 1 : y; j <= y + 1 && j < r->height; j++) {
+        const uint16_t *d = r->disparity + j * r->stride + from;
+
+        for (int x = 0; x < n; x++) {
+            const int16_t v = (int16_t)(d[x] ^ 0x8000);
+
+            least = v < least ? v : least;
+            most = v > most ? v : most;
+        }
     }
-    return most;
+    return most - least > JUMP;
 }
 
 void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
 {
-    enum { RUN = 64 }; /* most runs of pixels hold nothing bright */
+    enum { RUN = 32 }; /* most runs of pixels hold nothing bright at a jump */
     struct rf_photo *photo = &r->photo[r->used];
 
     for (int y = part.y0; y < part.y1; y++) {
@@ -126,7 +127,9 @@ void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
         for (int x0 = part.x0; x0 < part.x1; x0 += RUN) {
             const int x1 = x0 + RUN < part.x1 ? x0 + RUN : part.x1;
 
-            if (brightest(r, at + x0, x1 - x0) < LEVEL)
+            if (r->kernels.brightest(r->front.light[0] + at + x0, r->front.light[1] + at + x0,
+                                     r->front.light[2] + at + x0, x1 - x0) < LEVEL ||
+                !has_jump(r, x0, x1, y))
                 continue;
             if (rf_cancelled(r))
                 return;

@@ -3,6 +3,23 @@
 
 #include <string.h>
 
+/* A row of n pixels, read once; `bytes` is a constant. */
+static inline void convert_row(uint16_t *restrict red, uint16_t *restrict green,
+                               uint16_t *restrict blue, uint8_t *restrict alpha,
+                               const uint8_t *restrict in, struct rf_order o, const int bytes,
+                               const uint16_t *restrict to_light, int n)
+{
+    if (o.a < 0)
+        memset(alpha, 255, (size_t)n);
+    for (int x = 0; x < n; x++) {
+        red[x] = to_light[in[x * bytes + o.r]];
+        green[x] = to_light[in[x * bytes + o.g]];
+        blue[x] = to_light[in[x * bytes + o.b]];
+        if (o.a >= 0)
+            alpha[x] = in[x * bytes + o.a];
+    }
+}
+
 void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0,
                      int y1)
 {
@@ -16,12 +33,10 @@ void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *pho
         uint16_t *blue = r->front.light[2] + y * r->stride;
         uint8_t *alpha = r->alpha + y * r->alpha_stride;
 
-        for (int x = 0; x < r->width; x++, in += o.bytes) {
-            red[x] = to_light[in[o.r]];
-            green[x] = to_light[in[o.g]];
-            blue[x] = to_light[in[o.b]];
-            alpha[x] = o.a < 0 ? 255 : in[o.a];
-        }
+        if (o.bytes == 3)
+            convert_row(red, green, blue, alpha, in, o, 3, to_light, r->width);
+        else
+            convert_row(red, green, blue, alpha, in, o, 4, to_light, r->width);
     }
     for (int c = 0; c < 3; c++)
         rf_extend_rows(r, r->front.light[c], y0, y1);
