@@ -282,10 +282,11 @@ typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t 
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
 
-/* soften: rows of RF_TILE means, each moved by half of share / 65536, rounded down, of how far the
- * average, half up, of its neighbours is: those to the left and right, but at the ends, and then,
- * if `down` is set, those above and below, but in the first and the last row. */
-typedef void rf_soften_fn(uint16_t *mean, int rows, bool down, uint16_t share);
+/* soften: rows of RF_TILE means, `each` of which are a pixel's, moved by half of share / 65536,
+ * rounded down, of how far the average, half up, of its neighbours' is: those to the left and
+ * right, but at the ends, and then, if `down` is set, those above and below, but in the first and
+ * the last row. */
+typedef void rf_soften_fn(uint16_t *mean, int rows, int each, bool down, uint16_t share);
 
 /*
  * lay_veil: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn
@@ -376,10 +377,6 @@ typedef void rf_sweep1_fn(uint32_t *sum, uint32_t *weight_sum, const struct rf_s
 typedef void rf_sweep1_weighted_fn(uint64_t *sum, uint64_t *weight,
                                    const struct rf_sweep1_job *job);
 
-/* soften_chroma: soften, of means of chroma: the neighbours are two elements away, and those of
- * the two at either end of a row stay. */
-typedef void rf_soften_chroma_fn(uint16_t *mean, int rows, bool down, uint16_t share);
-
 /* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
 typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);
 
@@ -461,7 +458,6 @@ struct rf_kernels {
     rf_sweep1_fn *sweep1;
     rf_sweep1_weighted_fn *sweep1_weighted;
     rf_between_chroma_fn *between_chroma;
-    rf_soften_chroma_fn *soften_chroma;
     rf_smooth1_fn *smooth1;
     rf_aim_chroma_fn *aim_chroma;
     rf_sharpest4_fn *sharpest4;

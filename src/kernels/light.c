@@ -142,17 +142,19 @@ static inline uint16_t moved(uint16_t own, uint16_t a, uint16_t b, uint32_t shar
     return (uint16_t)(own + more - less);
 }
 
-static void RF_VEC(rf_soften)(uint16_t *restrict mean, int rows, bool down, uint16_t share)
+static void RF_VEC(rf_soften)(uint16_t *restrict mean, int rows, int each, bool down,
+                              uint16_t share)
 {
     uint16_t across[RF_TILE * RF_TILE];
     const int n = rows * RF_TILE;
 
-    for (int i = 1; i < n - 1; i++)
-        across[i] = moved(mean[i], mean[i - 1], mean[i + 1], share);
-    for (int y = 0; y < n; y += RF_TILE) {
-        across[y] = mean[y];
-        across[y + RF_TILE - 1] = mean[y + RF_TILE - 1];
-    }
+    for (int i = each; i < n - each; i++)
+        across[i] = moved(mean[i], mean[i - each], mean[i + each], share);
+    for (int y = 0; y < n; y += RF_TILE)
+        for (int i = 0; i < each; i++) {
+            across[y + i] = mean[y + i];
+            across[y + RF_TILE - 1 - i] = mean[y + RF_TILE - 1 - i];
+        }
     memcpy(mean, across, (size_t)n * sizeof *mean);
     for (int i = RF_TILE; down && i < n - RF_TILE; i++)
         mean[i] = moved(across[i], across[i - RF_TILE], across[i + RF_TILE], share);

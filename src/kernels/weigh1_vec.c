@@ -1,11 +1,8 @@
 /* weigh1_vec.c: light of one plane, and chroma, times weight; as weigh_vec.c. */
 #include "colour/transfer.h"
-#include "kernels/kernels.h"
-#include "simd/vec.h"
+#include "kernels/weigh_vec.h"
 
-#include <stdbool.h>
-
-enum { TILES = 16, RUN = TILES * (int)RF_TILE };
+enum { TILES = RF_WEIGH_TILES };
 
 /* Where weights are: light, white at most. */
 static void look(uint16_t *at, const uint16_t *light)
@@ -25,20 +22,13 @@ static bool are_same(const uint16_t *near, const uint16_t *far)
     return !vec_u16_any(differ);
 }
 
-static vec_u16 eight_times(vec_u16 weight)
-{
-    const vec_u16 two = vec_u16_add(weight, weight), four = vec_u16_add(two, two);
-
-    return vec_u16_add(four, four);
-}
-
 /* Returns the greater of `brightest` and the light of a tile's row. */
 static vec_u16 multiply(uint16_t *light, const uint16_t *weight, vec_u16 brightest)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
         const vec_u16 v = vec_u16_load(light + x);
         const vec_u16 product =
-            vec_s16_scale(vec_u16_add(v, v), eight_times(vec_u16_load(weight + x)));
+            vec_s16_scale(vec_u16_add(v, v), rf_eight_times(vec_u16_load(weight + x)));
 
         vec_u16_store(light + x, product);
         brightest = vec_u16_max(brightest, product);
@@ -52,45 +42,31 @@ static void copy(uint16_t *to, const uint16_t *from)
         vec_u16_store(to + x, vec_u16_load(from + x));
 }
 
-static uint16_t greatest(vec_u16 v, uint16_t most)
-{
-    uint16_t lane[VEC_U16];
-
-    vec_u16_store(lane, v);
-    for (int i = 0; i < (int)VEC_U16; i++)
-        most = lane[i] > most ? lane[i] : most;
-    return most;
-}
-
 /* Whole tiles. Where the background is what is seen, so is its light times weight. */
 static void weigh_tiles(const struct rf_weigh1_job *job, int first, int tiles)
 {
-    uint16_t near[RUN], far[RUN];
-    bool same[TILES];
+    struct rf_weigh_run run;
 
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
-        same[i] = are_same(job->near + x, job->far + x);
-        look(near + i * RF_TILE, job->near + x);
-        if (!same[i])
-            look(far + i * RF_TILE, job->far + x);
+        run.same[i] = are_same(job->near + x, job->far + x);
+        look(run.near + i * RF_TILE, job->near + x);
+        if (!run.same[i])
+            look(run.far + i * RF_TILE, job->far + x);
     }
-    for (int x = 0; x < tiles * RF_TILE; x++)
-        job->near_weight[first + x] = job->light_weight[near[x]] >> 3;
-    for (int i = 0; i < tiles; i++)
-        for (int x = i * RF_TILE; !same[i] && x < (i + 1) * RF_TILE; x++)
-            job->far_weight[first + x] = job->light_weight[far[x]] >> 3;
+    rf_look_up_weights(job->near_weight + first, job->far_weight + first, &run,
+                       job->light_weight, tiles);
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
         uint16_t *most = &job->brightest[x / RF_TILE];
         vec_u16 brightest =
             multiply(job->near + x, job->near_weight + x, vec_u16_set(0));
 
-        if (same[i]) {
+        if (run.same[i]) {
             copy(job->far_weight + x, job->near_weight + x);
             copy(job->far + x, job->near + x);
         } else {
             brightest = multiply(job->far + x, job->far_weight + x, brightest);
         }
-        *most = greatest(brightest, *most);
+        *most = rf_greatest(brightest, *most);
     }
 }
 
@@ -114,7 +90,7 @@ static void RF_VEC(rf_weigh_chroma)(uint16_t *chroma, const uint16_t *weight, in
         vec_u16_store(
             chroma + i,
             vec_s16_scale(vec_u16_load(chroma + i),
-                          eight_times(vec_u16_twice(vec_u16_load(weight + i)))));
+                          rf_eight_times(vec_u16_twice(vec_u16_load(weight + i)))));
     rf_weigh_chroma_c(chroma + i, weight + i, n - i / 2);
 }
 

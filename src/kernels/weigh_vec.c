@@ -1,16 +1,8 @@
-/* weigh_vec.c: light times weight, some tiles' rows at a time.
- *
- * Weights come out of a table, one by one: of all pixels of a run, before any is used, as a
- * vector of values that were just stored apart would wait for them.
- */
+/* weigh_vec.c: light times weight, some tiles' rows at a time. */
 #include "colour/transfer.h"
-#include "kernels/kernels.h"
-#include "simd/vec.h"
+#include "kernels/weigh_vec.h"
 
-#include <stdbool.h>
-#include <string.h>
-
-enum { TILES = 16, RUN = TILES * (int)RF_TILE, EACH = (int)RF_TILE / (int)VEC_U16 };
+enum { TILES = RF_WEIGH_TILES, EACH = (int)RF_TILE / (int)VEC_U16 };
 
 /* The brightest channels of a tile's row, white at most. */
 static void look(uint16_t *most, uint16_t *const light[3], int x)
@@ -44,10 +36,7 @@ static vec_u16 multiply(uint16_t *const light[3], const uint16_t *weight,
     for (int i = 0; i < RF_ODD_LIGHTS; i++)
         odd[i] = vec_u16_set(weights->odd[i]);
     for (int end = x + RF_TILE; x < end; x += (int)VEC_U16) {
-        const vec_u16 twice_weight = vec_u16_add(vec_u16_load(weight + x),
-                                                 vec_u16_load(weight + x));
-        const vec_u16 four = vec_u16_add(twice_weight, twice_weight);
-        const vec_u16 eight = vec_u16_add(four, four);
+        const vec_u16 eight = rf_eight_times(vec_u16_load(weight + x));
 
         for (int c = 0; c < 3; c++) {
             const vec_u16 v = vec_u16_load(light[c] + x);
@@ -76,44 +65,30 @@ static void copy_tile(const struct rf_weigh_job *job, int x)
     }
 }
 
-static uint16_t greatest(vec_u16 v, uint16_t most)
-{
-    uint16_t lane[VEC_U16];
-
-    vec_u16_store(lane, v);
-    for (int i = 0; i < (int)VEC_U16; i++)
-        most = lane[i] > most ? lane[i] : most;
-    return most;
-}
-
 /* Whole tiles. Where the background is what is seen, so is its light times weight. */
 static void weigh_tiles(const struct rf_weigh_job *job, int first, int tiles)
 {
     const struct rf_weights *weights = job->weights;
-    uint16_t near[RUN], far[RUN];
-    bool same[TILES];
+    struct rf_weigh_run run;
 
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
-        same[i] = are_same(job, x);
-        look(near + i * RF_TILE, job->near, x);
-        if (!same[i])
-            look(far + i * RF_TILE, job->far, x);
+        run.same[i] = are_same(job, x);
+        look(run.near + i * RF_TILE, job->near, x);
+        if (!run.same[i])
+            look(run.far + i * RF_TILE, job->far, x);
     }
-    for (int x = 0; x < tiles * RF_TILE; x++)
-        job->near_weight[first + x] = weights->light_weight[near[x]] >> 3;
-    for (int i = 0; i < tiles; i++)
-        for (int x = i * RF_TILE; !same[i] && x < (i + 1) * RF_TILE; x++)
-            job->far_weight[first + x] = weights->light_weight[far[x]] >> 3;
+    rf_look_up_weights(job->near_weight + first, job->far_weight + first, &run,
+                       weights->light_weight, tiles);
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
         uint16_t *most = &job->brightest[x / RF_TILE];
         vec_u16 brightest =
             multiply(job->near, job->near_weight, weights, x, vec_u16_set(0));
 
-        if (same[i])
+        if (run.same[i])
             copy_tile(job, x);
         else
             brightest = multiply(job->far, job->far_weight, weights, x, brightest);
-        *most = greatest(brightest, *most);
+        *most = rf_greatest(brightest, *most);
     }
 }
 

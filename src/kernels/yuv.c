@@ -105,36 +105,6 @@ static void RF_VEC(rf_between_chroma)(uint16_t *restrict mean, const uint16_t *r
     }
 }
 
-/* A value moved towards the average of two, as in light.c. */
-static inline uint16_t moved(uint16_t own, uint16_t a, uint16_t b, uint32_t share)
-{
-    const uint16_t average = (uint16_t)((a + b + 1) >> 1);
-    const uint16_t up = (uint16_t)(average > own ? average - own : 0);
-    const uint16_t down = (uint16_t)(own > average ? own - average : 0);
-    const uint16_t more = (uint16_t)((uint16_t)(up * share >> 16) >> 1);
-    const uint16_t less = (uint16_t)((uint16_t)(down * share >> 16) >> 1);
-
-    return (uint16_t)(own + more - less);
-}
-
-static void RF_VEC(rf_soften_chroma)(uint16_t *restrict mean, int rows, bool down,
-                                     uint16_t share)
-{
-    uint16_t across[RF_TILE * RF_TILE];
-    const int n = rows * RF_TILE;
-
-    for (int i = 2; i < n - 2; i++)
-        across[i] = moved(mean[i], mean[i - 2], mean[i + 2], share);
-    for (int y = 0; y < n; y += RF_TILE)
-        for (int i = 0; i < 2; i++) {
-            across[y + i] = mean[y + i];
-            across[y + RF_TILE - 1 - i] = mean[y + RF_TILE - 1 - i];
-        }
-    memcpy(mean, across, (size_t)n * sizeof *mean);
-    for (int i = RF_TILE; down && i < n - RF_TILE; i++)
-        mean[i] = moved(across[i], across[i - RF_TILE], across[i + RF_TILE], share);
-}
-
 /* floor((u s + 2^(22 + shift)) / 2^(23 + shift)), by the high half of the product. */
 static inline int16_t rounded(int16_t u, int16_t blur, int shift)
 {
@@ -163,6 +133,5 @@ void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)
     kernels->split2 = RF_VEC(rf_split2);
     kernels->join2 = RF_VEC(rf_join2);
     kernels->between_chroma = RF_VEC(rf_between_chroma);
-    kernels->soften_chroma = RF_VEC(rf_soften_chroma);
     RF_VEC(rf_yuv_codes_use)(kernels);
 }

@@ -16,6 +16,8 @@ struct rf_exact {
 };
 void rf_exact_init(struct rf_exact *exact, uint32_t blend, double sigma);
 
+enum { RF_LIVE_RAYS = 64 }; /* more are for stills that are to be as good as can be */
+
 /* One refocus_render() call. */
 struct rf_frame {
     struct refocus_renderer *r;
@@ -44,6 +46,17 @@ struct rf_frame {
     enum rf_bright bright;  /* light was given back to lamps: it exceeds RF_LIGHT_MAX */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
+
+static inline bool rf_is_sweep(const struct rf_frame *f)
+{
+    return f->params->method == REFOCUS_METHOD_SWEEP;
+}
+
+/* Plain 16-bit sums of light that may exceed white are widened as a tile's brightest asks for. */
+static inline bool rf_needs_brightest(const struct rf_frame *f)
+{
+    return rf_is_sweep(f) && !f->r->yuv.on && !f->weighted && f->bright != RF_WHITE;
+}
 
 /*
  * Sums over the rays of the pixels of a tile. Exact: Q12 light, four times white at the

@@ -14,7 +14,6 @@
 #include "methods/tile_rays.h"
 #include "methods/tile_rows.h"
 #include "renderer/bands.h"
-#include "renderer/passes.h"
 #include "thin/thin.h"
 #include "thin/veil.h"
 
@@ -258,7 +257,7 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
         else
             r->kernels.means(out, run.sum[c], rf_mean_scale(count), lanes);
         if (softness)
-            r->kernels.soften(out, rows.count, rows.step == 1, softness);
+            r->kernels.soften(out, rows.count, 1, rows.step == 1, softness);
         if (rows.step > 1)
             r->kernels.between_rows(mean[c], computed, rows.step);
     }
@@ -286,7 +285,7 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }
         if (softness)
-            f->r->kernels.soften(mean[c], RF_TILE, true, softness);
+            f->r->kernels.soften(mean[c], RF_TILE, 1, true, softness);
     }
 }
 

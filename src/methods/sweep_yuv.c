@@ -221,11 +221,9 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
     else
         kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays),
                        lanes);
-    if (softness && chroma)
-        kernels->soften_chroma(computed, plane->computed.count,
-                               plane->computed.count == plane->rows, softness);
-    else if (softness)
-        kernels->soften(computed, plane->computed.count, plane->computed.step == 1, softness);
+    if (softness)
+        kernels->soften(computed, plane->computed.count, chroma ? 2 : 1,
+                        plane->computed.count == plane->rows, softness);
     if (computed == memory && plane->rows == RF_TILE)
         kernels->between_rows(mean, computed, plane->computed.step);
     else if (computed == memory)

@@ -4,7 +4,6 @@
 
 enum {
     ROW_BLUR = 384, /* 1.5 pixels of blur, Q7.8, for rows a pixel apart */
-    MOST_RAYS = 64, /* more are for those who want the best */
     SOFT_BLUR = 640, /* 2.5 pixels */
 };
 
@@ -14,7 +13,7 @@ int rf_row_gap(const struct rf_frame *f)
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
     int height = 1; /* half the opening's, Q15 */
 
-    if (p->rays == REFOCUS_RAYS_FULL || p->rays > MOST_RAYS || p->cat_eye > 0 ||
+    if (p->rays == REFOCUS_RAYS_FULL || p->rays > RF_LIVE_RAYS || p->cat_eye > 0 ||
         p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)

@@ -314,10 +314,10 @@ static void smooth_rows(const struct refocus_renderer *r, const struct filter *f
 
 void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
                            const int above[RF_PREFILTER_STEPS], bool fades, int step,
-                           uint16_t *scratch,
-                           int ty)
+                           uint16_t *scratch, int ty)
 {
-    const struct filter filter = {out, in, r->front.blur, above, fades, step, 1 << step, scratch};
+    const struct filter filter = {out,  in,        r->front.blur, above, fades,
+                                  step, 1 << step, scratch};
 
     smooth_rows(r, &filter, ty, rf_band_start(ty), rf_band_end(r, ty), r->width);
     rf_extend_rows(r, out, rf_band_start(ty), rf_band_end(r, ty));
@@ -325,10 +325,10 @@ void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint
 
 void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
                              const int above[RF_PREFILTER_STEPS], bool fades, int step,
-                           uint16_t *scratch,
-                             int ty)
+                             uint16_t *scratch, int ty)
 {
-    const struct filter filter = {out, in, r->yuv.blur, above, fades, step, 2 << step, scratch};
+    const struct filter filter = {out,  in,        r->yuv.blur, above, fades,
+                                  step, 2 << step, scratch};
     const int c0 = rf_band_start(ty) >> r->yuv.down;
     const int c1 = rf_chroma_end(r, rf_band_end(r, ty));
 

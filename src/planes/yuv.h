@@ -37,11 +37,11 @@ void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1);
 /* A step of the pre-filter, for a row of tiles, as rf_prefilter_rows(): of luma, and of chroma,
  * whose distances are in its samples. */
 void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                           const int above[RF_PREFILTER_STEPS], bool fades, int step, uint16_t *scratch,
-                           int ty);
+                           const int above[RF_PREFILTER_STEPS], bool fades, int step,
+                           uint16_t *scratch, int ty);
 void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,
-                             const int above[RF_PREFILTER_STEPS], bool fades, int step, uint16_t *scratch,
-                             int ty);
+                             const int above[RF_PREFILTER_STEPS], bool fades, int step,
+                             uint16_t *scratch, int ty);
 
 /* Weights of eq. 5 for luma of a row of tiles, in yuv.weight; those of the background over its
  * blur. */

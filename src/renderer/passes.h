@@ -29,17 +29,6 @@ enum rf_need {
 void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
                    enum rf_need need, bool whole);
 
-static inline bool rf_is_sweep(const struct rf_frame *f)
-{
-    return f->params->method == REFOCUS_METHOD_SWEEP;
-}
-
-/* Plain 16-bit sums of light that may exceed white are widened as a tile's brightest asks for. */
-static inline bool rf_needs_brightest(const struct rf_frame *f)
-{
-    return rf_is_sweep(f) && !f->r->yuv.on && !f->weighted && f->bright != RF_WHITE;
-}
-
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
 void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */

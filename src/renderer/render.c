@@ -131,15 +131,13 @@ static void finish_item(void *context, int item, int worker)
                                        smaller((ty + 1) * RF_TILE, f->region.y1)});
 }
 
-enum { STILL_RAYS = 64 }; /* more are for stills */
-
 /* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. Stills do not move, and
  * lamps keep more of their light where each step is there at once. */
 static void set_prefilter(struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
 
-    f->prefilter_fades = p->rays <= STILL_RAYS;
+    f->prefilter_fades = p->rays <= RF_LIVE_RAYS;
     for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
         const double gap = 1.5 * (1 << i);
         const double above = 256 * gap * sqrt(p->rays / 3.14159265358979);

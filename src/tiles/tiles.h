@@ -7,9 +7,8 @@
 
 /*
  * Bins of signed blur: a quarter pixel wide where none exceeds 31.5 pixels, half up to 63.5,
- * then whole pixels.
- * Their edges lie so that |s| < 1/2 pixel, the blurs that leave a pixel as it is, are
- * whole bins.
+ * then whole pixels. Their edges lie so that |s| < 1/2 pixel, the blurs that leave a pixel as it
+ * is, are whole bins.
  */
 struct rf_bin_scale {
     int shift;      /* a bin is 1 << shift in Q7.8 */

@@ -390,14 +390,15 @@ static unsigned softened(const uint16_t *line, int step, int i, int n, unsigned 
                          : own - (own - average) * share / 131072;
 }
 
-/* Every number of rows; nothing written after them. */
+/* Every number of rows, of planes and of pairs; nothing written after them. */
 static int check_soften(const struct subject *subject)
 {
     uint32_t seed = 16;
 
     for (int round = 0; round < 200; round++) {
         const int rows = 1 + round % RF_TILE;
-        const bool down = round / RF_TILE % 2;
+        const int each = 1 + round / RF_TILE % 2;
+        const bool down = round / RF_TILE / 2 % 2;
         const uint16_t share = (uint16_t)(noise(&seed) % 3 ? noise(&seed) % 65536 : 65535);
         uint16_t mean[LANES + 1], all[LANES], across[LANES];
 
@@ -405,9 +406,9 @@ static int check_soften(const struct subject *subject)
             mean[i] = all[i] = (uint16_t)(noise(&seed) % 8 ? noise(&seed) % 65536 : 65535);
         mean[LANES] = 12345;
         for (int i = 0; i < LANES; i++)
-            across[i] = (uint16_t)softened(all + i / RF_TILE * RF_TILE, 1, i % RF_TILE, RF_TILE,
-                                          share);
-        subject->kernels.soften(mean, rows, down, share);
+            across[i] = (uint16_t)softened(all + i / RF_TILE * RF_TILE + i % each, each,
+                                           i % RF_TILE / each, RF_TILE / each, share);
+        subject->kernels.soften(mean, rows, each, down, share);
         for (int i = 0; i < LANES; i++) {
             const int x = i % RF_TILE, y = i / RF_TILE;
             const unsigned should = y >= rows ? all[i]

@@ -429,57 +429,11 @@ static int check_between(const struct subject *subject)
     return 0;
 }
 
-/* Value i of n that lie `apart`, by the contract of soften. */
-static int softened(const uint16_t *v, int apart, int i, int n, uint32_t share)
-{
-    const int own = v[i * apart];
-    int average, way;
-
-    if (i == 0 || i == n - 1)
-        return own;
-    average = (v[(i - 1) * apart] + v[(i + 1) * apart] + 1) / 2;
-    way = (int)((uint32_t)abs(average - own) * share >> 17);
-    return average > own ? own + way : own - way;
-}
-
-static int check_soften(const struct subject *subject)
-{
-    uint32_t state = 23;
-
-    for (uint32_t seed = 1; seed <= 200; seed++) {
-        const int rows = 1 + (int)(seed % RF_TILE);
-        const bool down = seed / RF_TILE % 2;
-        const uint16_t share = (uint16_t)(seed % 3 ? noise_between(&state, 0, 65535) : 65535);
-        uint16_t mean[LANES + 1], all[LANES], across[LANES];
-
-        for (int i = 0; i < LANES; i++)
-            mean[i] = all[i] =
-                (uint16_t)(noise(&state) % 8 ? noise_between(&state, 0, 65535) : 65535);
-        mean[LANES] = 12345;
-        for (int i = 0; i < LANES; i++)
-            across[i] = (uint16_t)softened(all + i / RF_TILE * RF_TILE + i % 2, 2,
-                                           i % RF_TILE / 2, RF_TILE / 2, share);
-        subject->kernels.soften_chroma(mean, rows, down, share);
-        for (int i = 0; i <= LANES; i++) {
-            const int y = i / RF_TILE;
-            const int should = i == LANES  ? 12345
-                               : y >= rows ? all[i]
-                               : down      ? softened(across + i % RF_TILE, RF_TILE, y, rows, share)
-                                           : across[i];
-
-            if (mean[i] != should)
-                return fail(subject, "soften_chroma", seed, i, mean[i], should);
-        }
-    }
-    printf("ok    %-12s %-6s 200 cases\n", "softening", subject->cpu);
-    return 0;
-}
-
 int check_yuv(const struct subject *subject)
 {
     struct guarded g[6];
     int failures = check_decode(subject) + check_aim_chroma(subject) +
-                   check_sweep1(subject) + check_between(subject) + check_soften(subject);
+                   check_sweep1(subject) + check_between(subject);
     int made = 0;
 
     while (made < 6 && guarded_create(&g[made], 4 * MOST + 64))
