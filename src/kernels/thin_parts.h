@@ -30,8 +30,7 @@ enum {
     INNER = SPAN - 2, /* without the first and the last */
     WAYS = 8,
     BATCH = 32, /* pixels that are looked at together */
-    WIDER =
-        RF_TILE + 8, /* compilers unroll loops of 16, and then do not vectorise them */
+    WIDER = RF_TILE + 8, /* loops of 16 are unrolled, and then not vectorised */
 };
 
 static inline uint16_t max16(uint16_t a, uint16_t b)
@@ -78,11 +77,9 @@ struct rf_thin_row {
     uint16_t level[RF_TILE];
     uint16_t kept[RF_TILE], look[RF_TILE], thin[RF_TILE]; /* masks */
     uint16_t width[RF_TILE];
-    uint16_t near[WAYS]
-                 [RF_TILE]; /* steps to the first far pixel, less one; FAR: none */
-    uint16_t beside[WAYS]
-                   [RF_TILE];    /* the same from the first step on, up to THIN + 1 */
-    uint16_t met[WAYS][RF_TILE]; /* the same to what F is the mean of */
+    /* Steps, less one, to the first far pixel, FAR: none; from the first step on to a far one, up
+     * to THIN + 1; and to what F is the mean of. */
+    uint16_t near[WAYS][RF_TILE], beside[WAYS][RF_TILE], met[WAYS][RF_TILE];
 };
 
 /* Pixels, and what is met in all directions, and how much each counts: by the inverse
