@@ -371,6 +371,22 @@ bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
     return any;
 }
 
+void rf_put_lamps_in_front(struct refocus_renderer *r, double gap)
+{
+    for (int part = first_part(r); part <= last_part(r); part++) {
+        const struct rf_highlights *found = &r->photo[r->used].highlights[part];
+
+        for (uint32_t i = 0; i < found->count; i++) {
+            int x, y, reach;
+
+            if (!place_of(r, &found->lamp[i], &x, &y) || found->lamp[i].is_edge)
+                continue;
+            reach = 1 + reach_of(r->front.blur[y * r->stride + x], gap);
+            rf_put_in_front(r, (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
+        }
+    }
+}
+
 /* What a lamp at `at` gets of a share of what it lost, Q8 of what is `added`. */
 static void gain_of(const struct refocus_renderer *r, const struct rf_highlight *lamp,
                     ptrdiff_t at, int share, int gained[3])

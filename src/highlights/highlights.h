@@ -73,6 +73,10 @@ void rf_sort_highlights(struct refocus_renderer *r);
 bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
                         double gap);
 
+/* Lamps and what was widened of them count as foreground (tiles/ranges.h): what rays see past them
+ * is not to shine like them. */
+void rf_put_lamps_in_front(struct refocus_renderer *r, double gap);
+
 /* Up to that gain lamps go through all passes; what is more is added before the rays
  * alone, because passes sum four pixels in 16 bits. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };

@@ -60,6 +60,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     kernels->pull = rf_pull_c;
     kernels->pull_blur = rf_pull_blur_c;
     rf_aim_use_c(kernels);
+    rf_windows_use_c(kernels);
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
     rf_yuv_use_c(kernels);

@@ -198,6 +198,7 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
 {
     kernels->sweep = RF_VEC(rf_sweep);
     RF_VEC(rf_aim_use)(kernels);
+    RF_VEC(rf_windows_use)(kernels);
     RF_VEC(rf_smooth_use)(kernels);
     RF_VEC(rf_fill_use)(kernels);
     RF_VEC(rf_sweep_weighted_use)(kernels);

@@ -52,6 +52,12 @@ static inline bool rf_is_sweep(const struct rf_frame *f)
     return f->params->method == REFOCUS_METHOD_SWEEP;
 }
 
+/* Whether rays take the background for what is deepest in sight: kernels->sort_rays. */
+static inline bool rf_looks_beneath(const struct rf_frame *f)
+{
+    return f->params->rays != REFOCUS_RAYS_FULL && f->params->rays <= RF_LIVE_RAYS;
+}
+
 /* Plain 16-bit sums of light that may exceed white are widened as a tile's brightest asks for. */
 static inline bool rf_needs_brightest(const struct rf_frame *f)
 {

@@ -122,6 +122,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .behind_weight = (const uint16_t *)r->behind.blur + at,
         .rays = sight->rays,
         .slabs = plan->slabs,
+        .beneath = rf_looks_beneath(f),
         .slab = plan->slab,
         .joined = plan->joined,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,

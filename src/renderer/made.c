@@ -65,7 +65,7 @@ void rf_note_light(struct rf_frame *f)
 
 /* What a region needs of the photo. */
 struct parts {
-    struct rf_rect seen; /* where its rays go: the background layer */
+    struct rf_rect seen; /* where its rays go, in whole cells: the background layer */
     struct rf_rect bins; /* and the tiles that may reach it */
 };
 
@@ -354,7 +354,8 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
     if (!whole) {
-        parts.seen = grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad, 1);
+        parts.seen =
+            grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad + RF_CELL, 1);
         parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
     if (is_there(f, number, &parts, layers)) {

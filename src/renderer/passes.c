@@ -196,6 +196,12 @@ static void note_band(void *context, int band, int worker)
 {
     (void)worker;
     rf_note_behind(context, band);
+    rf_foreground_rows(context, band);
+}
+
+static void bare_band(void *context, int band, int worker)
+{
+    rf_bare_rows(context, rf_scratch(context, worker), band);
 }
 
 static void brightest_band(void *context, int band, int worker)
@@ -227,6 +233,9 @@ void rf_pass_behind(struct rf_frame *f, int levels)
     else
         rf_background_pull(r, 0, levels);
     rf_pool_run(&r->pool, note_band, r, rf_bands(r));
+    if (f->bright != RF_WHITE)
+        rf_put_lamps_in_front(r, ray_gap(f->params));
+    rf_pool_run(&r->pool, bare_band, r, rf_bands(r));
 }
 
 void rf_pass_brightest(struct rf_frame *f)

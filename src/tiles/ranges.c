@@ -33,53 +33,118 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* The lesser and the greater ones of two rows of cells. */
-static void join_rows(int16_t *restrict least, int16_t *restrict most,
-                      const int16_t *const l[2], const int16_t *const m[2], int n)
+static void lesser_row(int16_t *restrict out, const int16_t *restrict a,
+                       const int16_t *restrict b, int n)
 {
-    const int16_t *restrict l0 = l[0], *restrict l1 = l[1];
-    const int16_t *restrict m0 = m[0], *restrict m1 = m[1];
+    for (int x = 0; x < n; x++)
+        out[x] = a[x] < b[x] ? a[x] : b[x];
+}
 
-    for (int x = 0; x < n; x++) {
-        least[x] = l0[x] < l1[x] ? l0[x] : l1[x];
-        most[x] = m0[x] > m1[x] ? m0[x] : m1[x];
-    }
+static void greater_row(int16_t *restrict out, const int16_t *restrict a,
+                        const int16_t *restrict b, int n)
+{
+    for (int x = 0; x < n; x++)
+        out[x] = a[x] > b[x] ? a[x] : b[x];
 }
 
 /* Luma and chroma of a tile are each swept in one go, so ranges are of both its strips:
  * five rows of cells come to three. */
-static void join_strips(const int16_t *least[TALL_Y], const int16_t *most[TALL_Y],
-                        int16_t *scratch, int n)
+static void join_strips(const int16_t *row[TALL_Y], int16_t *scratch, int n,
+                        void (*join)(int16_t *, const int16_t *, const int16_t *, int))
 {
-    for (int j = 0; j < TALL_Y - RF_WINDOW_Y; j++, scratch += 2 * n) {
-        join_rows(scratch, scratch + n, &least[2 * j], &most[2 * j], n);
-        least[2 * j] = scratch;
-        most[2 * j] = scratch + n;
+    for (int j = 0; j < TALL_Y - RF_WINDOW_Y; j++, scratch += n) {
+        join(scratch, row[2 * j], row[2 * j + 1], n);
+        row[2 * j] = scratch;
     }
-    for (int j = 1; j < RF_WINDOW_Y; j++) {
-        least[j] = least[2 * j];
-        most[j] = most[2 * j];
-    }
+    for (int j = 1; j < RF_WINDOW_Y; j++)
+        row[j] = row[2 * j];
+}
+
+/* Rows of windows of a row of tiles; the first and the last with the border. */
+struct window_rows {
+    int cells, border; /* across */
+    int first, end;
+    int last; /* row of cells */
+};
+
+static struct window_rows window_rows(const struct refocus_renderer *r, int ty)
+{
+    const int rows = r->tiles_y * EACH, border = rf_range_border(r->pad);
+
+    return (struct window_rows){
+        .cells = cells_x(r),
+        .border = border,
+        .first = ty == 0 ? -border : ty * EACH,
+        .end = ty == r->tiles_y - 1 ? rows + border : (ty + 1) * EACH,
+        .last = rows - 1,
+    };
+}
+
+/* Behind the scratch of `windows`. */
+static int16_t *joined_rows(uint16_t *scratch, const struct window_rows *rows)
+{
+    return (int16_t *)scratch + 2 * (rows->cells + 2 * rows->border + RF_WINDOW_X);
 }
 
 void rf_range_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
 {
-    const int n = cells_x(r), rows = r->tiles_y * EACH, border = rf_range_border(r->pad);
-    const int first = ty == 0 ? -border : ty * EACH;
-    const int end = ty == r->tiles_y - 1 ? rows + border : (ty + 1) * EACH;
+    const struct window_rows rows = window_rows(r, ty);
+    int16_t *const joined = joined_rows(scratch, &rows);
 
-    int16_t *const joined = (int16_t *)scratch + 2 * (n + 2 * border + RF_WINDOW_X);
-
-    for (int y = first; y < end; y++) {
+    for (int y = rows.first; y < rows.end; y++) {
         const int16_t *least[TALL_Y], *most[TALL_Y];
 
         for (int j = 0; j < TALL_Y; j++) {
-            least[j] = rf_cell_least(r, clamp(y + j, rows - 1));
-            most[j] = rf_cell_most(r, clamp(y + j, rows - 1));
+            least[j] = rf_cell_least(r, clamp(y + j, rows.last));
+            most[j] = rf_cell_most(r, clamp(y + j, rows.last));
         }
+        if (r->yuv.on) {
+            join_strips(least, joined, rows.cells, lesser_row);
+            join_strips(most, joined + 2 * rows.cells, rows.cells, greater_row);
+        }
+        r->kernels.windows(r->range + y * r->range_stride - rows.border, least, most,
+                           (int16_t *)scratch, rows.cells, rows.border);
+    }
+}
+
+/* They lie where the weights will be. */
+static int16_t *foreground_row(const struct refocus_renderer *r, int y)
+{
+    return (int16_t *)r->weight + y * r->weight_stride;
+}
+
+void rf_foreground_rows(struct refocus_renderer *r, int ty)
+{
+    for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
+        const ptrdiff_t at = y * RF_CELL * r->stride;
+
+        r->kernels.foreground(foreground_row(r, y), r->front.blur + at, r->behind.blur + at,
+                              r->stride, cells_x(r));
+    }
+}
+
+void rf_put_in_front(struct refocus_renderer *r, struct rf_rect pixels)
+{
+    const int last_x = cells_x(r) - 1, last_y = r->tiles_y * EACH - 1;
+
+    for (int y = clamp(pixels.y0 / RF_CELL, last_y); y <= clamp(pixels.y1 / RF_CELL, last_y); y++)
+        for (int x = clamp(pixels.x0 / RF_CELL, last_x); x <= clamp(pixels.x1 / RF_CELL, last_x);
+             x++)
+            foreground_row(r, y)[x] = INT16_MAX;
+}
+
+void rf_bare_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
+{
+    const struct window_rows rows = window_rows(r, ty);
+
+    for (int y = rows.first; y < rows.end; y++) {
+        const int16_t *cell[TALL_Y];
+
+        for (int j = 0; j < TALL_Y; j++)
+            cell[j] = foreground_row(r, clamp(y + j, rows.last));
         if (r->yuv.on)
-            join_strips(least, most, joined, n);
-        r->kernels.windows(r->range + y * r->range_stride - border, least, most,
-                           (int16_t *)scratch, n, border);
+            join_strips(cell, joined_rows(scratch, &rows), rows.cells, greater_row);
+        r->kernels.bare(r->range + y * r->range_stride - rows.border, cell,
+                        (int16_t *)scratch, rows.cells, rows.border);
     }
 }

@@ -31,6 +31,7 @@ static inline int noise_between(uint32_t *seed, int least, int most)
 int check_rows(const struct subject *subject);
 int check_sweep(const struct subject *subject);
 int check_aim(const struct subject *subject);
+int check_windows(const struct subject *subject);
 int check_search(const struct subject *subject);
 int check_series(const struct subject *subject);
 int check_light(const struct subject *subject);

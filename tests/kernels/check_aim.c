@@ -5,20 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "guarded.h"
-
 enum {
     MOST_BLUR = 127 * 256,
-    MOST_CELLS = 150,
-    MOST_BORDER = 33,
-    MOST_WINDOWS = MOST_CELLS + 2 * MOST_BORDER,
     SIDE = 9, /* of the ranges that rays may see */
     MOST_SLABS = 70,
-};
-
-/* A few of everything that is passed between guarded pages. */
-struct stage {
-    struct guarded blur, least[3], most[3], range, scratch;
 };
 
 static int blur_noise(uint32_t *seed, int kind)
@@ -28,84 +18,12 @@ static int blur_noise(uint32_t *seed, int kind)
     return kind == 0 ? any : kind == 1 ? (any < 0 ? -MOST_BLUR : MOST_BLUR) : any / 64;
 }
 
-static int16_t *make_row(struct guarded *guarded, int n, enum place place, uint32_t *seed)
-{
-    int16_t *row = guarded_place(guarded, (size_t)n * 2, 2, place, noise(seed) % 17);
-    const int kind = (int)(noise(seed) % 3);
-
-    for (int i = 0; i < n; i++)
-        row[i] = (int16_t)blur_noise(seed, kind);
-    return row;
-}
-
 static bool fail(const struct subject *subject, const char *what, uint32_t seed, int n, int at,
                  long is, long should)
 {
     printf("FAIL  %-12s %-6s seed %u, n = %d: element %d is %ld, should be %ld\n", what,
            subject->cpu, (unsigned)seed, n, at, is, should);
     return false;
-}
-
-static bool check_cells(const struct subject *subject, struct stage *s, int n,
-                        enum place place, uint32_t seed)
-{
-    const uint32_t first = seed;
-    const ptrdiff_t stride = RF_CELL * n + noise_between(&seed, 0, 5);
-    const int16_t *blur =
-        make_row(&s->blur, (int)(3 * stride) + RF_CELL * n, place, &seed);
-    int16_t *least = make_row(&s->least[0], n, place, &seed);
-    int16_t *most = make_row(&s->most[0], n, place, &seed);
-
-    subject->kernels.cells(least, most, blur, stride, n);
-    for (int x = 0; x < n; x++) {
-        int low = INT16_MAX, high = INT16_MIN;
-
-        for (int i = 0; i < RF_CELL * RF_CELL; i++) {
-            const int v = blur[i / RF_CELL * stride + x * RF_CELL + i % RF_CELL];
-
-            low = v < low ? v : low;
-            high = v > high ? v : high;
-        }
-        if (least[x] != low)
-            return fail(subject, "cells", first, n, x, least[x], low);
-        if (most[x] != high)
-            return fail(subject, "cells", first, n, x, most[x], high);
-    }
-    return guarded_intact(&s->least[0]) && guarded_intact(&s->most[0]);
-}
-
-static int inside(int x, int n)
-{
-    return x < 0 ? 0 : x >= n ? n - 1 : x;
-}
-
-static bool check_windows(const struct subject *subject, struct stage *s, int n,
-                          enum place place, uint32_t seed)
-{
-    const uint32_t first = seed;
-    const int border = noise_between(&seed, 0, MOST_BORDER), windows = n + 2 * border;
-    const int16_t *least[RF_WINDOW_Y], *most[RF_WINDOW_Y];
-    uint32_t *range = guarded_place(&s->range, (size_t)windows * 4, 4, place, 3);
-    int16_t *scratch = make_row(&s->scratch, 2 * (windows + RF_WINDOW_X - 1), place, &seed);
-
-    for (int j = 0; j < RF_WINDOW_Y; j++) {
-        least[j] = make_row(&s->least[j], n, place, &seed);
-        most[j] = make_row(&s->most[j], n, place, &seed);
-    }
-    subject->kernels.windows(range, least, most, scratch, n, border);
-    for (int x = 0; x < windows; x++) {
-        int low = INT16_MAX, high = INT16_MIN;
-
-        for (int i = 0; i < RF_WINDOW_X * RF_WINDOW_Y; i++) {
-            const int j = i / RF_WINDOW_X, at = inside(x - border + i % RF_WINDOW_X, n);
-
-            low = least[j][at] < low ? least[j][at] : low;
-            high = most[j][at] > high ? most[j][at] : high;
-        }
-        if (range[x] != ((uint32_t)(low & 0xffff) | (uint32_t)high << 16))
-            return fail(subject, "windows", first, n, x, (long)range[x], low);
-    }
-    return guarded_intact(&s->range) && guarded_intact(&s->scratch);
 }
 
 /* floor(a / b) for b > 0. */
@@ -119,7 +37,7 @@ static bool check_aim_at(const struct subject *subject, int n, uint32_t seed)
     const uint32_t first = seed;
     const int stride = noise_between(&seed, 100, 70000), cells = noise_between(&seed, 9, 9000);
     const int blur = blur_noise(&seed, (int)(first % 3));
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    int16_t u[RF_RAY_CHUNK] = {0}, v[RF_RAY_CHUNK] = {0};
     int32_t offset[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
 
     for (int i = 0; i < n; i++) {
@@ -141,7 +59,7 @@ static bool check_aim_at(const struct subject *subject, int n, uint32_t seed)
 }
 
 struct sight {
-    uint32_t range[SIDE * SIDE];
+    uint32_t range[SIDE * SIDE], below[SIDE * SIDE];
     uint16_t front[1000], behind[1000];
     struct rf_slab slab[MOST_SLABS];
     bool joined[MOST_SLABS];
@@ -163,7 +81,9 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
         const int low = noise_between(&seed, 0, slabs) * 256 - 3000;
         const int high = low + noise_between(&seed, 0, spread);
 
-        s->range[i] = (uint32_t)(low & 0xffff) | (uint32_t)high << 16;
+        s->range[i] = (uint32_t)(low & 0xffff) | (uint32_t)(high & ~1) << 16 |
+                      (noise(&seed) % 2 ? RF_BARE : 0);
+        s->below[i] = s->range[noise_between(&seed, 0, i)];
     }
     for (int k = 0; k <= slabs; k++) {
         for (int i = 0; i < n; i++) {
@@ -185,6 +105,8 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
     }
     s->job = (struct rf_sort_job){
         .range = s->range,
+        .below = seed % 4 == 1 ? s->below : NULL,
+        .beneath = seed % 8 < 5,
         .front = s->front,
         .behind = s->behind,
         .rays = n,
@@ -204,35 +126,65 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
     };
 }
 
+/* The last that the m-th ray sees: slab k, or what lies behind there, of ray n. */
+static void expect_last(struct sight *s, int n, int m, int k, bool behind)
+{
+    const uint16_t *weight = behind ? s->behind_weight : s->weight;
+
+    s->expected.last[m] = (behind ? s->behind : s->front) + s->offset[k][n];
+    s->expected.chroma_last[m] =
+        (behind ? s->chroma_behind : s->chroma_front) + s->chroma_offset[k][n];
+    s->expected.last_weight[m] =
+        weight + (behind ? s->offset[k][n] : s->chroma_offset[k][n]);
+    s->expected.last_behind[m] = behind;
+    s->expected.chroma_last_weight[m] = weight + s->chroma_weight_offset[k][n];
+}
+
+/* What lies where ray n sees slab k. */
+struct seen {
+    int low, high;
+    bool bare;
+};
+
+static struct seen seen_by(const struct sight *s, int k, int n)
+{
+    const uint32_t *const in[2] = {s->range, s->job.below};
+    struct seen seen = {INT16_MAX, INT16_MIN, true};
+
+    for (int i = 0; i < 2 && in[i]; i++) {
+        const uint32_t range = in[i][s->cell[k][n]];
+        const int low = rf_range_least(range), high = rf_range_most(range);
+
+        seen.low = low < seen.low ? low : seen.low;
+        seen.high = high > seen.high ? high : seen.high;
+        seen.bare = seen.bare && range & RF_BARE;
+    }
+    return seen;
+}
+
 /* Ray n of the job becomes the m-th if it has as many tests as `wanted`, or more where
  * that is the last class. Returns whether. */
 static bool expect_ray(struct sight *s, int n, int m, int wanted)
 {
     int tests = 0, before = -1, start = 0; /* the last slab that is tested */
 
-    s->expected.last[m] = s->behind + s->offset[s->job.slabs][n];
-    s->expected.chroma_last[m] = s->chroma_behind + s->chroma_offset[s->job.slabs][n];
-    s->expected.last_weight[m] = s->behind_weight + s->offset[s->job.slabs][n];
-    s->expected.last_behind[m] = true;
-    s->expected.chroma_last_weight[m] =
-        s->behind_weight + s->chroma_weight_offset[s->job.slabs][n];
+    expect_last(s, n, m, s->job.slabs, true);
     for (int k = 0; k < s->job.slabs; k++) {
-        const uint32_t range = s->range[s->cell[k][n]];
-        const int low = (int16_t)(range & 0xffff), high = (int16_t)(range >> 16);
+        const struct seen seen = seen_by(s, k, n);
         const int from = s->slab[k].low, to = from + s->slab[k].width;
         bool beside;
 
-        if (high < from || low > to)
+        if (seen.high < from || seen.low > to)
             continue;
         beside = before == k - 1 && k % RF_JOIN_BLOCK && k > 0 &&
                  s->offset[k][n] == s->offset[k - 1][n];
-        if (low >= from && high <= to) {
-            s->expected.last[m] = s->front + s->offset[k][n];
-            s->expected.chroma_last[m] = s->chroma_front + s->chroma_offset[k][n];
-            s->expected.last_weight[m] = s->weight + s->chroma_offset[k][n];
-            s->expected.last_behind[m] = false;
-            s->expected.chroma_last_weight[m] = s->weight + s->chroma_weight_offset[k][n];
+        if (seen.low >= from && seen.high <= to) {
+            expect_last(s, n, m, k, false);
             tests -= beside;
+            break;
+        }
+        if (s->job.beneath && seen.bare && seen.high <= to) {
+            expect_last(s, n, m, k, true);
             break;
         }
         if (!beside || !s->joined[k]) {
@@ -338,7 +290,7 @@ static bool check_sort(const struct subject *subject, struct sight *s, int n, ui
 static bool check_tolerances(const struct subject *subject, int n, uint32_t seed)
 {
     const uint32_t first = seed;
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    int16_t u[RF_RAY_CHUNK] = {0}, v[RF_RAY_CHUNK] = {0};
     int32_t within[RF_RAY_CHUNK];
 
     for (int i = 0; i < n; i++) { /* long rays, and short ones */
@@ -371,14 +323,15 @@ static bool check_settle(const struct subject *subject, int n, uint32_t seed)
     const int spread = noise_between(&seed, 0, 300), base = noise_between(&seed, -120, 120);
     const int tests = noise_between(&seed, 1, 3);
     struct rf_search_rays rays = {.rays = n};
-    int32_t start[RF_RAY_CHUNK], offset[RF_RAY_CHUNK];
+    int32_t start[RF_RAY_CHUNK] = {0}, offset[RF_RAY_CHUNK];
     uint8_t settled[RF_RAY_CHUNK];
 
     for (int i = 0; i < CELLS * CELLS; i++) {
         const int low = base * 256 + noise_between(&seed, -spread, spread);
         const int high = low + noise_between(&seed, 0, spread / 2);
 
-        range[i] = (uint32_t)(low & 0xffff) | (uint32_t)high << 16;
+        range[i] = (uint32_t)(low & 0xffff) | (uint32_t)(high & ~1) << 16 |
+                   (noise(&seed) % 2 ? RF_BARE : 0);
     }
     for (int i = 0; i < n; i++) {
         rays.u[i] = (int16_t)noise_between(&seed, -32767, 32767);
@@ -389,15 +342,15 @@ static bool check_settle(const struct subject *subject, int n, uint32_t seed)
     }
     subject->kernels.settle(settled, offset, middle, start, &rays, tests, 1000, CELLS);
     for (int i = 0; i < n; i++) {
-        const int low = (int16_t)(middle[start[i]] & 0xffff), high = (int16_t)(middle[start[i]] >> 16);
+        const int low = rf_range_least(middle[start[i]]), high = rf_range_most(middle[start[i]]);
         const int x = floor_of((int64_t)rays.u[i] * low + (1 << 22), 1 << 23);
         const int y = floor_of((int64_t)rays.v[i] * low + (1 << 22), 1 << 23);
         const bool same = x == floor_of((int64_t)rays.u[i] * high + (1 << 22), 1 << 23) &&
                           y == floor_of((int64_t)rays.v[i] * high + (1 << 22), 1 << 23);
         const uint32_t there = middle[floor_of(y, RF_CELL) * CELLS + floor_of(x, RF_CELL)];
-        const int most = (int16_t)(there >> 16), own = (int16_t)(*middle & 0xffff);
+        const int most = rf_range_most(there), own = rf_range_least(*middle);
         const bool confirmed = most - low <= rays.within[i] &&
-                               high - (int16_t)(there & 0xffff) <= rays.within[i];
+                               high - rf_range_least(there) <= rays.within[i];
         const bool good = same && (confirmed || (tests == 1 && most <= own));
 
         if (settled[i] != good)
@@ -411,36 +364,14 @@ static bool check_settle(const struct subject *subject, int n, uint32_t seed)
 int check_aim(const struct subject *subject)
 {
     static struct sight sight;
-    struct stage s;
     uint32_t seed = 1;
-    bool good = guarded_create(&s.blur, 4 * RF_CELL * (MOST_CELLS + 2) * 2) &&
-                guarded_create(&s.range, MOST_WINDOWS * 4) &&
-                guarded_create(&s.scratch, 2 * (MOST_WINDOWS + RF_WINDOW_X) * 2);
+    bool good = true;
 
-    for (int j = 0; j < RF_WINDOW_Y; j++)
-        good = good && guarded_create(&s.least[j], MOST_CELLS * 2) &&
-               guarded_create(&s.most[j], MOST_CELLS * 2);
-    if (!good) {
-        printf("FAIL  no memory between pages\n");
-        return 1;
-    }
     for (; good && seed <= 600; seed++) {
-        const enum place place = (enum place)(seed % PLACES);
-        const int n = 1 + (int)seed % MOST_CELLS;
+        const int n = (int)seed % (RF_RAY_CHUNK + 1);
 
-        good = check_cells(subject, &s, n, place, seed) &&
-               check_windows(subject, &s, n, place, seed) &&
-               check_tolerances(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
-               check_settle(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
-               check_aim_at(subject, (int)seed % (RF_RAY_CHUNK + 1), seed) &&
-               check_sort(subject, &sight, (int)seed % (RF_RAY_CHUNK + 1), seed);
-    }
-    guarded_destroy(&s.blur);
-    guarded_destroy(&s.range);
-    guarded_destroy(&s.scratch);
-    for (int j = 0; j < RF_WINDOW_Y; j++) {
-        guarded_destroy(&s.least[j]);
-        guarded_destroy(&s.most[j]);
+        good = check_tolerances(subject, n, seed) && check_settle(subject, n, seed) &&
+               check_aim_at(subject, n, seed) && check_sort(subject, &sight, n, seed);
     }
     if (good)
         printf("ok    %-12s %-6s %d cases\n", "aim", subject->cpu, (int)seed - 1);

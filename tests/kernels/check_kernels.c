@@ -80,7 +80,8 @@ int main(int argc, char **argv)
             bench_rows(&subject);
             bench_thin(&subject);
         } else if (!bench) {
-            failures += check_vec(cpu) + check_aim(&subject) + check_sweep(&subject) +
+            failures += check_vec(cpu) + check_aim(&subject) +
+                        check_windows(&subject) + check_sweep(&subject) +
                         check_light(&subject) + check_search(&subject) +
                         check_series(&subject) + check_rows(&subject) +
                         check_surface(&subject) + check_thin(&subject) +

@@ -53,6 +53,29 @@ static inline int twin_meets(const struct twin *t, int x, int y, struct refocus_
                    y + (int)floor(ray.v / 32768.0 * s + 0.5));
 }
 
+/* Blurs in cells of 4 x 4 pixels, of whole tiles; `foreground` is the greatest of pixels whose
+ * background has another. */
+enum { TWIN_CELL = 4 };
+struct twin_cell {
+    double least, most, foreground;
+};
+struct twin_cells {
+    int across, down;
+    struct twin_cell *cell;
+};
+void twin_cells(const struct twin *twin, struct twin_cells *cells); /* cells->cell is to be freed */
+
+/* Half a tile, or all of it, whose rays go the same way. */
+struct twin_strip {
+    int x, y, height;
+};
+
+/* Whether the background is taken for slab [low, high] where rays that are moved by (dx, dy) meet
+ * it: in the cells around there nothing is deeper, the background shows it just so, and some is
+ * nearer. */
+bool twin_is_deepest(const struct twin_cells *cells, struct twin_strip strip, int dx, int dy,
+                     double low, double high);
+
 /* Weighted sums over the rays of a pixel, eq. 5. */
 struct twin_sum {
     double light[3], weight;

@@ -186,10 +186,29 @@ static int set_for(const struct sets *sets, double reach)
     return sets->sets - 1;
 }
 
-static void trace(const struct twin *t, const struct plan *plan, int x, int y,
+/* Slab for which a strip's ray takes the background, or their number. */
+static int deepest_of(const struct twin *t, const struct twin_cells *cells,
+                      const struct plan *plan, struct twin_strip strip, struct refocus_ray ray)
+{
+    int i = 0;
+
+    while (i < plan->slabs) {
+        const struct slab *slab = &plan->slab[i];
+        const int dx = (int)floor(ray.u / 32768.0 * slab->centre + 0.5);
+        const int dy = (int)floor(ray.v / 32768.0 * slab->centre + 0.5);
+
+        if (t->params->rays != REFOCUS_RAYS_FULL && t->params->rays <= 64 &&
+            twin_is_deepest(cells, strip, dx, dy, slab->low, slab->high))
+            break;
+        i++;
+    }
+    return i;
+}
+
+static void trace(const struct twin *t, const struct plan *plan, int deepest, int x, int y,
                   struct refocus_ray ray, double behind, struct twin_sum *sum)
 {
-    for (int i = 0; i < plan->slabs; i++) {
+    for (int i = 0; i < deepest; i++) {
         const int q = twin_meets(t, x, y, ray, plan->slab[i].centre);
 
         if (t->blur[q] >= plan->slab[i].low && t->blur[q] <= plan->slab[i].high) {
@@ -197,6 +216,8 @@ static void trace(const struct twin *t, const struct plan *plan, int x, int y,
             return;
         }
     }
+    if (deepest < plan->slabs)
+        behind = plan->slab[deepest].centre;
     twin_add(t, sum, t->behind, twin_meets(t, x, y, ray, behind), ray.weight);
 }
 
@@ -325,19 +346,39 @@ static void sharp_tile(const struct twin *t, int tx, int ty, uint8_t *rgb)
         }
 }
 
-static void sweep_tile(const struct twin *t, const struct plan *plan, const struct sets *sets,
-                       int tx, int ty, uint8_t *rgb)
+/* Rows first to end - 1 of those that are computed. */
+static void sweep_strip(const struct twin *t, const struct twin_cells *cells,
+                        const struct plan *plan, const struct rows *rows, int first, int end,
+                        struct twin_strip strip, const struct refocus_ray *ray, int rays,
+                        double behind, struct twin_sum sums[TWIN_TILE * TWIN_TILE])
+{
+    const int y0 = strip.y / TWIN_TILE * TWIN_TILE;
+
+    for (int n = 0; n < rays; n++) {
+        const int deepest = deepest_of(t, cells, plan, strip, ray[n]);
+
+        for (int i = first * TWIN_TILE; i < end * TWIN_TILE; i++)
+            trace(t, plan, deepest, strip.x + i % TWIN_TILE, y0 + rows->at[i / TWIN_TILE],
+                  ray[n], behind, &sums[i]);
+    }
+}
+
+static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
+                       const struct plan *plan, const struct sets *sets, int tx, int ty,
+                       uint8_t *rgb)
 {
     const int x0 = tx * TWIN_TILE, y0 = ty * TWIN_TILE, set = set_for(sets, plan->reach);
     const double behind = t->behind_blur[twin_at(t, x0 + TWIN_TILE / 2, y0 + TWIN_TILE / 2)];
     const double least = least_blur(plan, behind);
     const struct rows rows = rows_of(t, sets, least);
+    const int strips = rows.count < TWIN_TILE / 2 ? 1 : 2;
     struct twin_sum sums[TWIN_TILE * TWIN_TILE] = {{{0}, 0}};
 
-    for (int i = 0; i < rows.count * TWIN_TILE; i++)
-        for (int n = 0; n < sets->count[set]; n++)
-            trace(t, plan, x0 + i % TWIN_TILE, y0 + rows.at[i / TWIN_TILE], sets->ray[set][n],
-                  behind, &sums[i]);
+    for (int i = 0; i < strips; i++)
+        sweep_strip(t, cells, plan, &rows, i * rows.count / strips,
+                    (i + 1) * rows.count / strips,
+                    (struct twin_strip){x0, y0 + i * TWIN_TILE / 2, TWIN_TILE / strips},
+                    sets->ray[set], sets->count[set], behind, sums);
     soften(sums, rows.count, softness(t, plan, least));
     for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
         for (int x = 0; x < TWIN_TILE && x0 + x < t->width; x++) {
@@ -359,10 +400,12 @@ void twin_sweep(struct twin *t, uint8_t *rgb)
     const double width = bin_width(t);
     struct bins *tiles = calloc((size_t)(across * down), sizeof *tiles);
     struct sets sets = make_sets(t);
+    struct twin_cells cells;
 
     assert_non_null(tiles);
     twin_prefilter(t);
     twin_background(t);
+    twin_cells(t, &cells);
     for (int i = 0; i < across * down; i++)
         tiles[i] = bins_of_tile(t, width, i % across, i / across);
     for (int i = 0; i < across * down; i++) {
@@ -373,9 +416,10 @@ void twin_sweep(struct twin *t, uint8_t *rgb)
         if (plan.sharp)
             sharp_tile(t, i % across, i / across, rgb);
         else
-            sweep_tile(t, &plan, &sets, i % across, i / across, rgb);
+            sweep_tile(t, &cells, &plan, &sets, i % across, i / across, rgb);
     }
     for (int i = 0; i < sets.sets; i++)
         free(sets.ray[i]);
     free(tiles);
+    free(cells.cell);
 }
