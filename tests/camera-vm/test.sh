@@ -30,7 +30,7 @@ part() {
 part single 8
 CAMERA_VM_VIVID="n_devs=1 multiplanar=2 node_types=0x1" CAMERA_VM_VIMC=none part multi 1
 CAMERA_VM_LOOPBACK="devices=2 video_nr=0,1 max_buffers=4" CAMERA_VM_VIVID=none CAMERA_VM_VIMC=none \
-    part loopback 2
+    part loopback 3
 if [ "${2-}" = --long ]; then
     CAMERA_VM_VIMC=none CAMERA_VM_TIMEOUT=3000 part cycles 1
 fi

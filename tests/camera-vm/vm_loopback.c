@@ -1,7 +1,11 @@
 /* usage: vm-loopback test NODE JPEG
  *        vm-loopback feed FPS NODE FORMAT WIDTHxHEIGHT FILE [NODE FORMAT WIDTHxHEIGHT
- * FILE] What vivid has not, through v4l2loopback at /dev/videoNODE: MJPEG and Z16, as
- * they were fed in. "feed" writes files again and again, until it is ended. */
+ * FILE]
+ *        vm-loopback same Y4M YUYV WIDTH HEIGHT
+ * What vivid has not, through v4l2loopback at /dev/videoNODE: MJPEG and Z16, as they
+ * were fed in. "feed" writes files again and again, until it is ended. "same" compares
+ * the first picture of 4:2:0 in one file with the one of YUYV in another. */
+#define _GNU_SOURCE /* memmem */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -246,6 +250,37 @@ static int feed_for_ever(int fps, char **argv, int nodes)
     }
 }
 
+/* A row of chroma is that of two rows. */
+static int compare(const char *y4m, const char *yuyv, int width, int height)
+{
+    const size_t size = (size_t)width * (size_t)height;
+    uint8_t *expected = malloc(2 * size);
+    const uint8_t *luma;
+
+    if (!expected || read_file(y4m) < size * 3 / 2)
+        return 2;
+    luma = memmem(bytes, 200, "FRAME\n", 6);
+    if (!luma)
+        return 2;
+    luma += 6;
+    for (size_t i = 0; i < size / 2; i++) { /* two pixels */
+        const size_t across = (size_t)width / 2;
+        const uint8_t *u = luma + size + i / across / 2 * across + i % across;
+        const uint8_t pixels[4] = {luma[2 * i], u[0], luma[2 * i + 1], u[size / 4]};
+
+        memcpy(expected + 4 * i, pixels, sizeof pixels);
+    }
+    if (read_file(yuyv) < 2 * size)
+        return 2;
+    for (size_t i = 0; i < 2 * size; i++)
+        if (bytes[i] != expected[i]) {
+            printf("byte %zu is %d, should be %d\n", i, bytes[i], expected[i]);
+            return 1;
+        }
+    free(expected);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -257,6 +292,8 @@ int main(int argc, char **argv)
         return atoi(argv[2]) > 0
                    ? feed_for_ever(atoi(argv[2]), argv + 3, (argc - 3) / 4)
                    : 2;
+    if (argc == 6 && strcmp(argv[1], "same") == 0)
+        return compare(argv[2], argv[3], atoi(argv[4]), atoi(argv[5]));
     if (argc != 4 || strcmp(argv[1], "test") != 0)
         return 2;
     node = argv[2];
