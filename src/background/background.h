@@ -48,7 +48,7 @@ bool rf_all_known(const int16_t *blur, int n);
 /*
  * The same for a photo of Y, U and V. Chroma of 4:2:0 is as large as level 1 of the
  * pyramid and is filled from there on; a sample is known if any of its pixels is. That
- * of 4:2:2 is made as small for it: the background has half its rows.
+ * of 4:2:2 is made as small for it: what is filled in has half its rows.
  */
 void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch,
                                  int reach, int y0, int y1);

@@ -84,6 +84,10 @@ static void pull_band(void *context, int band, int worker)
 
         r->kernels.join2(yuv->behind + y * r->stride, level->light[1] + at,
                          level->light[2] + at, level->width);
+        if (!yuv->down) /* what is known has rows of its own */
+            r->kernels.keep2(yuv->behind + y * r->stride, yuv->smooth + y * r->stride,
+                             r->front.blur + y * r->stride, r->behind.blur + y * r->stride,
+                             level->width);
     }
     rf_extend_chroma(r, yuv->behind, c0, c1);
 }

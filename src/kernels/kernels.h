@@ -431,10 +431,13 @@ typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper
                          int n);
 
 /* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
- * join2: pairs of them again. */
+ * join2: pairs of them again.
+ * keep2: n pairs become `own` where either of the two pixels has the same blur in front and behind. */
 typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
                           const uint16_t *lower, int n);
 typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *second, int n);
+typedef void rf_keep2_fn(uint16_t *out, const uint16_t *own, const int16_t *blur,
+                         const int16_t *behind, int n);
 
 /*
  * encode: codes of n samples of chroma and of the 2 or 4 pixels that share each to chroma, D_b
@@ -492,6 +495,7 @@ struct rf_kernels {
     rf_push1_fn *push1;
     rf_split2_fn *split2;
     rf_join2_fn *join2;
+    rf_keep2_fn *keep2;
     rf_search_fn *search;
     rf_cells_fn *cells;
     rf_windows_fn *windows;

@@ -79,6 +79,18 @@ static void RF_VEC(rf_join2)(uint16_t *restrict out, const uint16_t *restrict fi
     }
 }
 
+static void RF_VEC(rf_keep2)(uint16_t *restrict out, const uint16_t *restrict own,
+                             const int16_t *restrict blur, const int16_t *restrict behind, int n)
+{
+    for (int x = 0; x < n; x++) {
+        const uint16_t known = (uint16_t)-((blur[2 * x] == behind[2 * x]) |
+                                           (blur[2 * x + 1] == behind[2 * x + 1]));
+
+        out[2 * x] = (uint16_t)((own[2 * x] & known) | (out[2 * x] & ~known));
+        out[2 * x + 1] = (uint16_t)((own[2 * x + 1] & known) | (out[2 * x + 1] & ~known));
+    }
+}
+
 /* The cubic through rows 0 2 5 7 at the others, shares in Q14; see light.c. */
 static void RF_VEC(rf_between_chroma)(uint16_t *restrict mean, const uint16_t *restrict computed)
 {
@@ -132,6 +144,7 @@ void RF_VEC(rf_yuv_use)(struct rf_kernels *kernels)
     kernels->push1 = RF_VEC(rf_push1);
     kernels->split2 = RF_VEC(rf_split2);
     kernels->join2 = RF_VEC(rf_join2);
+    kernels->keep2 = RF_VEC(rf_keep2);
     kernels->between_chroma = RF_VEC(rf_between_chroma);
     RF_VEC(rf_yuv_codes_use)(kernels);
 }

@@ -107,7 +107,7 @@ static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
         .behind = tile->luma.behind,
         .rays = sight->rays,
         .slabs = tile->plan.slabs,
-        .beneath = rf_looks_beneath(tile->f) && r->yuv.down, /* 4:2:2's background is coarser */
+        .beneath = rf_looks_beneath(tile->f),
         .slab = tile->plan.slab,
         .joined = tile->plan.joined,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
