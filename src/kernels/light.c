@@ -1,4 +1,5 @@
 /* light.c: loops over light and weights, plain C for the vectoriser. */
+#include "kernels/cubic.h"
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
@@ -112,21 +113,9 @@ static void RF_VEC(rf_between_rows)(uint16_t *restrict mean, const uint16_t *res
 {
     for (int y = 0; y < RF_TILE; y++) {
         const struct between *row = &between[(step - 1) / 2][y];
-        const uint16_t *restrict a = computed + row->first * RF_TILE;
-        const uint16_t *restrict before = computed + row->before * RF_TILE;
-        const uint16_t *restrict after = before + RF_TILE;
-        const int32_t s0 = row->share[0], s1 = row->share[1], s2 = row->share[2],
-                      s3 = row->share[3];
 
-        for (int x = 0; x < RF_TILE; x++) {
-            const int32_t v = (s0 * a[x] + s1 * a[x + RF_TILE] + s2 * a[x + 2 * RF_TILE] +
-                               s3 * a[x + 3 * RF_TILE] + 8192) >> 14;
-
-            const int32_t low = before[x] < after[x] ? before[x] : after[x];
-            const int32_t high = before[x] < after[x] ? after[x] : before[x];
-
-            mean[y * RF_TILE + x] = (uint16_t)(v < low ? low : v > high ? high : v);
-        }
+        rf_cubic_row(mean + y * RF_TILE, computed + row->first * RF_TILE,
+                     computed + row->before * RF_TILE, row->share);
     }
 }
 

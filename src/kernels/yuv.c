@@ -1,4 +1,5 @@
 /* yuv.c: loops over rows of luma and of chroma, written as those of rows.c. */
+#include "kernels/cubic.h"
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
@@ -100,21 +101,9 @@ static void RF_VEC(rf_between_chroma)(uint16_t *restrict mean, const uint16_t *r
         {16384, 0, 0, 0},           {5617, 13108, -3277, 936}, {0, 16384, 0, 0},
         {-1872, 13107, 6553, -1404}, {-1404, 6553, 13107, -1872}, {0, 0, 16384, 0},
         {936, -3277, 13108, 5617},  {0, 0, 0, 16384}};
-    const uint16_t *restrict a = computed;
 
-    for (int y = 0; y < ROWS; y++) {
-        const uint16_t *restrict low = computed + before[y] * RF_TILE;
-        const int32_t s0 = share[y][0], s1 = share[y][1], s2 = share[y][2], s3 = share[y][3];
-
-        for (int x = 0; x < RF_TILE; x++) {
-            const int32_t v = (s0 * a[x] + s1 * a[x + RF_TILE] + s2 * a[x + 2 * RF_TILE] +
-                               s3 * a[x + 3 * RF_TILE] + 8192) >> 14;
-            const int32_t b = low[x], c = low[x + RF_TILE];
-            const int32_t least = b < c ? b : c, most = b < c ? c : b;
-
-            mean[y * RF_TILE + x] = (uint16_t)(v < least ? least : v > most ? most : v);
-        }
-    }
+    for (int y = 0; y < ROWS; y++)
+        rf_cubic_row(mean + y * RF_TILE, computed, computed + before[y] * RF_TILE, share[y]);
 }
 
 /* floor((u s + 2^(22 + shift)) / 2^(23 + shift)), by the high half of the product. */

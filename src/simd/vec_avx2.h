@@ -194,10 +194,10 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
 }
 
 /* Both halves of registers unpack and pack alike: lanes stay where they were. */
-static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                   const int16_t share[4])
+static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                 const int16_t share[4], const int shift)
 {
-    const __m256i sign = _mm256_set1_epi16(-32768), half = _mm256_set1_epi32(1 << 14);
+    const __m256i sign = _mm256_set1_epi16(-32768), half = _mm256_set1_epi32(1 << (shift - 1));
     const __m256i ab = _mm256_set1_epi32(vec_pair(share[0], share[1]));
     const __m256i cd = _mm256_set1_epi32(vec_pair(share[2], share[3]));
     __m256i low, high;
@@ -210,9 +210,21 @@ static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
                            _mm256_madd_epi16(_mm256_unpacklo_epi16(c, d), cd));
     high = _mm256_add_epi32(_mm256_madd_epi16(_mm256_unpackhi_epi16(a, b), ab),
                             _mm256_madd_epi16(_mm256_unpackhi_epi16(c, d), cd));
-    low = _mm256_srai_epi32(_mm256_add_epi32(low, half), 15);
-    high = _mm256_srai_epi32(_mm256_add_epi32(high, half), 15);
+    low = _mm256_srai_epi32(_mm256_add_epi32(low, half), shift);
+    high = _mm256_srai_epi32(_mm256_add_epi32(high, half), shift);
     return _mm256_xor_si256(_mm256_packs_epi32(low, high), sign);
+}
+
+static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                   const int16_t share[4])
+{
+    return vec_weigh4(a, b, c, d, share, 15);
+}
+
+static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                     const int16_t share[4])
+{
+    return vec_weigh4(a, b, c, d, share, 14);
 }
 
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)

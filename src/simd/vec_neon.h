@@ -230,6 +230,25 @@ static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
     return vcombine_u16(vrshrn_n_u32(low, 15), vrshrn_n_u32(high, 15));
 }
 
+static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                     const int16_t share[4])
+{
+    const uint16x8_t sign = vdupq_n_u16(0x8000);
+    const int16x8_t p[4] = {vreinterpretq_s16_u16(veorq_u16(a, sign)),
+                            vreinterpretq_s16_u16(veorq_u16(b, sign)),
+                            vreinterpretq_s16_u16(veorq_u16(c, sign)),
+                            vreinterpretq_s16_u16(veorq_u16(d, sign))};
+    int32x4_t low = vmull_n_s16(vget_low_s16(p[0]), share[0]);
+    int32x4_t high = vmull_n_s16(vget_high_s16(p[0]), share[0]);
+
+    for (int k = 1; k < 4; k++) {
+        low = vmlal_n_s16(low, vget_low_s16(p[k]), share[k]);
+        high = vmlal_n_s16(high, vget_high_s16(p[k]), share[k]);
+    }
+    return veorq_u16(vreinterpretq_u16_s16(vcombine_s16(vqrshrn_n_s32(low, 14),
+                                                        vqrshrn_n_s32(high, 14))), sign);
+}
+
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
 {
     static const uint8_t bits[16] = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};

@@ -186,10 +186,10 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
     return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
 }
 
-static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                   const int16_t share[4])
+static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                 const int16_t share[4], const int shift)
 {
-    const __m128i sign = _mm_set1_epi16(-32768), half = _mm_set1_epi32(1 << 14);
+    const __m128i sign = _mm_set1_epi16(-32768), half = _mm_set1_epi32(1 << (shift - 1));
     const __m128i ab = _mm_set1_epi32(vec_pair(share[0], share[1]));
     const __m128i cd = _mm_set1_epi32(vec_pair(share[2], share[3]));
     __m128i low, high;
@@ -202,9 +202,21 @@ static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
                         _mm_madd_epi16(_mm_unpacklo_epi16(c, d), cd));
     high = _mm_add_epi32(_mm_madd_epi16(_mm_unpackhi_epi16(a, b), ab),
                          _mm_madd_epi16(_mm_unpackhi_epi16(c, d), cd));
-    low = _mm_srai_epi32(_mm_add_epi32(low, half), 15);
-    high = _mm_srai_epi32(_mm_add_epi32(high, half), 15);
+    low = _mm_srai_epi32(_mm_add_epi32(low, half), shift);
+    high = _mm_srai_epi32(_mm_add_epi32(high, half), shift);
     return _mm_xor_si128(_mm_packs_epi32(low, high), sign);
+}
+
+static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                   const int16_t share[4])
+{
+    return vec_weigh4(a, b, c, d, share, 15);
+}
+
+static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                     const int16_t share[4])
+{
+    return vec_weigh4(a, b, c, d, share, 14);
 }
 
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)

@@ -359,11 +359,14 @@ static int check_between(const struct subject *subject)
 
     for (int round = 0; round < 300; round++) {
         const int i = round % 3;
-        uint16_t computed[LANES], mean[LANES];
+        uint16_t computed[LANES], mean[LANES], plain[LANES];
 
         for (int k = 0; k < rows[i] * RF_TILE; k++)
             computed[k] = (uint16_t)(k % RF_TILE == 0 ? round * 217 : (int)noise(&seed) % 65536);
         subject->kernels.between_rows(mean, computed, steps[i]);
+        subject->plain.between_rows(plain, computed, steps[i]);
+        if (memcmp(mean, plain, sizeof mean))
+            return wrong(subject, "between_rows", "not as in C", round, steps[i]);
         for (int k = 0; k < LANES; k++) {
             const double should =
                 cubic(computed, at[i], rows[i], k % RF_TILE, k / RF_TILE);

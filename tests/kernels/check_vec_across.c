@@ -251,8 +251,45 @@ static int check_mix(void)
     return 0;
 }
 
+/* Shares of any sign, whose magnitudes add up to less than 2^15. */
+static int check_cubic(void)
+{
+    uint32_t seed = 31;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t in[4][VEC_U16], out[VEC_U16];
+        int16_t share[4];
+        int rest = 32767;
+
+        for (int k = 0; k < 4; k++) {
+            const int size = noise_between(&seed, 0, rest);
+
+            share[k] = (int16_t)(noise(&seed) % 2 ? size : -size);
+            rest -= size;
+            for (int i = 0; i < (int)VEC_U16; i++)
+                in[k][i] = pick(round, i, k % 2, &seed);
+        }
+        vec_u16_store(out,
+                      vec_u16_cubic4(vec_u16_load(in[0]), vec_u16_load(in[1]),
+                                     vec_u16_load(in[2]), vec_u16_load(in[3]), share));
+        for (int i = 0; i < (int)VEC_U16; i++) {
+            int64_t sum = 1 << 13;
+
+            for (int k = 0; k < 4; k++)
+                sum += (int64_t)(in[k][i] - 32768) * share[k];
+            sum = 32768 + (sum >> 14);
+            sum = sum < 0 ? 0 : sum > 65535 ? 65535 : sum;
+            if (out[i] != sum) {
+                printf("FAIL  vec_u16_cubic4, %s: round %d\n", TEXT(RF_VEC_SET), round);
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 int RF_VEC(check_vec_across)(void)
 {
     return check_from_bytes() + check_order() + check_bytes() + check_together() +
-           check_sixteen() + check_mix();
+           check_sixteen() + check_mix() + check_cubic();
 }

@@ -412,12 +412,15 @@ static int check_between(const struct subject *subject)
     uint32_t state = 19;
 
     for (uint32_t seed = 1; seed <= 200; seed++) {
-        uint16_t computed[4 * RF_TILE], mean[8 * RF_TILE];
+        uint16_t computed[4 * RF_TILE], mean[8 * RF_TILE], plain[8 * RF_TILE];
 
         for (int k = 0; k < 4 * RF_TILE; k++)
             computed[k] = (uint16_t)(k % RF_TILE == 0 ? (int)seed * 327
                                                       : noise_between(&state, 0, 65535));
         subject->kernels.between_chroma(mean, computed);
+        subject->plain.between_chroma(plain, computed);
+        if (memcmp(mean, plain, sizeof mean))
+            return fail(subject, "between_chroma in C", seed, 0, mean[0], plain[0]);
         for (int k = 0; k < 8 * RF_TILE; k++) {
             const double should = cubic(computed, k % RF_TILE, k / RF_TILE);
 
