@@ -56,7 +56,7 @@ static void weigh_tiles(const struct rf_weigh1_job *job, int first, int tiles)
     rf_look_up_weights(job->near_weight + first, job->far_weight + first, &run,
                        job->light_weight, tiles);
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
-        uint16_t *most = &job->brightest[x / RF_TILE];
+        uint16_t *most = &job->brightest[x / RF_TILE], here;
         vec_u16 brightest =
             multiply(job->near + x, job->near_weight + x, vec_u16_set(0));
 
@@ -66,7 +66,8 @@ static void weigh_tiles(const struct rf_weigh1_job *job, int first, int tiles)
         } else {
             brightest = multiply(job->far + x, job->far_weight + x, brightest);
         }
-        *most = rf_greatest(brightest, *most);
+        here = vec_u16_greatest(brightest);
+        *most = here > *most ? here : *most;
     }
 }
 

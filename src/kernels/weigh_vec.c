@@ -80,7 +80,7 @@ static void weigh_tiles(const struct rf_weigh_job *job, int first, int tiles)
     rf_look_up_weights(job->near_weight + first, job->far_weight + first, &run,
                        weights->light_weight, tiles);
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
-        uint16_t *most = &job->brightest[x / RF_TILE];
+        uint16_t *most = &job->brightest[x / RF_TILE], here;
         vec_u16 brightest =
             multiply(job->near, job->near_weight, weights, x, vec_u16_set(0));
 
@@ -88,7 +88,8 @@ static void weigh_tiles(const struct rf_weigh_job *job, int first, int tiles)
             copy_tile(job, x);
         else
             brightest = multiply(job->far, job->far_weight, weights, x, brightest);
-        *most = rf_greatest(brightest, *most);
+        here = vec_u16_greatest(brightest);
+        *most = here > *most ? here : *most;
     }
 }
 

@@ -35,15 +35,4 @@ static inline vec_u16 rf_eight_times(vec_u16 weight)
     return vec_u16_add(four, four);
 }
 
-/* The greatest lane, or `most`. */
-static inline uint16_t rf_greatest(vec_u16 v, uint16_t most)
-{
-    uint16_t lane[VEC_U16];
-
-    vec_u16_store(lane, v);
-    for (int i = 0; i < (int)VEC_U16; i++)
-        most = lane[i] > most ? lane[i] : most;
-    return most;
-}
-
 #endif

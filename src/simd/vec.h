@@ -21,6 +21,7 @@
  *     vec_u16_min(a, b)       a < b ? a : b
  *     vec_u16_equal(a, b)     a == b ? 0xffff : 0
  *     vec_u16_any(a)          whether any lane is not 0
+ *     vec_u16_greatest(a)     the greatest lane
  *     vec_u16_bits(mask)      VEC_BITS bits a lane, lane 0 lowest, of lanes all 0 or all 1
  *     vec_u16_lane0(a)        lane 0
  *     vec_u16_spread(a)       every lane = lane 0

@@ -120,6 +120,18 @@ static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
     return vmaxq_u16(a, b);
 }
 
+static inline uint16_t vec_u16_greatest(vec_u16 a)
+{
+#if defined(__aarch64__)
+    return vmaxvq_u16(a);
+#else
+    uint16x4_t m = vpmax_u16(vget_low_u16(a), vget_high_u16(a));
+
+    m = vpmax_u16(m, m);
+    return vget_lane_u16(vpmax_u16(m, m), 0);
+#endif
+}
+
 static inline int vec_u16_any(vec_u16 a)
 {
     const uint64x2_t words = vreinterpretq_u64_u16(a);

@@ -251,6 +251,26 @@ static int check_mix(void)
     return 0;
 }
 
+/* Anywhere among the lanes. */
+static int check_greatest(void)
+{
+    uint32_t seed = 47;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t in[VEC_U16], most = 0;
+
+        for (int i = 0; i < (int)VEC_U16; i++) {
+            in[i] = round % 3 ? (uint16_t)noise(&seed) : pick(round, i, 0, &seed);
+            most = in[i] > most ? in[i] : most;
+        }
+        if (vec_u16_greatest(vec_u16_load(in)) != most) {
+            printf("FAIL  vec_u16_greatest, %s: round %d\n", TEXT(RF_VEC_SET), round);
+            return 1;
+        }
+    }
+    return 0;
+}
+
 /* Shares of any sign, whose magnitudes add up to less than 2^15. */
 static int check_cubic(void)
 {
@@ -291,5 +311,5 @@ static int check_cubic(void)
 int RF_VEC(check_vec_across)(void)
 {
     return check_from_bytes() + check_order() + check_bytes() + check_together() +
-           check_sixteen() + check_mix() + check_cubic();
+           check_sixteen() + check_mix() + check_cubic() + check_greatest();
 }
