@@ -42,35 +42,16 @@ static inline vec_u16 within(vec_u16 a, vec_u16 b, vec_u16 tolerance)
                            vec_u16_add(tolerance, tolerance));
 }
 
-/* Blurs of a vector, and where the neighbours before and after are alike. */
-struct blurs {
-    vec_u16 size, before, after;
-    bool whole; /* the mean of three is there everywhere, and wholly */
-    bool near;  /* it is not wholly there everywhere */
-};
-
-static inline struct blurs blurs_of(const int16_t *blur, ptrdiff_t apart,
-                                    const struct fade *fade)
+static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, const struct fade *fade)
 {
     const vec_u16 s = vec_u16_load(blur);
     /* of s and -s the lesser is |s|, which is below 2^15 */
     const vec_u16 size = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s)), t = tolerance(size);
-    const vec_u16 before = within(vec_u16_load(blur - apart), s, t);
-    const vec_u16 after = within(vec_u16_load(blur + apart), s, t);
-    const vec_u16 unlike = vec_u16_without(vec_u16_set(0xffff), vec_u16_and(before, after));
-    const vec_u16 near = vec_u16_at_most(size, fade->most);
-
-    return (struct blurs){size, before, after, !vec_u16_any(vec_u16_or(unlike, near)),
-                          vec_u16_any(near)};
-}
-
-static inline struct use use_of(const struct blurs *blurs, const struct fade *fade)
-{
-    const vec_u16 size = blurs->size;
-    vec_u16 before = blurs->before, after = blurs->after, left = vec_u16_set(0);
+    vec_u16 before = within(vec_u16_load(blur - apart), s, t);
+    vec_u16 after = within(vec_u16_load(blur + apart), s, t), left = vec_u16_set(0);
     bool fades = false;
 
-    if (blurs->near) {
+    if (vec_u16_any(vec_u16_at_most(size, fade->most))) {
         const vec_u16 narrow = vec_u16_at_most(size, fade->least);
         const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
 
@@ -109,16 +90,6 @@ static inline vec_u16 mean(const uint16_t *light, ptrdiff_t apart, const struct 
                        vec_u16_mul_high(vec_u16_sub(most, all), use->left));
 }
 
-/* The same where both neighbours count. */
-static inline vec_u16 mean_of_three(const uint16_t *light, ptrdiff_t apart)
-{
-    const vec_u16 sum = vec_u16_add(vec_u16_add(vec_u16_load(light), vec_u16_set(1)),
-                                    vec_u16_add(vec_u16_load(light - apart),
-                                                vec_u16_load(light + apart)));
-
-    return vec_u16_half(vec_u16_mul_high(sum, vec_u16_set(43691)));
-}
-
 static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const light[3],
                                const int16_t *blur, ptrdiff_t apart, int least, int over, int n)
 {
@@ -132,16 +103,7 @@ static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const lig
     }
     for (int x = 0; x < n; x += VEC_U16) {
         const int at = x + (int)VEC_U16 <= n ? x : n - (int)VEC_U16; /* some twice */
-        const struct blurs blurs = blurs_of(blur + at, apart, &fade);
-
-        if (blurs.whole) {
-            vec_u16_store(red + at, mean_of_three(r + at, apart));
-            vec_u16_store(green + at, mean_of_three(g + at, apart));
-            vec_u16_store(blue + at, mean_of_three(b + at, apart));
-            continue;
-        }
-
-        const struct use use = use_of(&blurs, &fade);
+        const struct use use = use_of(blur + at, apart, &fade);
 
         vec_u16_store(red + at, mean(r + at, apart, &use));
         vec_u16_store(green + at, mean(g + at, apart, &use));
@@ -160,14 +122,7 @@ static void RF_VEC(rf_smooth1)(uint16_t *out, const uint16_t *light, const int16
     }
     for (int x = 0; x < n; x += VEC_U16) {
         const int at = x + (int)VEC_U16 <= n ? x : n - (int)VEC_U16; /* some twice */
-        const struct blurs blurs = blurs_of(blur + at, apart, &fade);
-
-        if (blurs.whole) {
-            vec_u16_store(out + at, mean_of_three(light + at, apart));
-            continue;
-        }
-
-        const struct use use = use_of(&blurs, &fade);
+        const struct use use = use_of(blur + at, apart, &fade);
 
         vec_u16_store(out + at, mean(light + at, apart, &use));
     }
