@@ -105,6 +105,14 @@ static inline int joined_to(uint32_t joined, int bit)
     return __builtin_ctz(~(joined >> (bit + 1)));
 }
 
+/* Without a branch, which would not be foreseen. */
+static inline const void *choose(bool first, const void *a, const void *b)
+{
+    const uintptr_t all = (uintptr_t)0 - first;
+
+    return (const void *)(((uintptr_t)a & all) | ((uintptr_t)b & ~all));
+}
+
 /* Ray n becomes the m-th. */
 static inline void place(struct rf_sorted_rays *restrict sorted,
                          const struct rf_sort_job *restrict job,
@@ -112,7 +120,8 @@ static inline void place(struct rf_sorted_rays *restrict sorted,
                          const bool shared)
 {
     const int tests = (int)s->tests[n], last = (int)s->last[n];
-    const bool behind = last == job->slabs || s->beneath[n];
+    const bool behind = (last == job->slabs) | (s->beneath[n] & 1);
+    const uint16_t *const light[2] = {job->front, job->behind};
     uint32_t need = s->first[0][n];
 
     for (int t = 0, block = 0; t < tests; t++) {
@@ -136,19 +145,20 @@ static inline void place(struct rf_sorted_rays *restrict sorted,
     }
     if (shared && weighted && n < job->shared)
         sorted->chroma_last_weight[m] =
-            (behind ? job->behind_weight : job->weight) +
+            (const uint16_t *)choose(behind, job->behind_weight, job->weight) +
             job->chroma_weight_offset[last][n];
     if (shared && n < job->shared)
-        sorted->chroma_last[m] = (behind ? job->chroma_behind : job->chroma_front) +
-                                 job->chroma_offset[last][n];
+        sorted->chroma_last[m] =
+            (const uint16_t *)choose(behind, job->chroma_behind, job->chroma_front) +
+            job->chroma_offset[last][n];
     if (weighted) {
         sorted->last_behind[m] = behind;
-        sorted->last_weight[m] = behind ? job->behind_weight + job->offset[last][n]
-                                     : job->weight + job->weight_offset[last][n];
+        sorted->last_weight[m] =
+            (const uint16_t *)choose(behind, job->behind_weight, job->weight) +
+            *(const int32_t *)choose(behind, &job->offset[last][n], &job->weight_offset[last][n]);
     }
     sorted->tests[m] = (uint8_t)tests;
-    sorted->last[m] =
-        (behind ? job->behind : job->front) + job->offset[last][n];
+    sorted->last[m] = light[behind] + job->offset[last][n];
 }
 
 /* Counts lie in bytes of a word, as chains of memory accesses would take longer. */
@@ -164,6 +174,7 @@ static inline void place_all(struct rf_sorted_rays *restrict sorted,
 {
     const int first = shared ? job->shared : 0;
     uint64_t count = 0, at, first_count;
+    uint8_t order[RF_RAY_CHUNK];
 
     for (int n = 0; n < first; n++)
         count += UINT64_C(1) << class_of(s->tests[n]);
@@ -179,9 +190,11 @@ static inline void place_all(struct rf_sorted_rays *restrict sorted,
     for (int n = 0; n < job->rays; n++) {
         const int class = class_of(s->tests[n]);
 
-        place(sorted, job, s, n, (int)(at >> class & 255), weighted, shared);
+        order[at >> class & 255] = (uint8_t)n;
         at += UINT64_C(1) << class;
     }
+    for (int m = 0; m < job->rays; m++)
+        place(sorted, job, s, order[m], m, weighted, shared);
 }
 
 /* Where slab k is seen: the blurs there, and whether slab k - 1 is seen there too. */

@@ -64,9 +64,9 @@ static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_b
 
             bins.least = least[x] < bins.least ? least[x] : bins.least;
             bins.most = most[x] > bins.most ? most[x] : bins.most;
-            if (first == last)
-                add_bin(&bins, first);
-            else
+            add_bin(&bins, first);
+            add_bin(&bins, last);
+            if (last - first > 1)
                 add_cell(&bins, scale, r->front.blur + RF_CELL * (y * r->stride + x),
                          r->stride, first, last);
         }
