@@ -131,22 +131,35 @@ static inline uint16_t moved(uint16_t own, uint16_t a, uint16_t b, uint32_t shar
     return (uint16_t)(own + more - less);
 }
 
-static void RF_VEC(rf_soften)(uint16_t *restrict mean, int rows, int each, bool down,
-                              uint16_t share)
+/* A row moved towards the averages of what lies `apart` elements before and after. */
+static inline void soften_row(uint16_t *restrict out, const uint16_t *restrict own,
+                              ptrdiff_t apart, uint16_t share)
 {
-    uint16_t across[RF_TILE * RF_TILE];
+    const uint16_t *before = own - apart, *after = own + apart;
+
+    for (int x = 0; x < RF_TILE; x++)
+        out[x] = moved(own[x], before[x], after[x], share);
+}
+
+static void RF_VEC(rf_soften)(uint16_t *mean, int rows, int each, bool down, uint16_t share)
+{
+    uint16_t padded[RF_TILE * (RF_TILE + 2)], across[RF_TILE * RF_TILE];
+    uint16_t *const own = padded + RF_TILE;
     const int n = rows * RF_TILE;
 
-    for (int i = each; i < n - each; i++)
-        across[i] = moved(mean[i], mean[i - each], mean[i + each], share);
-    for (int y = 0; y < n; y += RF_TILE)
+    memcpy(own, mean, (size_t)n * sizeof *mean);
+    memset(padded, 0, RF_TILE * sizeof *padded); /* beyond both ends: is not used */
+    memset(own + n, 0, RF_TILE * sizeof *own);
+    for (int y = 0; y < n; y += RF_TILE) {
+        soften_row(across + y, own + y, each, share);
         for (int i = 0; i < each; i++) {
-            across[y + i] = mean[y + i];
-            across[y + RF_TILE - 1 - i] = mean[y + RF_TILE - 1 - i];
+            across[y + i] = own[y + i];
+            across[y + RF_TILE - 1 - i] = own[y + RF_TILE - 1 - i];
         }
+    }
     memcpy(mean, across, (size_t)n * sizeof *mean);
-    for (int i = RF_TILE; down && i < n - RF_TILE; i++)
-        mean[i] = moved(across[i], across[i - RF_TILE], across[i + RF_TILE], share);
+    for (int y = RF_TILE; down && y < n - RF_TILE; y += RF_TILE)
+        soften_row(mean + y, across + y, RF_TILE, share);
 }
 
 /* A row of cells at the middles of pixels, those of a channel together. */
