@@ -60,12 +60,24 @@ static int brightest(uint16_t *const light[3], ptrdiff_t at)
     return most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
 }
 
+/* Whether light was given back to a lamp in a tile or beside it, from where it may be spread. */
+static bool has_lamp_near(const struct refocus_renderer *r, int tx, int ty)
+{
+    for (int y = ty > 0 ? ty - 1 : 0; y <= ty + 1 && y < r->tiles_y; y++)
+        for (int x = tx > 0 ? tx - 1 : 0; x <= tx + 1 && x < r->tiles_x; x++)
+            if (r->bins[(size_t)y * r->tiles_x + x].lamp > 0)
+                return true;
+    return false;
+}
+
+/* What is white at most need not be looked at; the fill of the background comes from farther
+ * away. */
 static uint16_t tile_brightest(const struct refocus_renderer *r, int tx, int ty)
 {
     const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
-    uint16_t most[2];
+    uint16_t most[2] = {RF_LIGHT_MAX, RF_LIGHT_MAX};
 
-    for (int layer = 0; layer < 2; layer++) {
+    for (int layer = has_lamp_near(r, tx, ty) ? 0 : 1; layer < 2; layer++) {
         uint16_t *const *light = layer ? r->behind.light : r->smooth;
 
         most[layer] = r->kernels.tile_brightest(
