@@ -390,10 +390,11 @@ struct refocus_render_params {
     uint32_t thin;          /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels
                                  wide are drawn as the veil that they become, and so are their
                                  shares of the pixels at their edges, where they are blurred so
-                                 much before the focus that rays lie 2.25 pixels apart (10.2
+                                 much before the focus that rays lie 1.8 pixels apart (8.1
                                  pixels at 64 rays; the same of a full mask), 8 pixels at the
-                                 least, with nothing thick as near around them. Rays, which meet
-                                 them here and miss them there, would show streaks. They are
+                                 least, first some of them and all from 5/4 of that on, with
+                                 nothing thick as near around them. Rays, which meet them here
+                                 and miss them there, would show streaks. They are
                                  looked for in the first render of a photo that may need them,
                                  which takes some frames' time. Not with openings of fine
                                  structure (masks, figures, rings), cat's eyes, fringes, photos

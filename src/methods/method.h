@@ -6,6 +6,7 @@
 #include "focus/focus.h"
 #include "planes/planes.h"
 #include "renderer/renderer.h"
+#include "thin/thin.h"
 #include "tiles/tiles.h"
 
 /* Curve and weights of eq. 5 in double precision, of 8-bit codes. */
@@ -35,8 +36,8 @@ struct rf_frame {
     int prefilter_step;     /* the one that is being made */
     int veils;              /* thin things may be taken apart, thin/thin.h, and drawn with discs
                                of this part of their blur, Q8; 0: they are not */
-    int veil_blur;          /* from this blur before the focus on, Q7.8, */
-    int veil_from;          /* which is this disparity: rf_veil_from() */
+    int veil_blur;          /* from this blur before the focus on, Q7.8, more and more of them; */
+    int veil_from[RF_VEIL_LEVELS]; /* pixels of a level from this disparity on: rf_set_veils() */
     bool weighted;          /* eq. 5 weights differ from 1, */
     bool premultiplied;     /* and little enough for light times weight in 16 bits */
     bool fine;              /* the opening is: rf_aperture_is_fine() */

@@ -148,12 +148,12 @@ static void set_prefilter(struct rf_frame *f)
     }
 }
 
-/* Thin things are met well where rays lie closer than 2.25 pixels. A full mask draws what 64 rays
- * draw, as it is there to tell what so few rays change. */
+/* Thin things are met well where rays lie closer than 1.8 pixels, and badly from 2.25 on. A full
+ * mask draws what 64 rays draw, as it is there to tell what so few rays change. */
 static int veil_blur(const struct refocus_render_params *p)
 {
     const int rays = p->rays == REFOCUS_RAYS_FULL ? 64 : p->rays;
-    const double blur = 256 * 2.25 * sqrt(rays / 3.14159265358979);
+    const double blur = 256 * 1.8 * sqrt(rays / 3.14159265358979);
 
     return blur > INT16_MAX      ? INT16_MAX
            : blur < RF_VEIL_BLUR ? RF_VEIL_BLUR
@@ -170,7 +170,7 @@ static int veil_scale(const struct rf_frame *f)
     int64_t sum = 0;
 
     if (!p->thin || !f->r->has_thin || p->method != REFOCUS_METHOD_SWEEP ||
-        f->r->yuv.on || (f->plan.plain && f->veil_from > 65535) || p->cat_eye > 0 ||
+        f->r->yuv.on || (f->plan.plain && f->veil_from[0] > 65535) || p->cat_eye > 0 ||
         p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)
@@ -224,7 +224,7 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     if (rf_cancelled(r))
         return;
     f->veil_blur = veil_blur(f->params);
-    f->veil_from = f->plan.plain ? rf_veil_from(f) : 0;
+    rf_set_veils(f);
     f->veils = pinhole ? 0 : veil_scale(f);
     f->row_gap = pinhole ? 0 : rf_row_gap(f);
     if (r->in_place.on) {

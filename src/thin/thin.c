@@ -100,25 +100,60 @@ int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, i
     return blur_of(f, thin->near_disparity, tx * RF_TILE, ty * RF_TILE);
 }
 
-bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+/* Of a pixel of a tile. Cells beside each other, and those on a line, differ much; single pixels
+ * would show as a weave. */
+static int level_of(int at)
 {
-    return f->plan.plain ? thin->near_disparity >= f->veil_from
-                         : rf_near_blur(f, thin, tx, ty) <= -f->veil_blur;
+    static const uint8_t level[4][4] = {
+        {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+
+    return level[at / RF_TILE / RF_CELL][at % RF_TILE / RF_CELL];
 }
 
-int rf_veil_from(const struct rf_frame *f)
+static int veil_blur_of(const struct rf_frame *f, int level)
+{
+    return f->veil_blur + f->veil_blur * level / 64;
+}
+
+bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+{
+    const int level = level_of(thin->at);
+
+    return f->plan.plain ? thin->near_disparity >= f->veil_from[level]
+                         : rf_near_blur(f, thin, tx, ty) <= -veil_blur_of(f, level);
+}
+
+/* The least disparity that is blurred so much before the focus. */
+static int veil_from(const struct rf_frame *f, int blur)
 {
     int low = 0, high = 65536;
 
     while (low < high) {
         const int middle = (low + high) / 2;
 
-        if (blur_of(f, (uint16_t)middle, 0, 0) <= -f->veil_blur)
+        if (plain_blur(f->plan.focus, (uint16_t)middle) <= -blur)
             high = middle;
         else
             low = middle + 1;
     }
     return low;
+}
+
+void rf_set_veils(struct rf_frame *f)
+{
+    for (int k = 0; k < RF_VEIL_LEVELS; k++)
+        f->veil_from[k] = f->plan.plain ? veil_from(f, veil_blur_of(f, k)) : 0;
+}
+
+/* Whether all of a tile are, or none, as far as its run can say. */
+static bool are_all_veils(const struct rf_frame *f, const struct rf_thin_run *run)
+{
+    return f->plan.plain && run->least >= f->veil_from[RF_VEIL_LEVELS - 1];
+}
+
+static bool is_no_veil(const struct rf_frame *f, const struct rf_thin_run *run)
+{
+    return f->plan.plain && run->most < f->veil_from[0];
 }
 
 /* Of those of a tile that are to be drawn the farthest near disparity; 65536: none. */
@@ -129,9 +164,9 @@ static int farthest_veil(const struct rf_frame *f, int tx, int ty)
     const struct rf_thin *thin = rf_thin_of(f->r, tx, ty, &count);
     int least = 65536;
 
-    if (f->plan.plain && (count == 0 || run->most < f->veil_from))
+    if (count == 0 || is_no_veil(f, run))
         return least;
-    if (f->plan.plain && run->least >= f->veil_from)
+    if (are_all_veils(f, run))
         return run->least;
     for (uint32_t i = 0; i < count; i++)
         if (rf_is_veil(f, &thin[i], tx, ty) && thin[i].near_disparity < least)
@@ -226,7 +261,7 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
     uint16_t *const red = r->front.light[0] + tile,
                     *const green = r->front.light[1] + tile,
                     *const blue = r->front.light[2] + tile;
-    const bool all = f->plan.plain && rf_thin_run_of(r, tx, ty)->least >= f->veil_from;
+    const bool all = are_all_veils(f, rf_thin_run_of(r, tx, ty));
     uint32_t count;
     struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
 

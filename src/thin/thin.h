@@ -58,13 +58,20 @@ const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int t
 struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
                            uint32_t *count);
 
+/*
+ * Nothing is to jump as the focus moves, so that not all pixels are taken apart at one blur: those
+ * of a level k, that of their cell of 4 x 4 pixels in the tile, are from veil_blur (1 + k / 64) on.
+ */
+enum { RF_VEIL_LEVELS = 16 };
+
 /* Blur of what is near in one of a tile, Q7.8, and whether that is far enough before
  * the focus. */
 int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
 bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
 
-/* Of a plan that is a lens's: the least disparity that is; 65536: none. */
-int rf_veil_from(const struct rf_frame *f);
+/* f->veil_from, from veil_blur: of a plan that is a lens's the least disparity that is, of each
+ * level; 65536: none. */
+void rf_set_veils(struct rf_frame *f);
 
 /* After blurs, cells and bins, before rims: choose the tiles whose edges are taken
  * apart; there blurs become those of F, and the veil is drawn. */
