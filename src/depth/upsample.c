@@ -279,9 +279,9 @@ static void fill_band(void *context, int item, int worker)
         if (begin < y1)
             rf_fill_rows(up, first + i, begin, y1);
     }
-    for (int y = y0 + 1; y < y1 - 1; y++)
+    for (int y = y0 + 1; y < y1 - 1 && !rf_run_cancelled(up->run); y++)
         settle_row(up, y);
-    for (int y = y0 + 2; y < y1 - 2; y++)
+    for (int y = y0 + 2; y < y1 - 2 && !rf_run_cancelled(up->run); y++)
         take_over_row(up, y);
 }
 
