@@ -5,16 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static inline int16_t lesser(int16_t a, int16_t b)
-{
-    return a < b ? a : b;
-}
-
-static inline int16_t greater(int16_t a, int16_t b)
-{
-    return a > b ? a : b;
-}
-
 /* floor((u s + 2^22) / 2^23) by the high half of the product. */
 static inline int16_t rounded(int16_t u, int16_t blur)
 {
@@ -215,8 +205,8 @@ static inline void look(struct sight *restrict sight, const struct rf_sort_job *
     for (int n = 0; job->below && n < job->rays; n++) {
         const uint32_t range = job->below[cell[n]];
 
-        least[n] = lesser(least[n], rf_range_least(range));
-        most[n] = greater(most[n], rf_range_most(range));
+        least[n] = rf_lesser(least[n], rf_range_least(range));
+        most[n] = rf_greater(most[n], rf_range_most(range));
         bare[n] &= mask((range & RF_BARE) != 0);
     }
     for (int n = 0; n < job->rays; n++)

@@ -44,6 +44,16 @@ enum { RF_RAY_CHUNK = 64, RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
  */
 enum { RF_CELL = 4, RF_WINDOW_X = RF_TILE / RF_CELL + 1, RF_WINDOW_Y = RF_STRIP / RF_CELL + 1 };
 enum { RF_BARE = 1 << 16, RF_BARE_DEPTH = 320 };
+static inline int16_t rf_lesser(int16_t a, int16_t b)
+{
+    return a < b ? a : b;
+}
+
+static inline int16_t rf_greater(int16_t a, int16_t b)
+{
+    return a > b ? a : b;
+}
+
 static inline int16_t rf_range_least(uint32_t range)
 {
     return (int16_t)range;

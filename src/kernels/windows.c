@@ -3,16 +3,6 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-static inline int16_t lesser(int16_t a, int16_t b)
-{
-    return a < b ? a : b;
-}
-
-static inline int16_t greater(int16_t a, int16_t b)
-{
-    return a > b ? a : b;
-}
-
 enum { RUN = 64 }; /* cells at a time */
 
 /* Columns first; then the least of four beside each other, of which every fourth counts. */
@@ -24,14 +14,14 @@ static void cells_run(int16_t *restrict least, int16_t *restrict most,
                   *restrict d = c + stride;
 
     for (int x = 0; x < RF_CELL * n; x++) {
-        low[x] = lesser(lesser(a[x], b[x]), lesser(c[x], d[x]));
-        high[x] = greater(greater(a[x], b[x]), greater(c[x], d[x]));
+        low[x] = rf_lesser(rf_lesser(a[x], b[x]), rf_lesser(c[x], d[x]));
+        high[x] = rf_greater(rf_greater(a[x], b[x]), rf_greater(c[x], d[x]));
     }
     for (int i = 0; i < n; i++) {
         const int16_t *l = low + RF_CELL * i, *h = high + RF_CELL * i;
 
-        least[i] = lesser(lesser(l[0], l[1]), lesser(l[2], l[3]));
-        most[i] = greater(greater(h[0], h[1]), greater(h[2], h[3]));
+        least[i] = rf_lesser(rf_lesser(l[0], l[1]), rf_lesser(l[2], l[3]));
+        most[i] = rf_greater(rf_greater(h[0], h[1]), rf_greater(h[2], h[3]));
     }
 }
 
@@ -50,11 +40,18 @@ static void repeat_ends(int16_t *row, int n, int left, int right)
         row[n + x] = row[n - 1];
 }
 
-/* The greatest of RF_WINDOW_X beside each other from x on. */
+/* The least, and the greatest, of RF_WINDOW_X beside each other from x on. */
+static inline int16_t least_from(const int16_t *low, int x)
+{
+    return rf_lesser(rf_lesser(rf_lesser(low[x], low[x + 1]), rf_lesser(low[x + 2], low[x + 3])),
+                     low[x + 4]);
+}
+
 static inline int16_t greatest_from(const int16_t *high, int x)
 {
-    return greater(greater(greater(high[x], high[x + 1]), greater(high[x + 2], high[x + 3])),
-                   high[x + 4]);
+    return rf_greater(
+        rf_greater(rf_greater(high[x], high[x + 1]), rf_greater(high[x + 2], high[x + 3])),
+        high[x + 4]);
 }
 
 static void RF_VEC(rf_windows)(uint32_t *restrict range,
@@ -68,14 +65,13 @@ static void RF_VEC(rf_windows)(uint32_t *restrict range,
     const int16_t *restrict m0 = most[0], *restrict m1 = most[1], *restrict m2 = most[2];
 
     for (int x = 0; x < n; x++) {
-        low[border + x] = lesser(lesser(l0[x], l1[x]), l2[x]);
-        high[border + x] = greater(greater(m0[x], m1[x]), m2[x]);
+        low[border + x] = rf_lesser(rf_lesser(l0[x], l1[x]), l2[x]);
+        high[border + x] = rf_greater(rf_greater(m0[x], m1[x]), m2[x]);
     }
     repeat_ends(low + border, n, border, beyond);
     repeat_ends(high + border, n, border, beyond);
     for (int x = 0; x < windows; x++) {
-        const int16_t l = lesser(lesser(lesser(low[x], low[x + 1]),
-                                        lesser(low[x + 2], low[x + 3])), low[x + 4]);
+        const int16_t l = least_from(low, x);
         const int16_t h = (int16_t)((greatest_from(high, x) + 1) & ~1);
 
         range[x] = (uint16_t)l | (uint32_t)(uint16_t)h << 16;
@@ -99,12 +95,12 @@ static void foreground_run(int16_t *restrict most, const int16_t *restrict blur,
         const int16_t c = in_front(blur[x + 2 * stride], behind[x + 2 * stride]);
         const int16_t d = in_front(blur[x + 3 * stride], behind[x + 3 * stride]);
 
-        high[x] = greater(greater(a, b), greater(c, d));
+        high[x] = rf_greater(rf_greater(a, b), rf_greater(c, d));
     }
     for (int i = 0; i < n; i++) {
         const int16_t *h = high + RF_CELL * i;
 
-        most[i] = greater(greater(h[0], h[1]), greater(h[2], h[3]));
+        most[i] = rf_greater(rf_greater(h[0], h[1]), rf_greater(h[2], h[3]));
     }
 }
 
@@ -124,7 +120,7 @@ static void RF_VEC(rf_bare)(uint32_t *restrict range,
     const int16_t *restrict f2 = foreground[2];
 
     for (int x = 0; x < n; x++)
-        scratch[border + x] = greater(greater(f0[x], f1[x]), f2[x]);
+        scratch[border + x] = rf_greater(rf_greater(f0[x], f1[x]), f2[x]);
     repeat_ends(scratch + border, n, border, border + RF_WINDOW_X - 1);
     for (int x = 0; x < n + 2 * border; x++) {
         const int most = (int32_t)range[x] >> 16 & ~1;

@@ -117,6 +117,9 @@
 #elif defined(RF_VEC_NEON)
 #include "simd/vec_neon.h"
 #endif
+#if defined(RF_VECTORS) && !defined(RF_VEC_NEON)
+#include "simd/vec_weigh4.h"
+#endif
 #if defined(RF_VECTORS) && !defined(RF_VEC_AVX512)
 #include "simd/vec_mask.h"
 #endif

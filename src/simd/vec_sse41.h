@@ -212,18 +212,6 @@ static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
     return _mm_xor_si128(_mm_packs_epi32(low, high), sign);
 }
 
-static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                   const int16_t share[4])
-{
-    return vec_weigh4(a, b, c, d, share, 15);
-}
-
-static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                     const int16_t share[4])
-{
-    return vec_weigh4(a, b, c, d, share, 14);
-}
-
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
 {
     const __m128i a = _mm_sub_epi16(vec_u16_load(p), vec_u16_set(low));

@@ -37,14 +37,14 @@ static void lesser_row(int16_t *restrict out, const int16_t *restrict a,
                        const int16_t *restrict b, int n)
 {
     for (int x = 0; x < n; x++)
-        out[x] = a[x] < b[x] ? a[x] : b[x];
+        out[x] = rf_lesser(a[x], b[x]);
 }
 
 static void greater_row(int16_t *restrict out, const int16_t *restrict a,
                         const int16_t *restrict b, int n)
 {
     for (int x = 0; x < n; x++)
-        out[x] = a[x] > b[x] ? a[x] : b[x];
+        out[x] = rf_greater(a[x], b[x]);
 }
 
 /* Luma and chroma of a tile are each swept in one go, so ranges are of both its strips:
