@@ -261,6 +261,9 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
     return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
 }
 
+/* at_most: none of n values above `most`. */
+typedef void rf_at_most_fn(uint16_t *value, uint16_t most, int n);
+
 /* weighted_means: Q14 means of n <= RF_TILE * RF_TILE sums below 2^51 of Q12 values times
  * weights, and of their weights: 4 sum / weight half up, to 2^-35; exact where all values are
  * the same. In double precision, whose four operations are the same everywhere. */
@@ -526,6 +529,7 @@ struct rf_kernels {
     rf_pull_fn *pull;
     rf_pull_blur_fn *pull_blur;
     rf_means_fn *means;
+    rf_at_most_fn *at_most;
     rf_weighted_means_fn *weighted_means;
     rf_weigh_fn *weigh;
     rf_weigh1_fn *weigh1;

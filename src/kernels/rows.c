@@ -104,6 +104,12 @@ static void RF_VEC(rf_means)(uint16_t *restrict mean, const uint32_t *restrict s
         means_by_scale(mean, sum, scale, n);
 }
 
+static void RF_VEC(rf_at_most)(uint16_t *restrict value, uint16_t most, int n)
+{
+    for (int i = 0; i < n; i++)
+        value[i] = value[i] < most ? value[i] : most;
+}
+
 void RF_VEC(rf_rows_use)(struct rf_kernels *kernels)
 {
     kernels->signed_blur = RF_VEC(rf_signed_blur);
@@ -111,4 +117,5 @@ void RF_VEC(rf_rows_use)(struct rf_kernels *kernels)
     kernels->dilate_from = RF_VEC(rf_dilate_from);
     kernels->mark = RF_VEC(rf_mark);
     kernels->means = RF_VEC(rf_means);
+    kernels->at_most = RF_VEC(rf_at_most);
 }

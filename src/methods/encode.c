@@ -47,52 +47,57 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     }
 }
 
-/* Means above white come from highlights. */
-static void clip(uint16_t *restrict mean, int n)
+/* One channel of a row of n pixels, each a constant number of bytes. */
+static inline void encode_channel(uint8_t *restrict out, const int bytes,
+                                  const uint16_t *restrict mean,
+                                  const uint8_t *restrict to_code, int n)
 {
-    for (int i = 0; i < n; i++)
-        mean[i] = mean[i] < RF_MEAN_MAX ? mean[i] : RF_MEAN_MAX;
+    if (n != RF_TILE) {
+        for (int x = 0; x < n; x++)
+            out[x * bytes] = to_code[mean[x]];
+        return;
+    }
+#pragma GCC unroll 16
+    for (int x = 0; x < RF_TILE; x++)
+        out[x * bytes] = to_code[mean[x]];
 }
 
-/* A row of n pixels, `bytes` is a constant. */
-static inline void encode_row(uint8_t *restrict out, struct rf_order o, const int bytes,
-                              const uint16_t *restrict red, const uint16_t *restrict green,
-                              const uint16_t *restrict blue, const uint8_t *restrict to_code,
-                              int n)
+static void encode(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
+                   int pitch)
 {
-    for (int x = 0; x < n; x++) {
-        out[x * bytes + o.r] = to_code[red[x]];
-        out[x * bytes + o.g] = to_code[green[x]];
-        out[x * bytes + o.b] = to_code[blue[x]];
-    }
+    const struct rf_order o = rf_order_of(f->out->format);
+    const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
+    const int to[3] = {o.r, o.g, o.b}, n = rect.x1 - rect.x0, rows = rect.y1 - rect.y0;
+    const uint8_t *alpha = f->r->alpha + rect.y0 * f->r->alpha_stride + rect.x0;
+    uint8_t *out = pixel(f, o.bytes, rect.x0, rect.y0);
+
+    for (int c = 0; c < 3; c++)
+        for (int y = 0; y < rows; y++)
+            if (o.bytes == 3)
+                encode_channel(out + y * f->out->stride[0] + to[c], 3, mean[c] + y * pitch,
+                               to_code, n);
+            else
+                encode_channel(out + y * f->out->stride[0] + to[c], 4, mean[c] + y * pitch,
+                               to_code, n);
+    for (int y = 0; o.a >= 0 && y < rows; y++)
+        for (int x = 0; x < n; x++)
+            out[y * f->out->stride[0] + x * o.bytes + o.a] = alpha[y * f->r->alpha_stride + x];
 }
 
 void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
 {
-    const struct rf_order o = rf_order_of(f->out->format);
-    const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
-    const uint8_t *alpha = f->r->alpha + y * f->r->alpha_stride + x0;
-    uint8_t *out = pixel(f, o.bytes, x0, y);
-
-    if (o.bytes == 3)
-        encode_row(out, o, 3, mean[0], mean[1], mean[2], to_code, n);
-    else
-        encode_row(out, o, 4, mean[0], mean[1], mean[2], to_code, n);
-    for (int x = 0; o.a >= 0 && x < n; x++)
-        out[x * o.bytes + o.a] = alpha[x];
+    encode(f, (struct rf_rect){x0, y, x0 + n, y + 1}, mean, 0);
 }
 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
                      uint16_t mean[3][RF_TILE * RF_TILE])
 {
-    for (int c = 0; f->bright && c < 3; c++)
-        clip(mean[c], RF_TILE * RF_TILE);
-    for (int y = rect.y0; y < rect.y1; y++) {
-        const int at = y % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
+    const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
-        rf_encode_row(f, rect.x0, y, rect.x1 - rect.x0,
-                      (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at});
-    }
+    if (f->bright) /* means above white come from highlights */
+        f->r->kernels.at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
+    encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
+           RF_TILE);
 }
 
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)

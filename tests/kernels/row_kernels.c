@@ -274,6 +274,20 @@ static void expect_means(void *const *row, int parameter, int n)
     }
 }
 
+static void run_at_most(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    k->at_most(row[0], (uint16_t)parameter, n);
+}
+
+static void expect_at_most(void *const *row, int parameter, int n)
+{
+    uint16_t *value = row[0];
+
+    for (int x = 0; x < n; x++)
+        if (value[x] > parameter)
+            value[x] = (uint16_t)parameter;
+}
+
 static void run_luminance(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
     (void)parameter;
@@ -417,6 +431,7 @@ const struct row_kernel row_kernels[] = {
     {"pull_blur", 2, {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}}, 0, 0,
      run_pull_blur, expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
+    {"at_most", 1, {{LIGHT, 1, 0, 0}}, 0, UINT16_MAX, run_at_most, expect_at_most},
     {"luminance", 4, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}},
      0, 0, run_luminance, expect_luminance},
 };
