@@ -1,9 +1,11 @@
 #include "methods/tile_rows.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum {
-    ROW_BLUR = 384, /* 1.5 pixels of blur, Q7.8, for rows a pixel apart */
+    ROW_BLUR = 48, /* times the root of the rays: 1.5 pixels of blur, Q7.8, of 64 of them, */
+    LEAST_ROW_BLUR = 256, /* for rows a pixel apart */
     SOFT_BLUR = 640, /* 2.5 pixels */
 };
 
@@ -11,14 +13,15 @@ int rf_row_gap(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
-    int height = 1; /* half the opening's, Q15 */
+    int gap, height = 1; /* half the opening's, Q15 */
 
     if (p->rays == REFOCUS_RAYS_FULL || p->rays > RF_LIVE_RAYS || p->cat_eye > 0 ||
         p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)
         height = abs(set->ray[n].v) > height ? abs(set->ray[n].v) : height;
-    return (ROW_BLUR << 15) / height;
+    gap = (int)(ROW_BLUR * sqrt(p->rays));
+    return ((gap > LEAST_ROW_BLUR ? gap : LEAST_ROW_BLUR) << 15) / height;
 }
 
 /* The least blur of all that is seen from a tile. */

@@ -2,8 +2,10 @@
  *
  * Where everything in reach is blurred, a picture has no detail as fine as its rows, and some
  * of them are as good as all: a disc of radius s passes less than 0.15 of what changes faster
- * than every 4/3 s pixels. The rows between are put in along cubics. The first and the last row
- * are always computed, so that tiles meet without a seam and depend on no other.
+ * than every 4/3 s pixels. Of 64 rays rows may lie a pixel apart for 1.5 pixels of blur; fewer
+ * rays lie farther apart, and so may rows, up to a pixel for one. The rows between are put in
+ * along cubics. The first and the last row are always computed, so that tiles meet without a
+ * seam and depend on no other.
  */
 #ifndef RF_TILE_ROWS_H
 #define RF_TILE_ROWS_H
@@ -21,7 +23,7 @@ static inline int rf_row_at(struct rf_tile_rows rows, int i)
     return i * rows.step + (rows.step == 2 && i >= rows.count / 2);
 }
 
-/* The blur, Q7.8, that asks for a row a pixel apart and less than two; 0: every row is asked for,
+/* The blur, Q7.8, for rows a pixel apart: n times that allows n pixels. 0: every row is asked for,
  * by the settings or by an opening with fine structure. */
 int rf_row_gap(const struct rf_frame *f);
 

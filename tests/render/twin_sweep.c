@@ -245,9 +245,10 @@ static struct rows rows_of(const struct twin *t, const struct sets *sets, double
 {
     static const struct rows sparse[] = {
         {4, {0, 5, 10, 15}}, {6, {0, 3, 6, 9, 12, 15}}, {8, {0, 2, 4, 6, 9, 11, 13, 15}}};
-    static const double step[] = {5, 3, 2};
+    static const int step[] = {5, 3, 2};
+    const int gap = (int)fmax(48 * sqrt(t->params->rays), 256);
     struct rows all = {TWIN_TILE, {0}};
-    int tallest = 0; /* Q15 */
+    int tallest = 1; /* Q15 */
 
     for (int y = 0; y < TWIN_TILE; y++)
         all.at[y] = y;
@@ -257,7 +258,8 @@ static struct rows rows_of(const struct twin *t, const struct sets *sets, double
         if (abs(sets->ray[sets->sets - 1][n].v) > tallest)
             tallest = abs(sets->ray[sets->sets - 1][n].v);
     for (int i = 0; i < 3; i++)
-        if (least * tallest / 32768 >= 1.5 * step[i])
+        /* whole numbers here, as flat things may lie on the bound */
+        if ((int)(least * 256 + 0.5) / step[i] >= (gap << 15) / tallest)
             return sparse[i];
     return all;
 }
