@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+
 /* floor((u s + 2^22) / 2^23) by the high half of the product. */
 static inline int16_t rounded(int16_t u, int16_t blur)
 {
@@ -37,7 +39,8 @@ struct state {
     uint16_t open[RF_RAY_CHUNK];           /* all bits: no slab so far takes all */
     uint16_t tests[RF_RAY_CHUNK];
     uint16_t last[RF_RAY_CHUNK];    /* slab, or their number: the background, */
-    uint16_t beneath[RF_RAY_CHUNK]; /* all bits: which is seen at the offset of `last` */
+    uint16_t beneath[RF_RAY_CHUNK]; /* all bits: which is seen at the offset of `last`; 1 in the
+                                     * end, where the background is seen */
     uint16_t from[RF_BINS], until[RF_BINS]; /* of the slabs, for rf_in_range() */
 };
 
@@ -103,21 +106,23 @@ static inline const void *choose(bool first, const void *a, const void *b)
     return (const void *)(((uintptr_t)a & all) | ((uintptr_t)b & ~all));
 }
 
-/* Ray n becomes the m-th. */
-static inline void place(struct rf_sorted_rays *restrict sorted,
-                         const struct rf_sort_job *restrict job,
-                         const struct state *restrict s, int n, int m, const bool weighted,
-                         const bool shared)
+/* Which ways a job goes that differ in the loops over rays. */
+struct way {
+    bool weighted, shared, blocks; /* weights, chroma, more than one block of slabs */
+};
+
+/* The tests of ray n, which becomes the m-th. */
+static ALWAYS_INLINE void place_tests(struct rf_sorted_rays *restrict sorted,
+                               const struct rf_sort_job *restrict job,
+                               const struct state *restrict s, int n, int m, const int tests,
+                               const struct way way)
 {
-    const int tests = (int)s->tests[n], last = (int)s->last[n];
-    const bool behind = (last == job->slabs) | (s->beneath[n] & 1);
-    const uint16_t *const light[2] = {job->front, job->behind};
     uint32_t need = s->first[0][n];
 
     for (int t = 0, block = 0; t < tests; t++) {
         int k, bit;
 
-        while (!need)
+        while (way.blocks && !need)
             need = s->first[++block][n];
         bit = __builtin_ctz(need);
         k = block * BITS + bit;
@@ -126,65 +131,99 @@ static inline void place(struct rf_sorted_rays *restrict sorted,
         sorted->to[t][m] = (uint16_t)(s->until[k + joined_to(s->joined[block][n], bit)] -
                                       s->from[k]);
         sorted->offset[t][m] = job->offset[k][n];
-        if (weighted)
+        if (way.weighted)
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
-        if (shared && n < job->shared)
+        if (way.shared && n < job->shared)
             sorted->chroma_offset[t][m] = job->chroma_offset[k][n];
-        if (shared && weighted && n < job->shared)
+        if (way.shared && way.weighted && n < job->shared)
             sorted->chroma_weight_offset[t][m] = job->chroma_weight_offset[k][n];
     }
-    if (shared && weighted && n < job->shared)
-        sorted->chroma_last_weight[m] =
-            (const uint16_t *)choose(behind, job->behind_weight, job->weight) +
-            job->chroma_weight_offset[last][n];
-    if (shared && n < job->shared)
-        sorted->chroma_last[m] =
-            (const uint16_t *)choose(behind, job->chroma_behind, job->chroma_front) +
-            job->chroma_offset[last][n];
-    if (weighted) {
+}
+
+/* What it sees where no test hits. */
+static ALWAYS_INLINE void place_last(struct rf_sorted_rays *restrict sorted,
+                              const struct rf_sort_job *restrict job,
+                              const struct state *restrict s, int n, int m, const struct way way)
+{
+    const uint16_t *const light[2] = {job->front, job->behind};
+    const size_t last = s->last[n], behind = s->beneath[n];
+
+    sorted->last[m] = light[behind] + job->offset[last][n];
+    if (way.weighted) {
         sorted->last_behind[m] = behind;
         sorted->last_weight[m] =
             (const uint16_t *)choose(behind, job->behind_weight, job->weight) +
             *(const int32_t *)choose(behind, &job->offset[last][n], &job->weight_offset[last][n]);
     }
-    sorted->tests[m] = (uint8_t)tests;
-    sorted->last[m] = light[behind] + job->offset[last][n];
+    if (way.shared && n < job->shared)
+        sorted->chroma_last[m] =
+            (const uint16_t *)choose(behind, job->chroma_behind, job->chroma_front) +
+            job->chroma_offset[last][n];
+    if (way.shared && way.weighted && n < job->shared)
+        sorted->chroma_last_weight[m] =
+            (const uint16_t *)choose(behind, job->behind_weight, job->weight) +
+            job->chroma_weight_offset[last][n];
+}
+
+/* Rays order[first] to order[end - 1], whose tests are as many, or as the state says. */
+static ALWAYS_INLINE void place_some(struct rf_sorted_rays *restrict sorted,
+                              const struct rf_sort_job *restrict job,
+                              const struct state *restrict s, const uint8_t *restrict order,
+                              int first, int end, const int tests, const struct way way)
+{
+    for (int m = first; m < end; m++) {
+        const int n = order[m], own = tests < 0 ? s->tests[n] : tests;
+
+        sorted->tests[m] = (uint8_t)own;
+        place_tests(sorted, job, s, n, m, own, way);
+        place_last(sorted, job, s, n, m, way);
+    }
 }
 
 /* Counts lie in bytes of a word, as chains of memory accesses would take longer. */
-static inline int class_of(uint32_t tests)
+static ALWAYS_INLINE void put_in_order(struct rf_sorted_rays *restrict sorted, uint8_t *restrict order,
+                                const struct rf_sort_job *restrict job,
+                                const struct state *restrict s, const struct way way)
 {
-    return 8 * (int)(tests < RF_SORTED_TESTS ? tests : RF_SORTED_TESTS - 1);
-}
-
-static inline void place_all(struct rf_sorted_rays *restrict sorted,
-                             const struct rf_sort_job *restrict job,
-                             const struct state *restrict s, const bool weighted,
-                             const bool shared)
-{
-    const int first = shared ? job->shared : 0;
+    const int first = way.shared ? job->shared : 0;
     uint64_t count = 0, at, first_count;
-    uint8_t order[RF_RAY_CHUNK];
+    uint8_t class[RF_RAY_CHUNK]; /* bits from which its byte begins */
 
+    for (int n = 0; n < job->rays; n++)
+        class[n] = (uint8_t)(8 * (s->tests[n] < RF_SORTED_TESTS ? s->tests[n]
+                                                                : RF_SORTED_TESTS - 1));
     for (int n = 0; n < first; n++)
-        count += UINT64_C(1) << class_of(s->tests[n]);
+        count += UINT64_C(1) << class[n];
     first_count = count;
+#pragma GCC unroll 4
     for (int n = first; n < job->rays; n++)
-        count += UINT64_C(1) << class_of(s->tests[n]);
+        count += UINT64_C(1) << class[n];
     at = count * UINT64_C(0x0101010101010101) << 8; /* sums of those before */
-    for (int class = 0; class < RF_SORTED_TESTS; class++) {
-        sorted->begin[class] = (uint8_t)(at >> 8 * class);
-        sorted->shared[class] = (uint8_t)(first_count >> 8 * class);
+#pragma GCC unroll 8
+    for (int i = 0; i < RF_SORTED_TESTS; i++) {
+        sorted->begin[i] = (uint8_t)(at >> 8 * i);
+        sorted->shared[i] = (uint8_t)(first_count >> 8 * i);
     }
     sorted->begin[RF_SORTED_TESTS] = (uint8_t)job->rays;
+#pragma GCC unroll 4
     for (int n = 0; n < job->rays; n++) {
-        const int class = class_of(s->tests[n]);
-
-        order[at >> class & 255] = (uint8_t)n;
-        at += UINT64_C(1) << class;
+        order[at >> class[n] & 255] = (uint8_t)n;
+        at += UINT64_C(1) << class[n];
     }
-    for (int m = 0; m < job->rays; m++)
-        place(sorted, job, s, order[m], m, weighted, shared);
+}
+
+static ALWAYS_INLINE void place_all(struct rf_sorted_rays *restrict sorted,
+                             const struct rf_sort_job *restrict job,
+                             const struct state *restrict s, const struct way way)
+{
+    const uint8_t *const begin = sorted->begin;
+    uint8_t order[RF_RAY_CHUNK];
+
+    put_in_order(sorted, order, job, s, way);
+    place_some(sorted, job, s, order, begin[0], begin[1], 0, way);
+    place_some(sorted, job, s, order, begin[1], begin[2], 1, way);
+    place_some(sorted, job, s, order, begin[2], begin[3], 2, way);
+    place_some(sorted, job, s, order, begin[3], job->rays, -1, way);
 }
 
 /* Where slab k is seen: the blurs there, and whether slab k - 1 is seen there too. */
@@ -236,15 +275,19 @@ static void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_
         if (!meet_slab(&s, job, k, &sight))
             break;
     }
+    for (int n = 0; n < rays; n++)
+        s.beneath[n] = (uint16_t)((s.beneath[n] | mask(s.last[n] == job->slabs)) & 1);
     sorted->rays = rays;
-    if (job->weight && job->shared)
-        place_all(sorted, job, &s, true, true);
+    if (job->slabs > BITS)
+        place_all(sorted, job, &s, (struct way){job->weight, job->shared, true});
+    else if (job->weight && job->shared)
+        place_all(sorted, job, &s, (struct way){true, true, false});
     else if (job->weight)
-        place_all(sorted, job, &s, true, false);
+        place_all(sorted, job, &s, (struct way){true, false, false});
     else if (job->shared)
-        place_all(sorted, job, &s, false, true);
+        place_all(sorted, job, &s, (struct way){false, true, false});
     else
-        place_all(sorted, job, &s, false, false);
+        place_all(sorted, job, &s, (struct way){false, false, false});
 }
 
 /* Square root and division are exact to the last bit everywhere. */

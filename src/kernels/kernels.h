@@ -196,21 +196,21 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
                                struct rf_focus focus, int n);
 
 /*
- * smooth3, of three planes: where |blur| > least, the mean of a pixel and those of its
- * two neighbours, `apart` elements before and after, whose blur is within an eighth of
- * its own, but at least one pixel (256) and less than two (511), of it; the pixel
- * itself elsewhere. Half up; light is at most 4 * 4095 here and below. The rows written
- * are not among those read.
+ * smooth3, of three planes: a third of the way from a pixel to each of its two neighbours, `apart`
+ * elements before and after, whose blur is within an eighth of its own, but at least one pixel
+ * (256) and less than two (511), of it. That is the mean of three of a kind. It begins where
+ * |blur| > least and comes in over the next `over` of blur, 1 at least. Light is at most 4 * 4095
+ * here and below, so that the way to both fits 16 bits. The rows written are not among those read.
  *
- * The mean comes in over the next `over` of blur, 1 at least: of how far it is from the pixel
- * itself, rf_fade_left() / 65536 are taken off, rounded down.
+ * rf_smooth_share(): of the way to both, Q15, half up.
  */
-static inline uint16_t rf_fade_left(int blur, int least, int over)
+enum { RF_SMOOTH_THIRD = 10923 };
+static inline int rf_smooth_share(int blur, int least, int over)
 {
     const int above = (blur < 0 ? -blur : blur) - least;
-    const int left = over - (above < 0 ? 0 : above < over ? above : over);
+    const int in = above < 0 ? 0 : above < over ? above : over;
 
-    return (uint16_t)(left * (65535 / over));
+    return in * (65535 / over) * RF_SMOOTH_THIRD >> 16;
 }
 typedef void rf_smooth3_fn(uint16_t *const out[3], const uint16_t *const light[3],
                            const int16_t *blur, ptrdiff_t apart, int least, int over, int n);

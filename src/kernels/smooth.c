@@ -2,31 +2,26 @@
 
 #include <stdlib.h>
 
-static bool is_like(int16_t blur, int16_t own, int least)
+static bool is_like(int16_t blur, int16_t own)
 {
     const int eighth = abs(own) / 8, tolerance = eighth < 256 ? 256 : eighth > 511 ? 511 : eighth;
 
-    return abs(own) > least && abs(blur - own) <= tolerance;
-}
-
-/* Of a pixel, whose neighbours count or not. */
-static uint16_t mean(const uint16_t *light, ptrdiff_t apart, bool before, bool after, uint32_t left)
-{
-    const unsigned count = 1u + before + after;
-    const unsigned sum =
-        light[0] + (before ? light[-apart] : 0u) + (after ? light[apart] : 0u);
-    const unsigned own = light[0], all = (sum + count / 2) / count;
-
-    return (uint16_t)(all > own ? all - ((all - own) * left >> 16)
-                                : all + ((own - all) * left >> 16));
+    return abs(blur - own) <= tolerance;
 }
 
 void rf_smooth1_c(uint16_t *out, const uint16_t *light, const int16_t *blur, ptrdiff_t apart,
                   int least, int over, int n)
 {
-    for (int x = 0; x < n; x++)
-        out[x] = mean(light + x, apart, is_like(blur[x - apart], blur[x], least),
-                      is_like(blur[x + apart], blur[x], least), rf_fade_left(blur[x], least, over));
+    for (int x = 0; x < n; x++) {
+        const int share = rf_smooth_share(blur[x], least, over);
+        int more = 0; /* than like neighbours have */
+
+        if (is_like(blur[x - apart], blur[x]))
+            more += light[x] - light[x - apart];
+        if (is_like(blur[x + apart], blur[x]))
+            more += light[x] - light[x + apart];
+        out[x] = (uint16_t)(light[x] - ((more * share + (1 << 14)) >> 15));
+    }
 }
 
 void rf_smooth3_c(uint16_t *const out[3], const uint16_t *const light[3], const int16_t *blur,

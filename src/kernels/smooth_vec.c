@@ -4,28 +4,20 @@
 
 enum { PIXEL = 256, TWO_PIXELS = 511 };
 
-/* Which neighbours count, in all lanes, and what follows from it. */
+/* Which neighbours do not count, and rf_smooth_share(). */
 struct use {
-    vec_u16 before, after, neither;
-    vec_u16 bias;   /* rounding: 1, and 2 for a mean of two */
-    vec_u16 factor; /* see mean() */
-    vec_u16 left;   /* rf_fade_left(), */
-    bool fades;     /* which is not 0 everywhere */
+    vec_u16 not_before, not_after, share;
 };
 
-/* From which blur on, and how the mean comes in. */
+/* From which blur on, and how the neighbours come in. */
 struct fade {
-    vec_u16 least, over, factor;
-    vec_u16 most; /* blur that it is not wholly there at */
+    vec_u16 least, over, unit;
 };
 
 static inline struct fade fade_of(int least, int over)
 {
-    const int whole = least + over;
-
     return (struct fade){vec_u16_set((uint16_t)least), vec_u16_set((uint16_t)over),
-                         vec_u16_set((uint16_t)(65535 / over)),
-                         vec_u16_set((uint16_t)(whole < 65536 ? whole - 1 : 65535))};
+                         vec_u16_set((uint16_t)(65535 / over))};
 }
 
 /* |s| / 8, from one pixel to two. */
@@ -36,58 +28,32 @@ static inline vec_u16 tolerance(vec_u16 size)
                        vec_u16_set(TWO_PIXELS));
 }
 
-static inline vec_u16 within(vec_u16 a, vec_u16 b, vec_u16 tolerance)
-{
-    return vec_u16_at_most(vec_u16_add(vec_u16_sub(a, b), tolerance),
-                           vec_u16_add(tolerance, tolerance));
-}
-
 static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, const struct fade *fade)
 {
     const vec_u16 s = vec_u16_load(blur);
     /* of s and -s the lesser is |s|, which is below 2^15 */
     const vec_u16 size = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s)), t = tolerance(size);
-    vec_u16 before = within(vec_u16_load(blur - apart), s, t);
-    vec_u16 after = within(vec_u16_load(blur + apart), s, t), left = vec_u16_set(0);
-    bool fades = false;
-
-    if (vec_u16_any(vec_u16_at_most(size, fade->most))) {
-        const vec_u16 narrow = vec_u16_at_most(size, fade->least);
-        const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
-
-        left = vec_u16_sub(fade->over, vec_u16_min(above, fade->over));
-        before = vec_u16_without(before, narrow);
-        after = vec_u16_without(after, narrow);
-        fades = vec_u16_any(vec_u16_without(left, narrow));
-    }
-    const vec_u16 three = vec_u16_and(before, after);
+    const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
+    const vec_u16 in = vec_u16_mul(vec_u16_min(above, fade->over), fade->unit);
 
     return (struct use){
-        .before = before,
-        .after = after,
-        .neither = vec_u16_without(vec_u16_set(0xffff), vec_u16_or(before, after)),
-        .bias = vec_u16_sub(vec_u16_set(1), vec_u16_xor(before, after)),
-        .factor = vec_u16_sub(vec_u16_set(65535), vec_u16_and(three, vec_u16_set(21844))),
-        .left = vec_u16_mul(left, fade->factor),
-        .fades = fades,
+        .not_before = vec_s16_less(t, vec_s16_apart(vec_u16_load(blur - apart), s)),
+        .not_after = vec_s16_less(t, vec_s16_apart(vec_u16_load(blur + apart), s)),
+        .share = vec_u16_mul_high(in, vec_u16_set(RF_SMOOTH_THIRD)),
     };
 }
 
-/* A third of x is (x 43691) >> 17; (x 65535) >> 16 is x - 1, which halves the sum of two plus 2,
- * or of a pixel and itself plus 1, to the mean half up. */
+/* What a pixel has more than its neighbours is at most 2 * 4 * 4095: the share is of signed
+ * lanes. */
 static inline vec_u16 mean(const uint16_t *light, ptrdiff_t apart, const struct use *use)
 {
     const vec_u16 own = vec_u16_load(light);
-    vec_u16 sum = vec_u16_add(own, vec_u16_and(own, use->neither)), all, most;
+    const vec_u16 before = vec_u16_sub(own, vec_u16_load(light - apart));
+    const vec_u16 after = vec_u16_sub(own, vec_u16_load(light + apart));
+    const vec_u16 more = vec_u16_add(vec_u16_without(before, use->not_before),
+                                     vec_u16_without(after, use->not_after));
 
-    sum = vec_u16_add(sum, vec_u16_and(vec_u16_load(light - apart), use->before));
-    sum = vec_u16_add(sum, vec_u16_and(vec_u16_load(light + apart), use->after));
-    all = vec_u16_half(vec_u16_mul_high(vec_u16_add(sum, use->bias), use->factor));
-    if (!use->fades)
-        return all;
-    most = vec_u16_max(all, own);
-    return vec_u16_add(vec_u16_sub(all, vec_u16_mul_high(vec_u16_sub(most, own), use->left)),
-                       vec_u16_mul_high(vec_u16_sub(most, all), use->left));
+    return vec_u16_sub(own, vec_s16_scale(more, use->share));
 }
 
 static void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const light[3],

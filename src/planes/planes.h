@@ -27,9 +27,9 @@ void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan 
 
 /*
  * Step 0, 1 or 2 of the pre-filter for a row of tiles, whose bins are known: where |s|
- * is above above[step] (Q7.8), the mean of three rows, then of three columns, 2^step
- * pixels apart, of those pixels that are within an eighth of its blur (one pixel to
- * two) of the middle one; the light as it is elsewhere. Borders are extended. Step 2
+ * is above above[step] (Q7.8), from three rows, then from three columns, 2^step pixels
+ * apart, a third of the way to those pixels that are within an eighth of its blur (one
+ * pixel to two) of the middle one; the light as it is elsewhere. Borders are extended. Step 2
  * writes what step 1 read, and leaves out what did not change.
  *
  * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps

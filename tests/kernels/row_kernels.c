@@ -73,18 +73,15 @@ static bool alike(int own, int other)
 static uint16_t smoothed(const uint16_t *light, const int16_t *blur, int parameter)
 {
     const int apart = apart_of(parameter), over = over_of(parameter);
-    const int left = over + parameter - abs(blur[0]);
-    int sum = 0, count = 0, mean, off;
+    int64_t part = abs(blur[0]) - parameter, way = 0;
 
-    for (int i = -apart; i <= apart; i += apart) {
-        if (i == 0 || (abs(blur[0]) > parameter && alike(blur[0], blur[i]))) {
-            sum += light[i];
-            count++;
-        }
-    }
-    mean = (2 * sum + count) / (2 * count);
-    off = left > 0 ? (int)((int64_t)abs(mean - light[0]) * left * (65535 / over) / 65536) : 0;
-    return (uint16_t)(mean < light[0] ? mean + off : mean - off);
+    for (int i = -apart; i <= apart; i += apart)
+        if (alike(blur[0], blur[i]))
+            way += light[i] - light[0];
+    part = part < 0 ? 0 : part > over ? over : part;
+    part = part * (65535 / over) * 10923 / 65536;
+    /* halves towards what is less */
+    return (uint16_t)(light[0] - (int)floor((double)(-way * part) / 32768 + 0.5));
 }
 
 static void expect_smooth3(void *const *row, int parameter, int n)

@@ -69,8 +69,8 @@ void twin_destroy(struct twin *t)
     }
 }
 
-/* Along one axis: the mean of a pixel and of those neighbours, `step` pixels away, whose
- * blur is within an eighth, one pixel to two, of its own; the pixel itself where it is
+/* Along one axis: a third of the way from a pixel to each of those neighbours, `step` pixels away,
+ * whose blur is within an eighth, one pixel to two, of its own; the pixel itself where it is
  * blurred by `above` or less, and, of at most 64 rays, a part of both up to 5/4
  * of that. */
 static void smooth(const struct twin *t, double *out, const double *in, int step_x, int step_y,
@@ -79,22 +79,17 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
     for (int y = 0; y < t->height; y++) {
         for (int x = 0; x < t->width; x++) {
             const int p = y * t->width + x;
-            const double part = 4 * (fabs(t->blur[p]) / above - 1);
-            double sum = 0;
-            int count = 0;
+            const double size = fabs(t->blur[p]);
+            const double part = fmin(fmax(4 * (size / above - 1), 0), 1);
+            double way = 0;
 
             for (int i = -1; i <= 1; i++) {
                 const int q = twin_at(t, x + i * step_x, y + i * step_y);
 
-                if (i == 0 || (fabs(t->blur[p]) > above && 
-                               fabs(t->blur[q] - t->blur[p]) <=
-                                   fmin(fmax(fabs(t->blur[p]) / 8, 1), 2))) {
-                    sum += in[q];
-                    count++;
-                }
+                if (fabs(t->blur[q] - t->blur[p]) <= fmin(fmax(size / 8, 1), 2))
+                    way += in[q] - in[p];
             }
-            out[p] = in[p] + (sum / count - in[p]) *
-                                 (t->params->rays > 64 ? 1 : fmin(fmax(part, 0), 1));
+            out[p] = in[p] + way / 3 * (t->params->rays > 64 ? size > above : part);
         }
     }
 }
