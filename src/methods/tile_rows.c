@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 enum {
-    ROW_BLUR = 48, /* times the root of the rays: 1.5 pixels of blur, Q7.8, of 64 of them, */
+    ROW_BLUR = 40, /* times the root of the rays: 1.25 pixels of blur, Q7.8, of 64 of them, */
     LEAST_ROW_BLUR = 256, /* for rows a pixel apart */
     SOFT_BLUR = 640, /* 2.5 pixels */
 };

@@ -2,10 +2,10 @@
  *
  * Where everything in reach is blurred, a picture has no detail as fine as its rows, and some
  * of them are as good as all: a disc of radius s passes less than 0.15 of what changes faster
- * than every 4/3 s pixels. Of 64 rays rows may lie a pixel apart for 1.5 pixels of blur; fewer
- * rays lie farther apart, and so may rows, up to a pixel for one. The rows between are put in
- * along cubics. The first and the last row are always computed, so that tiles meet without a
- * seam and depend on no other.
+ * than every 1.6 s pixels, which rows 0.8 s apart show. So 64 rays have rows a pixel apart for
+ * 1.25 pixels of blur; fewer rays lie farther apart, and so may rows, up to a pixel for one. The
+ * rows between are put in along cubics. The first and the last row are always computed, so that
+ * tiles meet without a seam and depend on no other.
  */
 #ifndef RF_TILE_ROWS_H
 #define RF_TILE_ROWS_H

@@ -246,7 +246,7 @@ static struct rows rows_of(const struct twin *t, const struct sets *sets, double
     static const struct rows sparse[] = {
         {4, {0, 5, 10, 15}}, {6, {0, 3, 6, 9, 12, 15}}, {8, {0, 2, 4, 6, 9, 11, 13, 15}}};
     static const int step[] = {5, 3, 2};
-    const int gap = (int)fmax(48 * sqrt(t->params->rays), 256);
+    const int gap = (int)fmax(40 * sqrt(t->params->rays), 256);
     struct rows all = {TWIN_TILE, {0}};
     int tallest = 1; /* Q15 */
 
