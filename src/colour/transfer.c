@@ -58,13 +58,12 @@ static bool is_code(const struct rf_transfer *transfer, int c, double low, doubl
            transfer->to_code[(int)high] == c;
 }
 
-/* Whether c comes back from its light in Q13, weighed as any pixel that has it. */
-static bool keeps_code(const struct rf_transfer *transfer, const uint16_t weight[256], int c,
-                       int light)
+/* Whether c comes back from its light, weighed as any pixel that has it. */
+static bool keeps_code(const struct rf_transfer *transfer, const uint16_t weight[256], int c)
 {
     for (int most = c; most < 256; most++) {
         const int w = weight[most] >> 3;
-        const double mean = 8192.0 * ((light * w + 2048) >> 12) / w + 0.5;
+        const double mean = 8192.0 * ((2 * transfer->to_light[c] * w + 2048) >> 12) / w + 0.5;
 
         if (!is_code(transfer, c, mean - 0.02, mean + 0.02)) /* means of rays are that near */
             return false;
@@ -72,23 +71,10 @@ static bool keeps_code(const struct rf_transfer *transfer, const uint16_t weight
     return true;
 }
 
-bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256],
-                           uint16_t *odd, int odds)
+bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256])
 {
-    int found = 0;
-
-    for (int c = 0; c < 256; c++) {
-        const int light = 2 * transfer->to_light[c];
-
-        if (weight[c] < 8)
+    for (int c = 0; c < 256; c++)
+        if (weight[c] < 8 || !keeps_code(transfer, weight, c))
             return false;
-        if (keeps_code(transfer, weight, c, light))
-            continue;
-        if (found == odds || !keeps_code(transfer, weight, c, light + 1))
-            return false;
-        odd[found++] = transfer->to_light[c];
-    }
-    while (found < odds)
-        odd[found++] = UINT16_MAX;
     return true;
 }

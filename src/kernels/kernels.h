@@ -274,22 +274,16 @@ typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uin
  * weigh: weights of n pixels of both layers, and their light times weight.
  *
  *     weight = light_weight[min(max(R, G, B), RF_LIGHT_MAX)] / 8                          Q12
- *     light  = round(weight (2 light + 1 where light is one of `odd`))                    Q13
- *              2 round(weight light) of light above 16383
+ *     light  = round(2 weight light), 2 round(weight light) of light above 16383          Q13
  *
  * Light is Q12, at most 8 RF_LIGHT_MAX; halves up. brightest[i] becomes the brightest light of
  * pixels RF_TILE i and after, where it exceeds that.
  */
-enum { RF_ODD_LIGHTS = 4 };
-struct rf_weights {
-    const uint16_t *light_weight; /* RF_LIGHT_MAX + 1, Q15 */
-    uint16_t odd[RF_ODD_LIGHTS];
-};
 struct rf_weigh_job {
     uint16_t *near[3], *far[3];
     uint16_t *near_weight, *far_weight;
     uint16_t *brightest;
-    const struct rf_weights *weights;
+    const uint16_t *light_weight; /* RF_LIGHT_MAX + 1, Q15 */
 };
 typedef void rf_weigh_fn(const struct rf_weigh_job *job, int n);
 

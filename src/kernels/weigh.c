@@ -3,29 +3,23 @@
 
 enum { LARGE = 16384 }; /* twice that is no signed 16-bit number */
 
-static int weigh_light(int light, int weight, const uint16_t odd[RF_ODD_LIGHTS])
+static int weigh_light(int light, int weight)
 {
-    int twice = 2 * light;
-
-    if (light >= LARGE)
-        return (light * weight + 2048) / 4096 * 2;
-    for (int i = 0; i < RF_ODD_LIGHTS; i++)
-        if (light == odd[i])
-            twice = 2 * light + 1;
-    return (twice * weight + 2048) / 4096;
+    return light < LARGE ? (2 * light * weight + 2048) / 4096
+                         : (light * weight + 2048) / 4096 * 2;
 }
 
 /* Pixel x of a layer. */
 static void weigh_pixel(uint16_t *weight, uint16_t *const light[3], uint16_t *brightest,
-                        const struct rf_weights *weights, int x)
+                        const uint16_t *light_weight, int x)
 {
     int most = 0;
 
     for (int c = 0; c < 3; c++)
         most = light[c][x] > most ? light[c][x] : most;
-    weight[x] = weights->light_weight[most < RF_LIGHT_MAX ? most : RF_LIGHT_MAX] >> 3;
+    weight[x] = light_weight[most < RF_LIGHT_MAX ? most : RF_LIGHT_MAX] >> 3;
     for (int c = 0; c < 3; c++) {
-        light[c][x] = (uint16_t)weigh_light(light[c][x], weight[x], weights->odd);
+        light[c][x] = (uint16_t)weigh_light(light[c][x], weight[x]);
         if (light[c][x] > *brightest)
             *brightest = light[c][x];
     }
@@ -36,7 +30,7 @@ void rf_weigh_c(const struct rf_weigh_job *job, int n)
     for (int x = 0; x < n; x++) {
         uint16_t *brightest = &job->brightest[x / RF_TILE];
 
-        weigh_pixel(job->near_weight, job->near, brightest, job->weights, x);
-        weigh_pixel(job->far_weight, job->far, brightest, job->weights, x);
+        weigh_pixel(job->near_weight, job->near, brightest, job->light_weight, x);
+        weigh_pixel(job->far_weight, job->far, brightest, job->light_weight, x);
     }
 }

@@ -22,14 +22,16 @@ static bool are_same(const uint16_t *near, const uint16_t *far)
     return !vec_u16_any(differ);
 }
 
-/* Returns the greater of `brightest` and the light of a tile's row. */
-static vec_u16 multiply(uint16_t *light, const uint16_t *weight, vec_u16 brightest)
+/* Light of a tile's row by weights in Q15, which become those of the plane. Returns the greater of
+ * `brightest` and that light. */
+static vec_u16 multiply(uint16_t *light, uint16_t *weight, const uint16_t *fine,
+                        vec_u16 brightest)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-        const vec_u16 v = vec_u16_load(light + x);
-        const vec_u16 product =
-            vec_s16_scale(vec_u16_add(v, v), rf_eight_times(vec_u16_load(weight + x)));
+        const vec_u16 v = vec_u16_load(light + x), w = vec_u16_load(fine + x);
+        const vec_u16 product = vec_s16_scale(vec_u16_add(v, v), rf_whole_eighths(w));
 
+        vec_u16_store(weight + x, rf_eighth(w));
         vec_u16_store(light + x, product);
         brightest = vec_u16_max(brightest, product);
     }
@@ -53,18 +55,19 @@ static void weigh_tiles(const struct rf_weigh1_job *job, int first, int tiles)
         if (!run.same[i])
             look(run.far + i * RF_TILE, job->far + x);
     }
-    rf_look_up_weights(job->near_weight + first, job->far_weight + first, &run,
-                       job->light_weight, tiles);
+    rf_look_up_weights(&run, job->light_weight, tiles);
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
         uint16_t *most = &job->brightest[x / RF_TILE], here;
         vec_u16 brightest =
-            multiply(job->near + x, job->near_weight + x, vec_u16_set(0));
+            multiply(job->near + x, job->near_weight + x, run.near + i * RF_TILE,
+                     vec_u16_set(0));
 
         if (run.same[i]) {
             copy(job->far_weight + x, job->near_weight + x);
             copy(job->far + x, job->near + x);
         } else {
-            brightest = multiply(job->far + x, job->far_weight + x, brightest);
+            brightest = multiply(job->far + x, job->far_weight + x, run.far + i * RF_TILE,
+                                 brightest);
         }
         here = vec_u16_greatest(brightest);
         *most = here > *most ? here : *most;

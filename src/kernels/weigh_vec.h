@@ -11,21 +11,39 @@
  * vector of values that were just stored apart would wait for them. */
 enum { RF_WEIGH_TILES = 16, RF_WEIGH_RUN = RF_WEIGH_TILES * (int)RF_TILE };
 
-/* Of a run, what its weights go by: of the background only where it is not what is seen. */
+/* Of a run, what its weights go by, light, white at most, and then they; of the background only
+ * where it is not what is seen. */
 struct rf_weigh_run {
-    uint16_t near[RF_WEIGH_RUN], far[RF_WEIGH_RUN]; /* light, white at most */
+    uint16_t near[RF_WEIGH_RUN], far[RF_WEIGH_RUN];
     bool same[RF_WEIGH_TILES];
 };
 
-static inline void rf_look_up_weights(uint16_t *near_weight, uint16_t *far_weight,
-                                      const struct rf_weigh_run *run,
-                                      const uint16_t *light_weight, int tiles)
+static inline void rf_look_up_tile(uint16_t *restrict v, const uint16_t *restrict light_weight)
 {
-    for (int x = 0; x < tiles * RF_TILE; x++)
-        near_weight[x] = light_weight[run->near[x]] >> 3;
-    for (int i = 0; i < tiles; i++)
-        for (int x = i * RF_TILE; !run->same[i] && x < (i + 1) * RF_TILE; x++)
-            far_weight[x] = light_weight[run->far[x]] >> 3;
+#pragma GCC unroll 16
+    for (int x = 0; x < RF_TILE; x++)
+        v[x] = light_weight[v[x]];
+}
+
+static inline void rf_look_up_weights(struct rf_weigh_run *run, const uint16_t *light_weight,
+                                      int tiles)
+{
+    for (int i = 0; i < tiles; i++) {
+        rf_look_up_tile(run->near + i * RF_TILE, light_weight);
+        if (!run->same[i])
+            rf_look_up_tile(run->far + i * RF_TILE, light_weight);
+    }
+}
+
+/* A weight in Q15 to Q12, and that in Q15 again. */
+static inline vec_u16 rf_eighth(vec_u16 weight)
+{
+    return vec_u16_half(vec_u16_half(vec_u16_half(weight)));
+}
+
+static inline vec_u16 rf_whole_eighths(vec_u16 weight)
+{
+    return vec_u16_without(weight, vec_u16_set(7));
 }
 
 static inline vec_u16 rf_eight_times(vec_u16 weight)

@@ -12,7 +12,7 @@ static void weigh(const struct refocus_renderer *r, int x, int y, uint16_t *brig
         .near_weight = r->weight + y * r->weight_stride + x,
         .far_weight = (uint16_t *)r->behind.blur + at,
         .brightest = brightest,
-        .weights = &r->weights,
+        .light_weight = r->light_weight,
     };
 
     for (int c = 0; c < 3; c++) {

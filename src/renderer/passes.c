@@ -40,9 +40,7 @@ void rf_set_weights(struct rf_frame *f)
         rf_highlight_weights(weight, sigma);
         for (int light = 0; light <= RF_LIGHT_MAX; light++)
             r->light_weight[light] = weight[transfer->to_code[4 * light]];
-        r->weights.light_weight = r->light_weight;
-        r->keep_codes =
-            rf_weights_keep_codes(transfer, weight, r->weights.odd, RF_ODD_LIGHTS);
+        r->keep_codes = rf_weights_keep_codes(transfer, weight);
         r->weight_sigma = sigma;
         r->weight_blend = r->blend;
     }

@@ -234,7 +234,6 @@ struct refocus_renderer {
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
-    struct rf_weights weights; /* the same for `weigh`, */
     bool keep_codes;           /* which may be used */
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
