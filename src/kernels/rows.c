@@ -39,7 +39,7 @@ static void spread(uint16_t *restrict out, const uint16_t *restrict in, int step
                    int n)
 {
     for (int x = 0; x < n; x++)
-        out[x] = max16(in[x], max16(less(in[x - step], fall), less(in[x + step], fall)));
+        out[x] = max16(in[x], less(max16(in[x - step], in[x + step]), fall));
 }
 
 static uint16_t *RF_VEC(rf_spread_row)(uint16_t *row, uint16_t *spare, int reach, int n)
@@ -59,8 +59,7 @@ static uint16_t *RF_VEC(rf_spread_row)(uint16_t *row, uint16_t *spare, int reach
 static void RF_VEC(rf_dilate_from)(uint16_t *restrict row, const uint16_t *restrict before, int n)
 {
     for (int x = 0; x < n; x++) {
-        const uint16_t slant = max16(less(before[x - 1], RF_CONE_DIAGONAL),
-                                     less(before[x + 1], RF_CONE_DIAGONAL));
+        const uint16_t slant = less(max16(before[x - 1], before[x + 1]), RF_CONE_DIAGONAL);
 
         row[x] = max16(row[x], max16(slant, less(before[x], RF_CONE_STEP)));
     }
