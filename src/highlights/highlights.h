@@ -1,19 +1,20 @@
 /* highlights.h: light that the photo's white point cut off, given back to small lamps.
  *
  * A lamp out of focus is a disc whose brightness is the lamp's, spread over the disc.
- * In the photo the lamp is clipped to white, so its disc comes out grey. Pixels are
- * taken for clipped lamps when they are nearly white and stand alone: many times
- * brighter than what is around them. Never large clipped areas: a white wall is just
- * white.
+ * In the photo the lamp is clipped to white, so its disc comes out grey. Clipped pixels
+ * that hang together are taken for a lamp when there are few of them, many times brighter
+ * than what is around them, with a steep rim. Never large clipped areas: a white wall is
+ * just white.
  *
- *     level      ramp of max(R, G, B) from 0.94 to 1
- *     isolation  ramp of luminance / mean luminance of the 25x25 pixels around, 3 to 6
- *     steepness  ramp of clipped / half lit pixels in 7x7 around, 2 to 4
- *     added      (gain - 1) * level * isolation * steepness * hue
+ *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing
+ *     isolation  ramp of mean luminance / that of all else up to 12 pixels away, 3 to 6
+ *     steepness  ramp of pixels of the edge / half lit ones beside them, 1.67 to 2.5
+ *     added      (gain - 1) * level * isolation * steepness * hue, of each channel
  *
- * The hue is that of the lamp's rim: the pixels around that are brighter than their
- * surroundings but not clipped. What is added acts on pixels that are blurred; the
- * sharp ones stay as they are.
+ * The hue is that of the lamp's rim: what the pixels beside it have more than its
+ * surroundings. Of what is higher or wider than RF_LAMP_SIDE, tubes and rows of lamps,
+ * each pixel is judged by the 25 x 25 and 7 x 7 pixels around it. What is added acts on
+ * pixels that are blurred; the sharp ones stay as they are.
  */
 #ifndef RF_HIGHLIGHTS_H
 #define RF_HIGHLIGHTS_H
@@ -34,8 +35,10 @@ struct rf_highlight {
 };
 
 /* Highlights are looked for in parts of so many rows, each with room for one pixel in
- * 32; further ones, row by row, stay as they are. */
+ * 32; further ones, farther down, stay as they are. */
 enum {
+    RF_LAMP_SIDE = 24,   /* pixels that a lamp is high and wide at most */
+    RF_LAMP_MARGIN = 48, /* that are looked at around a rectangle */
     RF_LAMP_ROWS = 64,
     RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS
 };
@@ -59,12 +62,15 @@ static inline uint32_t rf_lamp_capacity(int width)
 void rf_forget_highlights(struct refocus_renderer *r);
 
 /* Add those of a rectangle of the window, in r->blend, to the lists of the parts of the
- * photo in use. Pixels 12 away from it are looked at. Rectangles of different parts may
- * run at once. `scratch` is rf_scratch() of the worker. */
+ * photo in use, in any order. Pixels RF_LAMP_MARGIN away from it are looked at. Rectangles
+ * of different parts may run at once. `scratch` is rf_scratch() of the worker. */
 void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect,
                         uint16_t *scratch);
 
-/* Put lists that were found in several rectangles in the order of the rows. */
+/* Add one. Of more than there is room for the first stay, by rows, in whichever order they come. */
+void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp);
+
+/* Put what was found in the order of the rows. */
 void rf_sort_highlights(struct refocus_renderer *r);
 
 /* In the window, for the lens setting of r->front.blur and r->bins: tell edges from

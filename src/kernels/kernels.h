@@ -309,10 +309,6 @@ typedef void rf_weigh_chroma_fn(uint16_t *chroma, const uint16_t *weight, int n)
 typedef void rf_weighed_means_fn(uint16_t *mean, const uint32_t *sum, const uint32_t *weight,
                                  int n);
 
-/* luminance: Rec. 709 in Q11, (218 R + 732 G + 74 B) / 2048 half up. */
-typedef void rf_luminance_fn(uint16_t *out, const uint16_t *red, const uint16_t *green,
-                             const uint16_t *blue, int n);
-
 /* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (methods/tile_rows.h), by
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
@@ -529,7 +525,6 @@ struct rf_kernels {
     rf_weigh1_fn *weigh1;
     rf_weigh_chroma_fn *weigh_chroma;
     rf_weighed_means_fn *weighed_means;
-    rf_luminance_fn *luminance;
     rf_between_rows_fn *between_rows;
     rf_find_thin_fn *find_thin;
     rf_soften_fn *soften;

@@ -212,14 +212,6 @@ static void RF_VEC(rf_lay_veil)(uint16_t *const mean[3],
     }
 }
 
-static void RF_VEC(rf_luminance)(uint16_t *restrict out, const uint16_t *restrict red,
-                                 const uint16_t *restrict green,
-                                 const uint16_t *restrict blue, int n)
-{
-    for (int x = 0; x < n; x++)
-        out[x] = (uint16_t)((218u * red[x] + 732u * green[x] + 74u * blue[x] + 1024) >> 11);
-}
-
 static inline uint16_t max16(uint16_t a, uint16_t b)
 {
     return a > b ? a : b;
@@ -255,7 +247,6 @@ static uint16_t RF_VEC(rf_tile_brightest)(const uint16_t *const light[3], ptrdif
 
 void RF_VEC(rf_light_use)(struct rf_kernels *kernels)
 {
-    kernels->luminance = RF_VEC(rf_luminance);
     kernels->between_rows = RF_VEC(rf_between_rows);
     kernels->soften = RF_VEC(rf_soften);
     kernels->lay_veil = RF_VEC(rf_lay_veil);

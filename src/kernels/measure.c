@@ -79,11 +79,6 @@ static void weighted_means(const struct rf_kernels *k, struct rows *r)
         k->weighted_means(r->shorts[6], r->wide[0], r->wide[1], RF_TILE * RF_TILE);
 }
 
-static void luminance(const struct rf_kernels *k, struct rows *r)
-{
-    k->luminance(r->shorts[6], r->shorts[0], r->shorts[1], r->shorts[2], N);
-}
-
 static void blend4(const struct rf_kernels *k, struct rows *r)
 {
     const uint16_t *const row[4] = {r->shorts[0], r->shorts[1], r->shorts[2], r->shorts[3]};
@@ -154,7 +149,6 @@ static const struct {
     {"pull", "pixel", pull, N},
     {"means", "pixel", means, N},
     {"weighted_means", "pixel", weighted_means, N},
-    {"luminance", "pixel", luminance, N},
     {"blend4", "pixel", blend4, N},
     {"lean3", "pixel", lean3, N},
     {"series_row", "pixel", series_row, N},

@@ -108,16 +108,18 @@ static void find_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     struct rf_photo *photo = &r->photo[0];
+    const int less = RF_LAMP_MARGIN - r->in_place.margin; /* on either side, so that there is room */
+    const int size = r->in_place.block - (less > 0 ? 2 * less : 0);
 
     if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
         return;
     photo->highlights_blend = RF_NO_BLEND;
     r->used = 0;
     rf_forget_highlights(r);
-    for (int i = 0; i < blocks(r, r->in_place.block) && !rf_cancelled(r); i++) {
-        const struct rf_rect block = block_of(r, r->in_place.block, i);
+    for (int i = 0; i < blocks(r, size) && !rf_cancelled(r); i++) {
+        const struct rf_rect block = block_of(r, size, i);
 
-        load(r, around(r, block, RF_TILE));
+        load(r, around(r, block, RF_LAMP_MARGIN));
         if (!rf_cancelled(r))
             find_in_block(r, block);
     }

@@ -316,6 +316,7 @@ static void find_highlights(struct rf_frame *f)
     photo->highlights_blend = RF_NO_BLEND;
     rf_forget_highlights(r);
     rf_pool_run(&r->pool, find_part, f, rf_lamp_parts(r->height));
+    rf_sort_highlights(r);
     photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
 }
 

@@ -285,23 +285,6 @@ static void expect_at_most(void *const *row, int parameter, int n)
             value[x] = (uint16_t)parameter;
 }
 
-static void run_luminance(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    (void)parameter;
-    k->luminance(row[0], row[1], row[2], row[3], n);
-}
-
-static void expect_luminance(void *const *row, int parameter, int n)
-{
-    const uint16_t *r = row[1], *g = row[2], *b = row[3];
-    uint16_t *out = row[0];
-
-    (void)parameter;
-    for (int x = 0; x < n; x++)
-        out[x] = (uint16_t)((218 * (int64_t)r[x] + 732 * (int64_t)g[x] + 74 * (int64_t)b[x]) /
-                                1024 + 1) / 2;
-}
-
 static void run_smooth1(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
     k->smooth1(row[0], row[1], row[2], apart_of(parameter), parameter, over_of(parameter), n);
@@ -429,7 +412,5 @@ const struct row_kernel row_kernels[] = {
      run_pull_blur, expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
     {"at_most", 1, {{LIGHT, 1, 0, 0}}, 0, UINT16_MAX, run_at_most, expect_at_most},
-    {"luminance", 4, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}},
-     0, 0, run_luminance, expect_luminance},
 };
 const int row_kernel_count = sizeof row_kernels / sizeof row_kernels[0];
