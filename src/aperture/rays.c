@@ -1,11 +1,12 @@
 /* rays.c: ray samples from an aperture.
  *
  * N rays of equal share. A disc takes Vogel's spiral: ray n at radius sqrt((n + 1/2) /
- * N) and n golden turns. A polygon takes the same spiral, its circles drawn onto the
- * polygon so that equal areas stay equal; so does any other outline, by its triangles,
- * and where light is not spread evenly the radii are those of equal light. A mask takes
- * N points at equal steps of light along a Hilbert curve over it, then a few steps of
- * Lloyd's relaxation.
+ * N) and n golden turns; for the sizes that tiles choose from, points of it that were
+ * moved so that their projections are even as well (tables/rays.py). A polygon takes the
+ * spiral, its circles drawn onto the polygon so that equal areas stay equal; so does any
+ * other outline, by its triangles, and where light is not spread evenly the radii are
+ * those of equal light. A mask takes N points at equal steps of light along a Hilbert
+ * curve over it, then a few steps of Lloyd's relaxation.
  *
  * In every case (u, v) is minus the place on the mask as it is drawn; see
  * refocus/aperture.h.
@@ -15,6 +16,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "tables/rays.inc"
 
 static int16_t to_q15(double x)
 {
@@ -47,6 +50,14 @@ static void vogel(int n, int count, double *radius, double *turns)
 
 static void disc_rays(int count, struct refocus_ray *rays)
 {
+    for (size_t i = 0; i < sizeof disc_sets / sizeof disc_sets[0]; i++)
+        if (disc_sets[i].count == count) {
+            const int16_t(*const point)[2] = disc_points + disc_sets[i].first;
+
+            for (int n = 0; n < count; n++)
+                rays[n] = (struct refocus_ray){(int16_t)-point[n][0], (int16_t)-point[n][1], 255};
+            return;
+        }
     for (int n = 0; n < count; n++) {
         double r, t, s, c;
 

@@ -103,14 +103,14 @@ static double light_of(int code)
 static void wire(void **state)
 {
     static uint8_t out[MOST];
-    const double s = (double)K * (NEAR - FAR) / 65535, wide = 3, pi = 3.14159265358979;
+    const double s = (double)K * (NEAR - FAR) / 65535, wide = 1, pi = 3.14159265358979;
     struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
     double sum = 0, worst = 0, worst_rays = 0;
     struct setting rays = plain;
 
     (void)state;
     for (int y = 0; y < HEIGHT; y++) {
-        for (int x = 168; x <= 170; x++) {
+        for (int x = 169; x <= 169; x++) {
             memset(p.rgb + 3 * (y * WIDTH + x), 220, 3);
             p.disparity[y * WIDTH + x] = NEAR;
         }
