@@ -29,17 +29,26 @@ struct sight {
     int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
 };
 
-/* Of one side of the focus, a ray's coordinates apart. */
+/* Of one side of the focus, coordinates of rays apart: those of the set, or made for the tile. */
 struct aims {
-    int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK];
+    const int16_t *u, *v;
+    int16_t memory[2][RF_RAY_CHUNK];
 };
 
-static void set_aims(struct aims *aims, const struct refocus_ray *ray, int rays)
+static void set_aims(struct aims *aims, const struct rf_ray_set *set, int first,
+                     const struct refocus_ray *ray, int rays)
 {
-    for (int n = 0; n < rays; n++) {
-        aims->u[n] = ray[n].u;
-        aims->v[n] = ray[n].v;
+    if (ray == set->ray + first && set->u) {
+        aims->u = set->u + first;
+        aims->v = set->v + first;
+        return;
     }
+    for (int n = 0; n < rays; n++) {
+        aims->memory[0][n] = ray[n].u;
+        aims->memory[1][n] = ray[n].v;
+    }
+    aims->u = aims->memory[0];
+    aims->v = aims->memory[1];
 }
 
 static void set_sight(struct sight *sight, const struct rf_frame *f,
@@ -51,9 +60,9 @@ static void set_sight(struct sight *sight, const struct rf_frame *f,
     struct aims own[2];
 
     rf_tile_rays_get(rays, first, sight->rays, &sides);
-    set_aims(&own[0], sides.behind, sight->rays);
+    set_aims(&own[0], rays->set, first, sides.behind, sight->rays);
     if (sides.before != sides.behind)
-        set_aims(&own[1], sides.before, sight->rays);
+        set_aims(&own[1], rays->set, first, sides.before, sight->rays);
     for (int k = 0; k <= plan->slabs; k++) {
         const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
         const int seen = rf_scaled_blur(rays, blur);
@@ -164,6 +173,15 @@ static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *pl
                     (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE}, run);
 }
 
+static void clear_run(const struct rf_frame *f, union tally *run, int lanes)
+{
+    for (int c = 0; c < (f->weighted ? 4 : 3); c++)
+        if (has_wide_sums(f))
+            memset(run->weighted[c], 0, (size_t)lanes * sizeof run->weighted[c][0]);
+        else
+            memset(run->sum[c], 0, (size_t)lanes * sizeof run->sum[c][0]);
+}
+
 /* A run of rays of equal weight is at its end: it counts that often. */
 static void add_run(const struct rf_frame *f, const union tally *run, uint64_t ray_weight,
                     uint64_t rays, struct rf_sums *sums)
@@ -190,10 +208,10 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     const struct rf_ray_set *set = tile_rays->set;
     const int behind = behind_of(r, tx, ty);
     struct sight sight;
-    const size_t used = has_wide_sums(f) ? sizeof run->weighted : sizeof run->sum;
+    const int lanes = rows.count * RF_TILE;
     int rays = 0; /* in this run */
 
-    memset(run, 0, used);
+    clear_run(f, run, lanes);
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
@@ -206,7 +224,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
         if (!set->equal &&
             (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight)) {
             add_run(f, run, ray->weight, (uint64_t)rays, sums);
-            memset(run, 0, used);
+            clear_run(f, run, lanes);
             rays = 0;
         }
     }
