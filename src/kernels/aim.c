@@ -56,6 +56,14 @@ struct sight {
     uint16_t bare[RF_RAY_CHUNK], same[RF_RAY_CHUNK];
 };
 
+/* Whether the background shows all of a slab where it shows what is deepest. */
+static bool is_thin(const struct rf_slab *slab)
+{
+    const int low = slab->low, high = low + slab->width;
+
+    return slab->width <= rf_bare_depth(low > 0 ? low : high < 0 ? high : 0);
+}
+
 /* Slab k. Returns whether any ray is still open. */
 static bool meet_slab(struct state *restrict s, const struct rf_sort_job *job, int k,
                       const struct sight *restrict sight)
@@ -65,7 +73,7 @@ static bool meet_slab(struct state *restrict s, const struct rf_sort_job *job, i
     const int16_t low = job->slab[k].low, high = (int16_t)(low + job->slab[k].width);
     const uint16_t bit = (uint16_t)(1 << k % BITS), before = k % BITS ? bit / 2 : 0;
     const uint16_t may_join = job->joined[k] ? 0xffff : 0, slab = (uint16_t)k;
-    const uint16_t may_pass = job->beneath ? 0xffff : 0;
+    const uint16_t may_pass = mask(job->beneath && is_thin(&job->slab[k]));
     uint16_t *restrict first = s->first[k / BITS], *restrict joined = s->joined[k / BITS];
     uint16_t *restrict open = s->open, *restrict tests = s->tests, *restrict last = s->last;
     uint16_t *restrict beneath = s->beneath;

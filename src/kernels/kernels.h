@@ -34,7 +34,7 @@ enum { RF_RAY_CHUNK = 64, RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
  * 2 (n + 2 border + RF_WINDOW_X - 1) long. RF_BARE is clear.
  *
  * A window is bare where the background layer shows of what is deepest in it just what the picture
- * shows: nothing within RF_BARE_DEPTH, which is more than a slab, of the greatest blur is marked
+ * shows: nothing within rf_bare_depth(), which is more than a slab, of the greatest blur is marked
  * as foreground.
  *
  * foreground: one row of n cells, as cells: the greatest blur of those pixels whose background has
@@ -43,7 +43,13 @@ enum { RF_RAY_CHUNK = 64, RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
  * what it should be. The scratch is n + 2 border + RF_WINDOW_X - 1 long.
  */
 enum { RF_CELL = 4, RF_WINDOW_X = RF_TILE / RF_CELL + 1, RF_WINDOW_Y = RF_STRIP / RF_CELL + 1 };
-enum { RF_BARE = 1 << 16, RF_BARE_DEPTH = 320 };
+enum { RF_BARE = 1 << 16 };
+static inline int rf_bare_depth(int blur)
+{
+    const int size = blur < 0 ? -blur : blur, part = (size >> 3) + (size >> 5) - 256;
+
+    return part > 320 ? part : 320;
+}
 static inline int16_t rf_lesser(int16_t a, int16_t b)
 {
     return a < b ? a : b;
@@ -98,7 +104,7 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
  * would all hit, or lead to the same light. Only where `beneath` is set are deepest slabs that are
  * bare not tested: what is in the slab has the same light in the background, and what is not is
  * nearer and was not met, so that the ray passes beneath it, most likely to this slab. A third of
- * all tests is of that kind.
+ * all tests is of that kind. Slabs wider than the least rf_bare_depth() of their blurs are tested.
  */
 enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 

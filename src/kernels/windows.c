@@ -124,7 +124,7 @@ static void RF_VEC(rf_bare)(uint32_t *restrict range,
     repeat_ends(scratch + border, n, border, border + RF_WINDOW_X - 1);
     for (int x = 0; x < n + 2 * border; x++) {
         const int most = (int32_t)range[x] >> 16 & ~1;
-        const int bare = greatest_from(scratch, x) < most - RF_BARE_DEPTH;
+        const int bare = greatest_from(scratch, x) < most - rf_bare_depth(most);
 
         range[x] = (range[x] & ~(uint32_t)RF_BARE) | (uint32_t)bare << 16;
     }

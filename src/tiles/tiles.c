@@ -4,7 +4,12 @@
 
 #include "tiles/ranges.h"
 
-enum { HALF = 128, OVERLAP = 32 }; /* Q7.8 pixels */
+enum {
+    HALF = 128, /* Q7.8 pixels, as all of these */
+    OVERLAP = 32,
+    WIDE = 16 * 256,     /* where slabs begin to be wider than a pixel */
+    MOST_SPREAD = 61440, /* of blurs, so that no slab of up to 16 is met modulo 2^16 */
+};
 
 struct rf_bin_scale rf_bin_scale_of(float largest_blur)
 {
@@ -198,8 +203,9 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
                       slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
 }
 
-/* Cover the occupied bins from the near side. Slabs are a pixel wide, and half of that
- * where the blur is small and a pixel would show. The blurs below half a pixel are a slab
+/* Cover the occupied bins from the near side. Slabs are a pixel wide, half of that where
+ * the blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on,
+ * where rays lie farther apart than what is off by half of that. The blurs below half a pixel are a slab
  * of their own with offset 0, which nothing else may take: they stay as they are. */
 static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
                   struct rf_tile_plan *plan)
@@ -223,6 +229,8 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
         low = edge_of(scale, bin);
         if (pixel > 1 && low > -3 * 256 && low < 3 * 256)
             end = bin + pixel / 2;
+        if (abs(low) >= WIDE && bins->most - bins->least < MOST_SPREAD)
+            end = bin + (int)((int64_t)pixel * (2 * abs(low) - WIDE) / WIDE);
         if (bin < scale.focus && end > scale.focus)
             end = scale.focus;
         for (int b = bin; b < end && b < RF_BINS; b++)

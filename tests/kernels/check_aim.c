@@ -162,6 +162,19 @@ static struct seen seen_by(const struct sight *s, int k, int n)
     return seen;
 }
 
+/* The least rf_bare_depth() of blurs from low to high. */
+static int depth_in(int low, int high)
+{
+    int least = INT16_MAX;
+
+    for (int blur = low; blur <= high; blur++) {
+        const int depth = abs(blur) / 8 + abs(blur) / 32 - 256;
+
+        least = depth < least ? depth : least;
+    }
+    return least < 320 ? 320 : least;
+}
+
 /* Ray n of the job becomes the m-th if it has as many tests as `wanted`, or more where
  * that is the last class. Returns whether. */
 static bool expect_ray(struct sight *s, int n, int m, int wanted)
@@ -183,7 +196,7 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
             tests -= beside;
             break;
         }
-        if (s->job.beneath && seen.bare && seen.high <= to) {
+        if (s->job.beneath && seen.bare && seen.high <= to && to - from <= depth_in(from, to)) {
             expect_last(s, n, m, k, true);
             break;
         }

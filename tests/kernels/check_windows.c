@@ -3,6 +3,7 @@
 #include "check.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "guarded.h"
 
@@ -133,6 +134,14 @@ static bool check_foreground(const struct subject *subject, struct stage *s, int
     return guarded_intact(&s->most[0]);
 }
 
+/* 5/32 of a blur less a pixel, 5/4 of one at least. */
+static int depth_of(int blur)
+{
+    const int depth = abs(blur) / 8 + abs(blur) / 32 - 256;
+
+    return depth < 320 ? 320 : depth;
+}
+
 static bool check_bare(const struct subject *subject, struct stage *s, int n, enum place place,
                        uint32_t seed)
 {
@@ -159,7 +168,7 @@ static bool check_bare(const struct subject *subject, struct stage *s, int n, en
 
             high = v > high ? v : high;
         }
-        should = (before[x] & ~(uint32_t)RF_BARE) | (high < most - RF_BARE_DEPTH ? RF_BARE : 0);
+        should = (before[x] & ~(uint32_t)RF_BARE) | (high < most - depth_of(most) ? RF_BARE : 0);
         if (range[x] != should)
             return fail(subject, "bare", first, n, x, (long)range[x], (long)should);
     }

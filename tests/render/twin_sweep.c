@@ -116,8 +116,8 @@ static struct slab slab_over(const struct bins *bins, double width, int bin, int
     return slab;
 }
 
-/* Slabs a pixel wide from the near side on, half as wide below 3 pixels of blur; one for
- * all that is in focus. */
+/* Slabs a pixel wide from the near side on, half as wide below 3 pixels of blur, an eighth of the
+ * blur less a pixel from 16 on; one for all that is in focus. */
 static struct plan cover(const struct bins *bins, double width)
 {
     const int pixel = (int)(1 / width);
@@ -139,6 +139,8 @@ static struct plan cover(const struct bins *bins, double width)
         }
         if (pixel > 1 && low > -3 && low < 3)
             end = bin + pixel / 2;
+        if (fabs(low) >= 16)
+            end = bin + (int)floor(pixel * (fabs(low) / 8 - 1));
         if (bin < FOCUS_BIN && end > FOCUS_BIN)
             end = FOCUS_BIN;
         for (int i = bin; i < end && i < BINS; i++)

@@ -47,6 +47,12 @@ static struct twin_cell window(const struct twin_cells *cells, int x, int y)
     return all;
 }
 
+/* More than a slab is wide. */
+static double bare_depth(double blur)
+{
+    return fmax(1.25, fabs(blur) * 5 / 32 - 1);
+}
+
 bool twin_is_deepest(const struct twin_cells *cells, struct twin_strip strip, int dx, int dy,
                      double low, double high)
 {
@@ -58,7 +64,9 @@ bool twin_is_deepest(const struct twin_cells *cells, struct twin_strip strip, in
 
         least = fmin(least, seen.least);
         most = fmax(most, seen.most);
-        bare = bare && seen.foreground < seen.most - 1.25;
+        bare = bare && seen.foreground < seen.most - bare_depth(seen.most);
     }
+    if (high - low > bare_depth(low > 0 ? low : high < 0 ? high : 0))
+        return false;
     return bare && most >= low && most <= high && least < low;
 }
