@@ -8,11 +8,12 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1]
 
-# run in quality.md; method and options in performance.md; what it is
+# run in quality.md; method and options in performance.md, or a quality of the portrait; what it is
 ROWS = [
     ("input", None, "the untouched photo"),
-    ("sweep", ("sweep", "--rays 64"), "`sweep`, 64 rays: the default"),
-    ("sweep", ("sweep", "--rays 64 --cpu c"), "the same in plain C"),
+    ("standard", ("quality", "standard"), "`sweep`, quality `standard`: the default"),
+    ("standard", ("sweep", "--rays 64 --cpu c"), "the same in plain C"),
+    ("best", ("quality", "best"), "`sweep`, quality `best`"),
     ("search-T1-full", ("search", "--rays full --iterations 1", None),
      "`search`, one test, every ray: the paper"),
     ("search-T2", ("search", "--rays 64 --iterations 2"), "`search`, two tests, 64 rays"),
@@ -40,6 +41,10 @@ def times():
         row = cells(line)
         if line.startswith("| `"):
             found[row[0].strip("`"), row[1], int(row[2])] = row[6]
+    for line in page.split("## Qualities")[1].split("\n<!--")[0].splitlines():
+        row = cells(line)
+        if line.startswith("| portrait | 720x540 |"):
+            found["quality", row[3], 1], found["quality", row[3], 2] = row[7:9]
     machine = next(line for line in lines if "logical processors" in line)
     return found, machine
 
