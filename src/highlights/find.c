@@ -216,8 +216,8 @@ static void look_at_rim(const struct refocus_renderer *r, const struct shape *sh
     uint64_t wide[MOST + 2] = {0}; /* from a row before it on */
 
     for (int j = 0; j < shape->rows; j++) {
-        const uint64_t own = shape->row[j];
-        const uint64_t inner = own << 1 & own >> 1 & shape->row[j + 1] & (j ? shape->row[j - 1] : 0);
+        const uint64_t own = shape->row[j], above = j > 0 ? shape->row[j - 1] : 0;
+        const uint64_t inner = own << 1 & own >> 1 & above & shape->row[j + 1];
 
         lit->edge += __builtin_popcountll(own & ~inner);
         for (int i = 0; i < 3; i++)
@@ -256,7 +256,8 @@ static void added_of(const int64_t rim[3], int added[3])
  * A pixel that is lit in part by a lamp of L times white still clips down to a share of 0.94 / L,
  * and is half lit only from there to 0.4 / L: the brighter, the fewer of the pixels beside the edge
  * are half lit. At L = 1 it is 0.54 of those that are lit in part, of which there are somewhat more
- * than the edge has: never less than 0.6 of the edge. White paint and the shine of rounded things fade out over many.
+ * than the edge has: never less than 0.6 of the edge. White paint and the shine of rounded things
+ * fade out over many.
  */
 static int steepness(int edge, int half_lit)
 {
@@ -389,9 +390,11 @@ static void take_rest(const struct search *s, int y)
     }
 }
 
+/* From where on shapes begin that a row of the rectangle, or one that is_full() asks for, is of:
+ * what is cleared there is so whichever rectangle it is. */
 void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect, uint16_t *scratch)
 {
-    const int first = rect.y0 >= MOST ? rect.y0 - MOST + 1 : 0;
+    const int before = MOST + BEFORE - 1, first = rect.y0 > before ? rect.y0 - before : 0;
     struct search s = {r,       &r->photo[r->used],           rect,
                        scratch, r->width / 16 + 2 * PAD + 2, first - BEFORE};
 
