@@ -121,9 +121,9 @@ struct way {
 
 /* The tests of ray n, which becomes the m-th. */
 static ALWAYS_INLINE void place_tests(struct rf_sorted_rays *restrict sorted,
-                               const struct rf_sort_job *restrict job,
-                               const struct state *restrict s, int n, int m, const int tests,
-                               const struct way way)
+                                      const struct rf_sort_job *restrict job,
+                                      const struct state *restrict s, int n, int m, const int tests,
+                                      const struct way way)
 {
     uint32_t need = s->first[0][n];
 
@@ -150,8 +150,8 @@ static ALWAYS_INLINE void place_tests(struct rf_sorted_rays *restrict sorted,
 
 /* What it sees where no test hits. */
 static ALWAYS_INLINE void place_last(struct rf_sorted_rays *restrict sorted,
-                              const struct rf_sort_job *restrict job,
-                              const struct state *restrict s, int n, int m, const struct way way)
+                                     const struct rf_sort_job *restrict job,
+                                     const struct state *restrict s, int n, int m, const struct way way)
 {
     const uint16_t *const light[2] = {job->front, job->behind};
     const size_t last = s->last[n], behind = s->beneath[n];
@@ -175,9 +175,9 @@ static ALWAYS_INLINE void place_last(struct rf_sorted_rays *restrict sorted,
 
 /* Rays order[first] to order[end - 1], whose tests are as many, or as the state says. */
 static ALWAYS_INLINE void place_some(struct rf_sorted_rays *restrict sorted,
-                              const struct rf_sort_job *restrict job,
-                              const struct state *restrict s, const uint8_t *restrict order,
-                              int first, int end, const int tests, const struct way way)
+                                     const struct rf_sort_job *restrict job,
+                                     const struct state *restrict s, const uint8_t *restrict order,
+                                     int first, int end, const int tests, const struct way way)
 {
     for (int m = first; m < end; m++) {
         const int n = order[m], own = tests < 0 ? s->tests[n] : tests;
@@ -189,9 +189,10 @@ static ALWAYS_INLINE void place_some(struct rf_sorted_rays *restrict sorted,
 }
 
 /* Counts lie in bytes of a word, as chains of memory accesses would take longer. */
-static ALWAYS_INLINE void put_in_order(struct rf_sorted_rays *restrict sorted, uint8_t *restrict order,
-                                const struct rf_sort_job *restrict job,
-                                const struct state *restrict s, const struct way way)
+static ALWAYS_INLINE void put_in_order(struct rf_sorted_rays *restrict sorted,
+                                       uint8_t *restrict order,
+                                       const struct rf_sort_job *restrict job,
+                                       const struct state *restrict s, const struct way way)
 {
     const int first = way.shared ? job->shared : 0;
     uint64_t count = 0, at, first_count;
@@ -221,8 +222,8 @@ static ALWAYS_INLINE void put_in_order(struct rf_sorted_rays *restrict sorted, u
 }
 
 static ALWAYS_INLINE void place_all(struct rf_sorted_rays *restrict sorted,
-                             const struct rf_sort_job *restrict job,
-                             const struct state *restrict s, const struct way way)
+                                    const struct rf_sort_job *restrict job,
+                                    const struct state *restrict s, const struct way way)
 {
     const uint8_t *const begin = sorted->begin;
     uint8_t order[RF_RAY_CHUNK];
