@@ -300,7 +300,7 @@ int refocus_render(struct refocus_renderer *r,
         rf_exact_init(&exact, own.blend, own.sigma);
         f.exact = &exact;
     }
-    rf_reach_init(&f.reach, f.scale, r->photo[number].pad,
+    rf_reach_init(&f.reach, f.scale, largest_blur(&f), r->photo[number].pad,
                   f.aperture->shape == RF_SHAPE_MASK);
     set_prefilter(&f);
     r->blurred = false;

@@ -148,9 +148,15 @@ static struct rf_kept kept_at(struct rf_bin_scale scale, int gx, int gy, bool sq
     return kept;
 }
 
-void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, int pad, bool square)
+void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
+                   bool square)
 {
+    /* of those farther away gap_of() - 1 is more than any blur, even a whole bin less */
+    const int met = (int)((largest_blur + 1) / RF_TILE) + 1;
+
     reach->tiles = (pad - 2 + RF_TILE - 1) / RF_TILE;
+    if (reach->tiles > met)
+        reach->tiles = met;
     for (int j = 0; j <= reach->tiles; j++)
         for (int i = 0; i <= reach->tiles; i++)
             reach->kept[j][i] = kept_at(scale, gap_of(i), gap_of(j), square);

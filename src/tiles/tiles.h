@@ -41,9 +41,10 @@ struct rf_reach {
     int tiles; /* how far tiles are met at all */
     struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
 };
-/* `square`: the aperture reaches beyond the unit circle, so that distances count by the
- * larger axis. */
-void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, int pad, bool square);
+/* Of blurs up to the largest there can be in this frame, pixels, and pad - 2. `square`: the
+ * aperture reaches beyond the unit circle, so that distances count by the larger axis. */
+void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
+                   bool square);
 
 /* Bins of the tiles of row ty, whose cells are known (tiles/ranges.h). */
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);

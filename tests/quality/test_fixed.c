@@ -124,11 +124,12 @@ static void sweep_ray(const struct scene *s, const struct refocus_renderer *r,
 static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
                       const double light[256], uint8_t *out)
 {
-    const struct rf_bin_scale scale = rf_bin_scale_of((float)(s->K * fmax(s->df, 1 - s->df)));
+    const float largest = (float)(s->K * fmax(s->df, 1 - s->df));
+    const struct rf_bin_scale scale = rf_bin_scale_of(largest);
     struct rf_reach reach;
     struct rf_tile_plan plan;
 
-    rf_reach_init(&reach, scale, r->pad, false);
+    rf_reach_init(&reach, scale, largest, r->pad, false);
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++, out += 3) {
             const int tx = x / RF_TILE, ty = y / RF_TILE;
