@@ -4,6 +4,8 @@
 
 #include "tiles/ranges.h"
 
+enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
+
 enum {
     HALF = 128, /* Q7.8 pixels, as all of these */
     OVERLAP = 32,
@@ -55,27 +57,46 @@ static void add_cell(struct rf_bins *bins, struct rf_bin_scale scale, const int1
         bins->word[first / 64 + 1] |= found >> (64 - first % 64);
 }
 
-static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
-                                   int tx, int ty)
+/* The bins of a tile's cells, one by one where a cell has more than two. */
+static void add_cells(struct rf_bins *bins, const struct refocus_renderer *r,
+                      struct rf_bin_scale scale, int tx, int ty)
 {
-    enum { EACH = RF_TILE / RF_CELL };
-    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
-
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
         const int16_t *least = rf_cell_least(r, y), *most = rf_cell_most(r, y);
 
         for (int x = tx * EACH; x < (tx + 1) * EACH; x++) {
             const int first = bin_of(scale, least[x]), last = bin_of(scale, most[x]);
 
-            bins.least = least[x] < bins.least ? least[x] : bins.least;
-            bins.most = most[x] > bins.most ? most[x] : bins.most;
-            add_bin(&bins, first);
-            add_bin(&bins, last);
+            add_bin(bins, first);
+            add_bin(bins, last);
             if (last - first > 1)
-                add_cell(&bins, scale, r->front.blur + RF_CELL * (y * r->stride + x),
+                add_cell(bins, scale, r->front.blur + RF_CELL * (y * r->stride + x),
                          r->stride, first, last);
         }
     }
+}
+
+static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
+                                   int tx, int ty)
+{
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+    int first, last;
+
+    for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
+        const int16_t *least = rf_cell_least(r, y) + tx * EACH;
+        const int16_t *most = rf_cell_most(r, y) + tx * EACH;
+
+        for (int x = 0; x < EACH; x++) {
+            bins.least = least[x] < bins.least ? least[x] : bins.least;
+            bins.most = most[x] > bins.most ? most[x] : bins.most;
+        }
+    }
+    first = bin_of(scale, bins.least);
+    last = bin_of(scale, bins.most);
+    add_bin(&bins, first);
+    add_bin(&bins, last);
+    if (last - first > 1)
+        add_cells(&bins, r, scale, tx, ty);
     return bins;
 }
 
