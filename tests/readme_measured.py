@@ -58,7 +58,7 @@ def main():
             continue
         ms = [best.get((timed[0], timed[1], n), "") if timed else "" for n in (1, 2)]
         out.append("| " + " | ".join([words] + scores[run] + ms) + " |")
-    block = "\n".join(out) + f"\n\n720x540, K = 20; whole frames, the best of 20: {machine}.\n"
+    block = "\n".join(out) + f"\n\n720x540, K = 20; whole frames of the portrait, the best of 20 and more: {machine}.\n"
     readme = SOURCE / "README.md"
     text = readme.read_text(encoding="utf-8")
     text = re.sub(r"(<!-- measured:.*?-->\n).*?(<!-- /measured -->)",

@@ -34,7 +34,7 @@ void rf_highlight_weights(uint16_t weight[256], double sigma);
 /*
  * Light times weight in 16 bits (kernels.h, weigh) is rounded; whether each code that no
  * channel of a pixel exceeds comes back from its weighted mean nevertheless. In sRGB it
- * does for weights of 0.66 and more of the largest, from sigma 272 on.
+ * does for weights of 0.64 and more of the largest, from sigma 272 on.
  */
 bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256]);
 

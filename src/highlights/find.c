@@ -10,21 +10,20 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "highlights/clipped.h"
 #include "renderer/bands.h"
-#include "renderer/renderer.h"
 
 enum {
     MOST = RF_LAMP_SIDE,
-    AROUND = 12,                     /* surroundings: so many pixels on each side, */
-    GRID = 3,                        /* every third of them */
-    NEAR = 3,                        /* the same of a pixel's rim */
-    LEVEL = RF_LIGHT_MAX * 94 / 100, /* where clipping begins to count */
+    AROUND = 12,              /* surroundings: so many pixels on each side, */
+    GRID = 3,                 /* every third of them */
+    NEAR = 3,                 /* the same of a pixel's rim */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
-    GAIN = 3,                        /* full gain of 4 adds three times white */
-    BEFORE = 7,                      /* rows; no tube is higher */
-    ROWS = BEFORE + MOST + 1,        /* of bits: 32, which fit the scratch of a worker */
-    SEED = 28,                       /* column of a word that the first pixel of a shape is in */
-    PAD = 4,                         /* words of 16 bits before and after a row */
+    GAIN = 3,                 /* full gain of 4 adds three times white */
+    BEFORE = 7,               /* rows; no tube is higher */
+    ROWS = BEFORE + MOST + 1, /* of bits: 32, which fit the scratch of a worker */
+    SEED = 28,                /* column of a word that the first pixel of a shape is in */
+    PAD = 4,                  /* words of 16 bits before and after a row */
 };
 
 struct search {
@@ -47,25 +46,6 @@ struct lit {
     int64_t rim[3];            /* that of its rim beyond its surroundings, added up */
     int edge, half_lit;        /* pixels of its edge, and half lit ones beside it */
 };
-
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
-/* 0 to 256 as v goes from a to b. */
-static int ramp(int64_t v, int64_t a, int64_t b)
-{
-    return v >= b ? 256 : v <= a ? 0 : (int)(256 * (v - a) / (b - a));
-}
-
-static int brightest(const struct refocus_renderer *r, ptrdiff_t at)
-{
-    int most = r->front.light[0][at];
-
-    most = r->front.light[1][at] > most ? r->front.light[1][at] : most;
-    return r->front.light[2][at] > most ? r->front.light[2][at] : most;
-}
 
 /* Rec. 709. */
 static int64_t luminance(const int64_t colour[3])
@@ -99,10 +79,10 @@ static void make_bits(const struct search *s, int y)
     memset(bits - PAD, 0, (size_t)s->words * sizeof *bits);
     if (y < 0 || y >= r->height ||
         r->kernels.brightest(r->front.light[0] + at, r->front.light[1] + at,
-                             r->front.light[2] + at, r->width) <= LEVEL)
+                             r->front.light[2] + at, r->width) <= RF_CLIPPED)
         return;
     for (int x = 0; x < r->width; x++)
-        if (brightest(r, at + x) > LEVEL)
+        if (rf_brightest_at(r, at + x) > RF_CLIPPED)
             bits[x / 16] |= (uint16_t)(1 << x % 16);
 }
 
@@ -233,7 +213,7 @@ static void look_at_rim(const struct refocus_renderer *r, const struct shape *sh
 
             if (x < 0 || y < 0 || x >= r->width || y >= r->height)
                 continue;
-            lit->half_lit += brightest(r, at) >= HALF_LIT;
+            lit->half_lit += rf_brightest_at(r, at) >= HALF_LIT;
             for (int c = 0; c < 3; c++)
                 if (r->front.light[c][at] > lit->around[c])
                     lit->rim[c] += r->front.light[c][at] - lit->around[c];
@@ -261,7 +241,7 @@ static void added_of(const int64_t rim[3], int added[3])
  */
 static int steepness(int edge, int half_lit)
 {
-    return ramp(100 * edge, 167 * half_lit, 250 * half_lit);
+    return rf_ramp(100 * edge, 167 * half_lit, 250 * half_lit);
 }
 
 /* A channel that is not clipped has lost nothing. */
@@ -273,7 +253,7 @@ static void list(const struct search *s, int x, int y, const int added[3], int s
     for (int c = 0; c < 3; c++)
         lamp.added[c] = (uint16_t)(
             added[c] * strength / 256 *
-            ramp(r->front.light[c][y * r->stride + x], LEVEL, RF_LIGHT_MAX) / 256);
+            rf_ramp(r->front.light[c][y * r->stride + x], RF_CLIPPED, RF_LIGHT_MAX) / 256);
     rf_list_highlight(&s->photo->highlights[lamp.y / RF_LAMP_ROWS], lamp);
 }
 
@@ -285,7 +265,7 @@ static void list_shape(const struct search *s, const struct shape *shape)
 
     if (!look_around(s->r, shape, &lit))
         return;
-    strength = ramp(luminance(lit.own), 3 * luminance(lit.around), 6 * luminance(lit.around));
+    strength = rf_ramp(luminance(lit.own), 3 * luminance(lit.around), 6 * luminance(lit.around));
     if (!strength)
         return;
     look_at_rim(s->r, shape, &lit);
@@ -312,26 +292,26 @@ static void list_pixel(const struct search *s, int x, int y)
     for (int j = -AROUND; j <= AROUND; j += GRID)
         for (int i = -AROUND; i <= AROUND; i += GRID, n++)
             for (int c = 0; c < 3; c++)
-                lit.around[c] += r->front.light[c][clamp(y + j, r->height - 1) * r->stride +
-                                                   clamp(x + i, r->width - 1)];
+                lit.around[c] += r->front.light[c][rf_within(y + j, r->height - 1) * r->stride +
+                                                   rf_within(x + i, r->width - 1)];
     for (int c = 0; c < 3; c++) {
         lit.own[c] = r->front.light[c][y * r->stride + x];
         lit.around[c] /= n;
     }
-    strength = ramp(luminance(lit.own), 3 * luminance(lit.around), 6 * luminance(lit.around));
+    strength = rf_ramp(luminance(lit.own), 3 * luminance(lit.around), 6 * luminance(lit.around));
     for (int j = -NEAR; strength && j <= NEAR; j++)
         for (int i = -NEAR; i <= NEAR; i++) {
             const ptrdiff_t at =
-                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
-            const int b = brightest(r, at);
+                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
+            const int b = rf_brightest_at(r, at);
 
-            clipped += b > LEVEL;
-            lit.half_lit += b <= LEVEL && b >= HALF_LIT;
+            clipped += b > RF_CLIPPED;
+            lit.half_lit += b <= RF_CLIPPED && b >= HALF_LIT;
             for (int c = 0; c < 3; c++)
-                if (b <= LEVEL && r->front.light[c][at] > lit.around[c])
+                if (b <= RF_CLIPPED && r->front.light[c][at] > lit.around[c])
                     lit.rim[c] += r->front.light[c][at] - lit.around[c];
         }
-    strength = strength * ramp(clipped, 2 * lit.half_lit, 4 * lit.half_lit) / 256;
+    strength = strength * rf_ramp(clipped, 2 * lit.half_lit, 4 * lit.half_lit) / 256;
     if (!strength)
         return;
     added_of(lit.rim, added);

@@ -2,37 +2,16 @@
 
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "highlights/clipped.h"
 #include "renderer/bands.h"
-#include "renderer/renderer.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
 enum {
-    LEVEL = RF_LIGHT_MAX * 94 / 100, /* clipped */
-    WIDEST = 3,                      /* pixels that a lamp is widened by */
-    BLURRED = 512,                   /* Q7.8: what it may be widened over */
+    WIDEST = 3,    /* pixels that a lamp is widened by */
+    BLURRED = 512, /* Q7.8: what it may be widened over */
 };
-
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
-static int brightest(const struct refocus_renderer *r, ptrdiff_t at)
-{
-    int most = r->front.light[0][at];
-
-    most = r->front.light[1][at] > most ? r->front.light[1][at] : most;
-    return r->front.light[2][at] > most ? r->front.light[2][at] : most;
-}
-
-/* 0 to 256 as v goes from a to b. */
-static int ramp(int64_t v, int64_t a, int64_t b)
-{
-    return v >= b ? 256 : v <= a ? 0 : (int)(256 * (v - a) / (b - a));
-}
 
 /* Whether a bright pixel of another depth is beside (x, y): then this one is the edge
  * of that, and only its depth says otherwise. */
@@ -43,9 +22,9 @@ static bool is_edge(const struct refocus_renderer *r, int x, int y)
     for (int j = -2; j <= 2; j++) {
         for (int i = -2; i <= 2; i++) {
             const ptrdiff_t at =
-                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
+                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
 
-            if (abs(r->front.blur[at]) < own - 256 && brightest(r, at) >= LEVEL)
+            if (abs(r->front.blur[at]) < own - 256 && rf_brightest_at(r, at) >= RF_CLIPPED)
                 return true;
         }
     }
@@ -163,7 +142,7 @@ static void gain_of(const struct refocus_renderer *r, const struct rf_highlight 
                     ptrdiff_t at, int share, int gained[3])
 {
     /* from half a pixel of blur on, all of it from one pixel and a half on */
-    const int blurred = lamp->is_edge ? 0 : ramp(abs(r->front.blur[at]), 128, 384);
+    const int blurred = lamp->is_edge ? 0 : rf_ramp(abs(r->front.blur[at]), 128, 384);
 
     for (int c = 0; c < 3; c++)
         gained[c] = (((lamp->added[c] * share) >> 8) * blurred) >> 8;

@@ -151,7 +151,8 @@ static ALWAYS_INLINE void place_tests(struct rf_sorted_rays *restrict sorted,
 /* What it sees where no test hits. */
 static ALWAYS_INLINE void place_last(struct rf_sorted_rays *restrict sorted,
                                      const struct rf_sort_job *restrict job,
-                                     const struct state *restrict s, int n, int m, const struct way way)
+                                     const struct state *restrict s, int n, int m,
+                                     const struct way way)
 {
     const uint16_t *const light[2] = {job->front, job->behind};
     const size_t last = s->last[n], behind = s->beneath[n];

@@ -108,7 +108,8 @@ static void find_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     struct rf_photo *photo = &r->photo[0];
-    const int less = RF_LAMP_MARGIN - r->in_place.margin; /* on either side, so that there is room */
+    /* smaller on either side where the window has no room for the margin */
+    const int less = RF_LAMP_MARGIN - r->in_place.margin;
     const int size = r->in_place.block - (less > 0 ? 2 * less : 0);
 
     if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)

@@ -232,8 +232,9 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
 
 /* Cover the occupied bins from the near side. Slabs are a pixel wide, half of that where
  * the blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on,
- * where rays lie farther apart than what is off by half of that. The blurs below half a pixel are a slab
- * of their own with offset 0, which nothing else may take: they stay as they are. */
+ * where rays lie farther apart than what is off by half of that. The blurs below half a
+ * pixel are a slab of their own with offset 0, which nothing else may take: they stay as
+ * they are. */
 static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
                   struct rf_tile_plan *plan)
 {

@@ -119,7 +119,8 @@ static void lamps(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof size / sizeof size[0]; i++) {
         expect("a round lamp", size[i], times_of(ELLIPSE, size[i], size[i], 12), 2.2, 4.05);
-        expect("a flame", size[i], times_of(ELLIPSE, size[i] / 2 + 1, 1.5 * size[i], 12), 2.2, 4.05);
+        expect("a flame", size[i], times_of(ELLIPSE, size[i] / 2 + 1, 1.5 * size[i], 12), 2.2,
+               4.05);
     }
 }
 

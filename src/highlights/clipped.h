@@ -1,0 +1,30 @@
+/* clipped.h: what finding lamps and drawing them have in common. */
+#ifndef RF_CLIPPED_H
+#define RF_CLIPPED_H
+
+#include "renderer/renderer.h"
+
+enum { RF_CLIPPED = RF_LIGHT_MAX * 94 / 100 }; /* light from which clipping begins to count */
+
+/* The nearest of 0 to `most`. */
+static inline int rf_within(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+/* 0 to 256 as v goes from a to b. */
+static inline int rf_ramp(int64_t v, int64_t a, int64_t b)
+{
+    return v >= b ? 256 : v <= a ? 0 : (int)(256 * (v - a) / (b - a));
+}
+
+/* Of the front's channels at a pixel. */
+static inline int rf_brightest_at(const struct refocus_renderer *r, ptrdiff_t at)
+{
+    int most = r->front.light[0][at];
+
+    most = r->front.light[1][at] > most ? r->front.light[1][at] : most;
+    return r->front.light[2][at] > most ? r->front.light[2][at] : most;
+}
+
+#endif
