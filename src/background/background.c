@@ -88,7 +88,16 @@ static void push_rows(struct refocus_renderer *r, int i, int y0, int y1)
     }
 }
 
-bool rf_all_known(const int16_t *blur, int n)
+void rf_background_push_band(struct refocus_renderer *r, int band, int levels)
+{
+    for (int i = 0; i < levels && i < RF_BAND_LEVELS; i++) {
+        const int height = level_of(r, i + 1).height, end = (band + 1) * RF_TILE >> (i + 1);
+
+        push_rows(r, i, band * RF_TILE >> (i + 1), end < height ? end : height);
+    }
+}
+
+static inline bool all_known(const int16_t *blur, int n)
 {
     int16_t least = 0;
 
@@ -97,27 +106,63 @@ bool rf_all_known(const int16_t *blur, int n)
     return least != RF_NO_BLUR;
 }
 
-static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int y0,
-                             int y1)
+/* Whether a step of n blurs from x on is. Most are whole: their loop has no ends to mind. */
+static inline bool is_known(const int16_t *blur, int x, int n)
+{
+    return x + RF_UNKNOWN_STEP <= n ? all_known(blur + x, RF_UNKNOWN_STEP)
+                                    : all_known(blur + x, n - x);
+}
+
+bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run)
+{
+    int x = run->x1 / RF_UNKNOWN_STEP * RF_UNKNOWN_STEP; /* a known step, or the first */
+
+    while (x < n && is_known(blur, x, n))
+        x += RF_UNKNOWN_STEP;
+    if (x >= n)
+        return false;
+    run->x0 = x > 0 ? x - 2 : 0;
+    do
+        x += RF_UNKNOWN_STEP;
+    while (x < n && !is_known(blur, x, n));
+    run->x1 = x + 2 < n ? x + 2 : n;
+    return true;
+}
+
+/* The tiles of what was filled in, of the photo's own pixels. */
+static void note_filled(struct refocus_renderer *r, int ty, const struct rf_unknown *run)
+{
+    const int end = run->x1 < r->width ? run->x1 - 2 : r->width;
+
+    for (int x = run->x0 > 0 ? run->x0 + 2 : 0; x < end; x += RF_TILE)
+        r->bins[(size_t)ty * r->tiles_x + x / RF_TILE].filled = true;
+}
+
+static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int y0, int y1)
 {
     const struct rf_level fine = level_of(r, i), coarse = level_of(r, i + 1);
 
     for (int y = y0; y < y1; y++) {
         const int near_y = y / 2;
+        const ptrdiff_t at = y * fine.stride, near = near_y * coarse.stride;
+        struct rf_unknown run = {0};
         int far_y = y % 2 ? near_y + 1 : near_y - 1;
-        const ptrdiff_t at = y * fine.stride;
+        ptrdiff_t far;
 
-        if (rf_all_known(fine.blur + at, fine.width))
-            continue;
         if (far_y < 0 || far_y >= coarse.height)
             far_y = near_y;
-        for (int c = 0; c < 3; c++)
-            r->kernels.pull(fine.light[c] + at, fine.blur + at,
-                            coarse.light[c] + near_y * coarse.stride,
-                            coarse.light[c] + far_y * coarse.stride, scratch,
-                            coarse.width);
-        r->kernels.pull_blur(fine.blur + at, coarse.blur + near_y * coarse.stride,
-                             coarse.width);
+        far = far_y * coarse.stride;
+        while (rf_next_unknown(fine.blur + at, fine.width, &run)) {
+            const int x = run.x0, parent = x / 2, pairs = (run.x1 - x + 1) / 2;
+
+            for (int c = 0; c < 3; c++)
+                r->kernels.pull(fine.light[c] + at + x, fine.blur + at + x,
+                                coarse.light[c] + near + parent, coarse.light[c] + far + parent,
+                                scratch, pairs);
+            r->kernels.pull_blur(fine.blur + at + x, coarse.blur + near + parent, pairs);
+            if (i == 0)
+                note_filled(r, y / RF_TILE, &run);
+        }
     }
 }
 
@@ -148,6 +193,8 @@ static void pull_item(void *context, int band, int worker)
     struct refocus_renderer *r = fill->r;
     const int y0 = band * BAND, y1 = end_of(band, level_of(r, fill->level).height);
 
+    for (int tx = 0; fill->level == 0 && tx < r->tiles_x; tx++)
+        r->bins[(size_t)band * r->tiles_x + tx].filled = false;
     pull_rows(r, fill->level, rf_scratch(r, worker), y0, y1);
     if (fill->level == 0) {
         for (int c = 0; c < 3; c++)

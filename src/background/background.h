@@ -28,6 +28,11 @@ void rf_background_dilate(struct refocus_renderer *r, bool upwards);
 void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach,
                              int y0, int y1);
 
+/* The part of levels 1 to `levels` that lies over a row of tiles by itself: up to
+ * RF_BAND_LEVELS, of which it is a row. */
+enum { RF_BAND_LEVELS = 4 };
+void rf_background_push_band(struct refocus_renderer *r, int band, int levels);
+
 /* Fill: up the pyramid from a level to another, and down again; level 0 with its
  * border. All of it is 0 to r->levels. */
 void rf_background_push(struct refocus_renderer *r, int from, int to);
@@ -42,8 +47,16 @@ void rf_background_pull(struct refocus_renderer *r, int from, int to);
 bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect need,
                             struct rf_rect exact);
 
-/* Whether none of n blurs is RF_NO_BLUR. */
-bool rf_all_known(const int16_t *blur, int n);
+/*
+ * Columns x0 to x1 - 1 of a row, x0 even, that hold the next of what is unknown of n blurs,
+ * beginning with {0}; false: there is no more. Away from the sides of the picture the first two
+ * and the last two of them are known: what the pull takes from beyond them is not used.
+ */
+enum { RF_UNKNOWN_STEP = 64 };
+struct rf_unknown {
+    int x0, x1;
+};
+bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run);
 
 /*
  * The same for a photo of Y, U and V. Chroma of 4:2:0 is as large as level 1 of the

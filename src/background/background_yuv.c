@@ -54,17 +54,21 @@ static void pull_luma_row(struct refocus_renderer *r, uint16_t *scratch, int y)
     const struct rf_level *level = &r->level[0];
     const int near_y = y / 2;
     int far_y = y % 2 ? near_y + 1 : near_y - 1;
-    const ptrdiff_t at = y * r->stride;
+    const ptrdiff_t at = y * r->stride, near = near_y * level->stride;
+    struct rf_unknown run = {0};
+    ptrdiff_t far;
 
-    if (rf_all_known(r->behind.blur + at, r->width))
-        return;
     if (far_y < 0 || far_y >= level->height)
         far_y = near_y;
-    r->kernels.pull(r->behind.light[0] + at, r->behind.blur + at,
-                    level->light[0] + near_y * level->stride,
-                    level->light[0] + far_y * level->stride, scratch, level->width);
-    r->kernels.pull_blur(r->behind.blur + at, level->blur + near_y * level->stride,
-                         level->width);
+    far = far_y * level->stride;
+    while (rf_next_unknown(r->behind.blur + at, r->width, &run)) {
+        const int x = run.x0, parent = x / 2, pairs = (run.x1 - x + 1) / 2;
+
+        r->kernels.pull(r->behind.light[0] + at + x, r->behind.blur + at + x,
+                        level->light[0] + near + parent, level->light[0] + far + parent, scratch,
+                        pairs);
+        r->kernels.pull_blur(r->behind.blur + at + x, level->blur + near + parent, pairs);
+    }
 }
 
 static void pull_band(void *context, int band, int worker)

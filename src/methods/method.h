@@ -33,7 +33,6 @@ struct rf_frame {
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
     bool prefilter_fades;   /* they come in gradually: rf_prefilter_rows() */
-    int prefilter_step;     /* the one that is being made */
     int veils;              /* thin things may be taken apart, thin/thin.h, and drawn with discs
                                of this part of their blur, Q8; 0: they are not */
     int veil_blur;          /* from this blur before the focus on, Q7.8, more and more of them; */

@@ -70,21 +70,26 @@ static bool has_lamp_near(const struct refocus_renderer *r, int tx, int ty)
     return false;
 }
 
-/* What is white at most need not be looked at; the fill of the background comes from farther
- * away. */
-static uint16_t tile_brightest(const struct refocus_renderer *r, int tx, int ty)
+static uint16_t layer_brightest(const struct refocus_renderer *r, uint16_t *const light[3],
+                                int tx, int ty)
 {
     const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
-    uint16_t most[2] = {RF_LIGHT_MAX, RF_LIGHT_MAX};
 
-    for (int layer = has_lamp_near(r, tx, ty) ? 0 : 1; layer < 2; layer++) {
-        uint16_t *const *light = layer ? r->behind.light : r->smooth;
+    return r->kernels.tile_brightest(
+        (const uint16_t *const[3]){light[0] + at, light[1] + at, light[2] + at}, r->stride);
+}
 
-        most[layer] = r->kernels.tile_brightest(
-            (const uint16_t *const[3]){light[0] + at, light[1] + at, light[2] + at},
-            r->stride);
-    }
-    return most[0] > most[1] ? most[0] : most[1];
+/* What is white at most need not be looked at; the fill of the background comes from farther
+ * away. Where nothing was filled in, the background has what is seen, or less. */
+static uint16_t tile_brightest(const struct refocus_renderer *r, int tx, int ty)
+{
+    uint16_t seen = RF_LIGHT_MAX, filled = RF_LIGHT_MAX;
+
+    if (has_lamp_near(r, tx, ty))
+        seen = layer_brightest(r, r->smooth, tx, ty);
+    if (r->bins[(size_t)ty * r->tiles_x + tx].filled)
+        filled = layer_brightest(r, r->behind.light, tx, ty);
+    return seen > filled ? seen : filled;
 }
 
 void rf_note_brightest(struct refocus_renderer *r, int ty)

@@ -4,6 +4,8 @@
 
 #include "renderer/renderer.h"
 
+enum { RF_MAX_BANDS = (REFOCUS_MAX_SIDE + RF_TILE - 1) / RF_TILE };
+
 static inline int rf_bands(const struct refocus_renderer *r)
 {
     return r->tiles_y;

@@ -199,9 +199,8 @@ static void mark(struct rf_frame *f)
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
         make_window(f, around(r, block, in_place->mark_margin), RF_NEED_LAYERS);
-        rf_pass_mark(f);
+        rf_pass_mark(f, RF_KEPT);
         keep_known(r, block);
-        rf_background_push(r, 0, RF_KEPT);
         if (!rf_cancelled(r))
             keep_level(r, block);
     }
@@ -234,6 +233,7 @@ static void known_band(void *context, int band, int worker)
         for (int c = 0; c < 3; c++)
             memcpy(r->behind.light[c] + at, r->smooth[c] + at, (size_t)r->width * 2);
     }
+    rf_background_push_band(r, band, RF_KEPT - 1);
 }
 
 /* The background of the window from what is kept. */
@@ -245,13 +245,11 @@ static void make_behind(struct rf_frame *f)
     ptrdiff_t at;
 
     if (blocks(r, r->in_place.block) == 1) { /* the window is all of the photo */
-        rf_pass_mark(f);
-        rf_background_push(r, 0, r->levels);
+        rf_pass_mark(f, r->levels);
         rf_pass_behind(f, r->levels);
         return;
     }
     rf_pool_run(&r->pool, known_band, r, rf_bands(r));
-    rf_background_push(r, 0, RF_KEPT - 1);
     own = r->level[RF_KEPT - 1];
     at = (r->origin_y >> RF_KEPT) * kept->stride + (r->origin_x >> RF_KEPT);
     for (int c = 0; c < 3; c++)

@@ -195,9 +195,7 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     m->behind = false;
     if (r->used == 0)
         m->half = false;
-    rf_pass_mark(f);
-    if (!r->yuv.on)
-        rf_background_push(r, 0, r->levels);
+    rf_pass_mark(f, r->levels);
     if (rf_cancelled(r))
         return false;
     if (!contains(m->window, rf_whole(r, r->used)) &&

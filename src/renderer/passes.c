@@ -72,32 +72,55 @@ static void range_band(void *context, int band, int worker)
     rf_range_rows(f->r, rf_scratch(f->r, worker), band);
 }
 
-static void smooth_band(void *context, int band, int worker)
+/* One step after the other. That of a band needs the step before of those beside it, too, and is
+ * made by whoever makes the last of these, while they are in the cache. */
+struct smooth {
+    const struct rf_frame *f;
+    int steps;
+    atomic_uchar ready[RF_PREFILTER_STEPS][RF_MAX_BANDS]; /* bands that it waits for */
+};
+
+static void smooth_rows(const struct rf_frame *f, int step, int band, int worker)
 {
-    const struct rf_frame *f = context;
     struct refocus_renderer *r = f->r;
-    const int i = f->prefilter_step;
     /* from the photo to r->smooth, and from there by way of the background's planes,
      * which are not in use yet */
-    uint16_t *const *in = i == 0   ? r->front.light
-                          : i == 1 ? r->smooth
-                                   : r->behind.light;
-    uint16_t *const *out = i == 1 ? r->behind.light : r->smooth;
+    uint16_t *const *in = step == 0   ? r->front.light
+                          : step == 1 ? r->smooth
+                                      : r->behind.light;
+    uint16_t *const *out = step == 1 ? r->behind.light : r->smooth;
 
     if (r->yuv.on)
-        rf_smooth_yuv_band(f, band, worker);
+        rf_smooth_yuv_band(f, step, band, worker);
     else
-        rf_prefilter_rows(r, out, in, f->prefilter_above, f->prefilter_fades, i, band);
+        rf_prefilter_rows(r, out, in, f->prefilter_above, f->prefilter_fades, step, band);
+}
+
+static void smooth_from(struct smooth *smooth, int step, int band, int worker)
+{
+    const int last = rf_bands(smooth->f->r) - 1;
+
+    smooth_rows(smooth->f, step, band, worker);
+    if (step + 1 == smooth->steps)
+        return;
+    for (int b = band > 0 ? band - 1 : 0; b <= band + 1 && b <= last; b++)
+        if (atomic_fetch_add(&smooth->ready[step][b], 1) == (b > 0) + (b < last))
+            smooth_from(smooth, step + 1, b, worker);
+}
+
+static void smooth_band(void *context, int band, int worker)
+{
+    smooth_from(context, 0, band, worker);
 }
 
 /* All three steps or the first alone, so that the result is in r->smooth. */
 static void prefilter(struct rf_frame *f)
 {
     const int largest = f->focus.radius;
-    const int steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1;
+    struct smooth smooth = {
+        .f = f, .steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1};
 
-    for (f->prefilter_step = 0; f->prefilter_step < steps; f->prefilter_step++)
-        rf_pool_run(&f->r->pool, smooth_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, smooth_band, &smooth, rf_bands(f->r));
 }
 
 /* How far apart rays are at a blur of 1. */
@@ -161,17 +184,23 @@ static int mark_reach(const struct rf_frame *f)
     return steps < 2 * RF_SPREAD_MARGIN - 1 ? steps : 2 * RF_SPREAD_MARGIN - 1;
 }
 
+struct mark {
+    const struct rf_frame *f;
+    int levels;
+};
+
 static void mark_band(void *context, int band, int worker)
 {
-    const struct rf_frame *f = context;
-    uint16_t *scratch = rf_scratch(f->r, worker);
+    const struct mark *mark = context;
+    struct refocus_renderer *r = mark->f->r;
+    const int y0 = rf_band_start(band), y1 = rf_band_end(r, band), reach = mark_reach(mark->f);
 
-    if (f->r->yuv.on)
-        rf_background_yuv_mark_rows(f->r, scratch, mark_reach(f), rf_band_start(band),
-                                    rf_band_end(f->r, band));
-    else
-        rf_background_mark_rows(f->r, scratch, mark_reach(f), rf_band_start(band),
-                                rf_band_end(f->r, band));
+    if (r->yuv.on) {
+        rf_background_yuv_mark_rows(r, rf_scratch(r, worker), reach, y0, y1);
+        return;
+    }
+    rf_background_mark_rows(r, rf_scratch(r, worker), reach, y0, y1);
+    rf_background_push_band(r, band, mark->levels);
 }
 
 void rf_pass_blur(struct rf_frame *f, bool layers)
@@ -246,8 +275,12 @@ void rf_pass_weights(struct rf_frame *f)
     rf_pool_run(&f->r->pool, weigh_band, f, rf_bands(f->r));
 }
 
-void rf_pass_mark(struct rf_frame *f)
+void rf_pass_mark(struct rf_frame *f, int levels)
 {
+    struct mark mark = {f, levels};
+
     rf_pool_run(&f->r->pool, dilate_item, f, 2);
-    rf_pool_run(&f->r->pool, mark_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, mark_band, &mark, rf_bands(f->r));
+    if (!f->r->yuv.on)
+        rf_background_push(f->r, RF_BAND_LEVELS, levels);
 }

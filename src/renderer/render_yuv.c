@@ -56,20 +56,19 @@ static int largest_blur(const struct rf_frame *f)
 }
 
 /* From the photo to r->smooth, and from there by way of the background's planes. */
-void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker)
+void rf_smooth_yuv_band(const struct rf_frame *f, int step, int band, int worker)
 {
     struct refocus_renderer *r = f->r;
     const struct rf_yuv *yuv = &r->yuv;
-    const int i = f->prefilter_step;
     uint16_t *const luma[] = {r->front.light[0], r->smooth[0], r->behind.light[0]};
     uint16_t *const chroma[] = {yuv->light, yuv->smooth, yuv->behind};
-    const int to = i == 1 ? 2 : 1;
+    const int to = step == 1 ? 2 : 1;
     int above[RF_PREFILTER_STEPS];
 
     set_chroma_above(f, above);
-    rf_yuv_prefilter_luma(r, luma[to], luma[i], f->prefilter_above, f->prefilter_fades, i,
+    rf_yuv_prefilter_luma(r, luma[to], luma[step], f->prefilter_above, f->prefilter_fades, step,
                           rf_scratch(r, worker), band);
-    if (i == 0 || largest_blur(f) > above[1]) /* else no tile would be touched */
-        rf_yuv_prefilter_chroma(r, chroma[to], chroma[i], above, f->prefilter_fades, i,
+    if (step == 0 || largest_blur(f) > above[1]) /* else no tile would be touched */
+        rf_yuv_prefilter_chroma(r, chroma[to], chroma[step], above, f->prefilter_fades, step,
                                 rf_scratch(r, worker), band);
 }

@@ -8,7 +8,7 @@
  * REFOCUS_ERR_UNSUPPORTED, or REFOCUS_ERR_ARGUMENT for a region that splits samples. */
 int rf_check_yuv(const struct rf_frame *f, struct rf_rect region);
 
-/* A step of the pre-filter, f->prefilter_step, for a band. */
-void rf_smooth_yuv_band(const struct rf_frame *f, int band, int worker);
+/* A step of the pre-filter for a band. */
+void rf_smooth_yuv_band(const struct rf_frame *f, int step, int band, int worker);
 
 #endif

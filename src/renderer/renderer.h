@@ -146,6 +146,7 @@ struct rf_bins {
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
     int16_t behind;      /* blur of the background in the middle, once that is filled */
     uint16_t brightest;  /* light of either layer, as it is summed */
+    bool filled;         /* the background has something here that is not seen; of R, G, B */
 };
 
 /*
