@@ -16,7 +16,7 @@ struct rf_rect;
 /* A lamp with spikes: its place in 1/16 pixel, its light, and its blur radius, Q7.8. */
 struct rf_star {
     int64_t x, y;
-    uint32_t light[3]; /* Q12, summed over its pixels */
+    uint64_t light[3]; /* Q12, summed over its pixels */
     int32_t blur;
     int32_t pixels;
     int32_t x0, x1, y1; /* that the pixels lie in */

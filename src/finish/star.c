@@ -42,21 +42,21 @@ static struct rf_star *new_star(struct refocus_renderer *r, int x, int y)
     return star;
 }
 
-/* One more pixel of a star, whose place becomes the middle of them all. What a lamp
+/* Pixel i of a lamp: one more of a star, whose place becomes the middle of them all. What a lamp
  * lost, a third of `added`, is its hue at white. */
 static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp,
-                      struct rf_star *star)
+                      int i, struct rf_star *star)
 {
     const uint32_t times = (uint32_t)floorf(f->params->highlight_gain * 256 + 0.5f);
-    const int blur = abs(rf_blur_at(f, lamp->x, lamp->y));
+    const int x = lamp->x + i, blur = abs(rf_blur_at(f, x, lamp->y));
 
-    star->x0 = lamp->x < star->x0 ? lamp->x : star->x0;
-    star->x1 = lamp->x > star->x1 ? lamp->x : star->x1;
+    star->x0 = x < star->x0 ? x : star->x0;
+    star->x1 = x > star->x1 ? x : star->x1;
     star->y1 = lamp->y;
     for (int c = 0; c < 3; c++)
         star->light[c] += lamp->added[c] * times / (3 * 256);
     star->blur = blur > star->blur ? blur : star->blur;
-    star->x += lamp->x;
+    star->x += x;
     star->y += lamp->y;
     star->pixels++;
 }
@@ -70,11 +70,14 @@ void rf_find_stars(struct rf_frame *f)
     for (int part = 0; part < rf_lamp_parts(photo->height); part++) {
         for (uint32_t i = 0; i < photo->highlights[part].count; i++) {
             const struct rf_highlight *lamp = &photo->highlights[part].lamp[i];
-            struct rf_star *star = touched(r, lamp->x, lamp->y);
 
-            star = star ? star : new_star(r, lamp->x, lamp->y);
-            if (star)
-                add_pixel(f, lamp, star);
+            for (int k = 0; k < lamp->count; k++) {
+                struct rf_star *star = touched(r, lamp->x + k, lamp->y);
+
+                star = star ? star : new_star(r, lamp->x + k, lamp->y);
+                if (star)
+                    add_pixel(f, lamp, k, star);
+            }
         }
     }
     for (int i = 0; i < r->stars; i++) {
@@ -141,7 +144,7 @@ static void add_star(const struct rf_star *star, const struct spikes *spikes, in
         }
         if (share)
             for (int c = 0; c < 3; c++) /* 2^28 light, 2^16 share, 2^19 density */
-                sum[c][i] += (star->light[c] * spikes->share >> 16) * share >> 8;
+                sum[c][i] += ((int64_t)star->light[c] * spikes->share >> 16) * share >> 8;
     }
 }
 

@@ -11,6 +11,7 @@
 enum {
     WIDEST = 3,    /* pixels that a lamp is widened by */
     BLURRED = 512, /* Q7.8: what it may be widened over */
+    DOTS = 2,      /* gaps of the rays that a lamp has to be wide for not to show as dots */
 };
 
 /* Whether a bright pixel of another depth is beside (x, y): then this one is the edge
@@ -31,13 +32,18 @@ static bool is_edge(const struct refocus_renderer *r, int x, int y)
     return false;
 }
 
-/* Where in the window a highlight is; false: not in it. */
-static bool place_of(const struct refocus_renderer *r, const struct rf_highlight *lamp,
+/* Where in the window pixel i of a highlight is; false: not in it. */
+static bool place_of(const struct refocus_renderer *r, const struct rf_highlight *lamp, int i,
                      int *x, int *y)
 {
-    *x = lamp->x - r->origin_x;
+    *x = lamp->x + i - r->origin_x;
     *y = lamp->y - r->origin_y;
     return *x >= 0 && *y >= 0 && *x < r->width && *y < r->height;
+}
+
+static bool is_left_alone(const struct rf_highlight *lamp, int i)
+{
+    return lamp->edges >> i & 1;
 }
 
 /* The parts that the window has rows of: first to last. */
@@ -88,18 +94,35 @@ static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y,
     }
 }
 
-static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
+static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, double gap)
 {
-    struct rf_bins *bins;
-    int x, y, blur;
+    /* from this blur on rays lie so far apart that few meet it, and show it as dots */
+    const double dots = lamp->size * 256 / (DOTS * gap);
 
-    if (!place_of(r, lamp, &x, &y))
-        return;
-    bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
-    blur = abs(r->front.blur[y * r->stride + x]);
-    lamp->is_edge = is_edge(r, x, y);
-    if (!lamp->is_edge && blur > bins->lamp)
-        bins->lamp = (int16_t)blur;
+    lamp->edges = 0;
+    for (int i = 0, x, y; i < lamp->count; i++) {
+        struct rf_bins *bins;
+        int blur;
+
+        if (!place_of(r, lamp, i, &x, &y))
+            continue;
+        bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
+        blur = abs(r->front.blur[y * r->stride + x]);
+        if (is_edge(r, x, y))
+            lamp->edges |= (uint16_t)(1 << i);
+        else if (blur > bins->lamp)
+            bins->lamp = (int16_t)blur;
+        if (!is_left_alone(lamp, i) && blur > dots && blur > bins->dots)
+            bins->dots = (int16_t)blur;
+    }
+}
+
+static void widen_all(struct refocus_renderer *r, const struct rf_highlight *lamp,
+                      struct rf_bin_scale scale, double gap)
+{
+    for (int i = 0, x, y; i < lamp->count; i++)
+        if (place_of(r, lamp, i, &x, &y) && !is_left_alone(lamp, i))
+            widen(r, x, y, scale, gap);
 }
 
 bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
@@ -109,16 +132,26 @@ bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
 
     for (int part = first_part(r); part <= last_part(r) && !rf_cancelled(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
-        int x, y;
 
         for (uint32_t i = 0; i < found->count; i++)
-            mark(r, &found->lamp[i]);
+            mark(r, &found->lamp[i], gap);
         for (uint32_t i = 0; i < found->count; i++)
-            if (place_of(r, &found->lamp[i], &x, &y) && !found->lamp[i].is_edge)
-                widen(r, x, y, scale, gap);
+            widen_all(r, &found->lamp[i], scale, gap);
         any = any || found->count;
     }
     return any;
+}
+
+static void put_in_front(struct refocus_renderer *r, const struct rf_highlight *lamp, double gap)
+{
+    for (int i = 0, x, y; i < lamp->count; i++) {
+        int reach;
+
+        if (!place_of(r, lamp, i, &x, &y) || is_left_alone(lamp, i))
+            continue;
+        reach = 1 + reach_of(r->front.blur[y * r->stride + x], gap);
+        rf_put_in_front(r, (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
+    }
 }
 
 void rf_put_lamps_in_front(struct refocus_renderer *r, double gap)
@@ -126,23 +159,17 @@ void rf_put_lamps_in_front(struct refocus_renderer *r, double gap)
     for (int part = first_part(r); part <= last_part(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
-        for (uint32_t i = 0; i < found->count; i++) {
-            int x, y, reach;
-
-            if (!place_of(r, &found->lamp[i], &x, &y) || found->lamp[i].is_edge)
-                continue;
-            reach = 1 + reach_of(r->front.blur[y * r->stride + x], gap);
-            rf_put_in_front(r, (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
-        }
+        for (uint32_t i = 0; i < found->count; i++)
+            put_in_front(r, &found->lamp[i], gap);
     }
 }
 
-/* What a lamp at `at` gets of a share of what it lost, Q8 of what is `added`. */
-static void gain_of(const struct refocus_renderer *r, const struct rf_highlight *lamp,
+/* What pixel i of a lamp, at `at`, gets of a share of what it lost, Q8 of what is `added`. */
+static void gain_of(const struct refocus_renderer *r, const struct rf_highlight *lamp, int i,
                     ptrdiff_t at, int share, int gained[3])
 {
     /* from half a pixel of blur on, all of it from one pixel and a half on */
-    const int blurred = lamp->is_edge ? 0 : rf_ramp(abs(r->front.blur[at]), 128, 384);
+    const int blurred = is_left_alone(lamp, i) ? 0 : rf_ramp(abs(r->front.blur[at]), 128, 384);
 
     for (int c = 0; c < 3; c++)
         gained[c] = (((lamp->added[c] * share) >> 8) * blurred) >> 8;
@@ -151,16 +178,19 @@ static void gain_of(const struct refocus_renderer *r, const struct rf_highlight 
 static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share,
                 int sign)
 {
-    ptrdiff_t at;
-    int x, y, gained[3];
+    const int planes = r->yuv.on ? 1 : 3; /* of Y, U and V all three are one */
 
-    if (!place_of(r, lamp, &x, &y))
-        return;
-    at = y * r->stride + x;
-    gain_of(r, lamp, at, share, gained);
-    for (int c = 0; c < (r->yuv.on ? 1 : 3); c++) /* of Y, U and V all three are one
-                                                     plane */
-        r->front.light[c][at] = (uint16_t)(r->front.light[c][at] + sign * gained[c]);
+    for (int i = 0, x, y; i < lamp->count; i++) {
+        ptrdiff_t at;
+        int gained[3];
+
+        if (!place_of(r, lamp, i, &x, &y))
+            continue;
+        at = y * r->stride + x;
+        gain_of(r, lamp, i, at, share, gained);
+        for (int c = 0; c < planes; c++)
+            r->front.light[c][at] = (uint16_t)(r->front.light[c][at] + sign * gained[c]);
+    }
 }
 
 static void add_part(struct refocus_renderer *r, float gain, int sign, int part)
@@ -209,23 +239,24 @@ static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach
     return count;
 }
 
-static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp,
+/* Pixel i of a lamp. */
+static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp, int i,
                        int share, double gap, int most)
 {
     ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)], at;
     int x, y, places, gained[3];
 
-    if (!place_of(r, lamp, &x, &y))
+    if (!place_of(r, lamp, i, &x, &y))
         return;
     at = y * r->stride + x;
     places = places_of(r, x, y, reach_of(r->front.blur[at], gap), place);
-    gain_of(r, lamp, at, share, gained);
-    for (int i = 0; i < places; i++) {
+    gain_of(r, lamp, i, at, share, gained);
+    for (int k = 0; k < places; k++) {
         for (int c = 0; c < 3; c++) {
             const int light =
-                r->smooth[c][place[i]] + (gained[c] + places / 2) / places;
+                r->smooth[c][place[k]] + (gained[c] + places / 2) / places;
 
-            r->smooth[c][place[i]] = (uint16_t)(light < most ? light : most);
+            r->smooth[c][place[k]] = (uint16_t)(light < most ? light : most);
         }
     }
 }
@@ -239,6 +270,7 @@ void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)
-            add_spread(r, &found->lamp[i], share, gap, most);
+            for (int k = 0; k < found->lamp[i].count; k++)
+                add_spread(r, &found->lamp[i], k, share, gap, most);
     }
 }

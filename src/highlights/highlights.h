@@ -7,14 +7,21 @@
  * just white.
  *
  *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing
- *     isolation  ramp of mean luminance / that of all else up to 12 pixels away, 3 to 6
- *     steepness  ramp of pixels of the edge / half lit ones beside them, 1.67 to 2.5
+ *     isolation  ramp of mean luminance / that of all else up to 12 cells away, 2.5 to 5
+ *     steepness  ramp of pixels of the edge / half lit ones beside them, 1.67 to 2.5: those
+ *                2/5 of the way and more from what is 2 or 3 cells away to white, so that what
+ *                a lamp lights around it is not its rim; soft rims of large photos: judge.c
  *     added      (gain - 1) * level * isolation * steepness * hue, of each channel
  *
  * The hue is that of the lamp's rim: what the pixels beside it have more than its
  * surroundings. Of what is higher or wider than RF_LAMP_SIDE, tubes and rows of lamps,
- * each pixel is judged by the 25 x 25 and 7 x 7 pixels around it. What is added acts on
- * pixels that are blurred; the sharp ones stay as they are.
+ * each cell is judged by the 25 x 25 and 7 x 7 cells around it, isolation from 3 to 6. Cells are
+ * pixels, and squares of them in large photos, rf_lamp_cell(), clipped if any pixel is. What is
+ * added acts on pixels that are blurred; the sharp ones stay as they are.
+ *
+ * 12 views, best: 30.98 dB with rims from 0.4 of white on, 31.39 from what is beside them, 31.57
+ * with isolation from 2.5 in place of 3. nightlights enlarged 4 times, focused far, near and
+ * between: 18.7, 23.1, 24.5 dB with lamps of up to 24 pixels, 23.6, 26.4, 27.4 with cells.
  */
 #ifndef RF_HIGHLIGHTS_H
 #define RF_HIGHLIGHTS_H
@@ -25,23 +32,37 @@
 #include <refocus/image.h>
 
 struct refocus_renderer;
-struct rf_rect;
 struct rf_bin_scale;
 
+/* Pixels of a row that lost the same. */
 struct rf_highlight {
-    uint16_t x, y;
-    uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095 */
-    uint16_t is_edge;  /* for this lens: of something bright and sharper, left alone */
+    uint16_t x, y;     /* the first */
+    uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095, to each */
+    uint8_t count;     /* 1 to RF_LAMP_RUN */
+    uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
+    uint16_t edges;    /* a bit each, for this lens: of something bright and sharper, left alone */
 };
 
-/* Highlights are looked for in parts of so many rows, each with room for one pixel in
- * 32; further ones, farther down, stay as they are. */
+/* Highlights are kept in parts of so many rows, each with room for one run in 40 pixels; further
+ * ones, farther down, stay as they are. */
 enum {
-    RF_LAMP_SIDE = 24,   /* pixels that a lamp is high and wide at most */
-    RF_LAMP_MARGIN = 48, /* that are looked at around a rectangle */
+    RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
+    RF_LAMP_RUN = 16,
     RF_LAMP_ROWS = 64,
     RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS
 };
+
+/* Pixels that a cell is wide and high: lamps are as large as the photo makes them. Of photos up to
+ * 1,439 pixels wide or high 1, up to 2,879 2, up to 5,759 4. A power of two, at most 64. */
+static inline int rf_lamp_cell(int width, int height)
+{
+    const int longer = width > height ? width : height;
+    int cell = 1;
+
+    while (cell < RF_LAMP_ROWS && longer >= 2 * 720 * cell)
+        cell *= 2;
+    return cell;
+}
 
 struct rf_highlights {
     struct rf_highlight *lamp;
@@ -55,17 +76,16 @@ static inline int rf_lamp_parts(int height)
 
 static inline uint32_t rf_lamp_capacity(int width)
 {
-    return (uint32_t)width * RF_LAMP_ROWS / 32 + 8;
+    return (uint32_t)width * RF_LAMP_ROWS / 40 + 6;
 }
 
 /* Forget the highlights of the photo in use. */
 void rf_forget_highlights(struct refocus_renderer *r);
 
-/* Add those of a rectangle of the window, in r->blend, to the lists of the parts of the
- * photo in use, in any order. Pixels RF_LAMP_MARGIN away from it are looked at. Rectangles
- * of different parts may run at once. `scratch` is rf_scratch() of the worker. */
-void rf_find_highlights(struct refocus_renderer *r, struct rf_rect rect,
-                        uint16_t *scratch);
+/* Add those of rows y0 to y1 - 1, in r->blend, to the lists of the parts of the photo in use, in
+ * any order. All light of it is there, or in strip mode with the caller. Rows of different parts
+ * may run at once. `scratch` is rf_scratch() of the worker. */
+void rf_find_highlights(struct refocus_renderer *r, int y0, int y1, uint16_t *scratch);
 
 /* Add one. Of more than there is room for the first stay, by rows, in whichever order they come. */
 void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp);

@@ -328,7 +328,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         return;
     }
     rf_expect_tile(f, rect);
-    rf_tile_rays_make(&rays, f, rf_rays_for(r, plan.reach, plan.lamp), tx, ty);
+    rf_tile_rays_make(&rays, f, rf_rays_for(r, plan.reach, plan.dots), tx, ty);
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
         const int from = pass, to = pass ? 2 : 3; /* all of them, and green again */
 

@@ -320,7 +320,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         rf_copy_yuv_tile(f, rect);
         return;
     }
-    tile.set = rf_rays_for(r, tile.plan.reach, tile.plan.lamp);
+    tile.set = rf_rays_for(r, tile.plan.reach, tile.plan.dots);
     set_planes(&tile, tx, ty);
     if (tile.set->equal)
         sweep_means(&tile, &sums, &means);

@@ -92,43 +92,6 @@ void rf_find_rims_in_blocks(struct refocus_renderer *r)
     }
 }
 
-/* Highlights in a block, by the parts that they are listed in. */
-static void find_in_block(struct refocus_renderer *r, struct rf_rect block)
-{
-    for (int y = block.y0, end; y < block.y1; y = end) {
-        end = (y / RF_LAMP_ROWS + 1) * RF_LAMP_ROWS;
-        end = end < block.y1 ? end : block.y1;
-        rf_find_highlights(r,
-                           in_window(r, (struct rf_rect){block.x0, y, block.x1, end}),
-                           rf_scratch(r, 0));
-    }
-}
-
-static void find_highlights(struct rf_frame *f)
-{
-    struct refocus_renderer *r = f->r;
-    struct rf_photo *photo = &r->photo[0];
-    /* smaller on either side where the window has no room for the margin */
-    const int less = RF_LAMP_MARGIN - r->in_place.margin;
-    const int size = r->in_place.block - (less > 0 ? 2 * less : 0);
-
-    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
-        return;
-    photo->highlights_blend = RF_NO_BLEND;
-    r->used = 0;
-    rf_forget_highlights(r);
-    for (int i = 0; i < blocks(r, size) && !rf_cancelled(r); i++) {
-        const struct rf_rect block = block_of(r, size, i);
-
-        load(r, around(r, block, RF_LAMP_MARGIN));
-        if (!rf_cancelled(r))
-            find_in_block(r, block);
-    }
-    rf_sort_highlights(r);
-    if (!rf_cancelled(r))
-        photo->highlights_blend = r->blend;
-}
-
 /* Light, blur and smooth light of a window. */
 static void make_window(struct rf_frame *f, struct rf_rect window, enum rf_need need)
 {
@@ -290,7 +253,8 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     r->blend = f->params->blend;
     rf_set_weights(f);
     if (need == RF_NEED_LAYERS) {
-        find_highlights(f);
+        r->used = 0;
+        rf_pass_lamps(f);
         if (!rf_cancelled(r))
             mark_once(f);
     }

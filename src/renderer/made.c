@@ -292,33 +292,7 @@ static void make_weights(struct rf_frame *f)
         m->sigma = f->params->sigma;
 }
 
-static void find_part(void *context, int part, int worker)
-{
-    const struct rf_frame *f = context;
-    struct refocus_renderer *r = f->r;
-    const int y0 = part * RF_LAMP_ROWS, y1 = y0 + RF_LAMP_ROWS;
-
-    rf_find_highlights(
-        r, (struct rf_rect){0, y0, r->width, y1 < r->height ? y1 : r->height},
-        rf_scratch(r, worker));
-}
-
 /* The window is all of the photo. */
-static void find_highlights(struct rf_frame *f)
-{
-    struct refocus_renderer *r = f->r;
-    struct rf_photo *photo = &r->photo[r->used];
-
-    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
-        return;
-    photo->highlights_blend = RF_NO_BLEND;
-    rf_forget_highlights(r);
-    rf_pool_run(&r->pool, find_part, f, rf_lamp_parts(r->height));
-    rf_sort_highlights(r);
-    photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
-}
-
-/* The same. */
 static void find_thin(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
@@ -347,7 +321,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     r->blend = f->params->blend;
     rf_set_weights(f);
     if (layers)
-        find_highlights(f);
+        rf_pass_lamps(f);
     if (!rf_cancelled(r))
         find_thin(f);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))

@@ -47,6 +47,32 @@ void rf_set_weights(struct rf_frame *f)
     f->premultiplied = r->keep_codes && may_premultiply(f);
 }
 
+/* As many rows as lamps may be high, and some: each item looks at as many again around them. */
+static void find_item(void *context, int item, int worker)
+{
+    struct refocus_renderer *r = context;
+    const struct rf_photo *photo = &r->photo[r->used];
+    const int rows = RF_LAMP_ROWS * rf_lamp_cell(photo->width, photo->height);
+    const int y0 = item * rows, y1 = y0 + rows;
+
+    rf_find_highlights(r, y0, y1 < photo->height ? y1 : photo->height, rf_scratch(r, worker));
+}
+
+void rf_pass_lamps(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+    struct rf_photo *photo = &r->photo[r->used];
+    const int rows = RF_LAMP_ROWS * rf_lamp_cell(photo->width, photo->height);
+
+    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
+        return;
+    photo->highlights_blend = RF_NO_BLEND;
+    rf_forget_highlights(r);
+    rf_pool_run(&r->pool, find_item, r, (photo->height + rows - 1) / rows);
+    rf_sort_highlights(r);
+    photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
+}
+
 static void blur_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;

@@ -31,6 +31,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
 
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
+void rf_pass_lamps(struct rf_frame *f); /* finds them, in all of the photo in use, once */
 void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
 void rf_pass_smooth(struct rf_frame *f);
 void rf_pass_prefilter(struct rf_frame *f); /* of rf_pass_smooth() the smooth light alone */

@@ -143,7 +143,8 @@ struct rf_layer {
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
     int16_t least, most; /* Q7.8 */
-    int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none */
+    int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none; */
+    int16_t dots;        /* of one that is small beside the gaps of the rays */
     int16_t behind;      /* blur of the background in the middle, once that is filled */
     uint16_t brightest;  /* light of either layer, as it is summed */
     bool filled;         /* the background has something here that is not seen; of R, G, B */

@@ -196,6 +196,8 @@ static void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
         sum->brightest = bins->brightest;
     if (bins->lamp > sum->lamp && bins->lamp >= kept->blur)
         sum->lamp = bins->lamp;
+    if (bins->dots > sum->dots && bins->dots >= kept->blur)
+        sum->dots = bins->dots;
     if (!near_kept && !far_kept)
         return;
     for (int k = 0; k < RF_BINS / 64; k++)
@@ -296,5 +298,6 @@ void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
 
     cover(&bins, scale, plan);
     plan->lamp = bins.lamp > 0;
+    plan->dots = bins.dots > 0;
     plan->brightest = bins.brightest;
 }

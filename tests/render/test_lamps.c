@@ -60,12 +60,50 @@ static void draw(struct picture *p, const struct thing *t, double cx, double cy)
         }
 }
 
-/* Light of a channel in all of the picture, at a gain. */
-static void render_light(struct refocus_renderer *renderer, float gain, double light[3])
+/* [1 2 1] / 4 of n values `step` apart. */
+static void soften_line(double *v, int n, int step)
 {
-    static uint8_t out[3 * W * H];
-    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    double before = v[0];
+
+    for (int i = 0; i < n; i++) {
+        const double own = v[i * step], after = v[(i + 1 < n ? i + 1 : i) * step];
+
+        v[i * step] = (before + 2 * own + after) / 4;
+        before = own;
+    }
+}
+
+/* The same as a soft lens draws it, on black: before what is above white is cut off. */
+static void draw_soft(struct picture *p, const struct thing *t, double cx, double cy, int passes)
+{
+    const int w = p->width, h = p->height;
+    double *share = calloc((size_t)w * (size_t)h, sizeof *share);
+
+    assert_non_null(share);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            if (fabs(x - cx) < t->wide / 2 + 1 && fabs(y - cy) < t->high / 2 + 1)
+                share[y * w + x] = share_in(t, x - cx, y - cy);
+    for (int i = 0; i < passes; i++) {
+        for (int y = 0; y < h; y++)
+            soften_line(share + y * w, w, 1);
+        for (int x = 0; x < w; x++)
+            soften_line(share + x, h, w);
+    }
+    for (int i = 0; i < 3 * w * h; i++)
+        p->rgb[i] = code_of(share[i / 3] * t->light[i % 3]);
+    free(share);
+}
+
+/* Light of a channel in all of the picture, at a gain. */
+static void render_light(struct refocus_renderer *renderer, int w, int h, float gain,
+                         double light[3])
+{
+    uint8_t *out = malloc(3 * (size_t)w * (size_t)h);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
     struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+
+    assert_non_null(out);
 
     params.rays = 512;
     params.prefilter = 0;
@@ -73,25 +111,31 @@ static void render_light(struct refocus_renderer *renderer, float gain, double l
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
     for (int c = 0; c < 3; c++) {
         light[c] = 0;
-        for (int i = c; i < 3 * W * H; i += 3)
+        for (int i = c; i < 3 * w * h; i += 3)
             light[c] += light_of(out[i]);
     }
+    free(out);
 }
 
-/* How many times as much light of each channel, at a gain of 4, the disc of a thing has. */
-static void gained(const struct thing *t, double times[3])
+/* How many times as much light of each channel, at a gain of 4, what is drawn has. */
+static void gained_in(const struct picture *p, double times[3])
 {
-    struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
-    struct refocus_renderer *renderer;
+    struct refocus_renderer *renderer = prepared(p, 30, 2);
     double with[3], without[3];
 
-    draw(&p, t, CX + 0.3, CY - 0.2);
-    renderer = prepared(&p, 30, 2);
-    render_light(renderer, 1, without);
-    render_light(renderer, 4, with);
+    render_light(renderer, p->width, p->height, 1, without);
+    render_light(renderer, p->width, p->height, 4, with);
     for (int c = 0; c < 3; c++)
         times[c] = with[c] / without[c];
     refocus_renderer_destroy(&renderer);
+}
+
+static void gained(const struct thing *t, double times[3])
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
+
+    draw(&p, t, CX + 0.3, CY - 0.2);
+    gained_in(&p, times);
     picture_free(&p);
 }
 
@@ -146,6 +190,54 @@ static void large(void **state)
     }
 }
 
+/* Photos that are larger have larger lamps, sharp and soft ones; what is white stays white. Of the
+ * largest discs, which 30 pixels of blur make little larger, much lies above white and is cut. */
+static double large_times(int cell, double size, double light, int soft)
+{
+    struct picture p = picture_flat(720 * cell, 160 * cell, (uint8_t[3]){0, 0, 0}, BEHIND);
+    const struct thing t = {ELLIPSE, size, size, {light, light, light}};
+    double times[3];
+
+    draw_soft(&p, &t, 300 * cell + 0.3, 80 * cell - 0.2, soft);
+    gained_in(&p, times);
+    picture_free(&p);
+    return times[1];
+}
+
+static void large_photos(void **state)
+{
+    (void)state;
+    for (int cell = 2; cell <= 4; cell *= 2)
+        for (int soft = 0; soft <= 2 * cell; soft += cell) {
+            expect("a small lamp of a large photo", 4, large_times(cell, 4, 30, soft), 2, 4.05);
+            expect("a lamp of a large photo", 9 * cell, large_times(cell, 9 * cell, 12, soft),
+                   cell > 2 ? 1.6 : 2.2, 4.05);
+            expect("white paint of a large photo", 9 * cell, large_times(cell, 9 * cell, 1, soft),
+                   0.99, 1.2);
+            expect("a bright disc of a large photo", 30 * cell,
+                   large_times(cell, 30 * cell, 12, soft), 0.99, 1.1);
+        }
+}
+
+/* What a lamp lights around it is not its rim. */
+static void lit_walls(void **state)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){60, 60, 60}, BEHIND);
+    const struct thing lamp = {ELLIPSE, 7, 7, {12, 12, 12}};
+    double times[3];
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        const double away = hypot(i % W - CX, (double)(i / W) - CY);
+
+        memset(p.rgb + 3 * i, code_of(0.04 + 0.75 / (1 + pow(away / 5, 2))), 3);
+    }
+    draw(&p, &lamp, CX + 0.3, CY - 0.2);
+    gained_in(&p, times);
+    expect("a lamp that lights what is around it", 7, times[1], 1.02, 1.5);
+    picture_free(&p);
+}
+
 /* Longer than a lamp, but no wider. */
 static void tubes(void **state)
 {
@@ -175,11 +267,11 @@ static void colours(void **state)
 /* Lamps, tubes and signs anywhere, across the blocks of strip mode and each other. */
 enum { NIGHT_W = 330, NIGHT_H = 290 };
 
-static struct picture night(uint32_t seed)
+static struct picture night(uint32_t seed, int w, int h)
 {
-    struct picture p = picture_make(NIGHT_W, NIGHT_H, seed);
+    struct picture p = picture_make(w, h, seed);
 
-    for (int i = 0; i < 3 * NIGHT_W * NIGHT_H; i++)
+    for (int i = 0; i < 3 * w * h; i++)
         p.rgb[i] /= 5;
     for (int i = 0; i < 150; i++) {
         struct thing t = {.light = {8, 8, 8}};
@@ -191,8 +283,8 @@ static struct picture night(uint32_t seed)
         t.high = (seed >> 14 & 7) == 0 ? 70 : 1 + (seed >> 17 & 31);
         t.light[seed >> 22 & 1] = 0.6;
         seed = seed * 1664525 + 1013904223;
-        x = (double)((seed >> 8) % NIGHT_W);
-        y = (double)((seed >> 18) % NIGHT_H);
+        x = (double)((seed >> 8) % (uint32_t)w);
+        y = (double)((seed >> 18) % (uint32_t)h);
         draw(&p, &t, x, y);
     }
     return p;
@@ -200,11 +292,12 @@ static struct picture night(uint32_t seed)
 
 static void render_night(const struct picture *p, uint32_t in_place, int threads, uint8_t *out)
 {
-    struct refocus_renderer_params limits = refocus_renderer_params_default(NIGHT_W, NIGHT_H, 9);
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(p->width, p->height, 9);
     const struct refocus_image photo = picture_image(p);
     const struct refocus_disparity disparity = picture_disparity(p);
     const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, NIGHT_W, NIGHT_H, 3 * NIGHT_W);
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, p->width, p->height, 3 * p->width);
     struct refocus_render_params params = refocus_render_params_default(0.5f, 9);
     struct refocus_renderer *renderer;
 
@@ -218,21 +311,30 @@ static void render_night(const struct picture *p, uint32_t in_place, int threads
     refocus_renderer_destroy(&renderer);
 }
 
+static void expect_same_night(uint32_t seed, int w, int h)
+{
+    struct picture p = night(seed, w, h);
+    uint8_t *whole = malloc(3 * (size_t)w * (size_t)h), *is = malloc(3 * (size_t)w * (size_t)h);
+
+    assert_non_null(whole);
+    assert_non_null(is);
+    render_night(&p, 0, 1, whole);
+    render_night(&p, 0, 4, is);
+    assert_same_pixels(is, whole, w, h, "lamps found by four threads");
+    render_night(&p, 1, 1, is);
+    assert_same_pixels(is, whole, w, h, "lamps found in blocks");
+    free(whole);
+    free(is);
+    picture_free(&p);
+}
+
 static void nights(void **state)
 {
-    static uint8_t whole[3 * NIGHT_W * NIGHT_H], is[3 * NIGHT_W * NIGHT_H];
-
     (void)state;
-    for (uint32_t seed = 1; seed <= 6; seed++) {
-        struct picture p = night(seed);
-
-        render_night(&p, 0, 1, whole);
-        render_night(&p, 0, 4, is);
-        assert_same_pixels(is, whole, NIGHT_W, NIGHT_H, "lamps found by four threads");
-        render_night(&p, 1, 1, is);
-        assert_same_pixels(is, whole, NIGHT_W, NIGHT_H, "lamps found in blocks");
-        picture_free(&p);
-    }
+    for (uint32_t seed = 1; seed <= 6; seed++)
+        expect_same_night(seed, NIGHT_W, NIGHT_H);
+    expect_same_night(7, 1441, 391);
+    expect_same_night(8, 290, 2883);
 }
 
 int main(void)
@@ -240,6 +342,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lamps),   cmocka_unit_test(paint),   cmocka_unit_test(large),
         cmocka_unit_test(tubes),   cmocka_unit_test(colours), cmocka_unit_test(nights),
+        cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,397 @@
+/* judge.c: whether what is clipped is a lamp, and what it lost (highlights.h). */
+#include "highlights/lamps.h"
+
+enum {
+    AROUND = 12, /* surroundings: so many cells on each side, */
+    GRID = 3,    /* every third of them */
+    NEAR = 3,    /* the same of the rim of something large */
+    OUTER = 3,   /* cells that a shape is grown by at most */
+    HALF_LIT = RF_LIGHT_MAX * 40 / 100,
+    GAIN = 3, /* full gain of 4 adds three times white */
+};
+
+/* What the lamp may be, and what is around it. */
+struct lit {
+    int64_t own[3], around[3]; /* mean colours */
+    int64_t rim[3];            /* that of its rim beyond its surroundings, added up */
+    int64_t base;              /* what the light falls to: the brightest channel, 2 or 3 cells away */
+    int pixels;
+    int edge, half_lit;        /* those of its edge, and half lit ones beside it */
+    int fade[2]; /* pixels in its cells and beside them, on the way to its surroundings: the upper
+                    part of it, from 0.4 on, and the lower one, from 0.1 */
+};
+
+/* Rec. 709. */
+static int64_t luminance(const int64_t colour[3])
+{
+    return (218 * colour[0] + 732 * colour[1] + 74 * colour[2]) / 1024;
+}
+
+/* Pixels x0 to x1 - 1 of rows y0 to y1 - 1 of a cell. */
+static struct rf_rect pixels_of(const struct rf_lamp_photo *p, int x, int y)
+{
+    const int x1 = (x + 1) * p->cell, y1 = (y + 1) * p->cell;
+
+    return (struct rf_rect){x * p->cell, y * p->cell, x1 < p->width ? x1 : p->width,
+                            y1 < p->height ? y1 : p->height};
+}
+
+/* The colour in the middle of a cell of the photo. */
+static void sample(const struct rf_lamp_photo *p, int x, int y, int colour[3])
+{
+    rf_colour_at(p, rf_within(x * p->cell + p->cell / 2, p->width - 1),
+                 rf_within(y * p->cell + p->cell / 2, p->height - 1), colour);
+}
+
+/* Add the clipped pixels of a cell up; returns how many. */
+static int add_own(const struct rf_lamp_photo *p, int x, int y, int64_t own[3])
+{
+    const struct rf_rect in = pixels_of(p, x, y);
+    int count = 0;
+
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++) {
+            int colour[3];
+
+            rf_colour_at(p, px, py, colour);
+            if (rf_most_of(colour) <= RF_CLIPPED)
+                continue;
+            for (int c = 0; c < 3; c++)
+                own[c] += colour[c];
+            count++;
+        }
+    return count;
+}
+
+static bool has_cell(const struct rf_lamp_photo *p, int x, int y)
+{
+    return x >= 0 && y >= 0 && x < p->across && y < p->down;
+}
+
+static bool is_in(const struct rf_lamp_shape *shape, int x, int y)
+{
+    const int i = x - shape->x, j = y - shape->y;
+
+    return i >= 0 && i < 64 && j >= 0 && j < shape->rows && (shape->row[j] >> i & 1);
+}
+
+/* Mean colours of a shape and of a sparse grid around it. False: there is nothing around. */
+static bool look_around(const struct rf_lamp_photo *p, const struct rf_lamp_shape *shape,
+                        struct lit *lit)
+{
+    uint64_t all = 0;
+    int count = 0, x0, x1;
+
+    for (int j = 0; j < shape->rows; j++) {
+        all |= shape->row[j];
+        for (uint64_t row = shape->row[j]; row; row &= row - 1)
+            lit->pixels += add_own(p, shape->x + __builtin_ctzll(row), shape->y + j, lit->own);
+    }
+    x0 = shape->x + __builtin_ctzll(all) - AROUND;
+    x1 = shape->x + 63 - __builtin_clzll(all) + AROUND;
+    for (int y = shape->y - AROUND; y < shape->y + shape->rows + AROUND; y += GRID)
+        for (int x = x0; x <= x1; x += GRID) {
+            int colour[3];
+
+            if (!has_cell(p, x, y) || is_in(shape, x, y))
+                continue;
+            sample(p, x, y, colour);
+            for (int c = 0; c < 3; c++)
+                lit->around[c] += colour[c];
+            count++;
+        }
+    for (int c = 0; c < 3 && count; c++) {
+        lit->own[c] /= lit->pixels;
+        lit->around[c] /= count;
+    }
+    return count > 0;
+}
+
+static bool is_edge(const struct rf_lamp_photo *p, int x, int y)
+{
+    return !(rf_is_clipped(p, x - 1, y) && rf_is_clipped(p, x + 1, y) &&
+             rf_is_clipped(p, x, y - 1) && rf_is_clipped(p, x, y + 1));
+}
+
+static bool is_beside(const struct rf_lamp_photo *p, int x, int y)
+{
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++)
+            if (rf_is_clipped(p, x + i, y + j))
+                return true;
+    return false;
+}
+
+/* What is not clipped, between that and white. */
+static void add_fade(struct lit *lit, int most)
+{
+    const int64_t above = 10 * (most - lit->base) / (RF_LIGHT_MAX - lit->base + 1);
+
+    lit->fade[0] += above >= 4;
+    lit->fade[1] += above >= 1 && above < 4;
+}
+
+/* Its edge, and the pixels beside it, none of which is clipped. */
+static void look_at_pixel(const struct rf_lamp_photo *p, int x, int y, struct lit *lit)
+{
+    int colour[3], most;
+
+    rf_colour_at(p, x, y, colour);
+    most = rf_most_of(colour);
+    if (most > RF_CLIPPED) {
+        lit->edge += is_edge(p, x, y);
+        return;
+    }
+    add_fade(lit, most);
+    if (is_beside(p, x, y)) {
+        lit->half_lit += most - lit->base >= 2 * (RF_LIGHT_MAX - lit->base) / 5;
+        for (int c = 0; c < 3; c++)
+            if (colour[c] > lit->around[c])
+                lit->rim[c] += colour[c] - lit->around[c];
+    }
+}
+
+/* The cells of a shape and so many around it, from OUTER rows before it on. */
+struct grown {
+    uint64_t row[RF_LAMP_SIDE + 2 * OUTER];
+};
+
+static struct grown grown_by(const struct rf_lamp_shape *shape, int by)
+{
+    struct grown grown = {{0}};
+
+    for (int j = 0; j < shape->rows; j++) {
+        uint64_t row = shape->row[j];
+
+        for (int i = 0; i < by; i++)
+            row |= row << 1 | row >> 1;
+        for (int i = -by; i <= by; i++)
+            grown.row[OUTER + j + i] |= row;
+    }
+    return grown;
+}
+
+/* A lamp may light what is beside it: that is not its rim. */
+static void look_beyond(const struct rf_lamp_photo *p, const struct rf_lamp_shape *shape,
+                        struct lit *lit)
+{
+    const struct grown rim = grown_by(shape, 1), beyond = grown_by(shape, OUTER);
+    int count = 0;
+
+    for (int j = 0; j < shape->rows + 2 * OUTER; j++)
+        for (uint64_t row = beyond.row[j] & ~rim.row[j]; row; row &= row - 1) {
+            const int x = shape->x + __builtin_ctzll(row), y = shape->y + j - OUTER;
+            int colour[3];
+
+            if (!has_cell(p, x, y))
+                continue;
+            sample(p, x, y, colour);
+            lit->base += rf_most_of(colour);
+            count++;
+        }
+    lit->base /= count ? count : 1;
+}
+
+/* Clipped pixels that are near each other are of one shape: no other is in the cells around it. */
+static void look_at_rim(const struct rf_lamp_photo *p, const struct rf_lamp_shape *shape,
+                        struct lit *lit)
+{
+    const struct grown rim = grown_by(shape, 1);
+
+    for (int j = 0; j < shape->rows + 2 * OUTER; j++)
+        for (uint64_t row = rim.row[j]; row; row &= row - 1) {
+            const int x = shape->x + __builtin_ctzll(row), y = shape->y + j - OUTER;
+            struct rf_rect in;
+
+            if (!has_cell(p, x, y))
+                continue;
+            in = pixels_of(p, x, y);
+            for (int py = in.y0; py < in.y1; py++)
+                for (int px = in.x0; px < in.x1; px++)
+                    look_at_pixel(p, px, py, lit);
+        }
+}
+
+/* Q12 light of full strength: the colour of the rim, white if it has none. */
+static void added_of(const int64_t rim[3], int added[3])
+{
+    int64_t most = rim[0] > rim[1] ? rim[0] : rim[1];
+
+    most = rim[2] > most ? rim[2] : most;
+    for (int c = 0; c < 3; c++)
+        added[c] = GAIN * (int)(most < RF_LIGHT_MAX / 4 ? RF_LIGHT_MAX
+                                                        : rim[c] * RF_LIGHT_MAX / most);
+}
+
+/*
+ * A pixel that is lit in part by a lamp of L times white still clips down to a share of 0.94 / L,
+ * and is half lit only from there to 0.4 / L: the brighter, the fewer of the pixels beside the edge
+ * are half lit. At L = 1 it is 0.54 of those that are lit in part, of which there are somewhat more
+ * than the edge has: never less than 0.6 of the edge. White paint and the shine of rounded things
+ * fade out over many.
+ *
+ * Large photos are softer, pixel by pixel. An edge blurred by a Gaussian of s pixels goes from 0.94
+ * to 0.4 over 1.8 s at L = 1, over 0.77 s at 2 and over 0.56 s at 4, and from 0.4 to 0.1 over
+ * 1.0 s, 0.8 s and 0.7 s: however soft, the upper part is the longer one only of what is white.
+ * What fades out over a cell and more is not soft, but shining; and between the strokes of a sign
+ * there is no telling.
+ */
+static int steepness(const struct rf_lamp_photo *p, const struct lit *lit)
+{
+    const int64_t edge = 100 * lit->edge, upper = lit->fade[0], lower = lit->fade[1];
+    const int64_t square = (int64_t)lit->edge * lit->edge; /* 10 times the pixels of a disc */
+    int sharp, soft;
+
+    if (p->cell == 1)
+        return rf_ramp(edge, 167 * lit->half_lit, 250 * lit->half_lit);
+    sharp = rf_ramp(edge, 167 * lit->half_lit, 250 * lit->half_lit);
+    soft = rf_ramp(edge * p->cell, 100 * upper, 160 * upper) *
+           rf_ramp(100 * lower, 71 * upper, 91 * upper) / 256 *
+           rf_ramp(40 * lit->pixels - square, 0, 15 * lit->pixels) / 256;
+    return sharp > soft ? sharp : soft;
+}
+
+void rf_end_list(struct rf_lamp_search *s)
+{
+    if (s->run.count)
+        rf_list_highlight(&s->lists[s->run.y / RF_LAMP_ROWS], s->run);
+    s->run.count = 0;
+}
+
+static bool goes_on(const struct rf_highlight *run, int x, int y, const uint16_t added[3])
+{
+    return run->count && run->count < RF_LAMP_RUN && run->y == y && run->x + run->count == x &&
+           run->added[0] == added[0] && run->added[1] == added[1] && run->added[2] == added[2];
+}
+
+/* What all pixels of a lamp have in common. */
+struct lamp {
+    int added[3]; /* light at full strength */
+    int strength, size;
+};
+
+/* A channel that is not clipped has lost nothing. */
+static void list(struct rf_lamp_search *s, int x, int y, const struct lamp *lamp)
+{
+    uint16_t lost[3];
+    int colour[3];
+
+    rf_colour_at(&s->photo, x, y, colour);
+    for (int c = 0; c < 3; c++)
+        lost[c] = (uint16_t)(lamp->added[c] * lamp->strength / 256 *
+                             rf_ramp(colour[c], RF_CLIPPED, RF_LIGHT_MAX) / 256);
+    if (!(lost[0] | lost[1] | lost[2]))
+        return;
+    if (!goes_on(&s->run, x, y, lost)) {
+        rf_end_list(s);
+        s->run = (struct rf_highlight){
+            .x = (uint16_t)x, .y = (uint16_t)y, .added = {lost[0], lost[1], lost[2]},
+            .size = (uint8_t)(lamp->size < UINT8_MAX ? lamp->size : UINT8_MAX)};
+    }
+    s->run.count++;
+}
+
+/* Those of row y of the photo. */
+static void list_row(struct rf_lamp_search *s, const struct rf_lamp_shape *shape, int y,
+                     const struct lamp *lamp)
+{
+    const int cell = s->photo.cell;
+
+    for (uint64_t row = shape->row[y / cell - shape->y]; row; row &= row - 1) {
+        const int x = (shape->x + __builtin_ctzll(row)) * cell;
+
+        for (int i = 0; i < cell; i++)
+            if (rf_is_clipped(&s->photo, x + i, y))
+                list(s, x + i, y, lamp);
+    }
+}
+
+/* From `halves` / 2 times the surroundings on, all of it at twice that. */
+static int isolation(const struct lit *lit, int halves)
+{
+    const int64_t own = 2 * luminance(lit->own), around = halves * luminance(lit->around);
+
+    return rf_ramp(own, around, 2 * around);
+}
+
+void rf_list_shape(struct rf_lamp_search *s, const struct rf_lamp_shape *shape)
+{
+    const struct rf_lamp_photo *p = &s->photo;
+    const int first = shape->y * p->cell, end = (shape->y + shape->rows) * p->cell;
+    struct lit lit = {0};
+    struct lamp lamp;
+
+    if (!look_around(p, shape, &lit))
+        return;
+    lamp.strength = isolation(&lit, 5);
+    if (!lamp.strength)
+        return;
+    look_beyond(p, shape, &lit);
+    look_at_rim(p, shape, &lit);
+    lamp.strength = lamp.strength * steepness(p, &lit) / 256;
+    if (!lamp.strength)
+        return;
+    added_of(lit.rim, lamp.added);
+    lamp.size = 3 * lit.pixels / lit.edge; /* 5/6 of a disc, 3/2 of a stroke */
+    for (int y = first > s->y0 ? first : s->y0; y < end && y < s->y1; y++)
+        list_row(s, shape, y, &lamp);
+}
+
+/* The squares around a cell: how many of the near one's are clipped. */
+static int look_near(const struct rf_lamp_photo *p, int x, int y, struct lit *lit)
+{
+    int clipped = 0;
+
+    for (int j = -NEAR; j <= NEAR; j++)
+        for (int i = -NEAR; i <= NEAR; i++) {
+            int colour[3], most;
+
+            sample(p, rf_within(x + i, p->across - 1), rf_within(y + j, p->down - 1), colour);
+            most = rf_most_of(colour);
+            clipped += most > RF_CLIPPED;
+            lit->half_lit += most <= RF_CLIPPED && most >= HALF_LIT;
+            for (int c = 0; c < 3; c++)
+                if (most <= RF_CLIPPED && colour[c] > lit->around[c])
+                    lit->rim[c] += colour[c] - lit->around[c];
+        }
+    return clipped;
+}
+
+static void list_pixels(struct rf_lamp_search *s, struct rf_rect in, const struct lamp *lamp)
+{
+    for (int y = in.y0 > s->y0 ? in.y0 : s->y0; y < in.y1 && y < s->y1; y++)
+        for (int x = in.x0; x < in.x1; x++)
+            if (rf_is_clipped(&s->photo, x, y))
+                list(s, x, y, lamp);
+}
+
+void rf_list_cell(struct rf_lamp_search *s, int x, int y)
+{
+    const struct rf_lamp_photo *p = &s->photo;
+    struct lit lit = {0};
+    struct lamp lamp = {.size = 1};
+    int n = 0, own, clipped;
+
+    for (int j = -AROUND; j <= AROUND; j += GRID)
+        for (int i = -AROUND; i <= AROUND; i += GRID, n++) {
+            int colour[3];
+
+            sample(p, rf_within(x + i, p->across - 1), rf_within(y + j, p->down - 1), colour);
+            for (int c = 0; c < 3; c++)
+                lit.around[c] += colour[c];
+        }
+    own = add_own(p, x, y, lit.own);
+    for (int c = 0; c < 3; c++) {
+        lit.own[c] /= own;
+        lit.around[c] /= n;
+    }
+    lamp.strength = isolation(&lit, 6);
+    if (!lamp.strength)
+        return;
+    clipped = look_near(p, x, y, &lit);
+    lamp.strength = lamp.strength * rf_ramp(clipped, 2 * lit.half_lit, 4 * lit.half_lit) / 256;
+    if (!lamp.strength)
+        return;
+    added_of(lit.rim, lamp.added);
+    list_pixels(s, pixels_of(p, x, y), &lamp);
+}
