@@ -10,7 +10,8 @@
 
 enum {
     WIDEST = 3,    /* pixels that a lamp is widened by */
-    BLURRED = 512, /* Q7.8: what it may be widened over */
+    BLURRED = 512, /* Q7.8: what it may be widened over, */
+    ALIKE = 256,   /* if it is farther away than that: else the pre-filter takes it for the same */
     DOTS = 2,      /* gaps of the rays that a lamp has to be wide for not to show as dots */
 };
 
@@ -85,7 +86,7 @@ static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y,
                 dx * dx + dy * dy > reach * reach + 1)
                 continue;
             s = r->front.blur + y * r->stride + x;
-            if (*s > own && abs(*s) > BLURRED) {
+            if (*s > own + ALIKE && abs(*s) > BLURRED) {
                 *s = own;
                 rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, own);
                 rf_add_to_cell(r, x, y, own);
@@ -94,10 +95,43 @@ static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y,
     }
 }
 
+/* The pixels of a lamp that are in the window, and so many around them there; empty: none are. */
+static struct rf_rect around_lamp(const struct refocus_renderer *r, const struct rf_highlight *lamp,
+                                  int by)
+{
+    const int x0 = lamp->x - r->origin_x, x1 = x0 + lamp->count, y = lamp->y - r->origin_y;
+
+    if (y < 0 || y >= r->height || x1 <= 0 || x0 >= r->width)
+        return (struct rf_rect){0, 0, 0, 0};
+    return (struct rf_rect){rf_within(x0 - by, r->width), rf_within(y - by, r->height),
+                            rf_within(x1 + by, r->width), rf_within(y + by + 1, r->height)};
+}
+
+/* The greatest and the least blur there. */
+static struct blurs {
+    int least, most;
+    int sharpest; /* least |s| */
+} blurs_in(const struct refocus_renderer *r, struct rf_rect rect)
+{
+    struct blurs in = {INT16_MAX, INT16_MIN, INT16_MAX};
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        const int16_t *s = r->front.blur + y * r->stride;
+
+        for (int x = rect.x0; x < rect.x1; x++) {
+            in.least = s[x] < in.least ? s[x] : in.least;
+            in.most = s[x] > in.most ? s[x] : in.most;
+            in.sharpest = abs(s[x]) < in.sharpest ? abs(s[x]) : in.sharpest;
+        }
+    }
+    return in;
+}
+
 static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, double gap)
 {
     /* from this blur on rays lie so far apart that few meet it, and show it as dots */
     const double dots = lamp->size * 256 / (DOTS * gap);
+    const struct blurs near = blurs_in(r, around_lamp(r, lamp, 2));
 
     lamp->edges = 0;
     for (int i = 0, x, y; i < lamp->count; i++) {
@@ -108,7 +142,7 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, double g
             continue;
         bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
         blur = abs(r->front.blur[y * r->stride + x]);
-        if (is_edge(r, x, y))
+        if (near.sharpest < blur - 256 && is_edge(r, x, y))
             lamp->edges |= (uint16_t)(1 << i);
         else if (blur > bins->lamp)
             bins->lamp = (int16_t)blur;
@@ -120,8 +154,13 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, double g
 static void widen_all(struct refocus_renderer *r, const struct rf_highlight *lamp,
                       struct rf_bin_scale scale, double gap)
 {
+    const struct blurs near = blurs_in(r, around_lamp(r, lamp, WIDEST));
+
+    if (near.most - near.least <= ALIKE)
+        return;
     for (int i = 0, x, y; i < lamp->count; i++)
-        if (place_of(r, lamp, i, &x, &y) && !is_left_alone(lamp, i))
+        if (place_of(r, lamp, i, &x, &y) && !is_left_alone(lamp, i) &&
+            near.most > r->front.blur[y * r->stride + x] + ALIKE)
             widen(r, x, y, scale, gap);
 }
 
