@@ -1,9 +1,11 @@
 #include "highlights/rims.h"
 
 #include <stdbool.h>
+#include <stdlib.h>
 
 #include "focus/focus.h"
 #include "renderer/bands.h"
+#include "support/places.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
@@ -11,6 +13,9 @@ enum {
     JUMP = 65535 / 32,           /* disparities this far apart are two surfaces */
     LEVEL = RF_LIGHT_MAX * 9 / 10, /* clipped, or nearly */
     CONTRAST = RF_LIGHT_MAX / 2, /* least |N - F| */
+    DARK = RF_LIGHT_MAX / 2,
+    AROUND = 6, /* pixels on each side that tell whose light it is */
+    FAR = 3,
 };
 
 static int clamp(int v, int most)
@@ -18,10 +23,17 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
+static int brightest_at(const struct refocus_renderer *r, ptrdiff_t at)
+{
+    int most = r->front.light[0][at];
+
+    most = r->front.light[1][at] > most ? r->front.light[1][at] : most;
+    return r->front.light[2][at] > most ? r->front.light[2][at] : most;
+}
+
 static bool is_bright(const struct refocus_renderer *r, ptrdiff_t at)
 {
-    return r->front.light[0][at] >= LEVEL || r->front.light[1][at] >= LEVEL ||
-           r->front.light[2][at] >= LEVEL;
+    return brightest_at(r, at) >= LEVEL;
 }
 
 /* Whether pixel (x, y) is the rim of the bright, nearer pixel at n. */
@@ -73,25 +85,130 @@ static bool beside_jump(const struct refocus_renderer *r, int x, int y)
     return least + JUMP < row[0];
 }
 
-/* The rims around a bright pixel. */
+static void add_rim(const struct refocus_renderer *r, struct rf_photo *photo, int x, int y,
+                    uint16_t disparity)
+{
+    const struct rf_rim rim = {(uint16_t)(x + r->origin_x), (uint16_t)(y + r->origin_y),
+                               disparity};
+
+    rf_add_place(photo->rim, &photo->rims, photo->capacity, &rim, sizeof rim);
+}
+
+/* Whether a bright pixel farther than `own` has none of that depth beside it: it is no rim. */
+static bool is_apart(const struct refocus_renderer *r, int x, int y, int own)
+{
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            const ptrdiff_t q =
+                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
+
+            if (abs(r->disparity[q] - own) <= JUMP && is_bright(r, q))
+                return false;
+        }
+    return true;
+}
+
+/* (x, y) and so many pixels on each side. */
+static struct rf_rect around(const struct refocus_renderer *r, int x, int y, int by)
+{
+    return (struct rf_rect){clamp(x - by, r->width - 1), clamp(y - by, r->height - 1),
+                            clamp(x + by, r->width - 1) + 1, clamp(y + by, r->height - 1) + 1};
+}
+
+/* Whether there are bright ones that are farther. */
+static bool has_far(const struct refocus_renderer *r, struct rf_rect in, int own)
+{
+    for (int y = in.y0; y < in.y1; y++)
+        for (int x = in.x0; x < in.x1; x++)
+            if (r->disparity[y * r->stride + x] < own - JUMP && is_bright(r, y * r->stride + x))
+                return true;
+    return false;
+}
+
+/* Whether half as many pixels there as are bright at that depth are dark at it, and there are
+ * bright ones that are farther. */
+static bool may_be_behind(const struct refocus_renderer *r, struct rf_rect in, int own)
+{
+    int dark = 0, bright = 0, far = 0;
+
+    for (int y = in.y0; y < in.y1; y++)
+        for (int x = in.x0; x < in.x1; x++) {
+            const ptrdiff_t q = y * r->stride + x;
+            const int away = r->disparity[q] - own, light = brightest_at(r, q);
+
+            dark += light < DARK && abs(away) <= JUMP;
+            bright += light >= LEVEL && abs(away) <= JUMP;
+            far += light >= LEVEL && away < -JUMP;
+        }
+    return far >= FAR && 2 * dark >= bright;
+}
+
+/* Whether the bright pixel (x, y) is of something farther, whose disparity it gets. */
+static bool is_behind(const struct refocus_renderer *r, int x, int y, uint16_t *disparity)
+{
+    const int own = r->disparity[y * r->stride + x];
+    const struct rf_rect in = around(r, x, y, AROUND);
+    int far = 0, behind = 0;
+
+    if (!has_far(r, around(r, x, y, 1), own) || !may_be_behind(r, in, own))
+        return false;
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++) {
+            const ptrdiff_t q = py * r->stride + px;
+            const int d = r->disparity[q];
+
+            if (d >= own - JUMP || !is_bright(r, q) || !is_apart(r, px, py, own))
+                continue;
+            far++;
+            behind = d > behind ? d : behind;
+        }
+    *disparity = (uint16_t)behind;
+    return far >= FAR;
+}
+
+/* Whether pixel (x, y) is the rim of the one at n. */
+static bool has_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
+{
+    return r->disparity[y * r->stride + x] + JUMP < r->disparity[n] && is_bright(r, n) &&
+           is_rim(r, x, y, n);
+}
+
+/* Whether it is that of one that is nearer than n, or as near and before it. */
+static bool has_other(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
+{
+    const struct rf_rect in = around(r, x, y, 1);
+
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++) {
+            const ptrdiff_t q = py * r->stride + px;
+
+            if ((r->disparity[q] > r->disparity[n] ||
+                 (r->disparity[q] == r->disparity[n] && q < n)) &&
+                has_rim(r, x, y, q))
+                return true;
+        }
+    return false;
+}
+
+/* The rims around a bright pixel, of each the nearest pixel that has it. */
 static void find_around(const struct refocus_renderer *r, int x, int y,
                         struct rf_photo *photo)
 {
     const ptrdiff_t n = y * r->stride + x;
+    const struct rf_rect in = around(r, x, y, 1);
+    uint16_t behind;
 
     if (!beside_jump(r, x, y))
         return;
-    for (int j = -1; j <= 1; j++) {
-        for (int i = -1; i <= 1; i++) {
-            const int px = clamp(x + i, r->width - 1), py = clamp(y + j, r->height - 1);
-
-            if (r->disparity[py * r->stride + px] + JUMP < r->disparity[n] &&
-                photo->rims < photo->capacity && is_rim(r, px, py, n))
-                photo->rim[photo->rims++] =
-                    (struct rf_rim){(uint16_t)(px + r->origin_x),
-                                    (uint16_t)(py + r->origin_y), r->disparity[n]};
-        }
+    if (is_behind(r, x, y, &behind)) {
+        if (!has_other(r, x, y, n)) /* else it is a rim itself */
+            add_rim(r, photo, x, y, behind);
+        return;
     }
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++)
+            if (has_rim(r, px, py, n) && !has_other(r, px, py, n))
+                add_rim(r, photo, px, py, r->disparity[n]);
 }
 
 /* Whether disparities in and around a run of a row differ by a jump. Signed: baseline x86 has
@@ -145,18 +262,17 @@ void rf_patch_rims(struct refocus_renderer *r, const struct rf_focus_plan *plan,
 {
     const struct rf_photo *photo = &r->photo[r->used];
 
-    for (uint64_t i = 0; i < photo->rims; i++) {
+    for (uint32_t i = 0; i < photo->rims; i++) {
         const struct rf_rim *rim = &photo->rim[i];
         const int x = rim->x - r->origin_x, y = rim->y - r->origin_y;
-        int16_t *s = r->front.blur + y * r->stride + x, blur;
+        int16_t *s = r->front.blur + y * r->stride + x;
 
         if (i % 1024 == 0 && rf_cancelled(r))
             return;
         if (x < 0 || y < 0 || x >= r->width || y >= r->height)
             continue;
-        rf_focus_row(plan, &blur, &rim->disparity, rim->x, rim->y, 1);
-        *s = blur < *s ? blur : *s;
-        rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, blur);
-        rf_add_to_cell(r, x, y, blur);
+        rf_focus_row(plan, s, &rim->disparity, rim->x, rim->y, 1);
+        rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, *s);
+        rf_add_to_cell(r, x, y, *s);
     }
 }

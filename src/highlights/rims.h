@@ -10,6 +10,13 @@
  *
  * tells how much of N it holds. Above 0.6, p is rendered at the depth of N, of several
  * the nearest.
+ *
+ * And the other way round: a wire or a hair before a lamp has pixels that the map gives to
+ * it, and that are as bright as the lamp. Where a clipped pixel has at least half as many dark
+ * pixels of its depth as clipped ones around it, 13 x 13, and three clipped ones farther
+ * away that are nobody's rim, it is rendered at their depth, the nearest of them.
+ *
+ * 12 views, without and with that: standard 30.79 and 30.90 dB, best 31.56 and 31.71.
  */
 #ifndef RF_RIMS_H
 #define RF_RIMS_H
@@ -23,17 +30,17 @@ struct rf_bin_scale;
 
 struct rf_rim {
     uint16_t x, y;
-    uint16_t disparity; /* of the bright pixel beside it */
+    uint16_t disparity; /* of the bright pixels beside it */
 };
 
-/* Most rims of a picture; further ones, row by row, stay as they are. */
-static inline uint64_t rf_rim_capacity(int width, int height)
+/* Most rims of a picture, each of another pixel; further ones, row by row, stay as they are. */
+static inline uint32_t rf_rim_capacity(int width, int height)
 {
-    return (uint64_t)width * height / 64 + 64;
+    return (uint32_t)((uint64_t)width * (uint64_t)height / 64 + 64);
 }
 
 /* Add to the rims of the photo in use those of the bright pixels in a part of the
- * window, in linear light. Pixels three away from the part are looked at. */
+ * window, in linear light. Pixels nine away from the part are looked at. */
 void rf_find_rims(struct refocus_renderer *r, struct rf_rect part);
 
 /* Put those in the window into r->front.blur and r->bins. */

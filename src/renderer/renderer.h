@@ -69,9 +69,9 @@ struct rf_photo {
     uint16_t *light[3], *disparity; /* pixel (0, 0); not in strip mode */
     uint8_t *alpha;      /* unpadded, width a row */
     uint8_t *band_blend; /* enum refocus_blend that the light of a band of rows is in */
-    uint64_t capacity;   /* of rims */
+    uint32_t capacity;   /* of rims */
     struct rf_rim *rim;
-    uint64_t rims;
+    uint32_t rims;
     struct rf_highlights highlights[RF_LAMP_PARTS];
     uint32_t highlights_blend; /* that they were found in, or RF_NO_BLEND */
     struct rf_thin_list thin;

@@ -27,7 +27,7 @@ enum { RUN = 256 };
 static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
     const struct rf_photo *photo = &r->photo[0];
-    const uint64_t rims = r->last_rims ? photo->rims : 0;
+    const uint32_t rims = r->last_rims ? photo->rims : 0;
     int16_t *blur = (int16_t *)out;
     uint16_t row[RUN];
 
@@ -39,12 +39,11 @@ static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t p
             rf_focus_row(&r->last_plan, blur + y * pitch + x, row, x, y, n);
         }
     }
-    for (uint64_t i = 0; i < rims; i++) {
-        int16_t *at = blur + photo->rim[i].y * pitch + photo->rim[i].x, s;
+    for (uint32_t i = 0; i < rims; i++) {
+        const struct rf_rim *rim = &photo->rim[i];
 
-        rf_focus_row(&r->last_plan, &s, &photo->rim[i].disparity, photo->rim[i].x,
-                     photo->rim[i].y, 1);
-        *at = s < *at ? s : *at;
+        rf_focus_row(&r->last_plan, blur + rim->y * pitch + rim->x, &rim->disparity, rim->x,
+                     rim->y, 1);
     }
     for (int y = 0; y < photo->height; y++)
         for (int x = 0; x < photo->width; x++)

@@ -238,6 +238,50 @@ static void lit_walls(void **state)
     picture_free(&p);
 }
 
+/* A wire in focus, three pixels wide in the map, thinner in the picture, and a lamp of the given
+ * disparity on it: light of the lamp at both sides of the wire. */
+static struct picture wired(uint16_t disparity)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){20, 20, 20}, BEHIND);
+    const struct thing lamp = {ELLIPSE, 9, 9, {12, 12, 12}};
+
+    draw(&p, &lamp, CX, CY);
+    for (int y = CY - 5; y <= CY + 5; y++)
+        for (int x = CX - 5; x <= CX + 5; x++)
+            if (is_in(&lamp, x - CX, (double)y - CY))
+                p.disparity[y * W + x] = disparity;
+    for (int x = 0; x < W; x++) {
+        for (int y = CY - 1; y <= CY + 1; y++)
+            if (p.disparity[y * W + x] < 32768)
+                p.disparity[y * W + x] = 32768;
+        memset(p.rgb + 3 * (CY * W + x), disparity < 32768 || abs(x - CX) > 5 ? 30 : 255, 3);
+    }
+    return p;
+}
+
+/* Q7.8, of the pixel above the wire in the middle of the lamp. */
+static int wire_blur(uint16_t disparity)
+{
+    static uint16_t blur[W * H];
+    struct picture p = wired(disparity);
+    struct refocus_renderer *renderer = prepared(&p, 30, 1);
+    double light[3];
+
+    render_light(renderer, W, H, 1, light);
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, blur, 2 * W), REFOCUS_OK);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+    return blur[(CY - 1) * W + CX];
+}
+
+static void wires(void **state)
+{
+    (void)state;
+    /* a lamp behind the wire is blurred as far as it is seen, one that hangs on it is sharp */
+    assert_in_range(wire_blur(BEHIND), 11 * 256, 13 * 256);
+    assert_in_range(wire_blur(32768), 0, 16);
+}
+
 /* Longer than a lamp, but no wider. */
 static void tubes(void **state)
 {
@@ -343,6 +387,7 @@ int main(void)
         cmocka_unit_test(lamps),   cmocka_unit_test(paint),   cmocka_unit_test(large),
         cmocka_unit_test(tubes),   cmocka_unit_test(colours), cmocka_unit_test(nights),
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
+        cmocka_unit_test(wires),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -36,7 +36,7 @@ static double compare(const struct picture *p, const char *name, const struct st
     double db;
 
     assert_true(fixed && exact && rim);
-    for (uint64_t i = 0; i < renderer->photo[0].rims; i++)
+    for (uint32_t i = 0; i < renderer->photo[0].rims; i++)
         rim[i] = (struct twin_rim){renderer->photo[0].rim[i].x, renderer->photo[0].rim[i].y,
                                    renderer->photo[0].rim[i].disparity};
     params.aperture = aperture;

@@ -53,8 +53,7 @@ void twin_create(struct twin *t, const struct picture *p,
     for (int i = 0; i < t->width * t->height; i++)
         t->map_blur[i] = t->blur[i] = blur_of(t, p->disparity[i]);
     for (int i = 0; i < rims; i++)
-        t->blur[rim[i].y * t->width + rim[i].x] =
-            fmin(t->blur[rim[i].y * t->width + rim[i].x], blur_of(t, rim[i].disparity));
+        t->blur[rim[i].y * t->width + rim[i].x] = blur_of(t, rim[i].disparity);
 }
 
 void twin_destroy(struct twin *t)
