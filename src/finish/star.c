@@ -143,7 +143,7 @@ static void add_star(const struct rf_star *star, const struct spikes *spikes, in
                 share += density(along, across, spikes->length, wide);
         }
         if (share)
-            for (int c = 0; c < 3; c++) /* 2^28 light, 2^16 share, 2^19 density */
+            for (int c = 0; c < 3; c++) /* 2^34 light, 2^16 share, 2^19 density */
                 sum[c][i] += ((int64_t)star->light[c] * spikes->share >> 16) * share >> 8;
     }
 }

@@ -1,4 +1,4 @@
-/* clipped.h: what finding lamps and drawing them have in common. */
+/* clipped.h: what finding lamps, drawing them and their rims have in common. */
 #ifndef RF_CLIPPED_H
 #define RF_CLIPPED_H
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "focus/focus.h"
+#include "highlights/clipped.h"
 #include "renderer/bands.h"
 #include "support/places.h"
 #include "tiles/ranges.h"
@@ -18,22 +19,9 @@ enum {
     FAR = 3,
 };
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
-static int brightest_at(const struct refocus_renderer *r, ptrdiff_t at)
-{
-    int most = r->front.light[0][at];
-
-    most = r->front.light[1][at] > most ? r->front.light[1][at] : most;
-    return r->front.light[2][at] > most ? r->front.light[2][at] : most;
-}
-
 static bool is_bright(const struct refocus_renderer *r, ptrdiff_t at)
 {
-    return brightest_at(r, at) >= LEVEL;
+    return rf_brightest_at(r, at) >= LEVEL;
 }
 
 /* Whether pixel (x, y) is the rim of the bright, nearer pixel at n. */
@@ -47,7 +35,7 @@ static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
     for (int j = -2; j <= 2; j++) {
         for (int i = -2; i <= 2; i++) {
             const ptrdiff_t q =
-                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
+                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
 
             if ((i > -2 && i < 2 && j > -2 && j < 2) || r->disparity[q] > middle)
                 continue;
@@ -100,7 +88,7 @@ static bool is_apart(const struct refocus_renderer *r, int x, int y, int own)
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
             const ptrdiff_t q =
-                clamp(y + j, r->height - 1) * r->stride + clamp(x + i, r->width - 1);
+                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
 
             if (abs(r->disparity[q] - own) <= JUMP && is_bright(r, q))
                 return false;
@@ -111,8 +99,10 @@ static bool is_apart(const struct refocus_renderer *r, int x, int y, int own)
 /* (x, y) and so many pixels on each side. */
 static struct rf_rect around(const struct refocus_renderer *r, int x, int y, int by)
 {
-    return (struct rf_rect){clamp(x - by, r->width - 1), clamp(y - by, r->height - 1),
-                            clamp(x + by, r->width - 1) + 1, clamp(y + by, r->height - 1) + 1};
+    const int right = r->width - 1, bottom = r->height - 1;
+
+    return (struct rf_rect){rf_within(x - by, right), rf_within(y - by, bottom),
+                            rf_within(x + by, right) + 1, rf_within(y + by, bottom) + 1};
 }
 
 /* Whether there are bright ones that are farther. */
@@ -134,7 +124,7 @@ static bool may_be_behind(const struct refocus_renderer *r, struct rf_rect in, i
     for (int y = in.y0; y < in.y1; y++)
         for (int x = in.x0; x < in.x1; x++) {
             const ptrdiff_t q = y * r->stride + x;
-            const int away = r->disparity[q] - own, light = brightest_at(r, q);
+            const int away = r->disparity[q] - own, light = rf_brightest_at(r, q);
 
             dark += light < DARK && abs(away) <= JUMP;
             bright += light >= LEVEL && abs(away) <= JUMP;
