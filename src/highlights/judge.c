@@ -5,16 +5,18 @@ enum {
     AROUND = 12, /* surroundings: so many cells on each side, */
     GRID = 3,    /* every third of them */
     NEAR = 3,    /* the same of the rim of something large */
-    OUTER = 3,   /* cells that a shape is grown by at most */
+    OUTER = 3,   /* cells that a shape is grown by at most, */
+    BESIDE = 2,  /* and its limbs */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3, /* full gain of 4 adds three times white */
 };
 
 /* What the lamp may be, and what is around it. */
 struct lit {
-    int64_t own[3], around[3]; /* mean colours */
-    int64_t rim[3];            /* that of its rim beyond its surroundings, added up */
-    int64_t base;              /* what the light falls to: the brightest channel, 2 or 3 cells away */
+    int64_t own[3], around[3]; /* mean colours, */
+    int64_t beyond[3];         /* that 2 or 3 cells away, which the light falls to, */
+    int64_t base;              /* and the brightest channel there */
+    int64_t rim[3];            /* what its rim has more than that, or its surroundings, added up */
     int pixels;
     int edge, half_lit;        /* those of its edge, and half lit ones beside it */
     int fade[2]; /* pixels in its cells and beside them, on the way to its surroundings: the upper
@@ -75,16 +77,17 @@ static bool is_in(const struct rf_lamp_shape *shape, int x, int y)
     return i >= 0 && i < 64 && j >= 0 && j < shape->rows && (shape->row[j] >> i & 1);
 }
 
-/* Mean colours of a shape and of a sparse grid around it. False: there is nothing around. */
-static bool look_around(const struct rf_lamp_photo *p, const struct rf_lamp_shape *shape,
-                        struct lit *lit)
+/* Mean colours of a lamp's body, and of a sparse grid around the shape that it is of. False: there
+ * is nothing around. */
+static bool look_around(const struct rf_lamp_photo *p, const struct rf_lamp_shape *body,
+                        const struct rf_lamp_shape *shape, struct lit *lit)
 {
     uint64_t all = 0;
     int count = 0, x0, x1;
 
     for (int j = 0; j < shape->rows; j++) {
         all |= shape->row[j];
-        for (uint64_t row = shape->row[j]; row; row &= row - 1)
+        for (uint64_t row = body->row[j]; row; row &= row - 1)
             lit->pixels += add_own(p, shape->x + __builtin_ctzll(row), shape->y + j, lit->own);
     }
     x0 = shape->x + __builtin_ctzll(all) - AROUND;
@@ -131,7 +134,8 @@ static void add_fade(struct lit *lit, int most)
     lit->fade[1] += above >= 1 && above < 4;
 }
 
-/* Its edge, and the pixels beside it, none of which is clipped. */
+/* Its edge, and the pixels beside it, none of which is clipped: of those that have little of its
+ * light, the colour is mostly not its own. */
 static void look_at_pixel(const struct rf_lamp_photo *p, int x, int y, struct lit *lit)
 {
     int colour[3], most;
@@ -145,9 +149,8 @@ static void look_at_pixel(const struct rf_lamp_photo *p, int x, int y, struct li
     add_fade(lit, most);
     if (is_beside(p, x, y)) {
         lit->half_lit += most - lit->base >= 2 * (RF_LIGHT_MAX - lit->base) / 5;
-        for (int c = 0; c < 3; c++)
-            if (colour[c] > lit->around[c])
-                lit->rim[c] += colour[c] - lit->around[c];
+        for (int c = 0; c < 3 && most > lit->base; c++)
+            lit->rim[c] += (colour[c] - lit->beyond[c]) * (most - lit->base) / RF_LIGHT_MAX;
     }
 }
 
@@ -171,36 +174,53 @@ static struct grown grown_by(const struct rf_lamp_shape *shape, int by)
     return grown;
 }
 
-/* A lamp may light what is beside it: that is not its rim. */
-static void look_beyond(const struct rf_lamp_photo *p, const struct rf_lamp_shape *shape,
-                        struct lit *lit)
+/* Where a body meets a limb there is nothing to be told. */
+static struct grown near_limbs(const struct rf_lamp_shape *body,
+                               const struct rf_lamp_shape *shape)
 {
-    const struct grown rim = grown_by(shape, 1), beyond = grown_by(shape, OUTER);
+    struct rf_lamp_shape limbs = *shape;
+
+    for (int j = 0; j < limbs.rows; j++)
+        limbs.row[j] &= ~body->row[j];
+    return grown_by(&limbs, BESIDE);
+}
+
+/* A lamp may light what is beside it: that is not its rim. */
+static void look_beyond(const struct rf_lamp_photo *p, const struct rf_lamp_shape *body,
+                        const struct grown *limbs, struct lit *lit)
+{
+    const struct grown rim = grown_by(body, 1), beyond = grown_by(body, OUTER);
     int count = 0;
 
-    for (int j = 0; j < shape->rows + 2 * OUTER; j++)
-        for (uint64_t row = beyond.row[j] & ~rim.row[j]; row; row &= row - 1) {
-            const int x = shape->x + __builtin_ctzll(row), y = shape->y + j - OUTER;
+    for (int j = 0; j < body->rows + 2 * OUTER; j++)
+        for (uint64_t row = beyond.row[j] & ~rim.row[j] & ~limbs->row[j]; row; row &= row - 1) {
+            const int x = body->x + __builtin_ctzll(row), y = body->y + j - OUTER;
             int colour[3];
 
             if (!has_cell(p, x, y))
                 continue;
             sample(p, x, y, colour);
+            if (rf_most_of(colour) > RF_CLIPPED) /* another lamp */
+                continue;
             lit->base += rf_most_of(colour);
+            for (int c = 0; c < 3; c++)
+                lit->beyond[c] += colour[c];
             count++;
         }
     lit->base /= count ? count : 1;
+    for (int c = 0; c < 3; c++)
+        lit->beyond[c] /= count ? count : 1;
 }
 
 /* Clipped pixels that are near each other are of one shape: no other is in the cells around it. */
-static void look_at_rim(const struct rf_lamp_photo *p, const struct rf_lamp_shape *shape,
-                        struct lit *lit)
+static void look_at_rim(const struct rf_lamp_photo *p, const struct rf_lamp_shape *body,
+                        const struct grown *limbs, struct lit *lit)
 {
-    const struct grown rim = grown_by(shape, 1);
+    const struct grown rim = grown_by(body, 1);
 
-    for (int j = 0; j < shape->rows + 2 * OUTER; j++)
-        for (uint64_t row = rim.row[j]; row; row &= row - 1) {
-            const int x = shape->x + __builtin_ctzll(row), y = shape->y + j - OUTER;
+    for (int j = 0; j < body->rows + 2 * OUTER; j++)
+        for (uint64_t row = rim.row[j] & ~limbs->row[j]; row; row &= row - 1) {
+            const int x = body->x + __builtin_ctzll(row), y = body->y + j - OUTER;
             struct rf_rect in;
 
             if (!has_cell(p, x, y))
@@ -220,6 +240,7 @@ static void added_of(const int64_t rim[3], int added[3])
     most = rim[2] > most ? rim[2] : most;
     for (int c = 0; c < 3; c++)
         added[c] = GAIN * (int)(most < RF_LIGHT_MAX / 4 ? RF_LIGHT_MAX
+                                : rim[c] < 0            ? 0
                                                         : rim[c] * RF_LIGHT_MAX / most);
 }
 
@@ -242,6 +263,8 @@ static int steepness(const struct rf_lamp_photo *p, const struct lit *lit)
     const int64_t square = (int64_t)lit->edge * lit->edge; /* 10 times the pixels of a disc */
     int sharp, soft;
 
+    if (4 * square < 10 * lit->pixels) /* limbs on most sides */
+        return 0;
     if (p->cell == 1)
         return rf_ramp(edge, 167 * lit->half_lit, 250 * lit->half_lit);
     sharp = rf_ramp(edge, 167 * lit->half_lit, 250 * lit->half_lit);
@@ -267,7 +290,7 @@ static bool goes_on(const struct rf_highlight *run, int x, int y, const uint16_t
 /* What all pixels of a lamp have in common. */
 struct lamp {
     int added[3]; /* light at full strength */
-    int strength, size;
+    int strength, size, pixels;
 };
 
 /* A channel that is not clipped has lost nothing. */
@@ -314,27 +337,49 @@ static int isolation(const struct lit *lit, int halves)
     return rf_ramp(own, around, 2 * around);
 }
 
+/* Of the body of a shape; strength 0: it is none. */
+static struct lamp lamp_of(const struct rf_lamp_photo *p, const struct rf_lamp_shape *body,
+                           const struct rf_lamp_shape *shape)
+{
+    const struct grown limbs = near_limbs(body, shape);
+    struct lit lit = {0};
+    struct lamp lamp = {0};
+
+    if (!look_around(p, body, shape, &lit))
+        return lamp;
+    lamp.strength = isolation(&lit, 5);
+    if (!lamp.strength)
+        return lamp;
+    look_beyond(p, body, &limbs, &lit);
+    look_at_rim(p, body, &limbs, &lit);
+    lamp.strength = lamp.strength * steepness(p, &lit) / 256;
+    if (!lamp.strength)
+        return lamp;
+    added_of(lit.rim, lamp.added);
+    lamp.pixels = lit.pixels;
+    lamp.size = 3 * lit.pixels / lit.edge; /* 5/6 of a disc, 3/2 of a stroke */
+    return lamp;
+}
+
+/* With its limbs it is one lamp, or some together, if that makes more light. */
 void rf_list_shape(struct rf_lamp_search *s, const struct rf_lamp_shape *shape)
 {
     const struct rf_lamp_photo *p = &s->photo;
     const int first = shape->y * p->cell, end = (shape->y + shape->rows) * p->cell;
-    struct lit lit = {0};
-    struct lamp lamp;
+    const struct rf_lamp_shape *lit = shape;
+    struct rf_lamp_shape body;
+    struct lamp lamp = lamp_of(p, shape, shape);
 
-    if (!look_around(p, shape, &lit))
-        return;
-    lamp.strength = isolation(&lit, 5);
-    if (!lamp.strength)
-        return;
-    look_beyond(p, shape, &lit);
-    look_at_rim(p, shape, &lit);
-    lamp.strength = lamp.strength * steepness(p, &lit) / 256;
-    if (!lamp.strength)
-        return;
-    added_of(lit.rim, lamp.added);
-    lamp.size = 3 * lit.pixels / lit.edge; /* 5/6 of a disc, 3/2 of a stroke */
-    for (int y = first > s->y0 ? first : s->y0; y < end && y < s->y1; y++)
-        list_row(s, shape, y, &lamp);
+    if (lamp.strength < 256 && rf_lamp_body(&body, shape)) {
+        const struct lamp part = lamp_of(p, &body, shape);
+
+        if (part.strength * part.pixels > lamp.strength * lamp.pixels) {
+            lamp = part;
+            lit = &body;
+        }
+    }
+    for (int y = first > s->y0 ? first : s->y0; lamp.strength && y < end && y < s->y1; y++)
+        list_row(s, lit, y, &lamp);
 }
 
 /* The squares around a cell: how many of the near one's are clipped. */

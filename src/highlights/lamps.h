@@ -64,7 +64,11 @@ static inline bool rf_is_clipped(const struct rf_lamp_photo *p, int x, int y)
     return rf_most_of(colour) > RF_CLIPPED;
 }
 
-/* List the pixels of a shape, if it is a lamp. */
+/* A shape without its limbs: what is more than half as thick as its thickest part. False: it has
+ * none, or they are most of it. */
+bool rf_lamp_body(struct rf_lamp_shape *body, const struct rf_lamp_shape *shape);
+
+/* List the pixels of a shape, or of its body, if that is a lamp. */
 void rf_list_shape(struct rf_lamp_search *s, const struct rf_lamp_shape *shape);
 
 /* List those of a cell of something larger, a tube or a row of lamps, by the squares around it. */

@@ -238,6 +238,31 @@ static void lit_walls(void **state)
     picture_free(&p);
 }
 
+/* A flame, and the wax that it lights: so bright near it that it is clipped too. */
+static double candle_times(double light)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
+    const struct thing flame = {ELLIPSE, 9, 18, {light, light, light}};
+    const struct thing top = {ELLIPSE, 23, 4, {1.1, 1.1, 1.1}};
+    const struct thing side = {BOX, 23, 40, {0.5, 0.5, 0.5}};
+    double times[3];
+
+    draw(&p, &side, CX + 0.3, CY + 29);
+    draw(&p, &top, CX + 0.3, CY + 9);
+    draw(&p, &flame, CX + 0.3, CY - 0.2);
+    gained_in(&p, times);
+    picture_free(&p);
+    return times[1];
+}
+
+static void candles(void **state)
+{
+    (void)state;
+    expect("a candle", 9, candle_times(3), 1.3, 2.5);
+    expect("a candle", 9, candle_times(5), 1.3, 2.5);
+    expect("a white thing on another", 9, candle_times(1), 0.99, 1.05);
+}
+
 /* A wire in focus, three pixels wide in the map, thinner in the picture, and a lamp of the given
  * disparity on it: light of the lamp at both sides of the wire. */
 static struct picture wired(uint16_t disparity)
@@ -387,7 +412,7 @@ int main(void)
         cmocka_unit_test(lamps),   cmocka_unit_test(paint),   cmocka_unit_test(large),
         cmocka_unit_test(tubes),   cmocka_unit_test(colours), cmocka_unit_test(nights),
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
-        cmocka_unit_test(wires),
+        cmocka_unit_test(wires),        cmocka_unit_test(candles),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
