@@ -394,11 +394,14 @@ struct refocus_render_params {
                                  pixels at 64 rays; the same of a full mask), 8 pixels at the
                                  least, first some of them and all from 5/4 of that on, with
                                  nothing thick as near around them. Rays, which meet them here
-                                 and miss them there, would show streaks. They are
-                                 looked for in the first render of a photo that may need them,
-                                 which takes some frames' time. Not with openings of fine
-                                 structure (masks, figures, rings), cat's eyes, fringes, photos
-                                 of Y, U and V. 0 = no, the default */
+                                 and miss them there, would show streaks. Not with
+                                 openings of fine structure (masks, figures, rings), cat's
+                                 eyes, fringes. And where they are in focus, before what is
+                                 blurred by two pixels and more, their shares of the pixels at
+                                 their edges stay sharp, else those would be blurred with what
+                                 is behind and the edges be in steps. They are looked for in
+                                 the first render of a photo, which takes some frames' time;
+                                 not in photos of Y, U and V. 0 = no, the default */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole

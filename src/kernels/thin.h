@@ -53,8 +53,11 @@ struct rf_thin_tile {
  *                 squared distances from F, rounded down
  *     N           mean, half up, of near pixels of the 5 x 5 around by 1 + sum of
  *                 (L - F)^2 / 64, each rounded down
- *     alpha       255 (N - F)(C - F) / (N - F)^2, rounded down; 0 if (N - F)^2 < 2304; else
- *                 no less than keeps C - (1 - alpha) F between 0 and alpha white
+ *     alpha       255 (N - F)(C - F) / (N - F)^2, rounded down; 0 if (N - F)^2 < 2304,
+ *                 or if C is more than 30 degrees off the line from F to N: a^2 < n c - [n c / 4]
+ *                 with a = (N - F)(C - F) / 1024, n and c the same of the squares of N - F and
+ *                 C - F, all rounded down; else no less than keeps C - (1 - alpha) F between 0 and
+ *                 alpha white
  *
  * None is what has no N, or has light above 4000 in N or C; what is not kept and has an
  * alpha below 12, or (C - F)^2 < 2 spread + 144. What is kept has then, and with 0, an

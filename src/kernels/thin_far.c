@@ -134,10 +134,11 @@ static void compare(int32_t *restrict mixed, const int32_t *restrict contrast,
 void RF_VEC(rf_thin_far)(struct rf_thin_mixture *m, struct rf_thin_batch *b)
 {
     uint16_t weights[BATCH] = {0}, count[BATCH] = {0}, one[BATCH];
-    int32_t squares[BATCH] = {0}, contrast[BATCH] = {0};
+    int32_t squares[BATCH] = {0};
 
     find_surface(m, b);
     memset(one, 255, sizeof one);
+    memset(m->contrast, 0, sizeof m->contrast);
     keep_surface(b, m->far, weights, count);
     for (int c = 0; c < 3; c++) {
         uint32_t sum[BATCH] = {0};
@@ -147,7 +148,7 @@ void RF_VEC(rf_thin_far)(struct rf_thin_mixture *m, struct rf_thin_batch *b)
         mean_by_weight(m->behind[c], sum, weights);
         for (int i = 0; i < WAYS; i++)
             add_square(squares, b->weight[i], b->met[c][i], m->behind[c]);
-        add_square(contrast, one, b->light[c], m->behind[c]);
+        add_square(m->contrast, one, b->light[c], m->behind[c]);
     }
-    compare(m->mixed, contrast, squares, count);
+    compare(m->mixed, m->contrast, squares, count);
 }

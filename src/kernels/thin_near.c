@@ -168,20 +168,36 @@ static void keep_range(int32_t *restrict alpha, const uint16_t *restrict light,
     }
 }
 
+/* 0xffffffff: C is more than 30 degrees off the line from F to N. A negative `along` may be either:
+ * it is no share. */
+static void find_strays(uint32_t *restrict stray, const int32_t *restrict along,
+                        const int32_t *restrict square, const int32_t *restrict contrast)
+{
+    for (int x = 0; x < BATCH; x++) {
+        const uint32_t a = (uint32_t)along[x] >> 10; /* 0 to 3 * 2^14 */
+        const uint32_t all = ((uint32_t)square[x] >> 10) * ((uint32_t)contrast[x] >> 10);
+
+        stray[x] = a * a < all - (all >> 2) ? UINT32_MAX : 0;
+    }
+}
+
 /* alpha, Q8: the share of N - F. */
 static void set_alpha(struct rf_thin_mixture *m, const struct rf_thin_batch *b)
 {
     int32_t along[BATCH] = {0}, square[BATCH] = {0};
+    uint32_t stray[BATCH];
 
     for (int c = 0; c < 3; c++)
         add_share(along, square, b->light[c], m->behind[c], m->before[c]);
     divide_share(m->alpha, along, square);
     for (int c = 0; c < 3; c++)
         keep_range(m->alpha, b->light[c], m->behind[c]);
+    find_strays(stray, along, square, m->contrast);
     for (int x = 0; x < BATCH; x++) {
         const int32_t alpha = m->alpha[x] < 255 ? m->alpha[x] : 255;
+        const bool some = along[x] > 0 && square[x] >= FAINT * 16;
 
-        m->alpha[x] = along[x] > 0 && square[x] >= FAINT * 16 ? alpha : 0;
+        m->alpha[x] = some && !stray[x] ? alpha : 0;
     }
 }
 

@@ -97,6 +97,7 @@ struct rf_thin_mixture {
     uint16_t far[BATCH];                        /* disparity of F */
     uint16_t near[BATCH];                       /* nearest of N, 0: there is none */
     int32_t mixed[BATCH];                       /* C is not F's own */
+    int32_t contrast[BATCH];                    /* (C - F)^2 */
     int32_t behind[3][BATCH], before[3][BATCH]; /* F, N */
     int32_t alpha[BATCH];
 };

@@ -36,7 +36,8 @@ struct rf_frame {
     int veils;              /* thin things may be taken apart, thin/thin.h, and drawn with discs
                                of this part of their blur, Q8; 0: they are not */
     int veil_blur;          /* from this blur before the focus on, Q7.8, more and more of them; */
-    int veil_from[RF_VEIL_LEVELS]; /* pixels of a level from this disparity on: rf_set_veils() */
+    bool holds;             /* what is thin and in focus may be laid over what is not */
+    struct rf_thin_bounds thin_bounds[RF_THIN_LEVELS]; /* rf_set_thin_bounds() */
     bool weighted;          /* eq. 5 weights differ from 1, */
     bool premultiplied;     /* and little enough for light times weight in 16 bits */
     bool fine;              /* the opening is: rf_aperture_is_fine() */

@@ -339,6 +339,8 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         else
             sweep_sums(f, &plan, &rays, tx, ty, mean, from, to);
     }
+    if (f->holds)
+        rf_lay_held(f, tx, ty, mean);
     if (f->veils)
         rf_veil_over(r, tx, ty, mean);
     if (!rf_cancelled(r))

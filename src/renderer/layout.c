@@ -88,7 +88,7 @@ static void take_veil(struct rf_arena *arena, struct rf_veil *veil, int width, i
     veil->cell = rf_arena_take(arena, (uint64_t)veil->stride * down * (RF_TILE / RF_VEIL_CELL),
                                sizeof *veil->cell);
     veil->sources = rf_arena_take(arena, down, sizeof *veil->sources);
-    veil->drawn = rf_arena_take(arena, across * down, sizeof *veil->drawn);
+    veil->apart = rf_arena_take(arena, across * down, sizeof *veil->apart);
 }
 
 /* Planes of a photo in a group; NULL: only counting. */

@@ -72,14 +72,16 @@ struct parts {
 /* What r->made.thin is for this frame: 0, or the size of discs and the blend. */
 static uint32_t made_thin(const struct rf_frame *f)
 {
-    return f->veils ? (uint32_t)f->veils << 8 | (1 + f->r->blend) : 0;
+    return rf_takes_apart(f)
+               ? (uint32_t)f->veils << 8 | (uint32_t)f->holds << 7 | (1 + f->r->blend)
+               : 0;
 }
 
 static bool has_same_thin(const struct rf_frame *f)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->thin == made_thin(f) && (!f->veils || m->veil_blur == f->veil_blur);
+    return m->thin == made_thin(f) && (!rf_takes_apart(f) || m->veil_blur == f->veil_blur);
 }
 
 /* Whether all of that is there. */
@@ -116,7 +118,7 @@ static void make_blur(struct rf_frame *f, bool layers)
                               .thin = made_thin(f),
                               .veil_blur = f->veil_blur};
         rf_pass_blur(f, layers);
-        if (f->veils && !rf_cancelled(r))
+        if (rf_takes_apart(f) && !rf_cancelled(r))
             rf_take_thin_apart(f);
         m->blur = !rf_cancelled(r);
     }
@@ -163,7 +165,7 @@ static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect
 /* How far beyond a tile something thick decides what becomes of what is thin in it. */
 static int thin_margin(const struct rf_frame *f)
 {
-    return f->veils ? f->r->pad + 2 * RF_TILE : 0;
+    return rf_takes_apart(f) ? f->r->pad + 2 * RF_TILE : 0;
 }
 
 /* How far from the window's sides the mark and the smooth light are those of the whole
@@ -297,7 +299,7 @@ static void find_thin(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
 
-    if (!f->veils || r->photo[r->used].thin.blend == r->blend)
+    if (!rf_takes_apart(f) || r->photo[r->used].thin.blend == r->blend)
         return;
     rf_find_thin(r);
 }

@@ -177,10 +177,10 @@ void rf_pass_bright(struct rf_frame *f)
 /* The light is the photo's again afterwards, whatever happens; of the next as well. */
 void rf_pass_prefilter(struct rf_frame *f)
 {
-    if (f->veils)
+    if (rf_takes_apart(f))
         rf_swap_thin_light(f);
     prefilter(f);
-    if (f->veils)
+    if (rf_takes_apart(f))
         rf_swap_thin_light(f);
 }
 

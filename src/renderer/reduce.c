@@ -97,7 +97,7 @@ static void reduce(struct refocus_renderer *r, int to)
 
 void rf_reduce_once(struct refocus_renderer *r)
 {
-    r->made.half = false;
+    r->made = (struct rf_made){0}; /* it lies where the background layer does */
     reduce(r, 1);
     r->made.half = !rf_cancelled(r);
 }

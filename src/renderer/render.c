@@ -160,6 +160,13 @@ static int veil_blur(const struct refocus_render_params *p)
                                  : (int)blur;
 }
 
+/* Whether what is thin is found. */
+static bool may_take_apart(const struct rf_frame *f)
+{
+    return f->params->thin && f->r->has_thin && f->params->method == REFOCUS_METHOD_SWEEP &&
+           !f->r->yuv.on && f->params->max_blur_radius > 0;
+}
+
 /* Discs of veils are as large as the opening's rays lie on the average: 1/2 for the
  * mean square of a disc's. Openings with fine structure have none, nor those that
  * differ from place to place. */
@@ -169,8 +176,7 @@ static int veil_scale(const struct rf_frame *f)
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
     int64_t sum = 0;
 
-    if (!p->thin || !f->r->has_thin || p->method != REFOCUS_METHOD_SWEEP ||
-        f->r->yuv.on || (f->plan.plain && f->veil_from[0] > 65535) || p->cat_eye > 0 ||
+    if (!may_take_apart(f) || (f->plan.plain && f->thin_bounds[0].veil_from > 65535) || p->cat_eye > 0 ||
         p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)
@@ -224,8 +230,9 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     if (rf_cancelled(r))
         return;
     f->veil_blur = veil_blur(f->params);
-    rf_set_veils(f);
-    f->veils = pinhole ? 0 : veil_scale(f);
+    rf_set_thin_bounds(f);
+    f->veils = veil_scale(f);
+    f->holds = may_take_apart(f);
     f->row_gap = pinhole ? 0 : rf_row_gap(f);
     if (r->in_place.on) {
         rf_run_blocks(f, region, need, run_tiles);

@@ -34,35 +34,15 @@ struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
            run->first;
 }
 
-/* signed_blur of one. */
-static int plain_blur(struct rf_focus focus, uint16_t disparity)
+uint8_t *rf_apart_of(const struct refocus_renderer *r, int tx, int ty)
 {
-    const int away = disparity - focus.disparity;
-    const uint32_t blur = (uint32_t)(away < 0 ? -away : away) * focus.radius + 0x8000;
-
-    return away > 0 ? -(int)(blur >> 16) : (int)(blur >> 16);
+    return &r->veil.apart[(size_t)ty * r->tiles_x + tx];
 }
 
-/* Blur of a disparity at a pixel. */
-static int blur_of(const struct rf_frame *f, uint16_t disparity, int x, int y)
-{
-    int16_t blur;
 
-    if (f->plan.plain)
-        return plain_blur(f->plan.focus, disparity);
-    rf_focus_row(&f->plan, &blur, &disparity, f->r->origin_x + x, f->r->origin_y + y,
-                 1);
-    return blur;
-}
-
-static bool *is_drawn(const struct refocus_renderer *r, int tx, int ty)
+bool rf_takes_apart(const struct rf_frame *f)
 {
-    return &r->veil.drawn[(size_t)ty * r->tiles_x + tx];
-}
-
-bool rf_thin_drawn(const struct refocus_renderer *r, int tx, int ty)
-{
-    return *is_drawn(r, tx, ty);
+    return f->veils || f->holds;
 }
 
 /* Whether a tile holds some cells all of which is as near as a blur: nothing thin fills
@@ -95,65 +75,15 @@ static bool is_alone(const struct refocus_renderer *r, int tx, int ty, int blur)
     return true;
 }
 
-int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
-{
-    return blur_of(f, thin->near_disparity, tx * RF_TILE, ty * RF_TILE);
-}
-
-/* Of a pixel of a tile. Cells beside each other, and those on a line, differ much; single pixels
- * would show as a weave. */
-static int level_of(int at)
-{
-    static const uint8_t level[4][4] = {
-        {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
-
-    return level[at / RF_TILE / RF_CELL][at % RF_TILE / RF_CELL];
-}
-
-static int veil_blur_of(const struct rf_frame *f, int level)
-{
-    return f->veil_blur + f->veil_blur * level / 64;
-}
-
-bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
-{
-    const int level = level_of(thin->at);
-
-    return f->plan.plain ? thin->near_disparity >= f->veil_from[level]
-                         : rf_near_blur(f, thin, tx, ty) <= -veil_blur_of(f, level);
-}
-
-/* The least disparity that is blurred so much before the focus. */
-static int veil_from(const struct rf_frame *f, int blur)
-{
-    int low = 0, high = 65536;
-
-    while (low < high) {
-        const int middle = (low + high) / 2;
-
-        if (plain_blur(f->plan.focus, (uint16_t)middle) <= -blur)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
-
-void rf_set_veils(struct rf_frame *f)
-{
-    for (int k = 0; k < RF_VEIL_LEVELS; k++)
-        f->veil_from[k] = f->plan.plain ? veil_from(f, veil_blur_of(f, k)) : 0;
-}
-
 /* Whether all of a tile are, or none, as far as its run can say. */
 static bool are_all_veils(const struct rf_frame *f, const struct rf_thin_run *run)
 {
-    return f->plan.plain && run->least >= f->veil_from[RF_VEIL_LEVELS - 1];
+    return f->plan.plain && run->least >= f->thin_bounds[RF_THIN_LEVELS - 1].veil_from;
 }
 
 static bool is_no_veil(const struct rf_frame *f, const struct rf_thin_run *run)
 {
-    return f->plan.plain && run->most < f->veil_from[0];
+    return f->plan.plain && run->most < f->thin_bounds[0].veil_from;
 }
 
 /* Of those of a tile that are to be drawn the farthest near disparity; 65536: none. */
@@ -181,13 +111,25 @@ static void choose_band(void *context, int band, int worker)
 
     (void)worker;
     for (int tx = 0; tx < r->tiles_x; tx++) {
-        const int d = farthest_veil(f, tx, band);
+        const int d = f->veils ? farthest_veil(f, tx, band) : 65536;
+        uint8_t apart = 0;
 
-        *is_drawn(r, tx, band) =
-            d < 65536 &&
-            is_alone(r, tx, band,
-                     blur_of(f, (uint16_t)d, tx * RF_TILE, band * RF_TILE));
+        if (d < 65536 &&
+            is_alone(r, tx, band, rf_thin_blur(f, (uint16_t)d, tx * RF_TILE, band * RF_TILE)))
+            apart |= RF_VEILS;
+        if (rf_has_held(f, tx, band))
+            apart |= RF_HELD;
+        *rf_apart_of(r, tx, band) = apart;
     }
+}
+
+/* Whether one of a tile is taken apart. */
+static bool is_apart(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+{
+    const int apart = *rf_apart_of(f->r, tx, ty);
+
+    return ((apart & RF_VEILS) && rf_is_veil(f, thin, tx, ty)) ||
+           ((apart & RF_HELD) && rf_is_held(f, thin, tx, ty));
 }
 
 /* F's blur where what is before it is drawn. */
@@ -201,9 +143,9 @@ static void patch_tile(const struct rf_frame *f, int tx, int ty)
         const int x = tx * RF_TILE + thin[i].at % RF_TILE;
         const int y = ty * RF_TILE + thin[i].at / RF_TILE;
 
-        if (rf_is_veil(f, &thin[i], tx, ty))
+        if (is_apart(f, &thin[i], tx, ty))
             r->front.blur[y * r->stride + x] =
-                (int16_t)blur_of(f, thin[i].far_disparity, x, y);
+                (int16_t)rf_thin_blur(f, thin[i].far_disparity, x, y);
     }
 }
 
@@ -215,7 +157,7 @@ static void patch_band(void *context, int band, int worker)
 
     (void)worker;
     for (int tx = 0; tx < r->tiles_x; tx++) {
-        if (!*is_drawn(r, tx, band))
+        if (!*rf_apart_of(r, tx, band))
             continue;
         any = true;
         patch_tile(f, tx, band);
@@ -231,7 +173,8 @@ void rf_take_thin_apart(struct rf_frame *f)
 {
     rf_pool_run(&f->r->pool, choose_band, f, rf_bands(f->r));
     rf_pool_run(&f->r->pool, patch_band, f, rf_bands(f->r));
-    rf_veil_draw(f);
+    if (f->veils)
+        rf_veil_draw(f);
 }
 
 void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
@@ -246,8 +189,8 @@ void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
         for (int i = 0; i < RF_TILE * RF_TILE; i++)
             mean[c][i] = (uint16_t)(4 * r->front.light[c][at + i / RF_TILE * r->stride +
                                                           i % RF_TILE]);
-    for (uint32_t i = 0; *is_drawn(r, tx, ty) && i < count; i++) {
-        if (!rf_is_veil(f, &thin[i], tx, ty))
+    for (uint32_t i = 0; i < count; i++) {
+        if (!is_apart(f, &thin[i], tx, ty))
             continue;
         for (int c = 0; c < 3; c++)
             mean[c][thin[i].at] = (uint16_t)(4 * thin[i].light[c]);
@@ -261,7 +204,7 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
     uint16_t *const red = r->front.light[0] + tile,
                     *const green = r->front.light[1] + tile,
                     *const blue = r->front.light[2] + tile;
-    const bool all = are_all_veils(f, rf_thin_run_of(r, tx, ty));
+    const bool all = (*rf_apart_of(r, tx, ty) & RF_VEILS) && are_all_veils(f, rf_thin_run_of(r, tx, ty));
     uint32_t count;
     struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
 
@@ -269,7 +212,7 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
         const ptrdiff_t at = thin[i].at / RF_TILE * stride + thin[i].at % RF_TILE;
         const uint16_t light[3] = {red[at], green[at], blue[at]};
 
-        if (!all && !rf_is_veil(f, &thin[i], tx, ty))
+        if (!all && !is_apart(f, &thin[i], tx, ty))
             continue;
         red[at] = thin[i].light[0];
         green[at] = thin[i].light[1];
@@ -284,6 +227,6 @@ void rf_swap_thin_light(const struct rf_frame *f)
 {
     for (int ty = 0; ty < f->r->tiles_y; ty++)
         for (int tx = 0; tx < f->r->tiles_x; tx++)
-            if (*is_drawn(f->r, tx, ty))
+            if (*rf_apart_of(f->r, tx, ty))
                 swap_tile(f, tx, ty);
 }

@@ -14,8 +14,8 @@
  * F is the mean of the pixels around of the far surface that counts most, each by the
  * inverse square of its distance; N that of the near ones around by how much they
  * differ from F. alpha is the share of N - F in C - F, at least as much as keeps N
- * between black and white. Where C tells nothing it is 1, if the map has the pixel
- * near.
+ * between black and white. Where C tells nothing, or is of another colour than such a
+ * mixture, it is 1 if the map has the pixel near, else none.
  */
 #ifndef RF_THIN_H
 #define RF_THIN_H
@@ -59,26 +59,54 @@ struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
                            uint32_t *count);
 
 /*
+ * What is thin and in focus, hair before something far, is held: its shares of the pixels at its
+ * edge would be blurred with what is behind it, and its edge be in steps. It is taken apart too,
+ * and laid over the picture where it is,
+ *
+ *     out = alpha N + (1 - alpha) mean
+ *
+ * up to half a pixel or so of its own blur, before what is blurred by two or so and more, where
+ * nothing nearer reaches.
+ *
  * Nothing is to jump as the focus moves, so that not all pixels are taken apart at one blur: those
- * of a level k, that of their cell of 4 x 4 pixels in the tile, are from veil_blur (1 + k / 64) on.
+ * of a level k, that of their cell of 4 x 4 pixels in the tile, are from veil_blur (1 + k / 64) on,
+ * or held up to (48 + 12 k) / 256 pixels, before (384 + 32 k) / 256.
  */
-enum { RF_VEIL_LEVELS = 16 };
+enum { RF_THIN_LEVELS = 16 };
 
-/* Blur of what is near in one of a tile, Q7.8, and whether that is far enough before
- * the focus. */
+/* Of a plan that is a lens's, disparities of a level: veils are near from one on, 65536: none;
+ * what is held between two, and what is behind it at most one. */
+struct rf_thin_bounds {
+    int veil_from, held_from, held_to, held_far;
+};
+
+/* f->thin_bounds, from veil_blur. */
+void rf_set_thin_bounds(struct rf_frame *f);
+
+/* Blur of a disparity at a pixel, Q7.8; of what is near in one of a tile. */
+int rf_thin_blur(const struct rf_frame *f, uint16_t disparity, int x, int y);
 int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
-bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
 
-/* f->veil_from, from veil_blur: of a plan that is a lens's the least disparity that is, of each
- * level; 65536: none. */
-void rf_set_veils(struct rf_frame *f);
+/* Whether that is far enough before the focus, or in it before what is not. */
+bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
+bool rf_is_held(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
+
+/* Whether a frame takes anything apart. */
+bool rf_takes_apart(const struct rf_frame *f);
 
 /* After blurs, cells and bins, before rims: choose the tiles whose edges are taken
  * apart; there blurs become those of F, and the veil is drawn. */
 void rf_take_thin_apart(struct rf_frame *f);
 
-/* Whether those of a tile are. */
-bool rf_thin_drawn(const struct refocus_renderer *r, int tx, int ty);
+/* What of a tile is taken apart, bits. */
+enum { RF_VEILS = 1, RF_HELD = 2 };
+uint8_t *rf_apart_of(const struct refocus_renderer *r, int tx, int ty);
+
+/* Whether some of a tile are held and nothing nearer reaches it. */
+bool rf_has_held(const struct rf_frame *f, int tx, int ty);
+
+/* Lay those held over the means of a tile, Q14. */
+void rf_lay_held(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][256]);
 
 /* Means of a tile, Q14, that nothing reaches but what is drawn: the photo, and F. */
 void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][256]);

@@ -82,7 +82,7 @@ static void gather_band(void *context, int ty, int worker)
     for (int tx = 0; tx < r->tiles_x; tx++) {
         struct sum sum[CELLS * CELLS] = {0};
 
-        if (!rf_thin_drawn(r, tx, ty))
+        if (!(*rf_apart_of(r, tx, ty) & RF_VEILS))
             continue;
         add_tile(f, tx, ty, sum);
         for (int i = 0; i < CELLS * CELLS; i++) {

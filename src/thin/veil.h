@@ -32,7 +32,7 @@ struct rf_veil_source {
 struct rf_veil {
     struct rf_veil_source *source; /* 16 for each tile, in rows of tiles */
     uint32_t *sources;             /* of each row of tiles */
-    bool *drawn;                   /* of each tile: its edges are */
+    uint8_t *apart;                /* of each tile, bits: rf_apart_of() */
     int32_t (*cell)[4];            /* Q12 times 2^RF_VEIL_SHIFT */
     int stride;
 };

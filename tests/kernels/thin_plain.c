@@ -224,6 +224,24 @@ static int set_near(struct look *l)
     return most;
 }
 
+/* How far C is from F, squared. */
+static int64_t contrast(const struct look *l)
+{
+    int64_t sum = 0;
+
+    for (int c = 0; c < 3; c++)
+        sum += (int64_t)(l->light[c] - l->behind[c]) * (l->light[c] - l->behind[c]);
+    return sum;
+}
+
+/* Whether C is off the line from F to N by more than 30 degrees, cos^2 < 3/4. */
+static bool is_stray(int64_t along, int64_t square, int64_t contrast)
+{
+    const int64_t all = square * contrast;
+
+    return along * along < all - all / 4;
+}
+
 /* alpha, Q8: the share of N - F, and no less than makes N black or white. */
 static int share(const struct look *l)
 {
@@ -236,7 +254,8 @@ static int share(const struct look *l)
         along += whole * (l->light[c] - l->behind[c]);
         square += whole * whole;
     }
-    if (along <= 0 || square < FAINT * 16)
+    if (along <= 0 || square < FAINT * 16 ||
+        is_stray(along / 1024, square / 1024, contrast(l) / 1024))
         return 0;
     alpha = along >= square ? 255 : (int)(255 * along / square);
     for (int c = 0; c < 3; c++) {
@@ -247,16 +266,6 @@ static int share(const struct look *l)
         alpha = least > alpha ? least : alpha;
     }
     return alpha < 255 ? alpha : 255;
-}
-
-/* How far C is from F, squared. */
-static int64_t contrast(const struct look *l)
-{
-    int64_t sum = 0;
-
-    for (int c = 0; c < 3; c++)
-        sum += (int64_t)(l->light[c] - l->behind[c]) * (l->light[c] - l->behind[c]);
-    return sum;
 }
 
 static bool shines(const struct look *l)

@@ -1,4 +1,4 @@
-/* Thin things far before the focus: src/thin. */
+/* Thin things far before the focus, and in it: src/thin. */
 #include "pictures.h"
 
 #include "renderer/renderer.h"
@@ -143,6 +143,49 @@ static void wire(void **state)
     picture_free(&p);
 }
 
+/* Two wires in focus: what lies behind is blurred, their edges are not. */
+static void held(void **state)
+{
+    static uint8_t out[MOST], behind[MOST];
+    struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){30, 60, 50}, FAR), far, share;
+    struct setting s = plain;
+    double off[2] = {0, 0};
+    int pixels = 0;
+
+    (void)state;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        if (i % WIDTH > 170)
+            memset(p.rgb + 3 * i, 130, 3);
+    far = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
+    memcpy(far.rgb, p.rgb, MOST);
+    share = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
+    picture_line(&p, 100, 0, 0.4, 1, 3, 220);
+    picture_line(&p, 0, 60, 1, 0.15, 2, 220);
+    picture_line(&share, 100, 0, 0.4, 1, 3, 255);
+    picture_line(&share, 0, 60, 1, 0.15, 2, 255);
+    s.focus = NEAR / 65535.0f;
+    render_fresh(&far, false, &s, behind);
+    for (int pass = 0; pass < 2; pass++) {
+        s.thin = !pass;
+        render_fresh(&p, true, &s, out);
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            const double alpha = share.rgb[3 * i] / 255.0;
+            const double should = alpha * 220 + (1 - alpha) * behind[3 * i];
+
+            if (alpha > 0 && alpha < 1) {
+                off[pass] += fabs(out[3 * i] - should);
+                pixels += !pass;
+            }
+        }
+    }
+    printf("held: %.2f codes off, by rays %.2f\n", off[0] / pixels, off[1] / pixels);
+    assert_true(off[0] < 6 * pixels);
+    assert_true(off[0] < off[1] / 3);
+    picture_free(&p);
+    picture_free(&far);
+    picture_free(&share);
+}
+
 /* Where it has nothing to do, or may not, nothing changes. */
 static void elsewhere(void **state)
 {
@@ -158,10 +201,10 @@ static void elsewhere(void **state)
     assert_same_pixels(out, expected, WIDTH, HEIGHT, "a renderer without");
     render_fresh(&p, true, &on, out);
     assert_true(memcmp(out, expected, MOST));
-    on.focus = off.focus = NEAR / 65535.0f;
+    on.blur = off.blur = 8; /* too little for veils, too much for what is in focus */
     render_fresh(&p, true, &on, out);
     render_fresh(&p, true, &off, expected);
-    assert_same_pixels(out, expected, WIDTH, HEIGHT, "the fence in focus");
+    assert_same_pixels(out, expected, WIDTH, HEIGHT, "the fence a little blurred");
     on = off = plain;
     off.thin = 0;
     picture_line(&thick, 160, 0, 0.1, 1, 30, 200);
@@ -177,21 +220,26 @@ static void same_everywhere(void **state)
     static uint8_t out[MOST], expected[MOST];
     static const int threads[] = {2, 3, 8};
     struct picture p = picture_fence(WIDTH, HEIGHT, 2);
-    struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_C, 1, true);
+    struct setting s = plain;
 
     (void)state;
-    assert_int_equal(render(renderer, &plain, expected), REFOCUS_OK);
-    refocus_renderer_destroy(&renderer);
-    for (uint32_t cpu = 0; cpu <= REFOCUS_CPU_AVX512; cpu++) {
-        for (int i = 0; i < 3; i++) {
-            if (cpu != REFOCUS_CPU_AUTO && i > 0)
-                continue;
-            renderer = create(&p, cpu, threads[i], true);
-            if (!renderer)
-                continue;
-            assert_int_equal(render(renderer, &plain, out), REFOCUS_OK);
-            assert_same_pixels(out, expected, WIDTH, HEIGHT, refocus_cpu_name(cpu));
-            refocus_renderer_destroy(&renderer);
+    for (int pass = 0; pass < 2; pass++) {
+        struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_C, 1, true);
+
+        s.focus = (pass ? NEAR : FAR) / 65535.0f;
+        assert_int_equal(render(renderer, &s, expected), REFOCUS_OK);
+        refocus_renderer_destroy(&renderer);
+        for (uint32_t cpu = 0; cpu <= REFOCUS_CPU_AVX512; cpu++) {
+            for (int i = 0; i < 3; i++) {
+                if (cpu != REFOCUS_CPU_AUTO && i > 0)
+                    continue;
+                renderer = create(&p, cpu, threads[i], true);
+                if (!renderer)
+                    continue;
+                assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
+                assert_same_pixels(out, expected, WIDTH, HEIGHT, refocus_cpu_name(cpu));
+                refocus_renderer_destroy(&renderer);
+            }
         }
     }
     picture_free(&p);
@@ -205,9 +253,10 @@ static void regions(void **state)
     uint32_t seed = 5;
 
     (void)state;
-    for (int blur = 12; blur <= 15; blur += 3) {
+    for (int blur = 9; blur <= 15; blur += 3) {
         struct setting s = plain;
 
+        s.focus = (blur == 9 ? NEAR : FAR) / 65535.0f;
         s.blur = (float)blur;
         render_fresh(&p, true, &s, whole);
         for (int i = 0; i < (left_out(1, 2) ? 6 : 16); i++) {
@@ -335,6 +384,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wire),
+        cmocka_unit_test(held),
         cmocka_unit_test(elsewhere),
         cmocka_unit_test(same_everywhere),
         cmocka_unit_test(regions),

@@ -84,8 +84,8 @@ const char *engine_blend_summary(uint32_t index);
     {.kind = OPTION_FLAG,                                                              \
      .name = "--no-thin",                                                              \
      .offset = offsetof(type, member.no_thin),                                         \
-     .help = "sweep: thin things far before the focus are met by rays like all else, " \
-             "not drawn; so in quality preview",                                       \
+     .help = "sweep: thin things far before the focus, and in it, are met by rays "    \
+             "like all else, not drawn; so in quality preview",                        \
      OF_METHODS(type, member.method, OF_SWEEP)},                                       \
     {.kind = OPTION_TEXT,                                                              \
      .name = "--aperture",                                                             \
