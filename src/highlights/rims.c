@@ -55,24 +55,6 @@ static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
     return contrast >= (int64_t)CONTRAST * CONTRAST && 10 * along > 6 * contrast;
 }
 
-/* Whether something next to (x, y) is much farther. */
-static bool beside_jump(const struct refocus_renderer *r, int x, int y)
-{
-    const int x0 = x > 0 ? -1 : 0, x1 = x + 1 < r->width ? 1 : 0;
-    const uint16_t *up = r->disparity + (y > 0 ? y - 1 : y) * r->stride + x;
-    const uint16_t *row = r->disparity + y * r->stride + x;
-    const uint16_t *down =
-        r->disparity + (y + 1 < r->height ? y + 1 : y) * r->stride + x;
-    int least = row[0];
-
-    for (int i = x0; i <= x1; i++) {
-        least = up[i] < least ? up[i] : least;
-        least = row[i] < least ? row[i] : least;
-        least = down[i] < least ? down[i] : least;
-    }
-    return least + JUMP < row[0];
-}
-
 static void add_rim(const struct refocus_renderer *r, struct rf_photo *photo, int x, int y,
                     uint16_t disparity)
 {
@@ -180,7 +162,8 @@ static bool has_other(const struct refocus_renderer *r, int x, int y, ptrdiff_t 
     return false;
 }
 
-/* The rims around a bright pixel, of each the nearest pixel that has it. */
+/* The rims around a bright pixel beside something much farther, of each the nearest pixel that has
+ * it. */
 static void find_around(const struct refocus_renderer *r, int x, int y,
                         struct rf_photo *photo)
 {
@@ -188,8 +171,6 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
     const struct rf_rect in = around(r, x, y, 1);
     uint16_t behind;
 
-    if (!beside_jump(r, x, y))
-        return;
     if (is_behind(r, x, y, &behind)) {
         if (!has_other(r, x, y, n)) /* else it is a rim itself */
             add_rim(r, photo, x, y, behind);
@@ -201,29 +182,53 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
                 add_rim(r, photo, px, py, r->disparity[n]);
 }
 
-/* Whether disparities in and around a run of a row differ by a jump. Signed: baseline x86 has
- * signed 16-bit extremes only. */
-static bool has_jump(const struct refocus_renderer *r, int x0, int x1, int y)
+enum { RUN = 32 }; /* most runs of pixels hold nothing bright at a jump */
+
+/* Disparities of a row in a run, and one on each side. Signed: baseline x86 has signed 16-bit
+ * extremes only. */
+static void take_row(const struct refocus_renderer *r, int x0, int y, int16_t row[RUN + 2])
 {
-    const int from = x0 > 0 ? x0 - 1 : 0, n = (x1 < r->width ? x1 + 1 : x1) - from;
-    int16_t least = INT16_MAX, most = INT16_MIN;
+    const uint16_t *d = r->disparity + rf_within(y, r->height - 1) * r->stride;
 
-    for (int j = y > 0 ? y - 1 : y; j <= y + 1 && j < r->height; j++) {
-        const uint16_t *d = r->disparity + j * r->stride + from;
+    if (x0 > 0 && x0 + RUN < r->width)
+        for (int i = 0; i < RUN + 2; i++)
+            row[i] = (int16_t)(d[x0 - 1 + i] ^ 0x8000);
+    else
+        for (int i = 0; i < RUN + 2; i++)
+            row[i] = (int16_t)(d[rf_within(x0 - 1 + i, r->width - 1)] ^ 0x8000);
+}
 
-        for (int x = 0; x < n; x++) {
-            const int16_t v = (int16_t)(d[x] ^ 0x8000);
+static inline int16_t min16(int16_t a, int16_t b)
+{
+    return a < b ? a : b;
+}
 
-            least = v < least ? v : least;
-            most = v > most ? v : most;
-        }
+/* Pixels of a run that have something much farther beside them, a bit each. */
+static uint32_t find_jumps(const struct refocus_renderer *r, int x0, int y)
+{
+    int16_t above[RUN + 2], own[RUN + 2], below[RUN + 2], least[RUN + 2];
+    uint8_t jump[RUN];
+    uint32_t bits = 0, any = 0;
+
+    take_row(r, x0, y - 1, above);
+    take_row(r, x0, y, own);
+    take_row(r, x0, y + 1, below);
+    for (int i = 0; i < RUN + 2; i++)
+        least[i] = min16(own[i], min16(above[i], below[i]));
+    for (int i = 0; i < RUN; i++) {
+        const int16_t l = min16(least[i + 1], min16(least[i], least[i + 2]));
+
+        jump[i] = (uint16_t)(own[i + 1] - l) > JUMP;
     }
-    return most - least > JUMP;
+    for (int i = 0; i < RUN; i++)
+        any |= jump[i];
+    for (int i = 0; any && i < RUN; i++)
+        bits |= (uint32_t)jump[i] << i;
+    return bits;
 }
 
 void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
 {
-    enum { RUN = 32 }; /* most runs of pixels hold nothing bright at a jump */
     struct rf_photo *photo = &r->photo[r->used];
 
     for (int y = part.y0; y < part.y1; y++) {
@@ -232,17 +237,21 @@ void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
         if (rf_cancelled(r))
             return;
         for (int x0 = part.x0; x0 < part.x1; x0 += RUN) {
-            const int x1 = x0 + RUN < part.x1 ? x0 + RUN : part.x1;
+            const int n = part.x1 - x0 < RUN ? part.x1 - x0 : RUN;
+            uint32_t bits;
 
             if (r->kernels.brightest(r->front.light[0] + at + x0, r->front.light[1] + at + x0,
-                                     r->front.light[2] + at + x0, x1 - x0) < LEVEL ||
-                !has_jump(r, x0, x1, y))
+                                     r->front.light[2] + at + x0, n) < LEVEL)
                 continue;
-            if (rf_cancelled(r))
+            bits = find_jumps(r, x0, y) & (UINT32_MAX >> (RUN - n));
+            if (bits && rf_cancelled(r))
                 return;
-            for (int x = x0; x < x1; x++)
+            for (; bits; bits &= bits - 1) {
+                const int x = x0 + __builtin_ctz(bits);
+
                 if (is_bright(r, at + x))
                     find_around(r, x, y, photo);
+            }
         }
     }
 }
