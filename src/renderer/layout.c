@@ -89,6 +89,7 @@ static void take_veil(struct rf_arena *arena, struct rf_veil *veil, int width, i
                                sizeof *veil->cell);
     veil->sources = rf_arena_take(arena, down, sizeof *veil->sources);
     veil->apart = rf_arena_take(arena, across * down, sizeof *veil->apart);
+    veil->swapped = rf_arena_take(arena, down, sizeof *veil->swapped);
 }
 
 /* Planes of a photo in a group; NULL: only counting. */

@@ -181,7 +181,7 @@ void rf_pass_prefilter(struct rf_frame *f)
         rf_swap_thin_light(f);
     prefilter(f);
     if (rf_takes_apart(f))
-        rf_swap_thin_light(f);
+        rf_swap_thin_light_back(f);
 }
 
 static void prefilter_with_highlights(struct rf_frame *f)

@@ -5,22 +5,6 @@
 #include "thin/thin.h"
 #include "thin/veil.h"
 
-static bool has_some(const struct rf_frame *f, int tx, int ty)
-{
-    const struct rf_thin_run *run = rf_thin_run_of(f->r, tx, ty);
-    const struct rf_thin_bounds *all = &f->thin_bounds[RF_THIN_LEVELS - 1]; /* the widest */
-    uint32_t count;
-    const struct rf_thin *thin = rf_thin_of(f->r, tx, ty, &count);
-
-    if (count == 0 ||
-        (f->plan.plain && (run->least > all->held_to || run->most < all->held_from)))
-        return false;
-    for (uint32_t i = 0; i < count; i++)
-        if (rf_is_held(f, &thin[i], tx, ty))
-            return true;
-    return false;
-}
-
 /* Whether nothing that is blurred before the focus reaches a tile, but for half a pixel of it. */
 static bool is_in_sight(const struct refocus_renderer *r, int tx, int ty)
 {
@@ -41,9 +25,27 @@ static bool is_in_sight(const struct refocus_renderer *r, int tx, int ty)
     return true;
 }
 
-bool rf_has_held(const struct rf_frame *f, int tx, int ty)
+/* Whether none of a tile is, as far as its run can say. */
+static bool is_none(const struct rf_frame *f, const struct rf_thin_run *run)
 {
-    return f->holds && has_some(f, tx, ty) && is_in_sight(f->r, tx, ty);
+    const struct rf_thin_bounds *all = &f->thin_bounds[RF_THIN_LEVELS - 1]; /* the widest */
+
+    return !run->count ||
+           (f->plan.plain && (run->least > all->held_to || run->most < all->held_from));
+}
+
+void rf_choose_held(const struct rf_frame *f, int tx, int ty, struct rf_apart *apart)
+{
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(f->r, tx, ty, &count);
+
+    if (is_none(f, rf_thin_run_of(f->r, tx, ty)) || !is_in_sight(f->r, tx, ty))
+        return;
+    for (uint32_t i = 0; i < count; i++)
+        if (rf_is_held(f, &thin[i], tx, ty)) {
+            apart->hold[i / 64] |= UINT64_C(1) << i % 64;
+            apart->held = true;
+        }
 }
 
 /* The light in the list is F, that in the planes the photo's: alpha N = C - (1 - alpha) F. */
@@ -54,13 +56,14 @@ void rf_lay_held(const struct rf_frame *f, int tx, int ty,
     const ptrdiff_t tile = ty * RF_TILE * r->stride + tx * RF_TILE;
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
 
-    if (!(*rf_apart_of(r, tx, ty) & RF_HELD))
+    if (!apart->held)
         return;
     for (uint32_t i = 0; i < count; i++, thin++) {
         const ptrdiff_t at = tile + thin->at / RF_TILE * r->stride + thin->at % RF_TILE;
 
-        if (!rf_is_held(f, thin, tx, ty))
+        if (!rf_has_bit(apart->hold, i))
             continue;
         for (int c = 0; c < 3; c++) {
             const int left = 255 - thin->alpha;

@@ -34,11 +34,10 @@ struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
            run->first;
 }
 
-uint8_t *rf_apart_of(const struct refocus_renderer *r, int tx, int ty)
+struct rf_apart *rf_apart_of(const struct refocus_renderer *r, int tx, int ty)
 {
     return &r->veil.apart[(size_t)ty * r->tiles_x + tx];
 }
-
 
 bool rf_takes_apart(const struct rf_frame *f)
 {
@@ -104,38 +103,54 @@ static int farthest_veil(const struct rf_frame *f, int tx, int ty)
     return least;
 }
 
+static void choose_veils(const struct rf_frame *f, int tx, int ty, struct rf_apart *apart)
+{
+    const bool all = are_all_veils(f, rf_thin_run_of(f->r, tx, ty));
+    const int d = farthest_veil(f, tx, ty);
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(f->r, tx, ty, &count);
+
+    if (d > 65535 ||
+        !is_alone(f->r, tx, ty, rf_thin_blur(f, (uint16_t)d, tx * RF_TILE, ty * RF_TILE)))
+        return;
+    apart->veils = true;
+    for (uint32_t i = 0; i < count; i++)
+        if (all || rf_is_veil(f, &thin[i], tx, ty))
+            apart->veil[i / 64] |= UINT64_C(1) << i % 64;
+}
+
 static void choose_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
-    const struct refocus_renderer *r = f->r;
 
     (void)worker;
-    for (int tx = 0; tx < r->tiles_x; tx++) {
-        const int d = f->veils ? farthest_veil(f, tx, band) : 65536;
-        uint8_t apart = 0;
+    f->r->veil.swapped[band] = false;
+    for (int tx = 0; tx < f->r->tiles_x; tx++) {
+        struct rf_apart *apart = rf_apart_of(f->r, tx, band);
 
-        if (d < 65536 &&
-            is_alone(r, tx, band, rf_thin_blur(f, (uint16_t)d, tx * RF_TILE, band * RF_TILE)))
-            apart |= RF_VEILS;
-        if (rf_has_held(f, tx, band))
-            apart |= RF_HELD;
-        *rf_apart_of(r, tx, band) = apart;
+        *apart = (struct rf_apart){.veils = false};
+        if (f->veils)
+            choose_veils(f, tx, band, apart);
+        if (f->holds)
+            rf_choose_held(f, tx, band, apart);
     }
 }
 
-/* Whether one of a tile is taken apart. */
-static bool is_apart(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+static bool is_any(const struct rf_apart *apart)
 {
-    const int apart = *rf_apart_of(f->r, tx, ty);
+    return apart->veils || apart->held;
+}
 
-    return ((apart & RF_VEILS) && rf_is_veil(f, thin, tx, ty)) ||
-           ((apart & RF_HELD) && rf_is_held(f, thin, tx, ty));
+static bool is_apart(const struct rf_apart *apart, uint32_t i)
+{
+    return rf_has_bit(apart->veil, i) || rf_has_bit(apart->hold, i);
 }
 
 /* F's blur where what is before it is drawn. */
 static void patch_tile(const struct rf_frame *f, int tx, int ty)
 {
     const struct refocus_renderer *r = f->r;
+    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
 
@@ -143,7 +158,7 @@ static void patch_tile(const struct rf_frame *f, int tx, int ty)
         const int x = tx * RF_TILE + thin[i].at % RF_TILE;
         const int y = ty * RF_TILE + thin[i].at / RF_TILE;
 
-        if (is_apart(f, &thin[i], tx, ty))
+        if (is_apart(apart, i))
             r->front.blur[y * r->stride + x] =
                 (int16_t)rf_thin_blur(f, thin[i].far_disparity, x, y);
     }
@@ -157,7 +172,7 @@ static void patch_band(void *context, int band, int worker)
 
     (void)worker;
     for (int tx = 0; tx < r->tiles_x; tx++) {
-        if (!*rf_apart_of(r, tx, band))
+        if (!is_any(rf_apart_of(r, tx, band)))
             continue;
         any = true;
         patch_tile(f, tx, band);
@@ -182,6 +197,7 @@ void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
 {
     const struct refocus_renderer *r = f->r;
     const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
+    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
 
@@ -190,7 +206,7 @@ void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
             mean[c][i] = (uint16_t)(4 * r->front.light[c][at + i / RF_TILE * r->stride +
                                                           i % RF_TILE]);
     for (uint32_t i = 0; i < count; i++) {
-        if (!is_apart(f, &thin[i], tx, ty))
+        if (!is_apart(apart, i))
             continue;
         for (int c = 0; c < 3; c++)
             mean[c][thin[i].at] = (uint16_t)(4 * thin[i].light[c]);
@@ -204,7 +220,7 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
     uint16_t *const red = r->front.light[0] + tile,
                     *const green = r->front.light[1] + tile,
                     *const blue = r->front.light[2] + tile;
-    const bool all = (*rf_apart_of(r, tx, ty) & RF_VEILS) && are_all_veils(f, rf_thin_run_of(r, tx, ty));
+    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
     uint32_t count;
     struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
 
@@ -212,7 +228,7 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
         const ptrdiff_t at = thin[i].at / RF_TILE * stride + thin[i].at % RF_TILE;
         const uint16_t light[3] = {red[at], green[at], blue[at]};
 
-        if (!all && !is_apart(f, &thin[i], tx, ty))
+        if (!is_apart(apart, i))
             continue;
         red[at] = thin[i].light[0];
         green[at] = thin[i].light[1];
@@ -222,11 +238,39 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
     }
 }
 
-/* Not by the pool, which leaves out what comes after the run was cancelled. */
-void rf_swap_thin_light(const struct rf_frame *f)
+static void swap_row(const struct rf_frame *f, int ty)
 {
+    for (int tx = 0; tx < f->r->tiles_x; tx++)
+        if (is_any(rf_apart_of(f->r, tx, ty)))
+            swap_tile(f, tx, ty);
+    f->r->veil.swapped[ty] = !f->r->veil.swapped[ty];
+}
+
+static void swap_band(void *context, int band, int worker)
+{
+    (void)worker;
+    swap_row(context, band);
+}
+
+void rf_swap_thin_light(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, swap_band, f, rf_bands(f->r));
+}
+
+static void swap_band_back(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    if (f->r->veil.swapped[band])
+        swap_row(f, band);
+}
+
+/* The pool leaves out what comes after the run was cancelled. */
+void rf_swap_thin_light_back(struct rf_frame *f)
+{
+    rf_pool_run(&f->r->pool, swap_band_back, f, rf_bands(f->r));
     for (int ty = 0; ty < f->r->tiles_y; ty++)
-        for (int tx = 0; tx < f->r->tiles_x; tx++)
-            if (*rf_apart_of(f->r, tx, ty))
-                swap_tile(f, tx, ty);
+        if (f->r->veil.swapped[ty])
+            swap_row(f, ty);
 }

@@ -98,12 +98,21 @@ bool rf_takes_apart(const struct rf_frame *f);
  * apart; there blurs become those of F, and the veil is drawn. */
 void rf_take_thin_apart(struct rf_frame *f);
 
-/* What of a tile is taken apart, bits. */
-enum { RF_VEILS = 1, RF_HELD = 2 };
-uint8_t *rf_apart_of(const struct refocus_renderer *r, int tx, int ty);
+/* Which of those of a tile are taken apart, a bit each. */
+struct rf_apart {
+    bool veils, held; /* any */
+    uint64_t veil[4], hold[4];
+};
 
-/* Whether some of a tile are held and nothing nearer reaches it. */
-bool rf_has_held(const struct rf_frame *f, int tx, int ty);
+struct rf_apart *rf_apart_of(const struct refocus_renderer *r, int tx, int ty);
+
+static inline bool rf_has_bit(const uint64_t bits[4], uint32_t i)
+{
+    return bits[i / 64] >> i % 64 & 1;
+}
+
+/* Choose those of a tile that are held, if nothing nearer reaches it. */
+void rf_choose_held(const struct rf_frame *f, int tx, int ty, struct rf_apart *apart);
 
 /* Lay those held over the means of a tile, Q14. */
 void rf_lay_held(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][256]);
@@ -112,7 +121,8 @@ void rf_lay_held(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][256]
 void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][256]);
 
 /* Exchange the light in the photo with that in the list, where they are: before the
- * pre-filter, and back after it. */
-void rf_swap_thin_light(const struct rf_frame *f);
+ * pre-filter, and back after it, even if the run is cancelled. */
+void rf_swap_thin_light(struct rf_frame *f);
+void rf_swap_thin_light_back(struct rf_frame *f);
 
 #endif

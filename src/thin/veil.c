@@ -21,13 +21,14 @@ static void add_tile(const struct rf_frame *f, int tx, int ty,
     const struct refocus_renderer *r = f->r;
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
 
     for (uint32_t i = 0; i < count; i++, thin++) {
         const int x = thin->at % RF_TILE, y = thin->at / RF_TILE;
         const ptrdiff_t at = (ty * RF_TILE + y) * r->stride + tx * RF_TILE + x;
         struct sum *cell = &sum[y / RF_VEIL_CELL * CELLS + x / RF_VEIL_CELL];
 
-        if (!rf_is_veil(f, thin, tx, ty))
+        if (!rf_has_bit(apart->veil, i))
             continue;
         for (int c = 0; c < 3; c++)
             cell->light[c] += r->front.light[c][at] -
@@ -82,7 +83,7 @@ static void gather_band(void *context, int ty, int worker)
     for (int tx = 0; tx < r->tiles_x; tx++) {
         struct sum sum[CELLS * CELLS] = {0};
 
-        if (!(*rf_apart_of(r, tx, ty) & RF_VEILS))
+        if (!rf_apart_of(r, tx, ty)->veils)
             continue;
         add_tile(f, tx, ty, sum);
         for (int i = 0; i < CELLS * CELLS; i++) {

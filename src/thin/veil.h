@@ -32,7 +32,8 @@ struct rf_veil_source {
 struct rf_veil {
     struct rf_veil_source *source; /* 16 for each tile, in rows of tiles */
     uint32_t *sources;             /* of each row of tiles */
-    uint8_t *apart;                /* of each tile, bits: rf_apart_of() */
+    struct rf_apart *apart;        /* of each tile */
+    bool *swapped;                 /* of each row of tiles: rf_swap_thin_light() */
     int32_t (*cell)[4];            /* Q12 times 2^RF_VEIL_SHIFT */
     int stride;
 };
