@@ -132,7 +132,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  *
  * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.
  *
- * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.1 bytes a pixel for large pictures, and
+ * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.4 bytes a pixel for large pictures, and
  * 4 / 3 of that with previews.
  *
  * Strip mode, params->in_place, takes no more than
