@@ -397,7 +397,7 @@ struct refocus_render_params {
                                  and miss them there, would show streaks. Not with
                                  openings of fine structure (masks, figures, rings), cat's
                                  eyes, fringes. And where they are in focus, before what is
-                                 blurred by two pixels and more, their shares of the pixels at
+                                 blurred by some two pixels, their shares of the pixels at
                                  their edges stay sharp, else those would be blurred with what
                                  is behind and the edges be in steps. They are looked for in
                                  the first render of a photo, which takes some frames' time;

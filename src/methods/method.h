@@ -35,7 +35,7 @@ struct rf_frame {
     bool prefilter_fades;   /* they come in gradually: rf_prefilter_rows() */
     int veils;              /* thin things may be taken apart, thin/thin.h, and drawn with discs
                                of this part of their blur, Q8; 0: they are not */
-    int veil_blur;          /* from this blur before the focus on, Q7.8, more and more of them; */
+    int veil_blur;          /* from this blur before the focus on, Q7.8, more and more of them */
     bool holds;             /* what is thin and in focus may be laid over what is not */
     struct rf_thin_bounds thin_bounds[RF_THIN_LEVELS]; /* rf_set_thin_bounds() */
     bool weighted;          /* eq. 5 weights differ from 1, */

@@ -176,8 +176,8 @@ static int veil_scale(const struct rf_frame *f)
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
     int64_t sum = 0;
 
-    if (!may_take_apart(f) || (f->plan.plain && f->thin_bounds[0].veil_from > 65535) || p->cat_eye > 0 ||
-        p->fringe != 0 || f->fine)
+    if (!may_take_apart(f) || (f->plan.plain && f->thin_bounds[0].veil_from > 65535) ||
+        p->cat_eye > 0 || p->fringe != 0 || f->fine)
         return 0;
     for (int n = 0; n < set->count; n++)
         sum += set->ray[n].u * set->ray[n].u + set->ray[n].v * set->ray[n].v;

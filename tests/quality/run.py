@@ -77,7 +77,8 @@ BLENDS = [
 ]
 THIN = [
     ("met", "highlight=4,sigma=400", "thin things are met by 64 rays"),
-    ("drawn", "highlight=4,sigma=400,thin=1", "far before the focus and in it they are drawn: standard"),
+    ("drawn", "highlight=4,sigma=400,thin=1",
+     "far before the focus and in it they are drawn: standard"),
     ("met-32", "highlight=4,rays=32", "32 rays"),
     ("drawn-32", "highlight=4,rays=32,thin=1", "32 rays, drawn"),
     ("met-128", "highlight=8,sigma=400,rays=128", "128 rays"),
