@@ -1,7 +1,8 @@
 /* body.c: a lamp without what it lights (highlights.h).
  *
  * A candle's flame hangs together with its rim, a street lamp with its post, where these are so
- * bright that they are clipped. They are thinner than the lamp.
+ * bright that they are clipped. They are thinner than the lamp. A coloured lamp, a tail light, has
+ * a glow around it in which its own channel is clipped, and the others are not.
  */
 #include "highlights/lamps.h"
 
@@ -62,4 +63,31 @@ bool rf_lamp_body(struct rf_lamp_shape *body, const struct rf_lamp_shape *shape)
     *body = *shape;
     memcpy(body->row, row, sizeof row);
     return 2 * left >= all && left < all;
+}
+
+static bool has_clipped(const struct rf_lamp_photo *p, int x, int y)
+{
+    const struct rf_rect in = rf_pixels_of(p, x, y);
+
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++)
+            if (rf_is_clipped(p, px, py))
+                return true;
+    return false;
+}
+
+bool rf_lamp_core(struct rf_lamp_shape *core, const struct rf_lamp_photo *p,
+                  const struct rf_lamp_shape *shape)
+{
+    uint64_t any = 0, missing = 0;
+
+    *core = *shape;
+    for (int j = 0; j < shape->rows; j++) {
+        for (uint64_t row = shape->row[j]; row; row &= row - 1)
+            if (!has_clipped(p, shape->x + __builtin_ctzll(row), shape->y + j))
+                core->row[j] &= ~(row & -row);
+        any |= core->row[j];
+        missing |= shape->row[j] & ~core->row[j];
+    }
+    return any && missing;
 }

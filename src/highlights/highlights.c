@@ -214,48 +214,6 @@ static void gain_of(const struct refocus_renderer *r, const struct rf_highlight 
         gained[c] = (((lamp->added[c] * share) >> 8) * blurred) >> 8;
 }
 
-static void add(struct refocus_renderer *r, const struct rf_highlight *lamp, int share,
-                int sign)
-{
-    const int planes = r->yuv.on ? 1 : 3; /* of Y, U and V all three are one */
-
-    for (int i = 0, x, y; i < lamp->count; i++) {
-        ptrdiff_t at;
-        int gained[3];
-
-        if (!place_of(r, lamp, i, &x, &y))
-            continue;
-        at = y * r->stride + x;
-        gain_of(r, lamp, i, at, share, gained);
-        for (int c = 0; c < planes; c++)
-            r->front.light[c][at] = (uint16_t)(r->front.light[c][at] + sign * gained[c]);
-    }
-}
-
-static void add_part(struct refocus_renderer *r, float gain, int sign, int part)
-{
-    const struct rf_highlights *found = &r->photo[r->used].highlights[part];
-    const int share = rf_highlight_share(gain - 1);
-
-    for (uint32_t i = 0; i < found->count; i++)
-        add(r, &found->lamp[i], share, sign);
-}
-
-int rf_add_highlights(struct refocus_renderer *r, float gain)
-{
-    int part = first_part(r);
-
-    for (; part <= last_part(r) && !rf_cancelled(r); part++)
-        add_part(r, gain, 1, part);
-    return part - first_part(r);
-}
-
-void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts)
-{
-    for (int part = first_part(r); parts > 0; part++, parts--)
-        add_part(r, gain, -1, part);
-}
-
 /* Places within `reach` of (cx, cy) that have its blur, at most (2 WIDEST + 1)^2; it
  * itself at least. */
 static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach,
@@ -282,6 +240,7 @@ static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach
 static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp, int i,
                        int share, double gap, int most)
 {
+    const int planes = r->yuv.on ? 1 : 3; /* of Y, U and V all three are one */
     ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)], at;
     int x, y, places, gained[3];
 
@@ -291,7 +250,7 @@ static void add_spread(struct refocus_renderer *r, const struct rf_highlight *la
     places = places_of(r, x, y, reach_of(r->front.blur[at], gap), place);
     gain_of(r, lamp, i, at, share, gained);
     for (int k = 0; k < places; k++) {
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < planes; c++) {
             const int light =
                 r->smooth[c][place[k]] + (gained[c] + places / 2) / places;
 
@@ -300,10 +259,9 @@ static void add_spread(struct refocus_renderer *r, const struct rf_highlight *la
     }
 }
 
-void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap,
-                              int most)
+void rf_add_highlights(struct refocus_renderer *r, float gain, double gap, int most)
 {
-    const int share = rf_highlight_share(gain - RF_PLAIN_GAIN);
+    const int share = (int)((gain - 1) * (256 / 3) + 0.5f); /* Q8, of what is three times white */
 
     for (int part = first_part(r); part <= last_part(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];

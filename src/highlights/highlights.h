@@ -7,22 +7,27 @@
  * just white.
  *
  *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing
- *     isolation  ramp of mean luminance / that of all else up to 12 cells away, 2.5 to 5
- *     steepness  ramp of pixels of the edge / half lit ones beside them, 1.67 to 2.5: those
+ *     isolation  ramp of mean luminance / that of all else up to 12 cells away, 2.5 to 3.75, and
+ *                of the bright channel that stands out most: what is blue among blue is a petal
+ *     steepness  ramp of pixels of the edge / half lit ones beside them, 1.67 to 2.25: those
  *                2/5 of the way and more from what is 2 or 3 cells away to white, so that what
  *                a lamp lights around it is not its rim; soft rims of large photos: judge.c
  *     added      (gain - 1) * level * isolation * steepness * hue, of each channel
  *
  * The hue is that of the lamp's rim: what the pixels beside it have more than those 2 or 3 cells
  * away, the brighter ones for more. A lamp and what it lights may hang together, a flame and its
- * candle: where a shape has limbs, parts that are thinner than half of it, its body may be taken
- * alone (body.c), whichever makes more light. Of what is higher or wider than RF_LAMP_SIDE, tubes
- * and rows of lamps, each cell is judged by the 25 x 25 and 7 x 7 cells around it, isolation from 3
- * to 6. Cells are pixels, and squares of them in large photos, rf_lamp_cell(), clipped if any pixel
- * is. What is added acts on pixels that are blurred; the sharp ones stay as they are.
+ * candle, a tail light and its glow: where a shape has limbs, parts that are thinner than half of
+ * it, its body may be taken alone, and where it has pixels with two clipped channels, these as its
+ * core (body.c), whichever makes more light. A core inside a glow that is clipped has the glow's
+ * hue. Of what is higher or wider than RF_LAMP_SIDE, tubes and rows of lamps, each cell is judged
+ * by the 25 x 25 and 7 x 7 cells around it, isolation from 3 to 4.5, hue as above. Cells are
+ * pixels, and squares of them in large photos, rf_lamp_cell(), clipped if any pixel is. What is
+ * added acts on pixels that are blurred; the sharp ones stay as they are.
  *
  * 12 views, best: 30.98 dB with rims from 0.4 of white on, 31.39 from what is beside them, 31.57
- * with isolation from 2.5 in place of 3; 31.71 before and 31.84 with bodies and these hues.
+ * with isolation from 2.5 in place of 3; 31.71 before and 31.84 with bodies and these hues; 31.92
+ * before, 31.94 with what is added after the pre-filter, 32.01 with cores, 32.08 with ramps that
+ * end at 3.75 and 2.25 in place of 5 and 2.5.
  * nightlights enlarged 4 times, focused far, near and between: 18.7, 23.1, 24.5 dB with lamps of up
  * to 24 pixels, 23.6, 26.4, 27.4 with cells.
  */
@@ -106,25 +111,13 @@ bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
  * is not to shine like them. */
 void rf_put_lamps_in_front(struct refocus_renderer *r, double gap);
 
-/* Up to that gain lamps go through all passes; what is more is added before the rays
- * alone, because passes sum four pixels in 16 bits. */
+/* Up to that gain, sums of 16 bits hold the light of 16 rays over 4. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
 
-/* Share of rf_highlight.added, Q8, that adds so many times white. */
-static inline int rf_highlight_share(float times)
-{
-    return (int)(times * (256 / 3) + 0.5f);
-}
-
-/* Add what a gain beyond RF_PLAIN_GAIN adds to that, to r->smooth, up to `most` there;
- * spread over half a gap of the rays, as the pre-filter does with the rest. */
-void rf_add_bright_highlights(struct refocus_renderer *r, float gain, double gap,
-                              int most);
-
-/* Add what those in the window lost, gain 1 to 4, to the light. Returns the number of
- * parts that were done before the run was cancelled, all if it was not: to take it away
- * again from. */
-int rf_add_highlights(struct refocus_renderer *r, float gain);
-void rf_remove_highlights(struct refocus_renderer *r, float gain, int parts);
+/* Add what those in the window lost, gain 1 to 16, to r->smooth, up to `most` there; spread over
+ * half a gap of the rays, so that no ray is alone in meeting it. The pre-filter would spread it
+ * farther, and discs would have soft rims; what is dark beside a lamp in the background layer
+ * stays dark. */
+void rf_add_highlights(struct refocus_renderer *r, float gain, double gap, int most);
 
 #endif

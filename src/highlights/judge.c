@@ -1,6 +1,8 @@
 /* judge.c: whether what is clipped is a lamp, and what it lost (highlights.h). */
 #include "highlights/lamps.h"
 
+#include <string.h>
+
 enum {
     AROUND = 12, /* surroundings: so many cells on each side, */
     GRID = 3,    /* every third of them */
@@ -29,15 +31,6 @@ static int64_t luminance(const int64_t colour[3])
     return (218 * colour[0] + 732 * colour[1] + 74 * colour[2]) / 1024;
 }
 
-/* Pixels x0 to x1 - 1 of rows y0 to y1 - 1 of a cell. */
-static struct rf_rect pixels_of(const struct rf_lamp_photo *p, int x, int y)
-{
-    const int x1 = (x + 1) * p->cell, y1 = (y + 1) * p->cell;
-
-    return (struct rf_rect){x * p->cell, y * p->cell, x1 < p->width ? x1 : p->width,
-                            y1 < p->height ? y1 : p->height};
-}
-
 /* The colour in the middle of a cell of the photo. */
 static void sample(const struct rf_lamp_photo *p, int x, int y, int colour[3])
 {
@@ -48,7 +41,7 @@ static void sample(const struct rf_lamp_photo *p, int x, int y, int colour[3])
 /* Add the clipped pixels of a cell up; returns how many. */
 static int add_own(const struct rf_lamp_photo *p, int x, int y, int64_t own[3])
 {
-    const struct rf_rect in = pixels_of(p, x, y);
+    const struct rf_rect in = rf_pixels_of(p, x, y);
     int count = 0;
 
     for (int py = in.y0; py < in.y1; py++)
@@ -56,7 +49,7 @@ static int add_own(const struct rf_lamp_photo *p, int x, int y, int64_t own[3])
             int colour[3];
 
             rf_colour_at(p, px, py, colour);
-            if (rf_most_of(colour) <= RF_CLIPPED)
+            if (rf_level_of(p, colour) <= RF_CLIPPED)
                 continue;
             for (int c = 0; c < 3; c++)
                 own[c] += colour[c];
@@ -141,7 +134,7 @@ static void look_at_pixel(const struct rf_lamp_photo *p, int x, int y, struct li
     int colour[3], most;
 
     rf_colour_at(p, x, y, colour);
-    most = rf_most_of(colour);
+    most = rf_level_of(p, colour);
     if (most > RF_CLIPPED) {
         lit->edge += is_edge(p, x, y);
         return;
@@ -200,9 +193,9 @@ static void look_beyond(const struct rf_lamp_photo *p, const struct rf_lamp_shap
             if (!has_cell(p, x, y))
                 continue;
             sample(p, x, y, colour);
-            if (rf_most_of(colour) > RF_CLIPPED) /* another lamp */
+            if (rf_level_of(p, colour) > RF_CLIPPED) /* another lamp */
                 continue;
-            lit->base += rf_most_of(colour);
+            lit->base += rf_level_of(p, colour);
             for (int c = 0; c < 3; c++)
                 lit->beyond[c] += colour[c];
             count++;
@@ -225,11 +218,34 @@ static void look_at_rim(const struct rf_lamp_photo *p, const struct rf_lamp_shap
 
             if (!has_cell(p, x, y))
                 continue;
-            in = pixels_of(p, x, y);
+            in = rf_pixels_of(p, x, y);
             for (int py = in.y0; py < in.y1; py++)
                 for (int px = in.x0; px < in.x1; px++)
                     look_at_pixel(p, px, py, lit);
         }
+}
+
+/* Of a core in its own glow the rim tells little, as the lamp's channel is clipped there too: if
+ * that is so two cells away, mostly, it has the colour of what is there. */
+static void look_at_glow(const struct rf_lamp_photo *p, const struct rf_lamp_shape *core,
+                         struct lit *lit)
+{
+    const struct grown rim = grown_by(core, 1), glow = grown_by(core, 2);
+    int64_t sum[3] = {0, 0, 0};
+    int count = 0, clipped = 0;
+
+    for (int j = 0; j < core->rows + 2 * OUTER; j++)
+        for (uint64_t row = glow.row[j] & ~rim.row[j]; row; row &= row - 1) {
+            int colour[3];
+
+            sample(p, core->x + __builtin_ctzll(row), core->y + j - OUTER, colour);
+            for (int c = 0; c < 3; c++)
+                sum[c] += colour[c];
+            clipped += colour[0] > RF_CLIPPED || colour[1] > RF_CLIPPED || colour[2] > RF_CLIPPED;
+            count++;
+        }
+    if (4 * clipped >= 3 * count)
+        memcpy(lit->rim, sum, sizeof lit->rim);
 }
 
 /* Q12 light of full strength: the colour of the rim, white if it has none. */
@@ -266,8 +282,8 @@ static int steepness(const struct rf_lamp_photo *p, const struct lit *lit)
     if (4 * square < 10 * lit->pixels) /* limbs on most sides */
         return 0;
     if (p->cell == 1)
-        return rf_ramp(edge, 167 * lit->half_lit, 250 * lit->half_lit);
-    sharp = rf_ramp(edge, 167 * lit->half_lit, 250 * lit->half_lit);
+        return rf_ramp(edge, 167 * lit->half_lit, 225 * lit->half_lit);
+    sharp = rf_ramp(edge, 167 * lit->half_lit, 225 * lit->half_lit);
     soft = rf_ramp(edge * p->cell, 100 * upper, 160 * upper) *
            rf_ramp(100 * lower, 71 * upper, 91 * upper) / 256 *
            rf_ramp(40 * lit->pixels - square, 0, 15 * lit->pixels) / 256;
@@ -314,34 +330,55 @@ static void list(struct rf_lamp_search *s, int x, int y, const struct lamp *lamp
     s->run.count++;
 }
 
-/* Those of row y of the photo. */
-static void list_row(struct rf_lamp_search *s, const struct rf_lamp_shape *shape, int y,
-                     const struct lamp *lamp)
+/* What of a shape shines; clipped as in `photo`. */
+struct shining {
+    const struct rf_lamp_photo *photo;
+    struct rf_lamp_shape shape;
+    struct lamp lamp;
+};
+
+/* Its pixels in row y of the photo. */
+static void list_row(struct rf_lamp_search *s, const struct shining *shining, int y)
 {
+    const struct rf_lamp_shape *shape = &shining->shape;
     const int cell = s->photo.cell;
 
     for (uint64_t row = shape->row[y / cell - shape->y]; row; row &= row - 1) {
         const int x = (shape->x + __builtin_ctzll(row)) * cell;
 
         for (int i = 0; i < cell; i++)
-            if (rf_is_clipped(&s->photo, x + i, y))
-                list(s, x + i, y, lamp);
+            if (rf_is_clipped(shining->photo, x + i, y))
+                list(s, x + i, y, &shining->lamp);
     }
 }
 
-/* From `halves` / 2 times the surroundings on, all of it at twice that. */
+/* From `halves` / 2 times the surroundings on, all of it at 3/2 of that. */
+static int ramp_above(int64_t own, int64_t around, int halves)
+{
+    return rf_ramp(4 * own, 2 * halves * around, 3 * halves * around);
+}
+
+/* By luminance, and by the channel that stands out most of those that may be clipped: what is
+ * blue among blue is a petal. */
 static int isolation(const struct lit *lit, int halves)
 {
-    const int64_t own = 2 * luminance(lit->own), around = halves * luminance(lit->around);
+    const int all = ramp_above(luminance(lit->own), luminance(lit->around), halves);
+    int most = 0;
 
-    return rf_ramp(own, around, 2 * around);
+    for (int c = 0; c < 3; c++)
+        if (lit->own[c] > RF_LIGHT_MAX * 7 / 8) {
+            const int own = ramp_above(lit->own[c], lit->around[c], halves);
+
+            most = own > most ? own : most;
+        }
+    return all < most ? all : most;
 }
 
 /* Of the body of a shape; strength 0: it is none. */
 static struct lamp lamp_of(const struct rf_lamp_photo *p, const struct rf_lamp_shape *body,
                            const struct rf_lamp_shape *shape)
 {
-    const struct grown limbs = near_limbs(body, shape);
+    const struct grown limbs = near_limbs(body, p->core ? body : shape); /* a glow is none */
     struct lit lit = {0};
     struct lamp lamp = {0};
 
@@ -355,49 +392,99 @@ static struct lamp lamp_of(const struct rf_lamp_photo *p, const struct rf_lamp_s
     lamp.strength = lamp.strength * steepness(p, &lit) / 256;
     if (!lamp.strength)
         return lamp;
+    if (p->core)
+        look_at_glow(p, body, &lit);
     added_of(lit.rim, lamp.added);
     lamp.pixels = lit.pixels;
     lamp.size = 3 * lit.pixels / lit.edge; /* 5/6 of a disc, 3/2 of a stroke */
     return lamp;
 }
 
-/* With its limbs it is one lamp, or some together, if that makes more light. */
+/* The one that makes more light. */
+static void prefer(struct shining *best, const struct rf_lamp_photo *p,
+                   const struct rf_lamp_shape *part, const struct rf_lamp_shape *shape)
+{
+    const struct lamp lamp = lamp_of(p, part, shape);
+
+    if (lamp.strength * lamp.pixels > best->lamp.strength * best->lamp.pixels)
+        *best = (struct shining){p, *part, lamp};
+}
+
+/* With its limbs and its glow it may be one lamp, or some together. */
 void rf_list_shape(struct rf_lamp_search *s, const struct rf_lamp_shape *shape)
 {
     const struct rf_lamp_photo *p = &s->photo;
     const int first = shape->y * p->cell, end = (shape->y + shape->rows) * p->cell;
-    const struct rf_lamp_shape *lit = shape;
-    struct rf_lamp_shape body;
-    struct lamp lamp = lamp_of(p, shape, shape);
+    struct rf_lamp_photo cores = *p;
+    struct rf_lamp_shape part;
+    struct shining best = {.lamp = {.strength = 0}};
 
-    if (lamp.strength < 256 && rf_lamp_body(&body, shape)) {
-        const struct lamp part = lamp_of(p, &body, shape);
+    cores.core = true;
+    prefer(&best, p, shape, shape);
+    if (best.lamp.strength < 256 && rf_lamp_body(&part, shape))
+        prefer(&best, p, &part, shape);
+    if (best.lamp.strength < 256 && rf_lamp_core(&part, &cores, shape))
+        prefer(&best, &cores, &part, shape);
+    for (int y = first > s->y0 ? first : s->y0; best.lamp.strength && y < end && y < s->y1; y++)
+        list_row(s, &best, y);
+}
 
-        if (part.strength * part.pixels > lamp.strength * lamp.pixels) {
-            lamp = part;
-            lit = &body;
+/* Of the square around a cell, whether each is clipped, with a border of none. */
+struct square {
+    bool clipped[2 * NEAR + 3][2 * NEAR + 3];
+    int colour[2 * NEAR + 1][2 * NEAR + 1][3];
+};
+
+static void take_square(const struct rf_lamp_photo *p, int x, int y, struct square *square)
+{
+    memset(square->clipped, 0, sizeof square->clipped);
+    for (int j = 0; j <= 2 * NEAR; j++)
+        for (int i = 0; i <= 2 * NEAR; i++) {
+            int *colour = square->colour[j][i];
+
+            sample(p, rf_within(x + i - NEAR, p->across - 1),
+                   rf_within(y + j - NEAR, p->down - 1), colour);
+            square->clipped[j + 1][i + 1] = rf_level_of(p, colour) > RF_CLIPPED;
         }
-    }
-    for (int y = first > s->y0 ? first : s->y0; lamp.strength && y < end && y < s->y1; y++)
-        list_row(s, lit, y, &lamp);
+}
+
+/* Whether one beside it is clipped, and it is not. */
+static bool is_rim(const struct square *square, int i, int j)
+{
+    int count = 0;
+
+    for (int k = 0; k < 9; k++)
+        count += square->clipped[j + k / 3][i + k % 3];
+    return count > 0 && !square->clipped[j + 1][i + 1];
 }
 
 /* The squares around a cell: how many of the near one's are clipped. */
 static int look_near(const struct rf_lamp_photo *p, int x, int y, struct lit *lit)
 {
-    int clipped = 0;
+    struct square square;
+    int clipped = 0, beyond = 0;
 
-    for (int j = -NEAR; j <= NEAR; j++)
-        for (int i = -NEAR; i <= NEAR; i++) {
-            int colour[3], most;
+    take_square(p, x, y, &square);
+    for (int j = 0; j <= 2 * NEAR; j++)
+        for (int i = 0; i <= 2 * NEAR; i++) {
+            const int *colour = square.colour[j][i], most = rf_level_of(p, colour);
 
-            sample(p, rf_within(x + i, p->across - 1), rf_within(y + j, p->down - 1), colour);
-            most = rf_most_of(colour);
             clipped += most > RF_CLIPPED;
             lit->half_lit += most <= RF_CLIPPED && most >= HALF_LIT;
+            if (most > RF_CLIPPED || is_rim(&square, i, j))
+                continue;
             for (int c = 0; c < 3; c++)
-                if (most <= RF_CLIPPED && colour[c] > lit->around[c])
-                    lit->rim[c] += colour[c] - lit->around[c];
+                lit->beyond[c] += colour[c];
+            beyond++;
+        }
+    for (int c = 0; c < 3; c++)
+        lit->beyond[c] = beyond ? lit->beyond[c] / beyond : lit->around[c];
+    for (int j = 0; j <= 2 * NEAR; j++)
+        for (int i = 0; i <= 2 * NEAR; i++) {
+            const int *colour = square.colour[j][i], most = rf_level_of(p, colour);
+
+            for (int c = 0; c < 3 && is_rim(&square, i, j); c++)
+                lit->rim[c] += (colour[c] - lit->beyond[c]) * most / RF_LIGHT_MAX;
         }
     return clipped;
 }
@@ -438,5 +525,5 @@ void rf_list_cell(struct rf_lamp_search *s, int x, int y)
     if (!lamp.strength)
         return;
     added_of(lit.rim, lamp.added);
-    list_pixels(s, pixels_of(p, x, y), &lamp);
+    list_pixels(s, rf_pixels_of(p, x, y), &lamp);
 }

@@ -15,6 +15,7 @@ struct rf_lamp_photo {
     ptrdiff_t stride;
     struct rf_order order;
     const uint16_t *to_light;
+    bool core; /* clipped is what has two clipped channels; see rf_lamp_core() */
 };
 
 /* Rows y0 to y1 - 1 are looked through. */
@@ -46,11 +47,15 @@ static inline void rf_colour_at(const struct rf_lamp_photo *p, int x, int y, int
     }
 }
 
-static inline int rf_most_of(const int colour[3])
+/* What is compared with white: the brightest channel, of a core the second. */
+static inline int rf_level_of(const struct rf_lamp_photo *p, const int colour[3])
 {
-    const int most = colour[0] > colour[1] ? colour[0] : colour[1];
+    const int more = colour[0] > colour[1] ? colour[0] : colour[1];
+    const int less = colour[0] > colour[1] ? colour[1] : colour[0];
 
-    return most > colour[2] ? most : colour[2];
+    if (p->core)
+        return colour[2] > more ? more : colour[2] > less ? colour[2] : less;
+    return colour[2] > more ? colour[2] : more;
 }
 
 /* Beyond the photo nothing is. */
@@ -61,14 +66,28 @@ static inline bool rf_is_clipped(const struct rf_lamp_photo *p, int x, int y)
     if (x < 0 || y < 0 || x >= p->width || y >= p->height)
         return false;
     rf_colour_at(p, x, y, colour);
-    return rf_most_of(colour) > RF_CLIPPED;
+    return rf_level_of(p, colour) > RF_CLIPPED;
+}
+
+/* Pixels x0 to x1 - 1 of rows y0 to y1 - 1 of a cell. */
+static inline struct rf_rect rf_pixels_of(const struct rf_lamp_photo *p, int x, int y)
+{
+    const int x1 = (x + 1) * p->cell, y1 = (y + 1) * p->cell;
+
+    return (struct rf_rect){x * p->cell, y * p->cell, x1 < p->width ? x1 : p->width,
+                            y1 < p->height ? y1 : p->height};
 }
 
 /* A shape without its limbs: what is more than half as thick as its thickest part. False: it has
  * none, or they are most of it. */
 bool rf_lamp_body(struct rf_lamp_shape *body, const struct rf_lamp_shape *shape);
 
-/* List the pixels of a shape, or of its body, if that is a lamp. */
+/* A shape without its glow: the cells that have pixels with two clipped channels; `p` has `core`
+ * set. False: these are none, or all. */
+bool rf_lamp_core(struct rf_lamp_shape *core, const struct rf_lamp_photo *p,
+                  const struct rf_lamp_shape *shape);
+
+/* List the pixels of a shape, or of its body or core, if that is a lamp. */
 void rf_list_shape(struct rf_lamp_search *s, const struct rf_lamp_shape *shape);
 
 /* List those of a cell of something larger, a tube or a row of lamps, by the squares around it. */

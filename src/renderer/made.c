@@ -342,7 +342,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
             r->made = (struct rf_made){.half = r->made.half};
         make_in_window(f, number, &parts, layers);
     }
-    if (layers && !rf_cancelled(r) && !r->made.spread && f->bright > RF_BRIGHT) {
+    if (layers && !rf_cancelled(r) && !r->made.spread && f->bright != RF_WHITE) {
         rf_pass_bright(f);
         r->made.spread = true;
     }

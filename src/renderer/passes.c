@@ -155,10 +155,17 @@ static double ray_gap(const struct refocus_render_params *p)
     return sqrt(3.14159265358979 / (p->rays == REFOCUS_RAYS_FULL ? INT_MAX : p->rays));
 }
 
+/* Of luma no more than sums of its rays hold. */
+static float lamp_gain(const struct rf_frame *f)
+{
+    const float gain = f->params->highlight_gain;
+
+    return f->r->yuv.on ? fminf(gain, RF_PLAIN_GAIN) : gain;
+}
+
 static void mark_lamps(struct rf_frame *f)
 {
-    const float gain = f->r->yuv.on ? fminf(f->params->highlight_gain, RF_PLAIN_GAIN)
-                                    : f->params->highlight_gain;
+    const float gain = lamp_gain(f);
 
     f->bright = RF_WHITE;
     if (gain > 1 && rf_mark_highlights(f->r, f->scale, ray_gap(f->params)))
@@ -169,9 +176,12 @@ static void mark_lamps(struct rf_frame *f)
 
 void rf_pass_bright(struct rf_frame *f)
 {
-    if (f->bright > RF_BRIGHT)
-        rf_add_bright_highlights(f->r, f->params->highlight_gain, ray_gap(f->params),
-                                 (f->bright == RF_BRIGHTER ? 8 : 16) * RF_LIGHT_MAX);
+    static const int times[] = {
+        [RF_WHITE] = 1, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 8, [RF_BRIGHTEST] = 16};
+
+    if (f->bright != RF_WHITE)
+        rf_add_highlights(f->r, lamp_gain(f), ray_gap(f->params),
+                          times[f->bright] * RF_LIGHT_MAX);
 }
 
 /* The light is the photo's again afterwards, whatever happens; of the next as well. */
@@ -182,15 +192,6 @@ void rf_pass_prefilter(struct rf_frame *f)
     prefilter(f);
     if (rf_takes_apart(f))
         rf_swap_thin_light_back(f);
-}
-
-static void prefilter_with_highlights(struct rf_frame *f)
-{
-    const float gain = fminf(f->params->highlight_gain, RF_PLAIN_GAIN);
-    const int added = f->bright != RF_WHITE ? rf_add_highlights(f->r, gain) : 0;
-
-    rf_pass_prefilter(f);
-    rf_remove_highlights(f->r, gain, added);
 }
 
 static void dilate_item(void *context, int upwards, int worker)
@@ -242,7 +243,7 @@ void rf_pass_smooth(struct rf_frame *f)
     rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
     if (f->r->yuv.on)
         rf_pool_run(&f->r->pool, chroma_blur_band, f, rf_bands(f->r));
-    prefilter_with_highlights(f);
+    rf_pass_prefilter(f);
 }
 
 static void note_band(void *context, int band, int worker)

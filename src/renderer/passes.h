@@ -37,7 +37,7 @@ void rf_pass_smooth(struct rf_frame *f);
 void rf_pass_prefilter(struct rf_frame *f); /* of rf_pass_smooth() the smooth light alone */
 void rf_pass_mark(struct rf_frame *f, int levels); /* and up the pyramid, but of Y, U and V */
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
-void rf_pass_bright(struct rf_frame *f); /* light of lamps beyond 4 times white, at the end */
+void rf_pass_bright(struct rf_frame *f); /* the light that lamps lost, after the background */
 void rf_pass_weights(struct rf_frame *f);
 void rf_pass_brightest(struct rf_frame *f); /* after all light is there */
 

@@ -85,7 +85,7 @@ struct rf_made {
     bool ranges; /* its ranges; before, its cells are where the background's blur will be */
     bool smooth; /* the pre-filtered light */
     enum rf_bright bright; /* with light given back to lamps, */
-    bool spread; /* that beyond 4 times white as well */
+    bool spread; /* the light of lamps is in it */
     bool behind; /* the background layer, */
     bool weighed; /* but with weights of `sigma` in place of its blur, */
     bool premultiplied; /* and the light of both layers times them */

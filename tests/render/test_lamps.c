@@ -333,6 +333,50 @@ static void colours(void **state)
     expect("blue of an amber lamp", 7, times[2] - 1, 0.05 * (times[0] - 1), 0.4 * (times[0] - 1));
 }
 
+/* A tail light: red is clipped in what glows around it, too. */
+static void glows(void **state)
+{
+    const struct thing red = {ELLIPSE, 6, 6, {40, 6, 5}}, sticker = {ELLIPSE, 6, 6, {1, 1, 1}};
+    const struct thing *const core[] = {&red, &sticker};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
+        double times[3];
+
+        for (int k = 0; k < W * H; k++) {
+            const double away = hypot(k % W - CX, (double)(k / W) - CY), glow = exp(-away / 3.5);
+
+            p.rgb[3 * k] = code_of(0.003 + 6 * glow);
+            p.rgb[3 * k + 1] = p.rgb[3 * k + 2] = code_of(0.001 + 0.05 * glow);
+        }
+        draw(&p, core[i], CX + 0.3, CY - 0.2);
+        gained_in(&p, times);
+        expect(i ? "a sticker's red" : "a tail light's red", 6, times[0], i ? 0.99 : 1.2,
+               i ? 1.05 : 1.5);
+        expect(i ? "a sticker's green" : "a tail light's green", 6, times[1], 0.99, 1.2);
+        picture_free(&p);
+    }
+}
+
+/* What is blue among blue is no lamp, however bright beside it; on something dark it may be one. */
+static void petals(void **state)
+{
+    static const uint8_t among[][3] = {{60, 50, 200}, {20, 15, 70}};
+    const struct thing petal = {ELLIPSE, 6, 6, {0.3, 0.2, 3}};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct picture p = picture_flat(W, H, among[i], BEHIND);
+        double times[3];
+
+        draw(&p, &petal, CX + 0.3, CY - 0.2);
+        gained_in(&p, times);
+        expect(i ? "a blue lamp" : "a petal", 6, times[2], i ? 1.04 : 0.999, i ? 1.2 : 1.001);
+        picture_free(&p);
+    }
+}
+
 /* Lamps, tubes and signs anywhere, across the blocks of strip mode and each other. */
 enum { NIGHT_W = 330, NIGHT_H = 290 };
 
@@ -413,6 +457,7 @@ int main(void)
         cmocka_unit_test(tubes),   cmocka_unit_test(colours), cmocka_unit_test(nights),
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
         cmocka_unit_test(wires),        cmocka_unit_test(candles),
+        cmocka_unit_test(glows),        cmocka_unit_test(petals),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
