@@ -236,6 +236,15 @@ static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach
     return count;
 }
 
+/* How far the light of a lamp's pixel is spread: of lamps that are narrower than one and a half
+ * gaps, which few rays meet, a pixel more. */
+static int spread_of(const struct rf_highlight *lamp, int blur, double gap)
+{
+    const int reach = reach_of(blur, gap);
+
+    return 512 * lamp->size < 3 * gap * abs(blur) && reach < WIDEST ? reach + 1 : reach;
+}
+
 /* Pixel i of a lamp. */
 static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp, int i,
                        int share, double gap, int most)
@@ -247,7 +256,7 @@ static void add_spread(struct refocus_renderer *r, const struct rf_highlight *la
     if (!place_of(r, lamp, i, &x, &y))
         return;
     at = y * r->stride + x;
-    places = places_of(r, x, y, reach_of(r->front.blur[at], gap), place);
+    places = places_of(r, x, y, spread_of(lamp, r->front.blur[at], gap), place);
     gain_of(r, lamp, i, at, share, gained);
     for (int k = 0; k < places; k++) {
         for (int c = 0; c < planes; c++) {
