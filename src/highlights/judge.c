@@ -248,12 +248,18 @@ static void look_at_glow(const struct rf_lamp_photo *p, const struct rf_lamp_sha
         memcpy(lit->rim, sum, sizeof lit->rim);
 }
 
+static int64_t most_of(const int64_t colour[3])
+{
+    const int64_t most = colour[0] > colour[1] ? colour[0] : colour[1];
+
+    return colour[2] > most ? colour[2] : most;
+}
+
 /* Q12 light of full strength: the colour of the rim, white if it has none. */
 static void added_of(const int64_t rim[3], int added[3])
 {
-    int64_t most = rim[0] > rim[1] ? rim[0] : rim[1];
+    const int64_t most = most_of(rim);
 
-    most = rim[2] > most ? rim[2] : most;
     for (int c = 0; c < 3; c++)
         added[c] = GAIN * (int)(most < RF_LIGHT_MAX / 4 ? RF_LIGHT_MAX
                                 : rim[c] < 0            ? 0
@@ -277,13 +283,13 @@ static int steepness(const struct rf_lamp_photo *p, const struct lit *lit)
 {
     const int64_t edge = 100 * lit->edge, upper = lit->fade[0], lower = lit->fade[1];
     const int64_t square = (int64_t)lit->edge * lit->edge; /* 10 times the pixels of a disc */
-    int sharp, soft;
+    const int sharp = rf_ramp(edge, 167 * lit->half_lit, 225 * lit->half_lit);
+    int soft;
 
     if (4 * square < 10 * lit->pixels) /* limbs on most sides */
         return 0;
     if (p->cell == 1)
-        return rf_ramp(edge, 167 * lit->half_lit, 225 * lit->half_lit);
-    sharp = rf_ramp(edge, 167 * lit->half_lit, 225 * lit->half_lit);
+        return sharp;
     soft = rf_ramp(edge * p->cell, 100 * upper, 160 * upper) *
            rf_ramp(100 * lower, 71 * upper, 91 * upper) / 256 *
            rf_ramp(40 * lit->pixels - square, 0, 15 * lit->pixels) / 256;
@@ -358,15 +364,16 @@ static int ramp_above(int64_t own, int64_t around, int halves)
     return rf_ramp(4 * own, 2 * halves * around, 3 * halves * around);
 }
 
-/* By luminance, and by the channel that stands out most of those that may be clipped: what is
- * blue among blue is a petal. */
+/* By luminance, and by the channel that stands out most of its bright ones: what is blue among
+ * blue is a petal. */
 static int isolation(const struct lit *lit, int halves)
 {
     const int all = ramp_above(luminance(lit->own), luminance(lit->around), halves);
+    const int64_t bright = 7 * most_of(lit->own) / 8;
     int most = 0;
 
     for (int c = 0; c < 3; c++)
-        if (lit->own[c] > RF_LIGHT_MAX * 7 / 8) {
+        if (lit->own[c] >= bright) {
             const int own = ramp_above(lit->own[c], lit->around[c], halves);
 
             most = own > most ? own : most;
