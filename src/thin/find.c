@@ -44,6 +44,8 @@ static void find_band(void *context, int band, int worker)
         const int found =
             r->kernels.find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
 
+        for (int i = 0; i < found; i++)
+            rf_tell_strand(r, &thin[count + (uint32_t)i], tx, band);
         list->run[(size_t)band * r->tiles_x + tx] = run_of(thin + count, count, found);
         count += (uint32_t)found;
     }

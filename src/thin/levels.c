@@ -50,7 +50,7 @@ static int veil_blur_of(const struct rf_frame *f, int level)
 /* Q7.8: how much what is held may be blurred, and what is behind it must. */
 static int held_blur(int level)
 {
-    return 48 + 12 * level;
+    return 112 + 9 * level;
 }
 
 static int far_blur(int level)

@@ -52,6 +52,18 @@ struct rf_thin_list {
 /* Find those of the photo in use, all of which is in the window, in r->blend. */
 void rf_find_thin(struct refocus_renderer *r);
 
+/*
+ * Hair before letters: F, the mean of what is around, is neither that of a letter nor that of what
+ * is between, and the pattern stays in what is laid over, as dashes. Along a strand of one pixel C
+ * goes with f, the mean of the far pixels beside each,
+ *
+ *     C = alpha N + (1 - alpha) f
+ *
+ * so least squares tell 1 - alpha, the slope in all three channels, and alpha N. Where f varies,
+ * and half of how C varies is told, alpha becomes that, and F = (C - alpha N) / (1 - alpha).
+ */
+void rf_tell_strand(const struct refocus_renderer *r, struct rf_thin *thin, int tx, int ty);
+
 /* Those of a tile of the window. */
 const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx,
                                          int ty);
@@ -70,7 +82,7 @@ struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
  *
  * Nothing is to jump as the focus moves, so that not all pixels are taken apart at one blur: those
  * of a level k, that of their cell of 4 x 4 pixels in the tile, are from veil_blur (1 + k / 64) on,
- * or held up to (48 + 12 k) / 256 pixels, before (384 + 32 k) / 256.
+ * or held up to (112 + 9 k) / 256 pixels, before (384 + 32 k) / 256.
  */
 enum { RF_THIN_LEVELS = 16 };
 

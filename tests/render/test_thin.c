@@ -98,6 +98,13 @@ static double light_of(int code)
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
+static uint8_t code_of(double light)
+{
+    const double v = light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
+
+    return (uint8_t)(255 * v + 0.5);
+}
+
 /* A wire of width w before black is the chord of a disc: L w 2 sqrt(s^2 - t^2) / pi s^2
  * at t from its middle, from end to end. */
 static void wire(void **state)
@@ -141,6 +148,49 @@ static void wire(void **state)
     assert_true(worst < 0.13 * light_of(220) * wide * 2 / (pi * s));
     assert_true(worst < worst_rays / 3);
     picture_free(&p);
+}
+
+/* A hair in focus, half a pixel wide, before stripes. */
+static void strands(void **state)
+{
+    static uint8_t out[MOST], behind[MOST];
+    struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){60, 70, 50}, FAR), far;
+    struct setting s = plain;
+    double off[2] = {0, 0};
+    int pixels = 0;
+
+    (void)state;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        if (i % WIDTH % 7 < 3)
+            memset(p.rgb + 3 * i, 230, 3);
+    far = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
+    memcpy(far.rgb, p.rgb, MOST);
+    for (int x = 30; x < WIDTH - 30; x++) {
+        const int i = HEIGHT / 2 * WIDTH + x;
+
+        for (int c = 0; c < 3; c++)
+            p.rgb[3 * i + c] = code_of(0.2 * light_of(200) + 0.8 * light_of(p.rgb[3 * i + c]));
+        p.disparity[i] = NEAR;
+    }
+    s.focus = NEAR / 65535.0f;
+    render_fresh(&far, false, &s, behind);
+    for (int pass = 0; pass < 2; pass++) {
+        s.thin = !pass;
+        render_fresh(&p, true, &s, out);
+        for (int x = 40; x < WIDTH - 40; x++) {
+            const int i = 3 * (HEIGHT / 2 * WIDTH + x);
+            const double should =
+                code_of(0.2 * light_of(200) + 0.8 * light_of(behind[i]));
+
+            off[pass] += fabs(out[i] - should);
+            pixels += !pass;
+        }
+    }
+    printf("strands: %.2f codes off, by rays %.2f\n", off[0] / pixels, off[1] / pixels);
+    assert_true(off[0] < 8 * pixels);
+    assert_true(off[0] < off[1] / 4);
+    picture_free(&p);
+    picture_free(&far);
 }
 
 /* Two wires in focus: what lies behind is blurred, their edges are not. */
@@ -385,6 +435,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wire),
         cmocka_unit_test(held),
+        cmocka_unit_test(strands),
         cmocka_unit_test(elsewhere),
         cmocka_unit_test(same_everywhere),
         cmocka_unit_test(regions),

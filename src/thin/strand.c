@@ -1,0 +1,144 @@
+/* strand.c: a strand of hair before something of a pattern (thin.h). */
+#include <stdlib.h>
+
+#include "highlights/clipped.h"
+#include "thin/thin.h"
+
+enum {
+    REACH = 4, /* pixels on each side that are looked at, */
+    LEAST = 4, /* so many of the strand's at least, */
+    MOST = 13, /* and at most, */
+    CLOSE = 4, /* and of the 3 x 3 */
+    JUMP = 65535 / 32, /* of disparities: two things */
+    PATTERN = 400 * 400, /* least variance of F, Q12 squared */
+    SOLID = 32, CLEAR = 225, /* 1 - alpha, 255 = 1: less has no pattern, more is taken for so much */
+    STEEPEST = 380,
+};
+
+/* Where C goes with F, sums over a strand's pixels, of the products over the three channels. */
+struct fit {
+    int64_t count, f[3], c[3], ff, fc, cc;
+};
+
+/* F beside a pixel: the mean of those of the eight around it that are far. False: fewer than two. */
+static bool far_beside(const struct refocus_renderer *r, int x, int y, int own, int64_t far[3])
+{
+    int count = 0;
+
+    far[0] = far[1] = far[2] = 0;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            const ptrdiff_t q =
+                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
+
+            if (r->disparity[q] >= own - JUMP)
+                continue;
+            for (int c = 0; c < 3; c++)
+                far[c] += r->front.light[c][q];
+            count++;
+        }
+    for (int c = 0; c < 3 && count; c++)
+        far[c] = (far[c] + count / 2) / count;
+    return count >= 2;
+}
+
+static void add_pixel(struct fit *fit, const struct refocus_renderer *r, ptrdiff_t at,
+                      const int64_t far[3])
+{
+    fit->count++;
+    for (int c = 0; c < 3; c++) {
+        const int64_t light = r->front.light[c][at];
+
+        fit->f[c] += far[c];
+        fit->c[c] += light;
+        fit->ff += far[c] * far[c];
+        fit->fc += far[c] * light;
+        fit->cc += light * light;
+    }
+}
+
+/* So many pixels on each side, in the photo. */
+static struct rf_rect around(const struct refocus_renderer *r, int x, int y, int by)
+{
+    const int right = r->width - 1, bottom = r->height - 1;
+
+    return (struct rf_rect){rf_within(x - by, right), rf_within(y - by, bottom),
+                            rf_within(x + by, right) + 1, rf_within(y + by, bottom) + 1};
+}
+
+static int near_in(const struct refocus_renderer *r, struct rf_rect in, int own)
+{
+    int count = 0;
+
+    for (int y = in.y0; y < in.y1; y++)
+        for (int x = in.x0; x < in.x1; x++)
+            count += abs(r->disparity[y * r->stride + x] - own) <= JUMP;
+    return count;
+}
+
+/* One pixel wide, and no other near: a wire is told at once. */
+static bool is_strand(const struct refocus_renderer *r, int x, int y, int own)
+{
+    int count;
+
+    if (near_in(r, around(r, x, y, 1), own) > CLOSE)
+        return false;
+    count = near_in(r, around(r, x, y, REACH), own);
+    return count >= LEAST && count <= MOST;
+}
+
+static void add_strand(struct fit *fit, const struct refocus_renderer *r, int x, int y, int own)
+{
+    const struct rf_rect in = around(r, x, y, REACH);
+
+    for (int qy = in.y0; qy < in.y1; qy++)
+        for (int qx = in.x0; qx < in.x1; qx++) {
+            const ptrdiff_t q = qy * r->stride + qx;
+            int64_t far[3];
+
+            if (abs(r->disparity[q] - own) <= JUMP && far_beside(r, qx, qy, own, far))
+                add_pixel(fit, r, q, far);
+        }
+}
+
+/* The slope of C over F, 255 = 1; 0: there is no pattern, or C does not go with it. Variances are
+ * below 3 (13 * 4095)^2 < 2^34. */
+static int slope_of(const struct fit *fit)
+{
+    const int64_t n = fit->count;
+    int64_t ff = n * fit->ff, fc = n * fit->fc, cc = n * fit->cc, slope;
+
+    for (int c = 0; c < 3; c++) {
+        ff -= fit->f[c] * fit->f[c];
+        fc -= fit->f[c] * fit->c[c];
+        cc -= fit->c[c] * fit->c[c];
+    }
+    if (ff < n * n * PATTERN || fc <= 0)
+        return 0;
+    slope = 255 * fc / ff;
+    if (slope < SOLID || slope > STEEPEST || 2 * slope * fc < 255 * cc)
+        return 0;
+    return (int)(slope < CLEAR ? slope : CLEAR);
+}
+
+void rf_tell_strand(const struct refocus_renderer *r, struct rf_thin *thin, int tx, int ty)
+{
+    const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
+    const ptrdiff_t at = y * r->stride + x;
+    struct fit fit = {.count = 0};
+    int slope;
+
+    if (r->disparity[at] != thin->near_disparity || !is_strand(r, x, y, thin->near_disparity))
+        return;
+    add_strand(&fit, r, x, y, thin->near_disparity);
+    slope = fit.count >= LEAST ? slope_of(&fit) : 0;
+    if (!slope)
+        return;
+    thin->alpha = (uint8_t)(255 - slope);
+    for (int c = 0; c < 3; c++) {
+        const int64_t own = (255 * fit.c[c] - slope * fit.f[c]) / (255 * fit.count);
+        const int64_t far = (r->front.light[c][at] - (own > 0 ? own : 0)) * 255 / slope;
+
+        thin->light[c] = (uint16_t)(far < 0 ? 0 : far < RF_LIGHT_MAX ? far : RF_LIGHT_MAX);
+    }
+}
