@@ -5,14 +5,15 @@
 #include "thin/thin.h"
 
 enum {
-    REACH = 4, /* pixels on each side that are looked at, */
-    LEAST = 4, /* so many of the strand's at least, */
-    MOST = 13, /* and at most, */
-    CLOSE = 4, /* and of the 3 x 3 */
-    JUMP = 65535 / 32, /* of disparities: two things */
+    REACH = 4,           /* pixels on each side that are looked at: */
+    LEAST = 4,           /* so many of the strand's at least, */
+    MOST = 13,           /* and at most, */
+    CLOSE = 4,           /* and of the 3 x 3 */
+    JUMP = 65535 / 32,   /* of disparities: two things */
     PATTERN = 400 * 400, /* least variance of F, Q12 squared */
-    SOLID = 32, CLEAR = 225, /* 1 - alpha, 255 = 1: less has no pattern, more is taken for so much */
-    STEEPEST = 380,
+    SOLID = 32,          /* 1 - alpha, 255 = 1: less has no pattern, */
+    CLEAR = 225,         /* more is taken for so much, */
+    STEEPEST = 380,      /* and what is above is none */
 };
 
 /* Where C goes with F, sums over a strand's pixels, of the products over the three channels. */
@@ -20,7 +21,7 @@ struct fit {
     int64_t count, f[3], c[3], ff, fc, cc;
 };
 
-/* F beside a pixel: the mean of those of the eight around it that are far. False: fewer than two. */
+/* F beside a pixel: the mean of the far ones of the eight around it. False: fewer than two. */
 static bool far_beside(const struct refocus_renderer *r, int x, int y, int own, int64_t far[3])
 {
     int count = 0;
