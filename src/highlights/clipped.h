@@ -2,15 +2,9 @@
 #ifndef RF_CLIPPED_H
 #define RF_CLIPPED_H
 
-#include "renderer/renderer.h"
+#include "renderer/around.h"
 
 enum { RF_CLIPPED = RF_LIGHT_MAX * 94 / 100 }; /* light from which clipping begins to count */
-
-/* The nearest of 0 to `most`. */
-static inline int rf_within(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
 
 /* 0 to 256 as v goes from a to b. */
 static inline int rf_ramp(int64_t v, int64_t a, int64_t b)

@@ -78,15 +78,6 @@ static bool is_apart(const struct refocus_renderer *r, int x, int y, int own)
     return true;
 }
 
-/* (x, y) and so many pixels on each side. */
-static struct rf_rect around(const struct refocus_renderer *r, int x, int y, int by)
-{
-    const int right = r->width - 1, bottom = r->height - 1;
-
-    return (struct rf_rect){rf_within(x - by, right), rf_within(y - by, bottom),
-                            rf_within(x + by, right) + 1, rf_within(y + by, bottom) + 1};
-}
-
 /* Whether there are bright ones that are farther. */
 static bool has_far(const struct refocus_renderer *r, struct rf_rect in, int own)
 {
@@ -119,10 +110,10 @@ static bool may_be_behind(const struct refocus_renderer *r, struct rf_rect in, i
 static bool is_behind(const struct refocus_renderer *r, int x, int y, uint16_t *disparity)
 {
     const int own = r->disparity[y * r->stride + x];
-    const struct rf_rect in = around(r, x, y, AROUND);
+    const struct rf_rect in = rf_around(r, x, y, AROUND);
     int far = 0, behind = 0;
 
-    if (!has_far(r, around(r, x, y, 1), own) || !may_be_behind(r, in, own))
+    if (!has_far(r, rf_around(r, x, y, 1), own) || !may_be_behind(r, in, own))
         return false;
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
@@ -148,7 +139,7 @@ static bool has_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 /* Whether it is that of one that is nearer than n, or as near and before it. */
 static bool has_other(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 {
-    const struct rf_rect in = around(r, x, y, 1);
+    const struct rf_rect in = rf_around(r, x, y, 1);
 
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
@@ -168,7 +159,7 @@ static void find_around(const struct refocus_renderer *r, int x, int y,
                         struct rf_photo *photo)
 {
     const ptrdiff_t n = y * r->stride + x;
-    const struct rf_rect in = around(r, x, y, 1);
+    const struct rf_rect in = rf_around(r, x, y, 1);
     uint16_t behind;
 
     if (is_behind(r, x, y, &behind)) {

@@ -1,7 +1,7 @@
 /* strand.c: a strand of hair before something of a pattern (thin.h). */
 #include <stdlib.h>
 
-#include "highlights/clipped.h"
+#include "renderer/around.h"
 #include "thin/thin.h"
 
 enum {
@@ -58,15 +58,6 @@ static void add_pixel(struct fit *fit, const struct refocus_renderer *r, ptrdiff
     }
 }
 
-/* So many pixels on each side, in the photo. */
-static struct rf_rect around(const struct refocus_renderer *r, int x, int y, int by)
-{
-    const int right = r->width - 1, bottom = r->height - 1;
-
-    return (struct rf_rect){rf_within(x - by, right), rf_within(y - by, bottom),
-                            rf_within(x + by, right) + 1, rf_within(y + by, bottom) + 1};
-}
-
 static int near_in(const struct refocus_renderer *r, struct rf_rect in, int own)
 {
     int count = 0;
@@ -82,15 +73,15 @@ static bool is_strand(const struct refocus_renderer *r, int x, int y, int own)
 {
     int count;
 
-    if (near_in(r, around(r, x, y, 1), own) > CLOSE)
+    if (near_in(r, rf_around(r, x, y, 1), own) > CLOSE)
         return false;
-    count = near_in(r, around(r, x, y, REACH), own);
+    count = near_in(r, rf_around(r, x, y, REACH), own);
     return count >= LEAST && count <= MOST;
 }
 
 static void add_strand(struct fit *fit, const struct refocus_renderer *r, int x, int y, int own)
 {
-    const struct rf_rect in = around(r, x, y, REACH);
+    const struct rf_rect in = rf_around(r, x, y, REACH);
 
     for (int qy = in.y0; qy < in.y1; qy++)
         for (int qx = in.x0; qx < in.x1; qx++) {

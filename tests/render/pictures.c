@@ -151,6 +151,20 @@ void picture_free(struct picture *picture)
     free(picture->disparity);
 }
 
+double picture_light(int code)
+{
+    const double v = code / 255.0;
+
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+uint8_t picture_code(double light)
+{
+    const double v = light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
+
+    return (uint8_t)(255 * fmin(v, 1) + 0.5);
+}
+
 /* Share of a pixel in a line from (x0, y0), `wide` pixels wide. */
 static double share_of(double x, double y, double x0, double y0, double dx, double dy, double wide)
 {

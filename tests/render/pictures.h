@@ -39,6 +39,10 @@ struct picture picture_flat(int width, int height, const uint8_t rgb[3],
                             uint16_t disparity);
 void picture_free(struct picture *picture);
 
+/* Light of a code of sRGB, 1 = white, and the nearest code of light. */
+double picture_light(int code);
+uint8_t picture_code(double light);
+
 struct refocus_image picture_image(const struct picture *picture);
 struct refocus_disparity picture_disparity(const struct picture *picture);
 

@@ -7,13 +7,6 @@ static uint8_t out[3 * W * H];
 static const struct refocus_image image = {
     .format = REFOCUS_FORMAT_RGB8, .width = W, .height = H, .plane = {out}, .stride = {3 * W}};
 
-static double light_of(uint8_t code)
-{
-    const double v = code / 255.0;
-
-    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-}
-
 /* A lamp of 5 x 5 pixels in the dark, in front of nothing, at disparity d. */
 static struct refocus_renderer *lamp_at(int x, int y, uint16_t d)
 {
@@ -50,7 +43,7 @@ static struct disc disc_at(int x, int y, int channel)
 
     for (int j = 0; j < H; j++) {
         for (int i = 0; i < W; i++) {
-            const double l = light_of(out[3 * (j * W + i) + channel]);
+            const double l = picture_light(out[3 * (j * W + i) + channel]);
 
             d.all += l;
             d.x += l * (i - x);
@@ -229,7 +222,7 @@ static void star(void **state)
     }
     assert_int_equal(out[3 * (y * W + x + 32)], 0);
     for (int i = 0; i < W * H; i++)
-        added += light_of(out[3 * i]) - light_of(plain[3 * i]);
+        added += picture_light(out[3 * i]) - picture_light(plain[3 * i]);
     /* half of 25 lights, less what falls on the lamp itself, that is white already */
     assert_true(added > 12.5 * 0.6 && added < 12.5);
 }

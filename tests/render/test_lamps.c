@@ -5,20 +5,6 @@
 enum { W = 160, H = 144, CX = W / 2, CY = H / 2 };
 enum { BEHIND = 6554 }; /* 12 pixels of blur behind the focus at 0.5 */
 
-static double light_of(uint8_t code)
-{
-    const double v = code / 255.0;
-
-    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-}
-
-static uint8_t code_of(double light)
-{
-    const double v = light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
-
-    return (uint8_t)(255 * fmin(v, 1) + 0.5);
-}
-
 /* What is drawn: whether a point, relative to the middle, lies in it. */
 struct thing {
     enum { ELLIPSE, BOX, DIAMOND } kind;
@@ -55,7 +41,7 @@ static void draw(struct picture *p, const struct thing *t, double cx, double cy)
             for (int c = 0; c < 3 && share > 0; c++) {
                 uint8_t *code = &p->rgb[3 * (y * p->width + x) + c];
 
-                *code = code_of(share * t->light[c] + (1 - share) * light_of(*code));
+                *code = picture_code(share * t->light[c] + (1 - share) * picture_light(*code));
             }
         }
 }
@@ -91,7 +77,7 @@ static void draw_soft(struct picture *p, const struct thing *t, double cx, doubl
             soften_line(share + x, h, w);
     }
     for (int i = 0; i < 3 * w * h; i++)
-        p->rgb[i] = code_of(share[i / 3] * t->light[i % 3]);
+        p->rgb[i] = picture_code(share[i / 3] * t->light[i % 3]);
     free(share);
 }
 
@@ -112,7 +98,7 @@ static void render_light(struct refocus_renderer *renderer, int w, int h, float 
     for (int c = 0; c < 3; c++) {
         light[c] = 0;
         for (int i = c; i < 3 * w * h; i += 3)
-            light[c] += light_of(out[i]);
+            light[c] += picture_light(out[i]);
     }
     free(out);
 }
@@ -230,7 +216,7 @@ static void lit_walls(void **state)
     for (int i = 0; i < W * H; i++) {
         const double away = hypot(i % W - CX, (double)(i / W) - CY);
 
-        memset(p.rgb + 3 * i, code_of(0.04 + 0.75 / (1 + pow(away / 5, 2))), 3);
+        memset(p.rgb + 3 * i, picture_code(0.04 + 0.75 / (1 + pow(away / 5, 2))), 3);
     }
     draw(&p, &lamp, CX + 0.3, CY - 0.2);
     gained_in(&p, times);
@@ -347,8 +333,8 @@ static void glows(void **state)
         for (int k = 0; k < W * H; k++) {
             const double away = hypot(k % W - CX, (double)(k / W) - CY), glow = exp(-away / 3.5);
 
-            p.rgb[3 * k] = code_of(0.003 + 6 * glow);
-            p.rgb[3 * k + 1] = p.rgb[3 * k + 2] = code_of(0.001 + 0.05 * glow);
+            p.rgb[3 * k] = picture_code(0.003 + 6 * glow);
+            p.rgb[3 * k + 1] = p.rgb[3 * k + 2] = picture_code(0.001 + 0.05 * glow);
         }
         draw(&p, core[i], CX + 0.3, CY - 0.2);
         gained_in(&p, times);

@@ -91,20 +91,6 @@ static void render_fresh(const struct picture *p, bool memory, const struct sett
     refocus_renderer_destroy(&renderer);
 }
 
-static double light_of(int code)
-{
-    const double x = code / 255.0;
-
-    return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-}
-
-static uint8_t code_of(double light)
-{
-    const double v = light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
-
-    return (uint8_t)(255 * v + 0.5);
-}
-
 /* A wire of width w before black is the chord of a disc: L w 2 sqrt(s^2 - t^2) / pi s^2
  * at t from its middle, from end to end. */
 static void wire(void **state)
@@ -128,9 +114,9 @@ static void wire(void **state)
         for (int x = 150; x < 190; x++) {
             const double t = fabs(x - 169.0);
             const double should =
-                t < s ? light_of(220) * wide * 2 * sqrt(s * s - t * t) / (pi * s * s)
+                t < s ? picture_light(220) * wide * 2 * sqrt(s * s - t * t) / (pi * s * s)
                       : 0;
-            const double is = light_of(out[3 * (HEIGHT / 2 * WIDTH + x)]);
+            const double is = picture_light(out[3 * (HEIGHT / 2 * WIDTH + x)]);
             double *most = pass ? &worst_rays : &worst;
 
             sum += pass ? 0 : is;
@@ -143,14 +129,14 @@ static void wire(void **state)
                          out[3 * 169]);
     }
     printf("wire: %.4f off where it is %.4f; by rays %.4f\n", worst,
-           light_of(220) * wide * 2 / (pi * s), worst_rays);
-    assert_true(fabs(sum - light_of(220) * wide) < 0.03 * light_of(220) * wide);
-    assert_true(worst < 0.13 * light_of(220) * wide * 2 / (pi * s));
+           picture_light(220) * wide * 2 / (pi * s), worst_rays);
+    assert_true(fabs(sum - picture_light(220) * wide) < 0.03 * picture_light(220) * wide);
+    assert_true(worst < 0.13 * picture_light(220) * wide * 2 / (pi * s));
     assert_true(worst < worst_rays / 3);
     picture_free(&p);
 }
 
-/* A hair in focus, half a pixel wide, before stripes. */
+/* A hair in focus, a fifth of a pixel wide, before stripes. */
 static void strands(void **state)
 {
     static uint8_t out[MOST], behind[MOST];
@@ -169,7 +155,8 @@ static void strands(void **state)
         const int i = HEIGHT / 2 * WIDTH + x;
 
         for (int c = 0; c < 3; c++)
-            p.rgb[3 * i + c] = code_of(0.2 * light_of(200) + 0.8 * light_of(p.rgb[3 * i + c]));
+            p.rgb[3 * i + c] = picture_code(0.2 * picture_light(200) +
+                                            0.8 * picture_light(p.rgb[3 * i + c]));
         p.disparity[i] = NEAR;
     }
     s.focus = NEAR / 65535.0f;
@@ -180,7 +167,7 @@ static void strands(void **state)
         for (int x = 40; x < WIDTH - 40; x++) {
             const int i = 3 * (HEIGHT / 2 * WIDTH + x);
             const double should =
-                code_of(0.2 * light_of(200) + 0.8 * light_of(behind[i]));
+                picture_code(0.2 * picture_light(200) + 0.8 * picture_light(behind[i]));
 
             off[pass] += fabs(out[i] - should);
             pixels += !pass;
