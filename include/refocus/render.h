@@ -466,8 +466,8 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  *     D_b = g(B') - g(Y') - E                        D_r = g(R') - g(Y') - E
  *
  * and back in the same way from their means. A sample of chroma has the blur of that pixel of
- * its own which is the sharpest; sigma weighs by L; highlights are told and given back by L,
- * up to 4 times white.
+ * its own which is the sharpest; sigma weighs by L; highlights are told and given back by L, with
+ * sigma up to 4 times white.
  * Samples that nothing changed keep their codes, so that one colour stays that colour, even
  * where its codes are none.
  *

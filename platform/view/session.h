@@ -62,8 +62,6 @@ struct rf_session_setup {
     void (*aim)(void *user, const struct rf_view_state *state,
                 struct refocus_render_params *params);
     void *aim_user;
-    bool sigma_of_sweep; /* params.sigma is of sweep alone, other methods average
-                            plainly */
     int threads;
     uint32_t cpu;
     void (*notify)(void *user); /* a frame is there; from the session's thread */

@@ -54,8 +54,6 @@ lens_of(const struct rf_session *s, const struct rf_view_state *state, bool full
         if (params.rays > PREVIEW_RAYS || params.rays == REFOCUS_RAYS_FULL)
             params.rays = PREVIEW_RAYS;
     }
-    if (s->setup.sigma_of_sweep && (!full || params.method != REFOCUS_METHOD_SWEEP))
-        params.sigma = 1e30f;
     return params;
 }
 

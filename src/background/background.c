@@ -129,15 +129,6 @@ bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run)
     return true;
 }
 
-/* The tiles of what was filled in, of the photo's own pixels. */
-static void note_filled(struct refocus_renderer *r, int ty, const struct rf_unknown *run)
-{
-    const int end = run->x1 < r->width ? run->x1 - 2 : r->width;
-
-    for (int x = run->x0 > 0 ? run->x0 + 2 : 0; x < end; x += RF_TILE)
-        r->bins[(size_t)ty * r->tiles_x + x / RF_TILE].filled = true;
-}
-
 static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int y0, int y1)
 {
     const struct rf_level fine = level_of(r, i), coarse = level_of(r, i + 1);
@@ -160,8 +151,6 @@ static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int 
                                 coarse.light[c] + near + parent, coarse.light[c] + far + parent,
                                 scratch, pairs);
             r->kernels.pull_blur(fine.blur + at + x, coarse.blur + near + parent, pairs);
-            if (i == 0)
-                note_filled(r, y / RF_TILE, &run);
         }
     }
 }
@@ -193,8 +182,6 @@ static void pull_item(void *context, int band, int worker)
     struct refocus_renderer *r = fill->r;
     const int y0 = band * BAND, y1 = end_of(band, level_of(r, fill->level).height);
 
-    for (int tx = 0; fill->level == 0 && tx < r->tiles_x; tx++)
-        r->bins[(size_t)band * r->tiles_x + tx].filled = false;
     pull_rows(r, fill->level, rf_scratch(r, worker), y0, y1);
     if (fill->level == 0) {
         for (int c = 0; c < 3; c++)

@@ -127,26 +127,60 @@ static struct blurs {
     return in;
 }
 
-static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, double gap)
+static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
 {
-    /* from this blur on rays lie so far apart that few meet it, and show it as dots */
-    const double dots = lamp->size * 256 / (DOTS * gap);
     const struct blurs near = blurs_in(r, around_lamp(r, lamp, 2));
+    int sum = 0, shining = 0;
 
     lamp->edges = 0;
     for (int i = 0, x, y; i < lamp->count; i++) {
         struct rf_bins *bins;
-        int blur;
+        int blur, size;
 
         if (!place_of(r, lamp, i, &x, &y))
             continue;
         bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
-        blur = abs(r->front.blur[y * r->stride + x]);
-        if (near.sharpest < blur - 256 && is_edge(r, x, y))
+        blur = r->front.blur[y * r->stride + x];
+        size = abs(blur);
+        if (near.sharpest < size - 256 && is_edge(r, x, y)) {
             lamp->edges |= (uint16_t)(1 << i);
-        else if (blur > bins->lamp)
-            bins->lamp = (int16_t)blur;
-        if (!is_left_alone(lamp, i) && blur > dots && blur > bins->dots)
+            continue;
+        }
+        bins->lamp = (int16_t)(size > bins->lamp ? size : bins->lamp);
+        sum += blur;
+        shining++;
+    }
+    lamp->blur = (int16_t)(shining ? sum / shining : 0);
+}
+
+bool rf_mark_highlights(struct refocus_renderer *r)
+{
+    bool any = false;
+
+    for (int part = first_part(r); part <= last_part(r) && !rf_cancelled(r); part++) {
+        const struct rf_highlights *found = &r->photo[r->used].highlights[part];
+
+        for (uint32_t i = 0; i < found->count; i++)
+            mark(r, &found->lamp[i]);
+        any = any || found->count;
+    }
+    return any;
+}
+
+/* Of lamps that rays lie so far apart at that few meet them, and show them as dots. */
+static void note_dots(struct refocus_renderer *r, const struct rf_highlight *lamp, double gap)
+{
+    const double dots = lamp->size * 256 / (DOTS * gap); /* from this blur on */
+
+    for (int i = 0, x, y; i < lamp->count; i++) {
+        struct rf_bins *bins;
+        int blur;
+
+        if (!place_of(r, lamp, i, &x, &y) || is_left_alone(lamp, i))
+            continue;
+        bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
+        blur = abs(r->front.blur[y * r->stride + x]);
+        if (blur > dots && blur > bins->dots)
             bins->dots = (int16_t)blur;
     }
 }
@@ -164,21 +198,16 @@ static void widen_all(struct refocus_renderer *r, const struct rf_highlight *lam
             widen(r, x, y, scale, gap);
 }
 
-bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
-                        double gap)
+void rf_widen_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap)
 {
-    bool any = false;
-
     for (int part = first_part(r); part <= last_part(r) && !rf_cancelled(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)
-            mark(r, &found->lamp[i], gap);
+            note_dots(r, &found->lamp[i], gap);
         for (uint32_t i = 0; i < found->count; i++)
             widen_all(r, &found->lamp[i], scale, gap);
-        any = any || found->count;
     }
-    return any;
 }
 
 static void put_in_front(struct refocus_renderer *r, const struct rf_highlight *lamp, double gap)
@@ -245,27 +274,46 @@ static int spread_of(const struct rf_highlight *lamp, int blur, double gap)
     return 512 * lamp->size < 3 * gap * abs(blur) && reach < WIDEST ? reach + 1 : reach;
 }
 
+/* Sums of tiles that pixels within `reach` of (x, y) are met from have to hold their light. */
+static void note_light(struct refocus_renderer *r, int x, int y, int reach, int light)
+{
+    const int tx0 = rf_within(x - reach, r->width - 1) / RF_TILE;
+    const int tx1 = rf_within(x + reach, r->width - 1) / RF_TILE;
+    const int ty0 = rf_within(y - reach, r->height - 1) / RF_TILE;
+    const int ty1 = rf_within(y + reach, r->height - 1) / RF_TILE;
+
+    for (int ty = ty0; ty <= ty1; ty++)
+        for (int tx = tx0; tx <= tx1; tx++) {
+            struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+
+            bins->brightest = (uint16_t)(light > bins->brightest ? light : bins->brightest);
+        }
+}
+
 /* Pixel i of a lamp. */
 static void add_spread(struct refocus_renderer *r, const struct rf_highlight *lamp, int i,
                        int share, double gap, int most)
 {
     const int planes = r->yuv.on ? 1 : 3; /* of Y, U and V all three are one */
     ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)], at;
-    int x, y, places, gained[3];
+    int x, y, reach, places, gained[3], brightest = 0;
 
     if (!place_of(r, lamp, i, &x, &y))
         return;
     at = y * r->stride + x;
-    places = places_of(r, x, y, spread_of(lamp, r->front.blur[at], gap), place);
+    reach = spread_of(lamp, r->front.blur[at], gap);
+    places = places_of(r, x, y, reach, place);
     gain_of(r, lamp, i, at, share, gained);
     for (int k = 0; k < places; k++) {
         for (int c = 0; c < planes; c++) {
-            const int light =
-                r->smooth[c][place[k]] + (gained[c] + places / 2) / places;
+            const int sum = r->smooth[c][place[k]] + (gained[c] + places / 2) / places;
+            const int light = sum < most ? sum : most;
 
-            r->smooth[c][place[k]] = (uint16_t)(light < most ? light : most);
+            r->smooth[c][place[k]] = (uint16_t)light;
+            brightest = light > brightest ? light : brightest;
         }
     }
+    note_light(r, x, y, reach, brightest);
 }
 
 void rf_add_highlights(struct refocus_renderer *r, float gain, double gap, int most)

@@ -22,7 +22,8 @@
  * hue. Of what is higher or wider than RF_LAMP_SIDE, tubes and rows of lamps, each cell is judged
  * by the 25 x 25 and 7 x 7 cells around it, isolation from 3 to 4.5, hue as above. Cells are
  * pixels, and squares of them in large photos, rf_lamp_cell(), clipped if any pixel is. What is
- * added acts on pixels that are blurred; the sharp ones stay as they are.
+ * added acts on pixels that are blurred; the sharp ones stay as they are: it is drawn (draw.h), or
+ * else rays meet it.
  *
  * 12 views, best: 30.98 dB with rims from 0.4 of white on, 31.39 from what is beside them, 31.57
  * with isolation from 2.5 in place of 3; 31.71 before and 31.84 with bodies and these hues; 31.92
@@ -48,10 +49,11 @@ struct rf_highlight {
     uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095, to each */
     uint8_t count;     /* 1 to RF_LAMP_RUN */
     uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
-    uint16_t edges;    /* a bit each, for this lens: of something bright and sharper, left alone */
+    uint16_t edges;    /* for this lens: a bit each of something bright and sharper, left alone, */
+    int16_t blur;      /* and the mean of the others, Q7.8; 0: there are none */
 };
 
-/* Highlights are kept in parts of so many rows, each with room for one run in 40 pixels; further
+/* Highlights are kept in parts of so many rows, each with room for one run in 46 pixels; further
  * ones, farther down, stay as they are. */
 enum {
     RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
@@ -84,7 +86,7 @@ static inline int rf_lamp_parts(int height)
 
 static inline uint32_t rf_lamp_capacity(int width)
 {
-    return (uint32_t)width * RF_LAMP_ROWS / 40 + 6;
+    return (uint32_t)width * RF_LAMP_ROWS / 46 + 6;
 }
 
 /* Forget the highlights of the photo in use. */
@@ -102,22 +104,24 @@ void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp);
 void rf_sort_highlights(struct refocus_renderer *r);
 
 /* In the window, for the lens setting of r->front.blur and r->bins: tell edges from
- * lamps, note in its tile how far a lamp is blurred, and widen lamps that rays `gap`
- * times their blur apart would miss. False: there are none. */
-bool rf_mark_highlights(struct refocus_renderer *r, struct rf_bin_scale scale,
-                        double gap);
+ * lamps, and note in its tile how far a lamp is blurred. False: there are none. */
+bool rf_mark_highlights(struct refocus_renderer *r);
 
-/* Lamps and what was widened of them count as foreground (tiles/ranges.h): what rays see past them
+/* Where lamps are not drawn (draw.h): widen those that rays `gap` times their blur apart would
+ * miss. */
+void rf_widen_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
+
+/* And: lamps and what was widened of them count as foreground (tiles/ranges.h): what rays see past them
  * is not to shine like them. */
 void rf_put_lamps_in_front(struct refocus_renderer *r, double gap);
 
 /* Up to that gain, sums of 16 bits hold the light of 16 rays over 4. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
 
-/* Add what those in the window lost, gain 1 to 16, to r->smooth, up to `most` there; spread over
- * half a gap of the rays, so that no ray is alone in meeting it. The pre-filter would spread it
- * farther, and discs would have soft rims; what is dark beside a lamp in the background layer
- * stays dark. */
+/* Where lamps are not drawn: add what those in the window lost, gain 1 to 16, to r->smooth, up to
+ * `most` there; spread over half a gap of the rays, so that no ray is alone in meeting it. The
+ * pre-filter would spread it farther, and discs would have soft rims; what is dark beside a lamp in
+ * the background layer stays dark. */
 void rf_add_highlights(struct refocus_renderer *r, float gain, double gap, int most);
 
 #endif

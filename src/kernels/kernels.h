@@ -257,6 +257,38 @@ typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *
                         const uint16_t *far_row, uint16_t *mixed, int pairs);
 typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
 
+/*
+ * draw_disc: to means, rows `first` to end - 1 of a tile, what their pixels see of a run of pixels
+ * that is `half` out of focus: of the row (from, to) what lies within half[y] of pixel x, in 1/64
+ * pixel from the middle of the tile's first one on, v, gives
+ *
+ *     mean[c] += round(2^shift v each[c] / 2^15), 65535 in all at most
+ *
+ * where `visible`, a mask a pixel, is all 1 or not there. 2^shift v and each are below 2^15.
+ *
+ * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`
+ * on from its middle: the mean of what it is a quarter of a pixel above and below the middle of
+ * the row.
+ *
+ * hide: clears `visible` in those rows where a slab that is `part` of the way to the run, Q12,
+ * hides it: where blur, of the tile's first pixel, lies in it at
+ *
+ *     x + round(part (m - x)), y + round(part (middle - y))
+ *
+ * m is the middle of what the pixel sees of the run, itself where that is nothing; blur there is
+ * readable.
+ */
+struct rf_disc_job {
+    int first, end, shift, planes;
+    int16_t half[RF_TILE], from, to, each[3];
+    const uint16_t *visible;
+};
+typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *job);
+typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first);
+typedef void rf_hide_fn(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
+                        const struct rf_slab *slab, const struct rf_disc_job *job, int middle,
+                        int part);
+
 /* means: Q14 means of sums of N Q12 values, with scale = rf_mean_scale(N): within
  * 1/2 + N / 2^17 of 4 sum / N, and exact where all N are the same. */
 typedef void rf_means_fn(uint16_t *mean, const uint32_t *sum, uint32_t scale, int n);
@@ -340,9 +372,6 @@ typedef void rf_lay_veil_fn(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS]
 /* brightest: the largest value of any channel of a row. */
 typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
                                  const uint16_t *blue, int n);
-
-/* tile_brightest: the same of the pixels of a tile, whose rows are `stride` apart. */
-typedef uint16_t rf_tile_brightest_fn(const uint16_t *const light[3], ptrdiff_t stride);
 
 /*
  * search: rays of one strip by the randomized intersection search, plain sums.
@@ -536,7 +565,9 @@ struct rf_kernels {
     rf_soften_fn *soften;
     rf_lay_veil_fn *lay_veil;
     rf_brightest_fn *brightest;
-    rf_tile_brightest_fn *tile_brightest;
+    rf_draw_disc_fn *draw_disc;
+    rf_half_chords_fn *half_chords;
+    rf_hide_fn *hide;
     rf_blend4_fn *blend4;
     rf_widen4_fn *widen4;
     rf_rough_fn *rough;
@@ -554,6 +585,7 @@ struct rf_kernels {
  * not have it. AUTO chooses; *cpu is what it chose. */
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
+rf_draw_disc_fn rf_draw_disc_c;
 rf_sweep_fn rf_sweep_c;
 rf_sweep1_fn rf_sweep1_c;
 rf_sweep1_weighted_fn rf_sweep1_weighted_c;
@@ -572,13 +604,14 @@ rf_weigh_chroma_fn rf_weigh_chroma_c;
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 #define RF_VECTOR_SETS(use) use##_neon, use##_sse41, use##_avx2, use##_avx512
 #define RF_ALL_SETS(use) use##_c, RF_VECTOR_SETS(use)
-rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_fill_use),
+rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_draw_disc_use),
+    RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
     RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep1_weighted_use),
     RF_VECTOR_SETS(rf_sweep_weighted_use),
     RF_VECTOR_SETS(rf_weigh_use), RF_VECTOR_SETS(rf_weigh1_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
-    RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
+    RF_ALL_SETS(rf_discs_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
     RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use),
     RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_windows_use), RF_ALL_SETS(rf_yuv_use),
     RF_ALL_SETS(rf_yuv_codes_use);

@@ -228,30 +228,12 @@ static uint16_t RF_VEC(rf_brightest)(const uint16_t *restrict red,
     return most;
 }
 
-static uint16_t RF_VEC(rf_tile_brightest)(const uint16_t *const light[3], ptrdiff_t stride)
-{
-    uint16_t most[RF_TILE] = {0}, all = 0;
-
-    for (int y = 0; y < RF_TILE; y++) {
-        const uint16_t *restrict red = light[0] + y * stride;
-        const uint16_t *restrict green = light[1] + y * stride;
-        const uint16_t *restrict blue = light[2] + y * stride;
-
-        for (int x = 0; x < RF_TILE; x++)
-            most[x] = max16(max16(most[x], red[x]), max16(green[x], blue[x]));
-    }
-    for (int x = 0; x < RF_TILE; x++)
-        all = max16(all, most[x]);
-    return all;
-}
-
 void RF_VEC(rf_light_use)(struct rf_kernels *kernels)
 {
     kernels->between_rows = RF_VEC(rf_between_rows);
     kernels->soften = RF_VEC(rf_soften);
     kernels->lay_veil = RF_VEC(rf_lay_veil);
     kernels->brightest = RF_VEC(rf_brightest);
-    kernels->tile_brightest = RF_VEC(rf_tile_brightest);
     kernels->weighted_means = RF_VEC(rf_weighted_means);
     kernels->weighed_means = RF_VEC(rf_weighed_means);
 }

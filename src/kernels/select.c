@@ -47,6 +47,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
             *cpu = best_first[i];
     if (!has(*cpu))
         return false;
+    kernels->draw_disc = rf_draw_disc_c;
     kernels->search = rf_search_c;
     kernels->sweep = rf_sweep_c;
     kernels->sweep1 = rf_sweep1_c;
@@ -64,6 +65,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     kernels->sweep_weighted = rf_sweep_weighted_c;
     rf_rows_use_c(kernels);
     rf_yuv_use_c(kernels);
+    rf_discs_use_c(kernels);
     rf_light_use_c(kernels);
     rf_upsample_use_c(kernels);
     rf_choose_use_c(kernels);

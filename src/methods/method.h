@@ -44,7 +44,8 @@ struct rf_frame {
     int row_gap;            /* see methods/tile_rows.h */
     bool stars, grain;      /* lamps have spikes; blur has grain */
     bool finish_ready;      /* both are found out */
-    enum rf_bright bright;  /* light was given back to lamps: it exceeds RF_LIGHT_MAX */
+    bool draws;             /* lamps are drawn, highlights/draw.h; or else */
+    enum rf_bright bright;  /* light was given back to them: it exceeds RF_LIGHT_MAX */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
 
@@ -57,12 +58,6 @@ static inline bool rf_is_sweep(const struct rf_frame *f)
 static inline bool rf_looks_beneath(const struct rf_frame *f)
 {
     return f->params->rays != REFOCUS_RAYS_FULL && f->params->rays <= RF_LIVE_RAYS;
-}
-
-/* Plain 16-bit sums of light that may exceed white are widened as a tile's brightest asks for. */
-static inline bool rf_needs_brightest(const struct rf_frame *f)
-{
-    return rf_is_sweep(f) && !f->r->yuv.on && !f->weighted && f->bright != RF_WHITE;
 }
 
 /*

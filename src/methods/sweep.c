@@ -10,7 +10,9 @@
  * This is plain C that states the arithmetic; sums are whole numbers, so their order does
  * not matter.
  */
+#include "highlights/draw.h"
 #include "methods/method.h"
+#include "methods/sums.h"
 #include "methods/tile_rays.h"
 #include "methods/tile_rows.h"
 #include "renderer/bands.h"
@@ -94,14 +96,6 @@ static bool has_wide_sums(const struct rf_frame *f)
     return f->weighted && !f->premultiplied;
 }
 
-/* How many values a 16-bit sum holds. */
-static int steps_of(const struct rf_frame *f, const struct rf_tile_plan *plan)
-{
-    if (!f->premultiplied && !rf_needs_brightest(f)) /* white at most */
-        return 16;
-    return plan->brightest > 65535 / 16 ? 65535 / plan->brightest : 16;
-}
-
 /* Rows of a tile that are computed together. */
 struct strip {
     int y, step, rows; /* y in the tile */
@@ -143,7 +137,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .stride = strip.step * r->stride,
         .pitch = r->pitch,
         .rays = &sorted,
-        .steps = steps_of(f, plan),
+        .steps = rf_steps_of(plan),
         .bright = f->bright,
         .lanes = strip.rows * RF_TILE,
         .weight = r->weight + weight_at,
@@ -230,21 +224,17 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     }
 }
 
-/* Means are at most 4 times white: it is all white in the end. */
-static void limit(union tally *run, bool wide, uint32_t rays)
+/* A run of rays that weigh the same. */
+static void limit(union tally *run, int lanes, bool wide, uint32_t rays)
 {
-    const uint32_t times = RF_PLAIN_GAIN * RF_LIGHT_MAX;
+    for (int c = 0; c < 3 && !wide; c++)
+        rf_limit_sums(run->sum[c], rays, lanes);
+    for (int c = 0; c < 3 && wide; c++)
+        for (int i = 0; i < lanes; i++) {
+            const uint64_t most = RF_MOST_MEAN * run->weighted[3][i];
 
-    for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < LANES; i++) {
-            const uint64_t most = times * (wide ? run->weighted[3][i] : rays);
-
-            if (wide)
-                run->weighted[c][i] = run->weighted[c][i] < most ? run->weighted[c][i] : most;
-            else
-                run->sum[c][i] = run->sum[c][i] < most ? run->sum[c][i] : (uint32_t)most;
+            run->weighted[c][i] = run->weighted[c][i] < most ? run->weighted[c][i] : most;
         }
-    }
 }
 
 /* Means of channels `from` to `to` - 1 of a tile through an opening. */
@@ -264,8 +254,8 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
     sweep_rays(f, plan, tile_rays, tx, ty, rows, &run, NULL);
     if (rf_cancelled(r))
         return;
-    if (f->bright > RF_BRIGHT && !f->premultiplied)
-        limit(&run, f->weighted, count);
+    if (!f->premultiplied && rf_exceeds_means(plan))
+        limit(&run, lanes, f->weighted, count);
     for (int c = from; c < to; c++) {
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
@@ -287,7 +277,7 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
                        const struct rf_tile_rays *rays, int tx, int ty,
                        uint16_t mean[3][LANES], int from, int to)
 {
-    const uint64_t most = RF_PLAIN_GAIN * 4 * RF_LIGHT_MAX;
+    const uint64_t most = 4 * RF_MOST_MEAN;
     const uint64_t unit = f->premultiplied ? 8192 : 4; /* of Q13 times Q12, or Q12 */
     const uint16_t softness = rf_softness(f, plan, behind_of(f->r, tx, ty));
     struct rf_sums sums;
@@ -339,6 +329,8 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         else
             sweep_sums(f, &plan, &rays, tx, ty, mean, from, to);
     }
+    if (f->draws)
+        rf_draw_lamps(f, &plan, tx, ty, (uint16_t *const[3]){mean[0], mean[1], mean[2]}, 3);
     if (f->holds)
         rf_lay_held(f, tx, ty, mean);
     if (f->veils)

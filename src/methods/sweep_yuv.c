@@ -5,7 +5,9 @@
  * and in 4:2:0 down, and some of them lie as densely among its samples as all do among
  * pixels.
  */
+#include "highlights/draw.h"
 #include "methods/method.h"
+#include "methods/sums.h"
 #include "methods/tile_rows.h"
 
 #include <string.h>
@@ -213,6 +215,8 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
 
     for (int i = 0; tile->f->premultiplied && chroma && i < lanes; i++)
         sums->run[1][i] *= 2; /* Q12 to Q13 */
+    if (!tile->weight && !chroma && rf_exceeds_means(&tile->plan))
+        rf_limit_sums(sums->run[0], (uint32_t)rays, lanes);
     if (tile->f->premultiplied)
         kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma],
                                lanes);
@@ -261,20 +265,11 @@ static void sweep_sums(struct tile *tile, struct sums *sums,
     memset(sums->weight, 0, sizeof sums->weight);
     sweep_rays(tile, sums);
     for (int p = 0; p < 2; p++)
-        for (int i = 0; i < lanes[p]; i++)
-            mean[p][i] =
-                (uint16_t)((unit[p] * sums->sum[p][i] + sums->weight[p][i] / 2) /
-                           sums->weight[p][i]);
-}
+        for (int i = 0; i < lanes[p]; i++) {
+            const uint64_t w = sums->weight[p][i], v = (unit[p] * sums->sum[p][i] + w / 2) / w;
 
-/* How many values of luma a 16-bit sum holds. */
-static int luma_steps(const struct tile *tile)
-{
-    const int most = tile->plan.brightest;
-
-    if (!tile->f->premultiplied)
-        return tile->f->bright ? 4 : 16;
-    return most > 65535 / 16 ? 65535 / most : 16;
+            mean[p][i] = (uint16_t)(v < 4 * RF_MOST_MEAN ? v : 4 * RF_MOST_MEAN);
+        }
 }
 
 static void set_planes(struct tile *tile, int tx, int ty)
@@ -292,7 +287,7 @@ static void set_planes(struct tile *tile, int tx, int ty)
         .light = r->smooth[0] + origin,
         .behind = r->behind.light[0] + origin,
         .rows = RF_TILE,
-        .steps = luma_steps(tile),
+        .steps = rf_steps_of(&tile->plan),
     };
     tile->chroma = (struct plane){
         .blur = yuv->blur + at,
@@ -326,5 +321,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         sweep_means(&tile, &sums, &means);
     else
         sweep_sums(&tile, &sums, &means);
+    if (f->draws)
+        rf_draw_lamps(f, &tile.plan, tx, ty, (uint16_t *const[3]){means.luma}, 1);
     rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

@@ -52,10 +52,8 @@ enum rf_task { RF_SKIP, RF_COPY, RF_FILTER };
 enum rf_task rf_prefilter_task(const struct refocus_renderer *r, const int above[], int step,
                                int tx, int ty);
 
-/* The background's blur in the middle of each tile of a row goes to its bins; and the brightest
- * light in both layers. */
+/* The background's blur in the middle of each tile of a row goes to its bins. */
 void rf_note_behind(struct refocus_renderer *r, int ty);
-void rf_note_brightest(struct refocus_renderer *r, int ty);
 
 /* Weights of eq. 5 of the pixels that rays meet, borders too: of smooth into r->weight, of the
  * background over its blur. */

@@ -60,44 +60,6 @@ static int brightest(uint16_t *const light[3], ptrdiff_t at)
     return most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
 }
 
-/* Whether light was given back to a lamp in a tile or beside it, from where it may be spread. */
-static bool has_lamp_near(const struct refocus_renderer *r, int tx, int ty)
-{
-    for (int y = ty > 0 ? ty - 1 : 0; y <= ty + 1 && y < r->tiles_y; y++)
-        for (int x = tx > 0 ? tx - 1 : 0; x <= tx + 1 && x < r->tiles_x; x++)
-            if (r->bins[(size_t)y * r->tiles_x + x].lamp > 0)
-                return true;
-    return false;
-}
-
-static uint16_t layer_brightest(const struct refocus_renderer *r, uint16_t *const light[3],
-                                int tx, int ty)
-{
-    const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
-
-    return r->kernels.tile_brightest(
-        (const uint16_t *const[3]){light[0] + at, light[1] + at, light[2] + at}, r->stride);
-}
-
-/* What is white at most need not be looked at; the fill of the background comes from farther
- * away. Where nothing was filled in, the background has what is seen, or less. */
-static uint16_t tile_brightest(const struct refocus_renderer *r, int tx, int ty)
-{
-    uint16_t seen = RF_LIGHT_MAX, filled = RF_LIGHT_MAX;
-
-    if (has_lamp_near(r, tx, ty))
-        seen = layer_brightest(r, r->smooth, tx, ty);
-    if (r->bins[(size_t)ty * r->tiles_x + tx].filled)
-        filled = layer_brightest(r, r->behind.light, tx, ty);
-    return seen > filled ? seen : filled;
-}
-
-void rf_note_brightest(struct refocus_renderer *r, int ty)
-{
-    for (int tx = 0; tx < r->tiles_x; tx++)
-        r->bins[(size_t)ty * r->tiles_x + tx].brightest = tile_brightest(r, tx, ty);
-}
-
 void rf_note_behind(struct refocus_renderer *r, int ty)
 {
     for (int tx = 0; tx < r->tiles_x; tx++)

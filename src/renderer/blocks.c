@@ -274,8 +274,6 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
             rf_pass_bright(f);
         if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(r))
             rf_pass_weights(f);
-        if (need == RF_NEED_LAYERS && rf_needs_brightest(f) && !rf_cancelled(r))
-            rf_pass_brightest(f);
         image =
             image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
                                              part.x1 - region.x0, part.y1 - region.y0});

@@ -46,7 +46,7 @@ bool rf_same_light(const struct rf_frame *f)
     const struct rf_made *m = &f->r->made;
 
     return m->smooth && m->blend == f->params->blend &&
-           m->gain == f->params->highlight_gain &&
+           m->gain == rf_lamp_gain(f) && m->drawn == f->draws &&
            (!m->lamps || m->rays == f->params->rays) &&
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
@@ -56,7 +56,8 @@ void rf_note_light(struct rf_frame *f)
     struct rf_made *m = &f->r->made;
 
     m->blend = f->params->blend;
-    m->gain = f->params->highlight_gain;
+    m->gain = rf_lamp_gain(f);
+    m->drawn = f->draws;
     m->lamps = m->gain > 1;
     m->bright = f->bright;
     m->rays = f->params->rays;
@@ -109,7 +110,7 @@ static void make_blur(struct rf_frame *f, bool layers)
 
     if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
         !contains(window, m->window) || !has_same_thin(f) || (m->rims && !layers) ||
-        (layers && !rf_same_light(f) && (m->lamps || f->params->highlight_gain > 1))) {
+        (layers && !rf_same_light(f) && (m->lamps || m->drawn || f->params->highlight_gain > 1))) {
         *m = (struct rf_made){.half = m->half && r->used,
                               .photo = r->used,
                               .window = window,
@@ -142,7 +143,7 @@ static void make_smooth(struct rf_frame *f)
     m->smooth = m->behind = false;
     if (r->used == 0)
         m->half = false; /* it lies where the background layer does */
-    m->lamps = f->params->highlight_gain > 1;
+    m->lamps = rf_lamp_gain(f) > 1;
     if (m->ranges) {
         f->bright = RF_WHITE;
         rf_pass_prefilter(f);
@@ -206,7 +207,7 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
     rf_pass_behind(f, r->levels);
     m->behind = !rf_cancelled(r);
-    m->weighed = m->brightest = false;
+    m->weighed = false;
     return m->behind;
 }
 
@@ -348,9 +349,5 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     }
     if (layers && f->weighted && rf_is_sweep(f))
         make_weights(f);
-    if (layers && rf_needs_brightest(f) && !r->made.brightest && !rf_cancelled(r)) {
-        rf_pass_brightest(f);
-        r->made.brightest = !rf_cancelled(r);
-    }
     f->region = in_window(r, region);
 }

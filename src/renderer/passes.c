@@ -155,23 +155,24 @@ static double ray_gap(const struct refocus_render_params *p)
     return sqrt(3.14159265358979 / (p->rays == REFOCUS_RAYS_FULL ? INT_MAX : p->rays));
 }
 
-/* Of luma no more than sums of its rays hold. */
-static float lamp_gain(const struct rf_frame *f)
+float rf_lamp_gain(const struct rf_frame *f)
 {
-    const float gain = f->params->highlight_gain;
+    const float gain = f->draws ? 1 : f->params->highlight_gain;
 
-    return f->r->yuv.on ? fminf(gain, RF_PLAIN_GAIN) : gain;
+    return f->r->yuv.on && f->weighted ? fminf(gain, RF_PLAIN_GAIN) : gain;
 }
 
 static void mark_lamps(struct rf_frame *f)
 {
-    const float gain = lamp_gain(f);
+    const float gain = rf_lamp_gain(f);
 
     f->bright = RF_WHITE;
-    if (gain > 1 && rf_mark_highlights(f->r, f->scale, ray_gap(f->params)))
-        f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT
-                    : gain <= 2 * RF_PLAIN_GAIN ? RF_BRIGHTER
-                                                : RF_BRIGHTEST;
+    if (f->params->highlight_gain <= 1 || !rf_mark_highlights(f->r) || f->draws)
+        return;
+    rf_widen_highlights(f->r, f->scale, ray_gap(f->params));
+    f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT
+                : gain <= 2 * RF_PLAIN_GAIN ? RF_BRIGHTER
+                                            : RF_BRIGHTEST;
 }
 
 void rf_pass_bright(struct rf_frame *f)
@@ -180,7 +181,7 @@ void rf_pass_bright(struct rf_frame *f)
         [RF_WHITE] = 1, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 8, [RF_BRIGHTEST] = 16};
 
     if (f->bright != RF_WHITE)
-        rf_add_highlights(f->r, lamp_gain(f), ray_gap(f->params),
+        rf_add_highlights(f->r, rf_lamp_gain(f), ray_gap(f->params),
                           times[f->bright] * RF_LIGHT_MAX);
 }
 
@@ -258,12 +259,6 @@ static void bare_band(void *context, int band, int worker)
     rf_bare_rows(context, rf_scratch(context, worker), band);
 }
 
-static void brightest_band(void *context, int band, int worker)
-{
-    (void)worker;
-    rf_note_brightest(context, band);
-}
-
 static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -290,11 +285,6 @@ void rf_pass_behind(struct rf_frame *f, int levels)
     if (f->bright != RF_WHITE)
         rf_put_lamps_in_front(r, ray_gap(f->params));
     rf_pool_run(&r->pool, bare_band, r, rf_bands(r));
-}
-
-void rf_pass_brightest(struct rf_frame *f)
-{
-    rf_pool_run(&f->r->pool, brightest_band, f->r, rf_bands(f->r));
 }
 
 void rf_pass_weights(struct rf_frame *f)

@@ -31,6 +31,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
 
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
+float rf_lamp_gain(const struct rf_frame *f); /* once there are: none if they are drawn; of luma what fits */
 void rf_pass_lamps(struct rf_frame *f); /* finds them, in all of the photo in use, once */
 void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
 void rf_pass_smooth(struct rf_frame *f);
@@ -39,7 +40,6 @@ void rf_pass_mark(struct rf_frame *f, int levels); /* and up the pyramid, but of
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
 void rf_pass_bright(struct rf_frame *f); /* the light that lamps lost, after the background */
 void rf_pass_weights(struct rf_frame *f);
-void rf_pass_brightest(struct rf_frame *f); /* after all light is there */
 
 /* Whether what r->made tells of is for this lens, and its light for this frame's; note
  * the frame's there. */

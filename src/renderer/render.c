@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "highlights/draw.h"
 #include "methods/frame.h"
 #include "methods/tile_rows.h"
 #include "planes/format.h"
@@ -221,7 +222,7 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
 
     r->last_rims = layers;
     if (!pinhole)
-        rf_make_rays(r, f->aperture, f->params->rays, f->params->highlight_gain > 1,
+        rf_make_rays(r, f->aperture, f->params->rays, f->params->highlight_gain > 1 && !f->draws,
                      f->params->max_blur_radius);
     if (f->params->cat_eye > 0) {
         rf_cat_eye_make(&r->cat_eye);
@@ -295,6 +296,7 @@ int refocus_render(struct refocus_renderer *r,
     f.params = &own;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.fine = rf_aperture_is_fine(f.aperture);
+    f.draws = rf_draws_lamps(&f);
     f.focus = rf_focus_of(own.focus_disparity, own.max_blur_radius);
     rf_focus_plan_make(&f.plan, &own, f.focus, r->photo[number].width, r->photo[number].height);
     if (f.plan.surface || f.plan.sharp || f.plan.picture)

@@ -81,7 +81,8 @@ struct rf_photo {
 struct rf_made {
     bool blur;   /* front.blur and bins, */
     bool rims;   /* with the rims in them, */
-    bool lamps;  /* and highlights marked and widened in them */
+    bool lamps;  /* and highlights marked and widened in them, */
+    bool drawn;  /* or marked to be drawn */
     bool ranges; /* its ranges; before, its cells are where the background's blur will be */
     bool smooth; /* the pre-filtered light */
     enum rf_bright bright; /* with light given back to lamps, */
@@ -90,7 +91,6 @@ struct rf_made {
     bool weighed; /* but with weights of `sigma` in place of its blur, */
     bool premultiplied; /* and the light of both layers times them */
     float sigma;
-    bool brightest; /* of each tile is noted, for plain sums */
     int rays;    /* that lamps were widened for */
     bool half;   /* photo[1], which lies in memory of the background layer of photo[0] */
     int photo;
@@ -146,8 +146,7 @@ struct rf_bins {
     int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none; */
     int16_t dots;        /* of one that is small beside the gaps of the rays */
     int16_t behind;      /* blur of the background in the middle, once that is filled */
-    uint16_t brightest;  /* light of either layer, as it is summed */
-    bool filled;         /* the background has something here that is not seen; of R, G, B */
+    uint16_t brightest;  /* light of either layer, as it is summed; or more */
 };
 
 /*

@@ -79,7 +79,8 @@ static void add_cells(struct rf_bins *bins, const struct refocus_renderer *r,
 static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
                                    int tx, int ty)
 {
-    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+    struct rf_bins bins = {
+        .least = INT16_MAX, .most = INT16_MIN, .brightest = RF_LIGHT_MAX};
     int first, last;
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
@@ -297,7 +298,7 @@ void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
     const struct rf_bins bins = collect(r, reach, tx, ty);
 
     cover(&bins, scale, plan);
-    plan->lamp = bins.lamp > 0;
+    plan->lamp = bins.lamp;
     plan->dots = bins.dots > 0;
     plan->brightest = bins.brightest;
 }

@@ -24,8 +24,8 @@ struct rf_tile_plan {
     int reach; /* largest |s| that reaches the tile, Q7.8, */
     int least; /* and the least */
     bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
-    bool lamp;    /* a highlight is in reach, */
-    bool dots;    /* and one that is small beside the gaps of the rays */
+    int lamp;     /* largest |s| of a highlight in reach, Q7.8; 0: none is; */
+    bool dots;    /* one that is small beside the gaps of the rays is */
     uint16_t brightest; /* as rf_bins has it, of the tiles in reach */
     struct rf_slab slab[RF_MAX_SLABS];
     bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */

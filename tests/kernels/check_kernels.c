@@ -82,8 +82,8 @@ int main(int argc, char **argv)
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) +
                         check_windows(&subject) + check_sweep(&subject) +
-                        check_light(&subject) + check_search(&subject) +
-                        check_series(&subject) + check_rows(&subject) +
+                        check_discs(&subject) + check_light(&subject) +
+                        check_search(&subject) + check_series(&subject) + check_rows(&subject) +
                         check_surface(&subject) + check_thin(&subject) +
                         check_yuv(&subject);
         }

@@ -293,33 +293,6 @@ static int check_brightest(const struct subject *subject)
     return 0;
 }
 
-/* What lies between and behind a tile's rows does not count. */
-static int check_tile_brightest(const struct subject *subject)
-{
-    enum { STRIDE = 3 * RF_TILE };
-    uint16_t plane[3][RF_TILE * STRIDE];
-    uint32_t seed = 17;
-
-    for (int round = 0; round < 300; round++) {
-        const unsigned limit = 1 + noise(&seed) % 65535;
-        uint16_t most = 0, is;
-
-        for (int c = 0; c < 3; c++)
-            for (int i = 0; i < RF_TILE * STRIDE; i++) {
-                const bool inside = i % STRIDE < RF_TILE;
-
-                plane[c][i] = (uint16_t)(inside ? noise(&seed) % limit : 65535);
-                if (inside && plane[c][i] > most)
-                    most = plane[c][i];
-            }
-        is = subject->kernels.tile_brightest(
-            (const uint16_t *const[3]){plane[0], plane[1], plane[2]}, STRIDE);
-        if (is != most)
-            return wrong(subject, "tile_brightest", "of a tile", is, most);
-    }
-    return 0;
-}
-
 /* The cubic through four of the computed rows, by Lagrange; its shares are rounded to Q14. */
 static double cubic(const uint16_t *computed, const int *at, int rows, int x, int y)
 {
@@ -473,7 +446,7 @@ static int check_veil(const struct subject *subject)
 int check_light(const struct subject *subject)
 {
     const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject) +
-                         check_tile_brightest(subject) + check_between(subject) +
+                         check_between(subject) +
                          check_soften(subject) + check_weigh(subject) +
                          check_weigh1(subject) + check_weigh_chroma(subject) +
                          check_weighed_means(subject) + check_veil(subject);

@@ -81,9 +81,10 @@ static void draw_soft(struct picture *p, const struct thing *t, double cx, doubl
     free(share);
 }
 
-/* Light of a channel in all of the picture, at a gain. */
+/* Light of a channel in all of the picture, at a gain. Of a disc lamps are drawn, of other openings
+ * rays meet them. */
 static void render_light(struct refocus_renderer *renderer, int w, int h, float gain,
-                         double light[3])
+                         const struct refocus_aperture *aperture, double light[3])
 {
     uint8_t *out = malloc(3 * (size_t)w * (size_t)h);
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
@@ -94,6 +95,7 @@ static void render_light(struct refocus_renderer *renderer, int w, int h, float 
     params.rays = 512;
     params.prefilter = 0;
     params.highlight_gain = gain;
+    params.aperture = aperture;
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
     for (int c = 0; c < 3; c++) {
         light[c] = 0;
@@ -103,16 +105,29 @@ static void render_light(struct refocus_renderer *renderer, int w, int h, float 
     free(out);
 }
 
-/* How many times as much light of each channel, at a gain of 4, what is drawn has. */
+/* How many times as much light of each channel, at a gain of 4, what is drawn has; about the same
+ * whichever way lamps go. */
 static void gained_in(const struct picture *p, double times[3])
 {
     struct refocus_renderer *renderer = prepared(p, 30, 2);
-    double with[3], without[3];
+    struct refocus_aperture *nearly_round;
 
-    render_light(renderer, p->width, p->height, 1, without);
-    render_light(renderer, p->width, p->height, 4, with);
-    for (int c = 0; c < 3; c++)
-        times[c] = with[c] / without[c];
+    assert_int_equal(refocus_aperture_create_polygon(&nearly_round, 16, 0), REFOCUS_OK);
+    for (int met = 0; met < 2; met++) {
+        const struct refocus_aperture *aperture = met ? nearly_round : NULL;
+        double with[3], without[3];
+
+        render_light(renderer, p->width, p->height, 1, aperture, without);
+        render_light(renderer, p->width, p->height, 4, aperture, with);
+        for (int c = 0; c < 3; c++) {
+            if (met && fabs(with[c] / without[c] - times[c]) > 0.05 * times[c])
+                fail_msg("channel %d has %.3f times its light drawn, met by rays %.3f", c, times[c],
+                         with[c] / without[c]);
+            if (!met)
+                times[c] = with[c] / without[c];
+        }
+    }
+    refocus_aperture_destroy(&nearly_round);
     refocus_renderer_destroy(&renderer);
 }
 
@@ -278,7 +293,7 @@ static int wire_blur(uint16_t disparity)
     struct refocus_renderer *renderer = prepared(&p, 30, 1);
     double light[3];
 
-    render_light(renderer, W, H, 1, light);
+    render_light(renderer, W, H, 1, NULL, light);
     assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, blur, 2 * W), REFOCUS_OK);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
@@ -291,6 +306,108 @@ static void wires(void **state)
     /* a lamp behind the wire is blurred as far as it is seen, one that hangs on it is sharp */
     assert_in_range(wire_blur(BEHIND), 11 * 256, 13 * 256);
     assert_in_range(wire_blur(32768), 0, 16);
+}
+
+/* Codes of green, of `rays` at a gain. */
+static void render_green(struct refocus_renderer *renderer, int rays, float gain,
+                         const struct refocus_aperture *aperture, int green[W * H])
+{
+    static uint8_t out[3 * W * H];
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+
+    params.rays = rays;
+    params.highlight_gain = gain;
+    params.aperture = aperture;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    for (int i = 0; i < W * H; i++)
+        green[i] = out[3 * i + 1];
+}
+
+/* A small lamp before or behind the focus is one even disc with a crisp rim, of few rays and of
+ * many. */
+static void discs(void **state)
+{
+    static const uint16_t depths[] = {6554, 24000, 59000, 42000};
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, depths[k]);
+        const double radius = fabs(30 * (0.5 - depths[k] / 65535.0));
+        struct refocus_renderer *renderer;
+
+        for (int y = CY - 1; y <= CY + 1; y++)
+            memset(p.rgb + 3 * (y * W + CX - 1), 255, 9);
+        renderer = prepared(&p, 30, 2);
+        for (int rays = 32; rays <= 512; rays *= 4) {
+            int with[W * H], without[W * H], inside = 0, least = 255, most = 0;
+
+            render_green(renderer, rays, 1, NULL, without);
+            render_green(renderer, rays, 16, NULL, with);
+            for (int i = 0; i < W * H; i++) {
+                const double away = hypot(i % W - CX, (double)(i / W) - CY);
+
+                if (away > radius + 2.5)
+                    assert_int_equal(with[i], without[i]);
+                if (away > radius - 2)
+                    continue;
+                inside++;
+                least = with[i] - without[i] < least ? with[i] - without[i] : least;
+                most = with[i] - without[i] > most ? with[i] - without[i] : most;
+            }
+            if (inside < 3 || least < 4 || most - least > least / 4 + 1)
+                fail_msg("a disc of %g pixels, %d rays: %d pixels gained %d to %d codes", radius,
+                         rays, inside, least, most);
+        }
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
+}
+
+/* A row of lamps behind a post, a gap away from each other: in focus it keeps its codes, and what
+ * is nearer cuts discs off where rays say so, too. */
+static void hidden(void **state)
+{
+    static const uint16_t posts[] = {32768, 20000, 60000};
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
+        int with[W * H], without[W * H], met[W * H], met_without[W * H];
+        struct refocus_aperture *nearly_round;
+        struct refocus_renderer *renderer;
+        double drawn = 0, off = 0;
+
+        for (int i = 0; i < 8; i++)
+            for (int j = 0; j < 9; j++)
+                memset(p.rgb + 3 * ((20 + 13 * i + j % 3) * W + 18 + 17 * i + j / 3), 255, 3);
+        for (int y = 0; y < H; y++)
+            for (int x = CX - 9; x < CX + 9; x++) {
+                p.disparity[y * W + x] = posts[k];
+                memset(p.rgb + 3 * (y * W + x), 60, 3);
+            }
+        renderer = prepared(&p, 30, 2);
+        assert_int_equal(refocus_aperture_create_polygon(&nearly_round, 16, 0), REFOCUS_OK);
+        render_green(renderer, 512, 1, NULL, without);
+        render_green(renderer, 512, 6, NULL, with);
+        render_green(renderer, 512, 1, nearly_round, met_without);
+        render_green(renderer, 512, 6, nearly_round, met);
+        for (int i = 0; i < W * H; i++) {
+            const double own = picture_light(with[i]) - picture_light(without[i]);
+            const double of_rays = picture_light(met[i]) - picture_light(met_without[i]);
+
+            if (posts[k] == 32768 && abs(i % W - CX) < 9 - (i % W >= CX))
+                assert_int_equal(with[i], without[i]);
+            drawn += own * own;
+            off += (own - of_rays) * (own - of_rays);
+        }
+        if (off > 0.03 * drawn || drawn == 0)
+            fail_msg("before a post at %u, %.3f of what is drawn is not met by rays", posts[k],
+                     off / drawn);
+        refocus_aperture_destroy(&nearly_round);
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
 }
 
 /* Longer than a lamp, but no wider. */
@@ -443,6 +560,7 @@ int main(void)
         cmocka_unit_test(tubes),   cmocka_unit_test(colours), cmocka_unit_test(nights),
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
         cmocka_unit_test(wires),        cmocka_unit_test(candles),
+        cmocka_unit_test(discs),        cmocka_unit_test(hidden),
         cmocka_unit_test(glows),        cmocka_unit_test(petals),
     };
 

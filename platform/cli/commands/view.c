@@ -241,7 +241,6 @@ static int show(struct viewing *v, view_run_fn *run_window)
     setup.session.params = v->engine.params;
     setup.session.aim = aim;
     setup.session.aim_user = v;
-    setup.session.sigma_of_sweep = isnan(settings->shot.engine.sigma);
     setup.session.threads =
         isnan(settings->shot.engine.threads) ? 0 : (int)settings->shot.engine.threads;
     setup.session.cpu = (uint32_t)settings->shot.engine.cpu;

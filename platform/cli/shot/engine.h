@@ -110,7 +110,7 @@ const char *engine_blend_summary(uint32_t index);
      .word = "off",                                                                    \
      .word_value = INFINITY,                                                           \
      .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default "   \
-             "of sweep by --quality, of the others off"},                              \
+             "off"},                                                                   \
     {.kind = OPTION_NUMBER,                                                            \
      .name = "--highlights",                                                           \
      .argument = "GAIN",                                                               \
@@ -120,7 +120,7 @@ const char *engine_blend_summary(uint32_t index);
      .word = "off",                                                                    \
      .word_value = 1,                                                                  \
      .help = "sweep: light given back to small clipped lamps, up to GAIN times "       \
-             "white; default by --quality",                                            \
+             "white; default 9, with --sigma 8",                                       \
      OF_METHODS(type, member.method, OF_SWEEP)}
 #define RUN_OPTIONS(type, member)                                                      \
     {.kind = OPTION_INTEGER,                                                           \

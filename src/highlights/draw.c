@@ -1,0 +1,234 @@
+#include "highlights/draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "highlights/clipped.h"
+#include "highlights/highlights.h"
+#include "kernels/kernels.h"
+#include "tiles/ranges.h"
+
+enum {
+    UNIT = 64,     /* of lengths, in a pixel */
+    NEARER = 256,  /* Q7.8: what hides a lamp is so much nearer */
+    BLURRED = 128, /* Q7.8: a lamp has its light from there on, */
+    WHOLLY = 384,  /* and all of it from here on */
+};
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+bool rf_draws_lamps(const struct rf_frame *f)
+{
+    const struct refocus_render_params *p = f->params;
+    const struct refocus_aperture *a = f->aperture;
+
+    return rf_is_sweep(f) && p->highlight_gain > 1 && p->sigma >= 1e6f &&
+           a->shape == RF_SHAPE_DISC && rf_profile_is_even(&a->behind) &&
+           rf_profile_is_even(&a->before) && a->squeeze_x == 1 && a->squeeze_y == 1 &&
+           p->cat_eye == 0 && p->fringe == 0;
+}
+
+/* A run of a lamp's pixels, as a tile sees it. */
+struct seen {
+    int x, y, count; /* its first pixel, from the tile's first one on */
+    int blur;        /* Q7.8, signed */
+    int radius;
+};
+
+/* Whether the discs of its pixels reach into the tile. */
+static bool reaches(const struct seen *run)
+{
+    const int far = run->radius / 256 + 1;
+
+    return run->blur != 0 && run->x - far < RF_TILE && run->x + run->count + far > 0 &&
+           run->y - far < RF_TILE && run->y + far >= 0;
+}
+
+/* The light of each pixel of the run that a pixel sees whole, Q14, times 2^(15 - shift)
+ * / UNIT: all of it, over the disc. */
+static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
+                      const struct rf_highlight *lamp, const struct seen *run)
+{
+    const double pi = 3.14159265358979;
+    const double area = pi * run->radius * run->radius / 65536.0;
+    const double gain = f->params->highlight_gain;
+    const int shining = __builtin_popcount(~lamp->edges & ((1u << lamp->count) - 1));
+    const int blurred = rf_ramp(run->radius, BLURRED, WHOLLY);
+    double share;
+    bool any = false;
+
+    job->shift = 8;
+    for (int n = 1; n < run->count; n *= 2)
+        job->shift--;
+    share = 4 * (gain - 1) / 3 * blurred / 256 * shining / lamp->count;
+    share *= (double)(1 << (15 - job->shift)) / UNIT / area;
+    for (int c = 0; c < job->planes; c++) {
+        const double each = lamp->added[c] * share + 0.5;
+
+        job->each[c] = (int16_t)(each < 32767 ? each : 32767);
+        any = any || job->each[c] > 0;
+    }
+    return any;
+}
+
+/* Rows that the discs reach, and where they end in them. */
+static void set_chords(struct rf_disc_job *job, const struct rf_frame *f,
+                       const struct seen *run)
+{
+    f->r->kernels.half_chords(job->half, run->radius, -run->y);
+    job->first = 0;
+    job->end = RF_TILE;
+    while (job->first < RF_TILE && job->half[job->first] == 0)
+        job->first++;
+    while (job->end > job->first && job->half[job->end - 1] == 0)
+        job->end--;
+    job->from = (int16_t)(UNIT * run->x - UNIT / 2);
+    job->to = (int16_t)(UNIT * (run->x + run->count) - UNIT / 2);
+}
+
+/* A slab that may hide the run: where the tile sees it on its way there. */
+struct screen {
+    const struct rf_slab *slab;
+    double part; /* of the way */
+};
+
+static double clamp(double v, double most)
+{
+    return v < -most ? -most : v > most ? most : v;
+}
+
+/* Pixels, from the tile's first one on, among which all lie that rays from pixels
+ * `first` to `last` to the run from `from` to `to` see of a screen, in one direction.
+ */
+static void extent(const struct screen *screen, const struct seen *run, double first,
+                   double last, double from, double to, int *least, int *most)
+{
+    const double far = run->radius / 256.0 + 0.5, part = screen->part;
+    double a, b;
+
+    if (part > 1) { /* the farther a pixel, the more it looks to the other side */
+        a = first - part * far;
+        b = last + part * far;
+    } else {
+        a = first + part * clamp((part < 0 ? to : from) - first, far);
+        b = last + part * clamp((part < 0 ? from : to) - last, far);
+    }
+    *least = (int)floor(a) - 1;
+    *most = (int)floor(b) + 2;
+}
+
+enum hidden { HIDDEN_NOWHERE, HIDDEN_PARTLY, HIDDEN_WHOLLY };
+
+/* By the ranges of what may be met, tiles/ranges.h. */
+static enum hidden hidden_by(const struct screen *screen, const struct rf_frame *f,
+                             int tx, int ty, const struct seen *run,
+                             const struct rf_disc_job *job)
+{
+    const struct refocus_renderer *r = f->r;
+    const int low = screen->slab->low, high = low + screen->slab->width;
+    const int border = rf_range_border(r->pad), each = RF_TILE / RF_CELL;
+    int x0, x1, y0, y1, none = true, all = true;
+
+    extent(screen, run, 0, RF_TILE - 1, run->x - 0.5, run->x + run->count - 0.5, &x0,
+           &x1);
+    extent(screen, run, job->first, job->end - 1, run->y, run->y, &y0, &y1);
+    x0 = larger(((tx * RF_TILE + x0) >> 2), -border);
+    y0 = larger(((ty * RF_TILE + y0) >> 2), -border);
+    x1 = smaller(((tx * RF_TILE + x1) >> 2), r->tiles_x * each - 1 + border);
+    y1 = smaller(((ty * RF_TILE + y1) >> 2), r->tiles_y * each - 1 + border);
+    for (int y = y0; y <= y1; y += RF_STRIP / RF_CELL)
+        for (int x = x0; x <= x1; x += each) {
+            const uint32_t range = r->range[y * r->range_stride + x];
+            const int least = rf_range_least(range), most = rf_range_most(range);
+
+            none = none && (most < low || least > high);
+            all = all && least >= low && most <= high;
+        }
+    return none ? HIDDEN_NOWHERE : all ? HIDDEN_WHOLLY : HIDDEN_PARTLY;
+}
+
+/* Sets `visible` where it is needed, and the job's; false: the run is hidden. */
+static bool set_visible(struct rf_disc_job *job, uint16_t visible[RF_TILE * RF_TILE],
+                        const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        int tx, int ty, const struct seen *run)
+{
+    const struct refocus_renderer *r = f->r;
+    const int16_t *const blur = r->front.blur + ty * RF_TILE * r->stride + tx * RF_TILE;
+
+    job->visible = NULL;
+    for (int k = 0; k < plan->slabs; k++) {
+        const struct rf_slab *slab = &plan->slab[k];
+        const struct screen screen = {slab, (double)slab->centre / run->blur};
+        enum hidden hidden;
+
+        if (slab->centre >= run->blur - NEARER)
+            break;
+        hidden = hidden_by(&screen, f, tx, ty, run, job);
+        if (hidden == HIDDEN_WHOLLY)
+            return false;
+        if (hidden == HIDDEN_NOWHERE)
+            continue;
+        for (int i = 0; !job->visible && i < RF_TILE * RF_TILE; i++)
+            visible[i] = 0xffff;
+        job->visible = visible;
+        r->kernels.hide(visible, blur, r->stride, slab, job, run->y,
+                        (int)floor(screen.part * 4096 + 0.5));
+    }
+    return true;
+}
+
+static void draw(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
+                 int ty, const struct rf_highlight *lamp, uint16_t *const mean[3],
+                 int planes)
+{
+    const struct refocus_renderer *r = f->r;
+    const struct seen run = {
+        .x = lamp->x - r->origin_x - tx * RF_TILE,
+        .y = lamp->y - r->origin_y - ty * RF_TILE,
+        .count = lamp->count,
+        .blur = lamp->blur,
+        .radius = abs(lamp->blur),
+    };
+    struct rf_disc_job job = {.planes = planes};
+    uint16_t visible[RF_TILE * RF_TILE];
+
+    if (!reaches(&run) || !set_light(&job, f, lamp, &run))
+        return;
+    set_chords(&job, f, &run);
+    if (job.first < job.end && set_visible(&job, visible, f, plan, tx, ty, &run))
+        r->kernels.draw_disc(mean, &job);
+}
+
+void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
+                   int ty, uint16_t *const mean[3], int planes)
+{
+    const struct refocus_renderer *r = f->r;
+    const int reach = plan->lamp / 256 + 1;
+    const int x0 = r->origin_x + tx * RF_TILE - reach - RF_LAMP_RUN;
+    const int y0 = larger(r->origin_y + ty * RF_TILE - reach, 0);
+    const int y1 = r->origin_y + (ty + 1) * RF_TILE + reach;
+    const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_LAMP_RUN);
+    const int parts = rf_lamp_parts(r->photo[r->used].height);
+
+    if (!plan->lamp)
+        return;
+    for (int part = y0 / RF_LAMP_ROWS; part < parts && part * RF_LAMP_ROWS < y1;
+         part++) {
+        const struct rf_highlights *found = &r->photo[r->used].highlights[part];
+        const struct rf_highlight *lamp = found->lamp, *const end = lamp + found->count;
+
+        while (lamp < end && lamp->y < y0)
+            lamp++;
+        for (; lamp < end && lamp->y < y1; lamp++)
+            if ((unsigned)(lamp->x - x0) < wide)
+                draw(f, plan, tx, ty, lamp, mean, planes);
+    }
+}

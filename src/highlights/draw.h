@@ -1,0 +1,31 @@
+/* draw.h: the light that lamps lost, drawn as discs.
+ *
+ * What is out of focus by s spreads over the pixels p whose rays meet it, p + u s(q) =
+ * q (Yang et al. 2016, eq. 4): a disc of radius |s| around q. Rays are too few to show
+ * a lamp of a pixel or two as an even disc with a crisp rim, and every ray of a full
+ * mask, rounded to whole pixels, shows it as a mesh. So what lamps lost is kept out of
+ * the planes that rays look into, and each tile adds it to its means:
+ *
+ *     mean(p) += added (p's part of the run's pixels in sight) / (pi s^2)
+ *
+ * Of the pixels [a, b] of a run, a row of the disc, half a chord h from its middle,
+ * shows those from max(a, x - h) to min(b, x + h). What is nearer hides it: where the
+ * way from p to the middle of that meets one of the tile's nearer slabs, by the same
+ * test as a ray does.
+ *
+ * Of round openings without structure and by the sweep; with others the light is added
+ * to what rays meet (highlights.h).
+ */
+#ifndef RF_DRAW_H
+#define RF_DRAW_H
+
+#include "methods/method.h"
+
+/* Whether this frame's lamps are drawn. */
+bool rf_draws_lamps(const struct rf_frame *f);
+
+/* Adds lamps to the means of a tile, Q14 and 65535 at most, of so many planes. */
+void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
+                   int ty, uint16_t *const mean[3], int planes);
+
+#endif

@@ -1,0 +1,22 @@
+#include "kernels/kernels.h"
+
+void rf_draw_disc_c(uint16_t *const mean[3], const struct rf_disc_job *job)
+{
+    for (int y = job->first; y < job->end; y++) {
+        for (int x = 0; x < RF_TILE; x++) {
+            const int half = job->half[y], i = y * RF_TILE + x;
+            const int from = 64 * x - half > job->from ? 64 * x - half : job->from;
+            const int to = 64 * x + half < job->to ? 64 * x + half : job->to;
+
+            if (to <= from || (job->visible && !job->visible[i]))
+                continue;
+            for (int c = 0; c < job->planes; c++) {
+                const int seen = (to - from) << job->shift;
+                const int light =
+                    mean[c][i] + ((seen * job->each[c] + (1 << 14)) >> 15);
+
+                mean[c][i] = (uint16_t)(light < 65535 ? light : 65535);
+            }
+        }
+    }
+}

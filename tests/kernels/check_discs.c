@@ -1,0 +1,171 @@
+/* Discs of lamps, and what hides them: each kernel against its contract's words, one
+ * pixel at a time. */
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LANES = RF_TILE * RF_TILE, FAR = 40, SIDE = RF_TILE + 2 * FAR };
+
+static int wrong(const struct subject *subject, const char *kernel, int at, long is,
+                 long should)
+{
+    printf("FAIL  %-12s %-6s element %d is %ld, should be %ld\n", kernel, subject->cpu,
+           at, is, should);
+    return 1;
+}
+
+/* A disc of a run that reaches into the tile, of any size, whole or cut off above and
+ * below. */
+static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[LANES])
+{
+    const int count = noise_between(seed, 1, 16),
+              most = noise_between(seed, 0, 127 * 64);
+    const int x = noise_between(seed, -most / 64 - count, RF_TILE + most / 64);
+    struct rf_disc_job job = {
+        .first = noise_between(seed, 0, RF_TILE),
+        .planes = noise(seed) % 2 ? 3 : 1,
+        .shift = 8,
+        .from = (int16_t)(64 * x - 32),
+        .to = (int16_t)(64 * (x + count) - 32),
+        .visible = noise(seed) % 2 ? visible : NULL,
+    };
+
+    job.end = noise_between(seed, job.first, RF_TILE);
+    for (int n = 1; n < count; n *= 2)
+        job.shift--;
+    for (int y = 0; y < RF_TILE; y++)
+        job.half[y] = (int16_t)noise_between(seed, 0, most);
+    for (int c = 0; c < 3; c++)
+        job.each[c] = (int16_t)(noise(seed) % (noise(seed) % 2 ? 32768 : 512));
+    for (int i = 0; i < LANES; i++)
+        visible[i] = noise(seed) % 4 ? 0xffff : 0;
+    return job;
+}
+
+/* What pixel x sees of the run, 1/64 pixel. */
+static int seen(const struct rf_disc_job *job, int x, int y)
+{
+    const int from = 64 * x - job->half[y], to = 64 * x + job->half[y];
+    const int v = (to < job->to ? to : job->to) - (from > job->from ? from : job->from);
+
+    return v > 0 ? v : 0;
+}
+
+static int check_draw(const struct subject *subject)
+{
+    uint16_t mean[3][LANES], should[3][LANES], visible[LANES];
+    uint32_t seed = 31;
+
+    for (int round = 0; round < 3000; round++) {
+        const struct rf_disc_job job = make_job(&seed, visible);
+
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < LANES; i++)
+                mean[c][i] = should[c][i] = (uint16_t)(noise(&seed) % 65536);
+        for (int y = job.first; y < job.end; y++) {
+            for (int x = 0; x < RF_TILE; x++) {
+                const int i = y * RF_TILE + x, v = seen(&job, x, y) << job.shift;
+
+                for (int c = 0; c < job.planes && (!job.visible || visible[i]); c++) {
+                    const long light =
+                        mean[c][i] + (v * (long)job.each[c] + 16384) / 32768;
+
+                    should[c][i] = (uint16_t)(light < 65535 ? light : 65535);
+                }
+            }
+        }
+        subject->kernels.draw_disc((uint16_t *const[3]){mean[0], mean[1], mean[2]},
+                                   &job);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < LANES; i++)
+                if (mean[c][i] != should[c][i])
+                    return wrong(subject, "draw_disc", i, mean[c][i], should[c][i]);
+    }
+    printf("ok    %-12s %-6s\n", "draw_disc", subject->cpu);
+    return 0;
+}
+
+static double half_at(double radius, double y)
+{
+    return y * y < radius * radius ? sqrt(radius * radius - y * y) : 0;
+}
+
+/* The same in plain C, and nearly that in double precision. */
+static int check_chords(const struct subject *subject)
+{
+    for (int radius = 0; radius <= 127 * 256; radius += radius < 1024 ? 1 : 61) {
+        for (int first = -150; first <= 140; first += radius % 2 ? 7 : 16) {
+            int16_t half[RF_TILE], plain[RF_TILE];
+
+            subject->kernels.half_chords(half, radius, first);
+            subject->plain.half_chords(plain, radius, first);
+            for (int i = 0; i < RF_TILE; i++) {
+                const double r = radius / 256.0, y = first + i;
+                const double should =
+                    32 * (half_at(r, y - 0.25) + half_at(r, y + 0.25));
+
+                if (half[i] != plain[i] || fabs(half[i] - should) > 0.51)
+                    return wrong(subject, "half_chords", i, half[i], lround(should));
+            }
+        }
+    }
+    printf("ok    %-12s %-6s\n", "half_chords", subject->cpu);
+    return 0;
+}
+
+static int rounded(long v, int shift)
+{
+    return (int)((v + (1L << (shift - 1))) >> shift);
+}
+
+static int check_hide(const struct subject *subject)
+{
+    static int16_t plane[SIDE * SIDE];
+    uint16_t visible[LANES], should[LANES], unused[LANES];
+    uint32_t seed = 33;
+
+    for (int round = 0; round < 2000; round++) {
+        const int16_t *const blur = plane + FAR * SIDE + FAR;
+        struct rf_disc_job job = make_job(&seed, unused);
+        const int low = noise_between(&seed, -600, 400),
+                  middle = noise_between(&seed, -12, 27);
+        const struct rf_slab slab = {
+            (int16_t)low, (uint16_t)noise_between(&seed, 0, 500), (int16_t)low};
+        const int part = noise_between(&seed, -5000, 5000);
+
+        for (int y = 0; y < RF_TILE; y++)
+            job.half[y] = (int16_t)(job.half[y] % (30 * 64));
+        for (int i = 0; i < SIDE * SIDE; i++)
+            plane[i] = (int16_t)noise_between(&seed, -700, 1000);
+        for (int i = 0; i < LANES; i++)
+            visible[i] = should[i] = noise(&seed) % 3 ? 0xffff : 0;
+        for (int y = job.first; y < job.end; y++) {
+            const int down = rounded((middle - y) * (long)part, 12);
+
+            for (int x = 0; x < RF_TILE; x++) {
+                const int from = 64 * x - job.half[y], to = 64 * x + job.half[y];
+                const int sum =
+                    (from > job.from ? from : job.from) + (to < job.to ? to : job.to);
+                const int away = seen(&job, x, y) > 0 ? sum - 128 * x : 0;
+                const int s =
+                    blur[(y + down) * SIDE + x + rounded(away * (long)part, 19)];
+
+                if (s >= low && s <= low + slab.width)
+                    should[y * RF_TILE + x] = 0;
+            }
+        }
+        subject->kernels.hide(visible, blur, SIDE, &slab, &job, middle, part);
+        for (int i = 0; i < LANES; i++)
+            if (visible[i] != should[i])
+                return wrong(subject, "hide", i, visible[i], should[i]);
+    }
+    printf("ok    %-12s %-6s\n", "hide", subject->cpu);
+    return 0;
+}
+
+int check_discs(const struct subject *subject)
+{
+    return check_draw(subject) + check_chords(subject) + check_hide(subject);
+}
