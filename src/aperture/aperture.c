@@ -128,6 +128,7 @@ int refocus_aperture_create_polygon(struct refocus_aperture **aperture, int blad
     }
     a->id = hash(2, a->corner_x, sizeof a->corner_x);
     a->id = hash(a->id, a->corner_y, sizeof a->corner_y);
+    rf_chords_make(a);
     return REFOCUS_OK;
 }
 
@@ -247,6 +248,8 @@ int refocus_aperture_create(struct refocus_aperture **aperture,
     }
     if (status == REFOCUS_OK && !is_simple(p))
         add_profiles(*aperture, p);
+    if (status == REFOCUS_OK && rf_aperture_has_chords(*aperture))
+        rf_chords_make(*aperture);
     return status;
 }
 

@@ -31,8 +31,7 @@ bool rf_draws_lamps(const struct rf_frame *f)
     const struct refocus_aperture *a = f->aperture;
 
     return rf_is_sweep(f) && p->highlight_gain > 1 && p->sigma >= 1e6f &&
-           a->shape == RF_SHAPE_DISC && rf_profile_is_even(&a->behind) &&
-           rf_profile_is_even(&a->before) && a->squeeze_x == 1 && a->squeeze_y == 1 &&
+           (a->shape == RF_SHAPE_DISC || rf_aperture_has_chords(a)) &&
            p->cat_eye == 0 && p->fringe == 0;
 }
 
@@ -57,8 +56,9 @@ static bool reaches(const struct seen *run)
 static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
                       const struct rf_highlight *lamp, const struct seen *run)
 {
-    const double pi = 3.14159265358979;
-    const double area = pi * run->radius * run->radius / 65536.0;
+    const struct refocus_aperture *a = f->aperture;
+    const double unit = a->shape == RF_SHAPE_DISC ? 3.14159265358979 : a->chord_area;
+    const double area = unit * run->radius * run->radius / 65536.0;
     const double gain = f->params->highlight_gain;
     const int shining = __builtin_popcount(~lamp->edges & ((1u << lamp->count) - 1));
     const int blurred = rf_ramp(run->radius, BLURRED, WHOLLY);
@@ -79,16 +79,59 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
     return any;
 }
 
-/* Rows that the discs reach, and where they end in them. */
+/* Where a chord begins and ends at a height, in parts of the radius. */
+static void chord_at(const struct refocus_aperture *a, double height, double ends[2])
+{
+    const double at = (height + 1) * (RF_CHORDS / 2);
+    const int row = (int)floor(at);
+
+    for (int k = 0; k < 2; k++)
+        ends[k] = row < 0 || row >= RF_CHORDS
+                      ? 0
+                      : a->chord[row][k] +
+                            (at - row) * (a->chord[row + 1][k] - a->chord[row][k]);
+}
+
+/* Of a disc rows are as wide to both sides. Behind the focus an iris is seen as it is,
+ * and pixels see through it to the other side; before it the other way round. Means of
+ * a quarter of a pixel above and below the middle of the row, as kernels->half_chords.
+ */
 static void set_chords(struct rf_disc_job *job, const struct rf_frame *f,
                        const struct seen *run)
 {
-    f->r->kernels.half_chords(job->half, run->radius, -run->y);
+    const struct refocus_aperture *a = f->aperture;
+    const double unit = run->blur * (UNIT / (2 * 256.0 * 16384));
+
+    if (a->shape == RF_SHAPE_DISC) {
+        f->r->kernels.half_chords(job->right, run->radius, -run->y);
+        for (int y = 0; y < RF_TILE; y++)
+            job->left[y] = (int16_t)-job->right[y];
+        return;
+    }
+    for (int y = 0; y < RF_TILE; y++) {
+        const double height = 256.0 * (y - run->y) / run->blur,
+                     quarter = 64.0 / run->blur;
+        double above[2], below[2], first, last;
+
+        chord_at(a, height - quarter, above);
+        chord_at(a, height + quarter, below);
+        first = -unit * (above[1] + below[1]);
+        last = -unit * (above[0] + below[0]);
+        job->left[y] = (int16_t)floor((first < last ? first : last) + 0.5);
+        job->right[y] = (int16_t)floor((first < last ? last : first) + 0.5);
+    }
+}
+
+/* Rows that the discs reach, and where they end in them. */
+static void set_shape(struct rf_disc_job *job, const struct rf_frame *f,
+                      const struct seen *run)
+{
+    set_chords(job, f, run);
     job->first = 0;
     job->end = RF_TILE;
-    while (job->first < RF_TILE && job->half[job->first] == 0)
+    while (job->first < RF_TILE && job->left[job->first] == job->right[job->first])
         job->first++;
-    while (job->end > job->first && job->half[job->end - 1] == 0)
+    while (job->end > job->first && job->left[job->end - 1] == job->right[job->end - 1])
         job->end--;
     job->from = (int16_t)(UNIT * run->x - UNIT / 2);
     job->to = (int16_t)(UNIT * (run->x + run->count) - UNIT / 2);
@@ -202,7 +245,7 @@ static void draw(const struct rf_frame *f, const struct rf_tile_plan *plan, int 
 
     if (!reaches(&run) || !set_light(&job, f, lamp, &run))
         return;
-    set_chords(&job, f, &run);
+    set_shape(&job, f, &run);
     if (job.first < job.end && set_visible(&job, visible, f, plan, tx, ty, &run))
         r->kernels.draw_disc(mean, &job);
 }

@@ -8,13 +8,14 @@
  *
  *     mean(p) += added (p's part of the run's pixels in sight) / (pi s^2)
  *
- * Of the pixels [a, b] of a run, a row of the disc, half a chord h from its middle,
- * shows those from max(a, x - h) to min(b, x + h). What is nearer hides it: where the
- * way from p to the middle of that meets one of the tile's nearer slabs, by the same
- * test as a ray does.
+ * Of the pixels [a, b] of a run, a row of the disc shows those from max(a, x + left) to
+ * min(b, x + right), its chord there. What is nearer hides it: where the way from p to
+ * the middle of that meets one of the tile's nearer slabs, by the same test as a ray
+ * does. Other openings have their own area in place of pi.
  *
- * Of round openings without structure and by the sweep; with others the light is added
- * to what rays meet (highlights.h).
+ * Of openings that are evenly open and whose rows are one chord each, discs and irises,
+ * by the sweep and without eq. 5, whose weights differ from pixel to pixel; else the
+ * light is added to what rays meet (highlights.h).
  */
 #ifndef RF_DRAW_H
 #define RF_DRAW_H

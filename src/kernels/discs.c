@@ -20,12 +20,16 @@ static void RF_VEC(rf_half_chords)(int16_t *restrict half, int radius, int first
 
 /* Where pixels of a row look, in the row where they do. The compiler is not to take
  * them apart before it could take several at once. */
-static inline void look(int32_t *restrict at, int from, int to, int half, int part)
+static inline void look(int32_t *restrict at, const struct rf_disc_job *job, int y,
+                        int part)
 {
+    const int from = job->from, to = job->to, left = job->left[y],
+              right = job->right[y];
+
 #pragma GCC unroll 1
     for (int x = 0; x < RF_TILE; x++) {
-        const int first = 64 * x - half > from ? 64 * x - half : from;
-        const int last = 64 * x + half < to ? 64 * x + half : to;
+        const int first = 64 * x + left > from ? 64 * x + left : from;
+        const int last = 64 * x + right < to ? 64 * x + right : to;
         const int away = first < last ? first + last - 128 * x : 0;
 
         at[x] = x + ((away * part + (1 << 18)) >> 19);
@@ -45,7 +49,7 @@ static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t st
         int32_t at[RF_TILE];
         int16_t met[RF_TILE];
 
-        look(at, job->from, job->to, job->half[y], part);
+        look(at, job, y, part);
         for (int x = 0; x < RF_TILE; x++)
             met[x] = row[at[x]];
         for (int x = 0; x < RF_TILE; x++)

@@ -4,9 +4,10 @@ void rf_draw_disc_c(uint16_t *const mean[3], const struct rf_disc_job *job)
 {
     for (int y = job->first; y < job->end; y++) {
         for (int x = 0; x < RF_TILE; x++) {
-            const int half = job->half[y], i = y * RF_TILE + x;
-            const int from = 64 * x - half > job->from ? 64 * x - half : job->from;
-            const int to = 64 * x + half < job->to ? 64 * x + half : job->to;
+            const int first = 64 * x + job->left[y], last = 64 * x + job->right[y];
+            const int from = first > job->from ? first : job->from;
+            const int to = last < job->to ? last : job->to;
+            const int i = y * RF_TILE + x;
 
             if (to <= from || (job->visible && !job->visible[i]))
                 continue;

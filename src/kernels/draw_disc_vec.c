@@ -29,9 +29,10 @@ static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_j
     for (int c = 0; c < job->planes; c++)
         each[c] = vec_u16_set((uint16_t)job->each[c]);
     for (int y = job->first; y < job->end; y++) {
-        const vec_u16 chord = vec_u16_set((uint16_t)(2 * job->half[y]));
-        const vec_u16 low = vec_u16_set((uint16_t)(job->to - job->half[y] + SIGN));
-        const vec_u16 high = vec_u16_set((uint16_t)(job->from + job->half[y] + SIGN));
+        const int left = job->left[y], right = job->right[y];
+        const vec_u16 chord = vec_u16_set((uint16_t)(right - left));
+        const vec_u16 low = vec_u16_set((uint16_t)(job->to - right + SIGN));
+        const vec_u16 high = vec_u16_set((uint16_t)(job->from - left + SIGN));
 
         for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
             const vec_u16 at = vec_u16_load(place + x);

@@ -259,8 +259,9 @@ typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
 
 /*
  * draw_disc: to means, rows `first` to end - 1 of a tile, what their pixels see of a run of pixels
- * that is `half` out of focus: of the row (from, to) what lies within half[y] of pixel x, in 1/64
- * pixel from the middle of the tile's first one on, v, gives
+ * that is out of focus. Lengths are in 1/64 pixel, from the middle of the tile's first pixel on:
+ * pixel x of row y sees what lies from 64 x + left[y] to 64 x + right[y], so of the run (from, to)
+ * a part as long as v, which gives
  *
  *     mean[c] += round(2^shift v each[c] / 2^15), 65535 in all at most
  *
@@ -280,7 +281,7 @@ typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
  */
 struct rf_disc_job {
     int first, end, shift, planes;
-    int16_t half[RF_TILE], from, to, each[3];
+    int16_t left[RF_TILE], right[RF_TILE], from, to, each[3];
     const uint16_t *visible;
 };
 typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *job);

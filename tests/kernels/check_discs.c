@@ -35,8 +35,10 @@ static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[LANES])
     job.end = noise_between(seed, job.first, RF_TILE);
     for (int n = 1; n < count; n *= 2)
         job.shift--;
-    for (int y = 0; y < RF_TILE; y++)
-        job.half[y] = (int16_t)noise_between(seed, 0, most);
+    for (int y = 0; y < RF_TILE; y++) {
+        job.right[y] = (int16_t)noise_between(seed, 0, most);
+        job.left[y] = (int16_t)noise_between(seed, -most, job.right[y]);
+    }
     for (int c = 0; c < 3; c++)
         job.each[c] = (int16_t)(noise(seed) % (noise(seed) % 2 ? 32768 : 512));
     for (int i = 0; i < LANES; i++)
@@ -47,7 +49,7 @@ static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[LANES])
 /* What pixel x sees of the run, 1/64 pixel. */
 static int seen(const struct rf_disc_job *job, int x, int y)
 {
-    const int from = 64 * x - job->half[y], to = 64 * x + job->half[y];
+    const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
     const int v = (to < job->to ? to : job->to) - (from > job->from ? from : job->from);
 
     return v > 0 ? v : 0;
@@ -135,8 +137,10 @@ static int check_hide(const struct subject *subject)
             (int16_t)low, (uint16_t)noise_between(&seed, 0, 500), (int16_t)low};
         const int part = noise_between(&seed, -5000, 5000);
 
-        for (int y = 0; y < RF_TILE; y++)
-            job.half[y] = (int16_t)(job.half[y] % (30 * 64));
+        for (int y = 0; y < RF_TILE; y++) {
+            job.left[y] = (int16_t)(job.left[y] % (30 * 64));
+            job.right[y] = (int16_t)(job.right[y] % (30 * 64));
+        }
         for (int i = 0; i < SIDE * SIDE; i++)
             plane[i] = (int16_t)noise_between(&seed, -700, 1000);
         for (int i = 0; i < LANES; i++)
@@ -145,7 +149,7 @@ static int check_hide(const struct subject *subject)
             const int down = rounded((middle - y) * (long)part, 12);
 
             for (int x = 0; x < RF_TILE; x++) {
-                const int from = 64 * x - job.half[y], to = 64 * x + job.half[y];
+                const int from = 64 * x + job.left[y], to = 64 * x + job.right[y];
                 const int sum =
                     (from > job.from ? from : job.from) + (to < job.to ? to : job.to);
                 const int away = seen(&job, x, y) > 0 ? sum - 128 * x : 0;

@@ -12,6 +12,7 @@ const struct style styles[] = {
     {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 0, 0},
     {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1, 0, 0},
     {"sweep lights", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 1, 0},
+    {"sweep lights 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 1, 0},
     {"sweep 400", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 400, 0, 1, 0},
     {"sweep 400 mask", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 400, -1, 0, 0},
     {"sweep 500 lights", REFOCUS_METHOD_SWEEP, 96, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 500, 5, 2, 0},
