@@ -60,7 +60,6 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
     const double unit = a->shape == RF_SHAPE_DISC ? 3.14159265358979 : a->chord_area;
     const double area = unit * run->radius * run->radius / 65536.0;
     const double gain = f->params->highlight_gain;
-    const int shining = __builtin_popcount(~lamp->edges & ((1u << lamp->count) - 1));
     const int blurred = rf_ramp(run->radius, BLURRED, WHOLLY);
     double share;
     bool any = false;
@@ -68,7 +67,7 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
     job->shift = 8;
     for (int n = 1; n < run->count; n *= 2)
         job->shift--;
-    share = 4 * (gain - 1) / 3 * blurred / 256 * shining / lamp->count;
+    share = 4 * (gain - 1) / 3 * blurred / 256 * lamp->shining / (256 * lamp->count);
     share *= (double)(1 << (15 - job->shift)) / UNIT / area;
     for (int c = 0; c < job->planes; c++) {
         const double each = lamp->added[c] * share + 0.5;

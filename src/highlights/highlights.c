@@ -9,28 +9,32 @@
 #include "tiles/tiles.h"
 
 enum {
-    WIDEST = 3,    /* pixels that a lamp is widened by */
-    BLURRED = 512, /* Q7.8: what it may be widened over, */
-    ALIKE = 256,   /* if it is farther away than that: else the pre-filter takes it for the same */
-    DOTS = 2,      /* gaps of the rays that a lamp has to be wide for not to show as dots */
+    WIDEST = 3,      /* pixels that a lamp is widened by */
+    BLURRED = 512,   /* Q7.8: what it may be widened over, */
+    ALIKE = 256,     /* if it is farther away than that: else the pre-filter takes it for the same */
+    EDGE_FROM = 128, /* Q7.8: what something bright is sharper by for this to be its edge, */
+    EDGE_TO = 384,   /* and wholly so; from halfway on, where lamps are not drawn */
+    DOTS = 2,        /* gaps of the rays that a lamp has to be wide for not to show as dots */
 };
 
-/* Whether a bright pixel of another depth is beside (x, y): then this one is the edge
- * of that, and only its depth says otherwise. */
-static bool is_edge(const struct refocus_renderer *r, int x, int y)
+/* How much sharper than it the sharpest bright pixel beside (x, y) is, Q7.8. If by a pixel of blur,
+ * this one is the edge of that, and only its depth says otherwise. */
+static int edge_of(const struct refocus_renderer *r, int x, int y)
 {
     const int own = abs(r->front.blur[y * r->stride + x]);
+    int sharpest = own;
 
     for (int j = -2; j <= 2; j++) {
         for (int i = -2; i <= 2; i++) {
             const ptrdiff_t at =
                 rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
+            const int blur = abs(r->front.blur[at]);
 
-            if (abs(r->front.blur[at]) < own - 256 && rf_brightest_at(r, at) >= RF_CLIPPED)
-                return true;
+            if (blur < sharpest && rf_brightest_at(r, at) >= RF_CLIPPED)
+                sharpest = blur;
         }
     }
-    return false;
+    return own - sharpest;
 }
 
 /* Where in the window pixel i of a highlight is; false: not in it. */
@@ -130,27 +134,29 @@ static struct blurs {
 static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
 {
     const struct blurs near = blurs_in(r, around_lamp(r, lamp, 2));
-    int sum = 0, shining = 0;
+    int sum = 0, weight = 0;
 
     lamp->edges = 0;
     for (int i = 0, x, y; i < lamp->count; i++) {
         struct rf_bins *bins;
-        int blur, size;
+        int blur, size, edge, shines;
 
         if (!place_of(r, lamp, i, &x, &y))
             continue;
         bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
         blur = r->front.blur[y * r->stride + x];
         size = abs(blur);
-        if (near.sharpest < size - 256 && is_edge(r, x, y)) {
+        edge = near.sharpest < size - EDGE_FROM ? edge_of(r, x, y) : 0;
+        shines = 256 - rf_ramp(edge, EDGE_FROM, EDGE_TO);
+        if (edge > (EDGE_FROM + EDGE_TO) / 2)
             lamp->edges |= (uint16_t)(1 << i);
-            continue;
-        }
-        bins->lamp = (int16_t)(size > bins->lamp ? size : bins->lamp);
-        sum += blur;
-        shining++;
+        if (shines > 0 && size > bins->lamp)
+            bins->lamp = (int16_t)size;
+        sum += shines * blur;
+        weight += shines;
     }
-    lamp->blur = (int16_t)(shining ? sum / shining : 0);
+    lamp->blur = (int16_t)(weight ? sum / weight : 0);
+    lamp->shining = (uint16_t)weight;
 }
 
 bool rf_mark_highlights(struct refocus_renderer *r)

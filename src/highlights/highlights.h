@@ -50,10 +50,11 @@ struct rf_highlight {
     uint8_t count;     /* 1 to RF_LAMP_RUN */
     uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
     uint16_t edges;    /* for this lens: a bit each of something bright and sharper, left alone, */
-    int16_t blur;      /* and the mean of the others, Q7.8; 0: there are none */
+    int16_t blur;      /* and the mean of the others, Q7.8, */
+    uint16_t shining;  /* by how much all of them shine together, 256 each */
 };
 
-/* Highlights are kept in parts of so many rows, each with room for one run in 46 pixels; further
+/* Highlights are kept in parts of so many rows, each with room for one run in 52 pixels; further
  * ones, farther down, stay as they are. */
 enum {
     RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
@@ -86,7 +87,7 @@ static inline int rf_lamp_parts(int height)
 
 static inline uint32_t rf_lamp_capacity(int width)
 {
-    return (uint32_t)width * RF_LAMP_ROWS / 46 + 6;
+    return (uint32_t)width * RF_LAMP_ROWS / 52 + 6;
 }
 
 /* Forget the highlights of the photo in use. */

@@ -94,7 +94,7 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
 {
     const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
-    if (f->bright || f->draws) /* means above white come from highlights */
+    if (f->bright) /* means above white come from highlights */
         f->r->kernels.at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
     encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
            RF_TILE);

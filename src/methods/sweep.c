@@ -335,6 +335,8 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_lay_held(f, tx, ty, mean);
     if (f->veils)
         rf_veil_over(r, tx, ty, mean);
+    if (f->draws && plan.lamp)
+        r->kernels.at_most(mean[0], RF_MEAN_MAX, 3 * LANES);
     if (!rf_cancelled(r))
         rf_encode_means(f, rect, mean);
 }

@@ -74,7 +74,7 @@ static void render(struct view *view, const struct refocus_aperture *aperture)
     struct refocus_renderer *renderer;
 
     params.rays = 128;
-    params.highlight_gain = 9;
+    params.highlight_gain = 9.5f;
     params.aperture = aperture;
     if (refocus_renderer_create(&renderer, &limits) ||
         refocus_prepare(renderer, &photo, &disparity) ||

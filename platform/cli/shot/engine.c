@@ -5,9 +5,9 @@
 #include "shot/engine.h"
 #include "line/interrupt.h"
 
-/* With lamps as bright as that, plain averages measure best, with eq. 5 of any sigma worse; and
- * what sums of light times weight have room for. */
-enum { HIGHLIGHT_GAIN = 9, WEIGHTED_GAIN = 8 };
+/* With lamps as bright as that, 3 1/4 stops, plain averages measure best, with eq. 5 of any sigma
+ * worse; and what sums of light times weight have room for. */
+static const float highlight_gain = 9.5f, weighted_gain = 8;
 
 static const struct {
     const char *name, *summary;
@@ -77,8 +77,8 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     if (!isnan(settings->sigma))
         params->sigma = (float)settings->sigma;
     params->highlight_gain = !isnan(settings->highlights) ? (float)settings->highlights
-                             : params->sigma < 1e6f       ? WEIGHTED_GAIN
-                                                          : HIGHLIGHT_GAIN;
+                             : params->sigma < 1e6f       ? weighted_gain
+                                                          : highlight_gain;
     params->thin = qualities[settings->quality].thin && !settings->no_thin;
     params->mirror = settings->mirror;
     params->background = settings->background;
