@@ -276,8 +276,8 @@ typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
  *
  *     x + round(part (m - x)), y + round(part (middle - y))
  *
- * m is the middle of what the pixel sees of the run, itself where that is nothing; blur there is
- * readable.
+ * m is the middle of what the pixel sees of the run, itself where that is nothing. Neither goes
+ * farther than the slab is blurred, where blur is readable.
  */
 struct rf_disc_job {
     int first, end, shift, planes;

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { LANES = RF_TILE * RF_TILE, FAR = 40, SIDE = RF_TILE + 2 * FAR };
@@ -122,6 +123,14 @@ static int rounded(long v, int shift)
     return (int)((v + (1L << (shift - 1))) >> shift);
 }
 
+/* No farther than that blur, Q7.8, reaches. */
+static int within(int v, int blur)
+{
+    const int most = (int)ceil(abs(blur) / 256.0);
+
+    return v > most ? most : v < -most ? -most : v;
+}
+
 static int check_hide(const struct subject *subject)
 {
     static int16_t plane[SIDE * SIDE];
@@ -133,9 +142,10 @@ static int check_hide(const struct subject *subject)
         struct rf_disc_job job = make_job(&seed, unused);
         const int low = noise_between(&seed, -600, 400),
                   middle = noise_between(&seed, -12, 27);
+        const int centre = noise_between(&seed, -(FAR - 1) * 256, (FAR - 1) * 256);
         const struct rf_slab slab = {
-            (int16_t)low, (uint16_t)noise_between(&seed, 0, 500), (int16_t)low};
-        const int part = noise_between(&seed, -5000, 5000);
+            (int16_t)low, (uint16_t)noise_between(&seed, 0, 500), (int16_t)centre};
+        const int part = noise_between(&seed, -70000, 70000) / (round % 2 ? 1 : 16);
 
         for (int y = 0; y < RF_TILE; y++) {
             job.left[y] = (int16_t)(job.left[y] % (30 * 64));
@@ -146,15 +156,15 @@ static int check_hide(const struct subject *subject)
         for (int i = 0; i < LANES; i++)
             visible[i] = should[i] = noise(&seed) % 3 ? 0xffff : 0;
         for (int y = job.first; y < job.end; y++) {
-            const int down = rounded((middle - y) * (long)part, 12);
+            const int down = within(rounded((middle - y) * (long)part, 12), centre);
 
             for (int x = 0; x < RF_TILE; x++) {
                 const int from = 64 * x + job.left[y], to = 64 * x + job.right[y];
                 const int sum =
                     (from > job.from ? from : job.from) + (to < job.to ? to : job.to);
                 const int away = seen(&job, x, y) > 0 ? sum - 128 * x : 0;
-                const int s =
-                    blur[(y + down) * SIDE + x + rounded(away * (long)part, 19)];
+                const int right = within(rounded(away * (long)part, 19), centre);
+                const int s = blur[(y + down) * SIDE + x + right];
 
                 if (s >= low && s <= low + slab.width)
                     should[y * RF_TILE + x] = 0;
