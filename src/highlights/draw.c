@@ -40,6 +40,8 @@ struct seen {
     int x, y, count; /* its first pixel, from the tile's first one on */
     int blur;        /* Q7.8, signed */
     int radius;
+    int shining; /* of 256 count */
+    const uint16_t *added;
 };
 
 /* Whether the discs of its pixels reach into the tile. */
@@ -54,7 +56,7 @@ static bool reaches(const struct seen *run)
 /* The light of each pixel of the run that a pixel sees whole, Q14, times 2^(15 - shift)
  * / UNIT: all of it, over the disc. */
 static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
-                      const struct rf_highlight *lamp, const struct seen *run)
+                      const struct seen *run)
 {
     const struct refocus_aperture *a = f->aperture;
     const double unit = a->shape == RF_SHAPE_DISC ? 3.14159265358979 : a->chord_area;
@@ -67,10 +69,10 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
     job->shift = 8;
     for (int n = 1; n < run->count; n *= 2)
         job->shift--;
-    share = 4 * (gain - 1) / 3 * blurred / 256 * lamp->shining / (256 * lamp->count);
+    share = 4 * (gain - 1) / 3 * blurred / 256 * run->shining / (256 * run->count);
     share *= (double)(1 << (15 - job->shift)) / UNIT / area;
     for (int c = 0; c < job->planes; c++) {
-        const double each = lamp->added[c] * share + 0.5;
+        const double each = run->added[c] * share + 0.5;
 
         job->each[c] = (int16_t)(each < 32767 ? each : 32767);
         any = any || job->each[c] > 0;
@@ -228,8 +230,44 @@ static bool set_visible(struct rf_disc_job *job, uint16_t visible[RF_TILE * RF_T
 }
 
 static void draw(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
-                 int ty, const struct rf_highlight *lamp, uint16_t *const mean[3],
-                 int planes)
+                 int ty, const struct seen *run, uint16_t *const mean[3], int planes)
+{
+    struct rf_disc_job job = {.planes = planes};
+    uint16_t visible[RF_TILE * RF_TILE];
+
+    if (!reaches(run) || !set_light(&job, f, run))
+        return;
+    set_shape(&job, f, run);
+    if (job.first < job.end && set_visible(&job, visible, f, plan, tx, ty, run))
+        f->r->kernels.draw_disc(mean, &job);
+}
+
+/* Pixels that are not equally far out of focus, each by itself. */
+static void draw_pixels(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        int tx, int ty, const struct rf_highlight *lamp,
+                        uint16_t *const mean[3], int planes)
+{
+    const struct refocus_renderer *r = f->r;
+    const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
+
+    for (int i = 0; i < lamp->count; i++) {
+        struct seen pixel = {.x = x + i - tx * RF_TILE,
+                             .y = y - ty * RF_TILE,
+                             .count = 1,
+                             .shining = 256,
+                             .added = lamp->added};
+
+        if (x + i < 0 || x + i >= r->width || lamp->edges >> i & 1)
+            continue;
+        pixel.blur = r->front.blur[y * r->stride + x + i];
+        pixel.radius = abs(pixel.blur);
+        draw(f, plan, tx, ty, &pixel, mean, planes);
+    }
+}
+
+static void draw_lamp(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
+                      int ty, const struct rf_highlight *lamp, uint16_t *const mean[3],
+                      int planes)
 {
     const struct refocus_renderer *r = f->r;
     const struct seen run = {
@@ -238,15 +276,14 @@ static void draw(const struct rf_frame *f, const struct rf_tile_plan *plan, int 
         .count = lamp->count,
         .blur = lamp->blur,
         .radius = abs(lamp->blur),
+        .shining = lamp->shining,
+        .added = lamp->added,
     };
-    struct rf_disc_job job = {.planes = planes};
-    uint16_t visible[RF_TILE * RF_TILE];
 
-    if (!reaches(&run) || !set_light(&job, f, lamp, &run))
-        return;
-    set_shape(&job, f, &run);
-    if (job.first < job.end && set_visible(&job, visible, f, plan, tx, ty, &run))
-        r->kernels.draw_disc(mean, &job);
+    if (lamp->blur == RF_NO_BLUR)
+        draw_pixels(f, plan, tx, ty, lamp, mean, planes);
+    else
+        draw(f, plan, tx, ty, &run, mean, planes);
 }
 
 void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
@@ -271,6 +308,6 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
             lamp++;
         for (; lamp < end && lamp->y < y1; lamp++)
             if ((unsigned)(lamp->x - x0) < wide)
-                draw(f, plan, tx, ty, lamp, mean, planes);
+                draw_lamp(f, plan, tx, ty, lamp, mean, planes);
     }
 }

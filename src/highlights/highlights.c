@@ -14,6 +14,7 @@ enum {
     ALIKE = 256,     /* if it is farther away than that: else the pre-filter takes it for the same */
     EDGE_FROM = 128, /* Q7.8: what something bright is sharper by for this to be its edge, */
     EDGE_TO = 384,   /* and wholly so; from halfway on, where lamps are not drawn */
+    DIFFERENT = 128, /* Q7.8: blurs of a run that is not drawn as one */
     DOTS = 2,        /* gaps of the rays that a lamp has to be wide for not to show as dots */
 };
 
@@ -134,7 +135,7 @@ static struct blurs {
 static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
 {
     const struct blurs near = blurs_in(r, around_lamp(r, lamp, 2));
-    int sum = 0, weight = 0;
+    int sum = 0, weight = 0, least = INT16_MAX, most = INT16_MIN;
 
     lamp->edges = 0;
     for (int i = 0, x, y; i < lamp->count; i++) {
@@ -150,12 +151,17 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
         shines = 256 - rf_ramp(edge, EDGE_FROM, EDGE_TO);
         if (edge > (EDGE_FROM + EDGE_TO) / 2)
             lamp->edges |= (uint16_t)(1 << i);
-        if (shines > 0 && size > bins->lamp)
-            bins->lamp = (int16_t)size;
+        if (shines == 0)
+            continue;
+        bins->lamp = (int16_t)(size > bins->lamp ? size : bins->lamp);
+        least = blur < least ? blur : least;
+        most = blur > most ? blur : most;
         sum += shines * blur;
         weight += shines;
     }
     lamp->blur = (int16_t)(weight ? sum / weight : 0);
+    if (most - least > DIFFERENT)
+        lamp->blur = RF_NO_BLUR;
     lamp->shining = (uint16_t)weight;
 }
 

@@ -50,7 +50,7 @@ struct rf_highlight {
     uint8_t count;     /* 1 to RF_LAMP_RUN */
     uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
     uint16_t edges;    /* for this lens: a bit each of something bright and sharper, left alone, */
-    int16_t blur;      /* and the mean of the others, Q7.8, */
+    int16_t blur;      /* and the mean of the others, Q7.8, RF_NO_BLUR where they differ, */
     uint16_t shining;  /* by how much all of them shine together, 256 each */
 };
 
