@@ -131,21 +131,12 @@ static void gained_through(struct refocus_renderer *renderer, const struct pictu
     refocus_aperture_destroy(&aperture);
 }
 
-/* The same through a round opening; about as much whichever way lamps go. */
+/* The same through a round opening. */
 static void gained_in(const struct picture *p, double times[3])
 {
     struct refocus_renderer *renderer = prepared(p, 30, 2);
 
-    for (int blades = 6; blades >= 0; blades -= 6) {
-        double met[3];
-
-        gained_through(renderer, p, blades, true, met);
-        gained_through(renderer, p, blades, false, times);
-        for (int c = 0; c < 3; c++)
-            if (fabs(times[c] - met[c]) > 0.05 * met[c])
-                fail_msg("%d blades: channel %d has %.3f times its light drawn, %.3f met by rays",
-                         blades, c, times[c], met[c]);
-    }
+    gained_through(renderer, p, 0, false, times);
     refocus_renderer_destroy(&renderer);
 }
 
@@ -172,6 +163,30 @@ static void expect(const char *what, double size, double times, double least, do
     if (times < least || times > most)
         fail_msg("%s of %g pixels has %.2f times its light, not %.2f to %.2f", what, size, times,
                  least, most);
+}
+
+/* About as much whichever way lamps go. */
+static void ways(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 6, 5, {12, 6, 1.5}};
+    struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
+    struct refocus_renderer *renderer;
+
+    (void)state;
+    draw(&p, &lamp, CX + 0.3, CY - 0.2);
+    renderer = prepared(&p, 30, 2);
+    for (int blades = 0; blades <= 6; blades += 6) {
+        double drawn[3], met[3];
+
+        gained_through(renderer, &p, blades, false, drawn);
+        gained_through(renderer, &p, blades, true, met);
+        for (int c = 0; c < 3; c++)
+            if (fabs(drawn[c] - met[c]) > 0.05 * met[c])
+                fail_msg("%d blades: channel %d has %.3f times its light drawn, %.3f met by rays",
+                         blades, c, drawn[c], met[c]);
+    }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
 }
 
 /* Of every size up to RF_LAMP_SIDE. Discs above white are cut, so small blurs are not looked at. */
@@ -357,7 +372,7 @@ static void discs(void **state)
         for (int y = CY - 1; y <= CY + 1; y++)
             memset(p.rgb + 3 * (y * W + CX - 1), 255, 9);
         renderer = prepared(&p, 30, 2);
-        for (int rays = 32; rays <= 512; rays *= 4) {
+        for (int rays = 32; rays <= 128; rays *= 4) {
             int with[W * H], without[W * H], inside = 0, least = 255, most = 0;
 
             render_green(renderer, rays, 1, NULL, without);
@@ -402,7 +417,7 @@ static void expect_hidden(uint16_t post, int blades)
         }
     renderer = prepared(&p, 30, 2);
     for (int k = 0; k < 4; k++)
-        render_green(renderer, 512, k % 2 ? 6 : 1, k < 2 ? drawn : met, green[k]);
+        render_green(renderer, 192, k % 2 ? 6 : 1, k < 2 ? drawn : met, green[k]);
     for (int i = 0; i < W * H; i++) {
         const double own = picture_light(green[1][i]) - picture_light(green[0][i]);
         const double of_rays = picture_light(green[3][i]) - picture_light(green[2][i]);
@@ -583,6 +598,7 @@ int main(void)
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
         cmocka_unit_test(wires),        cmocka_unit_test(candles),
         cmocka_unit_test(discs),        cmocka_unit_test(hidden),
+        cmocka_unit_test(ways),
         cmocka_unit_test(glows),        cmocka_unit_test(petals),
     };
 
