@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/params.h"
+#include "support/compare.h"
 
 enum {
     BINS = 2048,
@@ -109,16 +110,6 @@ static float pick(const struct part *part)
     return mean_of_bin(part, find_surface(count, sum));
 }
 
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y,
                            int radius, float *focus)
 {
@@ -128,12 +119,12 @@ int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y,
         y >= map->height || radius < 0 || radius > REFOCUS_MAX_TAP_RADIUS)
         return REFOCUS_ERR_ARGUMENT;
     if (radius == 0)
-        radius = larger(3, larger(map->width, map->height) / 256);
+        radius = rf_larger(3, rf_larger(map->width, map->height) / 256);
     part.radius = radius;
-    part.x0 = larger(x - radius, 0);
-    part.y0 = larger(y - radius, 0);
-    part.x1 = smaller(x + radius + 1, map->width);
-    part.y1 = smaller(y + radius + 1, map->height);
+    part.x0 = rf_larger(x - radius, 0);
+    part.y0 = rf_larger(y - radius, 0);
+    part.x1 = rf_smaller(x + radius + 1, map->width);
+    part.y1 = rf_smaller(y + radius + 1, map->height);
     *focus = pick(&part);
     return REFOCUS_OK;
 }

@@ -12,6 +12,7 @@
 #include "renderer/passes.h"
 #include "renderer/rays.h"
 #include "renderer/render_yuv.h"
+#include "support/compare.h"
 #include "thin/thin.h"
 
 struct method {
@@ -86,26 +87,16 @@ static bool region_of(const struct refocus_renderer *r,
     return true;
 }
 
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 static void tile_item(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
     const int tx = f->first_tx + item % f->count_tx,
               ty = f->first_ty + item / f->count_tx;
     const struct rf_rect rect = {
-        larger(tx * RF_TILE, f->region.x0),
-        larger(ty * RF_TILE, f->region.y0),
-        smaller((tx + 1) * RF_TILE, f->region.x1),
-        smaller((ty + 1) * RF_TILE, f->region.y1),
+        rf_larger(tx * RF_TILE, f->region.x0),
+        rf_larger(ty * RF_TILE, f->region.y0),
+        rf_smaller((tx + 1) * RF_TILE, f->region.x1),
+        rf_smaller((ty + 1) * RF_TILE, f->region.y1),
     };
 
     if (f->params->max_blur_radius > 0 && f->r->yuv.on)
@@ -126,10 +117,10 @@ static void finish_item(void *context, int item, int worker)
     const int tx = f->first_tx + item % f->count_tx, ty = f->first_ty + item / f->count_tx;
 
     (void)worker;
-    rf_finish_rect(f, (struct rf_rect){larger(tx * RF_TILE, f->region.x0),
-                                       larger(ty * RF_TILE, f->region.y0),
-                                       smaller((tx + 1) * RF_TILE, f->region.x1),
-                                       smaller((ty + 1) * RF_TILE, f->region.y1)});
+    rf_finish_rect(f, (struct rf_rect){rf_larger(tx * RF_TILE, f->region.x0),
+                                       rf_larger(ty * RF_TILE, f->region.y0),
+                                       rf_smaller((tx + 1) * RF_TILE, f->region.x1),
+                                       rf_smaller((ty + 1) * RF_TILE, f->region.y1)});
 }
 
 /* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. Stills do not move, and
@@ -204,7 +195,7 @@ static void run_tiles(struct rf_frame *f)
 /* The largest blur there can be, pixels. Of a lens the farther of both ends has it. */
 static float largest_blur(const struct rf_frame *f)
 {
-    const int df = f->focus.disparity, farther = larger(df, UINT16_MAX - df);
+    const int df = f->focus.disparity, farther = rf_larger(df, UINT16_MAX - df);
 
     return f->plan.plain ? ((float)farther * f->focus.radius / 65536 + 1) / 256
                          : f->params->max_blur_radius;
