@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "colour/yuv.h"
+#include "kernels/discs.h"
 #include "kernels/thin.h"
 #include "kernels/upsample.h"
 #include "tiles/slab.h"
@@ -256,39 +257,6 @@ typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur,
 typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
                         const uint16_t *far_row, uint16_t *mixed, int pairs);
 typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
-
-/*
- * draw_disc: to means, rows `first` to end - 1 of a tile, what their pixels see of a run of pixels
- * that is out of focus. Lengths are in 1/64 pixel, from the middle of the tile's first pixel on:
- * pixel x of row y sees what lies from 64 x + left[y] to 64 x + right[y], so of the run (from, to)
- * a part as long as v, which gives
- *
- *     mean[c] += round(2^shift v each[c] / 2^15), 65535 in all at most
- *
- * where `visible`, a mask a pixel, is all 1 or not there. 2^shift v and each are below 2^15.
- *
- * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`
- * on from its middle: the mean of what it is a quarter of a pixel above and below the middle of
- * the row.
- *
- * hide: clears `visible` in those rows where a slab that is `part` of the way to the run, Q12,
- * hides it: where blur, of the tile's first pixel, lies in it at
- *
- *     x + round(part (m - x)), y + round(part (middle - y))
- *
- * m is the middle of what the pixel sees of the run, itself where that is nothing. Neither goes
- * farther than the slab is blurred, where blur is readable.
- */
-struct rf_disc_job {
-    int first, end, shift, planes;
-    int16_t left[RF_TILE], right[RF_TILE], from, to, each[3];
-    const uint16_t *visible;
-};
-typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *job);
-typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first);
-typedef void rf_hide_fn(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
-                        const struct rf_slab *slab, const struct rf_disc_job *job, int middle,
-                        int part);
 
 /* means: Q14 means of sums of N Q12 values, with scale = rf_mean_scale(N): within
  * 1/2 + N / 2^17 of 4 sum / N, and exact where all N are the same. */
