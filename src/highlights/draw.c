@@ -6,6 +6,7 @@
 #include "highlights/clipped.h"
 #include "highlights/highlights.h"
 #include "kernels/kernels.h"
+#include "support/compare.h"
 #include "tiles/ranges.h"
 
 enum {
@@ -15,22 +16,12 @@ enum {
     WHOLLY = 384,  /* and all of it from here on */
 };
 
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 bool rf_draws_lamps(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
     const struct refocus_aperture *a = f->aperture;
 
-    return rf_is_sweep(f) && p->highlight_gain > 1 && p->sigma >= 1e6f &&
+    return rf_is_sweep(f) && p->highlight_gain > 1 && !rf_weighs(p) &&
            (a->shape == RF_SHAPE_DISC || rf_aperture_has_chords(a)) &&
            p->cat_eye == 0 && p->fringe == 0;
 }
@@ -184,10 +175,10 @@ static enum hidden hidden_by(const struct screen *screen, const struct rf_frame 
     extent(screen, run, 0, RF_TILE - 1, run->x - 0.5, run->x + run->count - 0.5, &x0,
            &x1);
     extent(screen, run, job->first, job->end - 1, run->y, run->y, &y0, &y1);
-    x0 = larger(((tx * RF_TILE + x0) >> 2), -border);
-    y0 = larger(((ty * RF_TILE + y0) >> 2), -border);
-    x1 = smaller(((tx * RF_TILE + x1) >> 2), r->tiles_x * each - 1 + border);
-    y1 = smaller(((ty * RF_TILE + y1) >> 2), r->tiles_y * each - 1 + border);
+    x0 = rf_larger(((tx * RF_TILE + x0) >> 2), -border);
+    y0 = rf_larger(((ty * RF_TILE + y0) >> 2), -border);
+    x1 = rf_smaller(((tx * RF_TILE + x1) >> 2), r->tiles_x * each - 1 + border);
+    y1 = rf_smaller(((ty * RF_TILE + y1) >> 2), r->tiles_y * each - 1 + border);
     for (int y = y0; y <= y1; y += RF_STRIP / RF_CELL)
         for (int x = x0; x <= x1; x += each) {
             const uint32_t range = r->range[y * r->range_stride + x];
@@ -254,11 +245,11 @@ static void draw_pixels(const struct rf_frame *f, const struct rf_tile_plan *pla
         struct seen pixel = {.x = x + i - tx * RF_TILE,
                              .y = y - ty * RF_TILE,
                              .count = 1,
-                             .shining = 256,
                              .added = lamp->added};
 
-        if (x + i < 0 || x + i >= r->width || lamp->edges >> i & 1)
+        if (x + i < 0 || x + i >= r->width)
             continue;
+        pixel.shining = rf_lamp_shine(r, x + i, y);
         pixel.blur = r->front.blur[y * r->stride + x + i];
         pixel.radius = abs(pixel.blur);
         draw(f, plan, tx, ty, &pixel, mean, planes);
@@ -292,7 +283,7 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
     const struct refocus_renderer *r = f->r;
     const int reach = plan->lamp / 256 + 1;
     const int x0 = r->origin_x + tx * RF_TILE - reach - RF_LAMP_RUN;
-    const int y0 = larger(r->origin_y + ty * RF_TILE - reach, 0);
+    const int y0 = rf_larger(r->origin_y + ty * RF_TILE - reach, 0);
     const int y1 = r->origin_y + (ty + 1) * RF_TILE + reach;
     const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_LAMP_RUN);
     const int parts = rf_lamp_parts(r->photo[r->used].height);

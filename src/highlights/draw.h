@@ -22,6 +22,10 @@
 
 #include "methods/method.h"
 
+/* Half a pixel at its rim, and half of what blurs of a run may differ by: how far a disc goes beyond
+ * the blur of a lamp's pixel, Q7.8, and some. */
+enum { RF_DISC_RIM = 256 };
+
 /* Whether this frame's lamps are drawn. */
 bool rf_draws_lamps(const struct rf_frame *f);
 

@@ -132,7 +132,12 @@ static struct blurs {
     return in;
 }
 
-static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
+int rf_lamp_shine(const struct refocus_renderer *r, int x, int y)
+{
+    return 256 - rf_ramp(edge_of(r, x, y), EDGE_FROM, EDGE_TO);
+}
+
+static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, int beyond)
 {
     const struct blurs near = blurs_in(r, around_lamp(r, lamp, 2));
     int sum = 0, weight = 0, least = INT16_MAX, most = INT16_MIN;
@@ -140,20 +145,21 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
     lamp->edges = 0;
     for (int i = 0, x, y; i < lamp->count; i++) {
         struct rf_bins *bins;
-        int blur, size, edge, shines;
+        int blur, size, reach, shines = 256;
 
         if (!place_of(r, lamp, i, &x, &y))
             continue;
         bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
         blur = r->front.blur[y * r->stride + x];
         size = abs(blur);
-        edge = near.sharpest < size - EDGE_FROM ? edge_of(r, x, y) : 0;
-        shines = 256 - rf_ramp(edge, EDGE_FROM, EDGE_TO);
-        if (edge > (EDGE_FROM + EDGE_TO) / 2)
+        reach = size + beyond < INT16_MAX ? size + beyond : INT16_MAX;
+        if (near.sharpest < size - EDGE_FROM)
+            shines = rf_lamp_shine(r, x, y);
+        if (shines < 128)
             lamp->edges |= (uint16_t)(1 << i);
         if (shines == 0)
             continue;
-        bins->lamp = (int16_t)(size > bins->lamp ? size : bins->lamp);
+        bins->lamp = (int16_t)(reach > bins->lamp ? reach : bins->lamp);
         least = blur < least ? blur : least;
         most = blur > most ? blur : most;
         sum += shines * blur;
@@ -165,7 +171,7 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp)
     lamp->shining = (uint16_t)weight;
 }
 
-bool rf_mark_highlights(struct refocus_renderer *r)
+bool rf_mark_highlights(struct refocus_renderer *r, int beyond)
 {
     bool any = false;
 
@@ -173,7 +179,7 @@ bool rf_mark_highlights(struct refocus_renderer *r)
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)
-            mark(r, &found->lamp[i]);
+            mark(r, &found->lamp[i], beyond);
         any = any || found->count;
     }
     return any;

@@ -49,6 +49,12 @@ struct rf_frame {
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
 
+/* Beyond that sigma all weights of eq. 5 round to 1. */
+static inline bool rf_weighs(const struct refocus_render_params *params)
+{
+    return params->sigma < 1e6f;
+}
+
 static inline bool rf_is_sweep(const struct rf_frame *f)
 {
     return f->params->method == REFOCUS_METHOD_SWEEP;

@@ -224,17 +224,18 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     }
 }
 
-/* A run of rays that weigh the same. */
+/* Sums of rays that weigh the same to what means can be. */
 static void limit(union tally *run, int lanes, bool wide, uint32_t rays)
 {
-    for (int c = 0; c < 3 && !wide; c++)
-        rf_limit_sums(run->sum[c], rays, lanes);
-    for (int c = 0; c < 3 && wide; c++)
-        for (int i = 0; i < lanes; i++) {
+    for (int c = 0; c < 3; c++) {
+        if (!wide)
+            rf_limit_sums(run->sum[c], rays, lanes);
+        for (int i = 0; wide && i < lanes; i++) {
             const uint64_t most = RF_MOST_MEAN * run->weighted[3][i];
 
             run->weighted[c][i] = run->weighted[c][i] < most ? run->weighted[c][i] : most;
         }
+    }
 }
 
 /* Means of channels `from` to `to` - 1 of a tile through an opening. */

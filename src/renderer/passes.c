@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "background/background.h"
+#include "highlights/draw.h"
 #include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/render_yuv.h"
@@ -30,7 +31,7 @@ void rf_set_weights(struct rf_frame *f)
     uint16_t weight[256];
     const float sigma = f->params->sigma;
 
-    f->weighted = sigma < 1e6f; /* beyond it all weights round to 1 */
+    f->weighted = rf_weighs(f->params);
     f->premultiplied = false;
     if (!f->weighted)
         return;
@@ -167,7 +168,8 @@ static void mark_lamps(struct rf_frame *f)
     const float gain = rf_lamp_gain(f);
 
     f->bright = RF_WHITE;
-    if (f->params->highlight_gain <= 1 || !rf_mark_highlights(f->r) || f->draws)
+    if (f->params->highlight_gain <= 1 ||
+        !rf_mark_highlights(f->r, f->draws ? RF_DISC_RIM : 0) || f->draws)
         return;
     rf_widen_highlights(f->r, f->scale, ray_gap(f->params));
     f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT
