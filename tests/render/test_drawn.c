@@ -1,0 +1,185 @@
+/* Lamps that are drawn: even discs, hidden where rays say so, of the light that rays would meet. */
+#include "pictures.h"
+#include "things.h"
+
+enum { W = 160, H = 144, CX = W / 2, CY = H / 2 };
+enum { BEHIND = 6554 }; /* 12 pixels of blur behind the focus at 0.5 */
+
+/* An iris of so many blades, 0: round. Its lamps are drawn, but with a hole rays meet them. */
+static struct refocus_aperture *iris(int blades, bool met)
+{
+    struct refocus_aperture_params params = refocus_aperture_params_default();
+    struct refocus_aperture *aperture;
+
+    params.blades = blades;
+    params.rotation_deg = 17;
+    params.hole = met ? 0.02 : 0;
+    assert_int_equal(refocus_aperture_create(&aperture, &params), REFOCUS_OK);
+    return aperture;
+}
+
+static void render(struct refocus_renderer *renderer, int rays, float gain,
+                   const struct refocus_aperture *aperture, uint8_t out[3 * W * H])
+{
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+
+    params.rays = rays;
+    params.highlight_gain = gain;
+    params.aperture = aperture;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+}
+
+/* Codes of green alone. */
+static void render_green(struct refocus_renderer *renderer, int rays, float gain,
+                         const struct refocus_aperture *aperture, int green[W * H])
+{
+    static uint8_t out[3 * W * H];
+
+    render(renderer, rays, gain, aperture, out);
+    for (int i = 0; i < W * H; i++)
+        green[i] = out[3 * i + 1];
+}
+
+/* A small lamp before or behind the focus is one even disc with a crisp rim, of few rays and of
+ * many. */
+static void discs(void **state)
+{
+    static const uint16_t depths[] = {6554, 24000, 59000, 42000};
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, depths[k]);
+        const double radius = fabs(30 * (0.5 - depths[k] / 65535.0));
+        struct refocus_renderer *renderer;
+
+        for (int y = CY - 1; y <= CY + 1; y++)
+            memset(p.rgb + 3 * (y * W + CX - 1), 255, 9);
+        renderer = prepared(&p, 30, 2);
+        for (int rays = 32; rays <= 128; rays *= 4) {
+            int with[W * H], without[W * H], inside = 0, least = 255, most = 0;
+
+            render_green(renderer, rays, 1, NULL, without);
+            render_green(renderer, rays, 16, NULL, with);
+            for (int i = 0; i < W * H; i++) {
+                const double away = hypot(i % W - CX, (double)(i / W) - CY);
+
+                if (away > radius + 2.5)
+                    assert_int_equal(with[i], without[i]);
+                if (away > radius - 2)
+                    continue;
+                inside++;
+                least = with[i] - without[i] < least ? with[i] - without[i] : least;
+                most = with[i] - without[i] > most ? with[i] - without[i] : most;
+            }
+            if (inside < 3 || least < 4 || most - least > least / 4 + 1)
+                fail_msg("a disc of %g pixels, %d rays: %d pixels gained %d to %d codes", radius,
+                         rays, inside, least, most);
+        }
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
+}
+
+/* Lamps behind a post: in focus it keeps its codes, and what is nearer cuts discs off where rays
+ * say so, too; of a round opening, and of one of five blades, which has no two sides alike. */
+static void expect_hidden(uint16_t post, int blades)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
+    struct refocus_aperture *drawn = iris(blades, false), *met = iris(blades, true);
+    int green[4][W * H];
+    struct refocus_renderer *renderer;
+    double light = 0, off = 0;
+
+    for (int i = 0; i < 8; i++)
+        for (int j = 0; j < 9; j++)
+            memset(p.rgb + 3 * ((20 + 13 * i + j % 3) * W + 18 + 17 * i + j / 3), 255, 3);
+    for (int y = 0; y < H; y++)
+        for (int x = CX - 9; x < CX + 9; x++) {
+            p.disparity[y * W + x] = post;
+            memset(p.rgb + 3 * (y * W + x), 60, 3);
+        }
+    renderer = prepared(&p, 30, 2);
+    for (int k = 0; k < 4; k++)
+        render_green(renderer, 192, k % 2 ? 6 : 1, k < 2 ? drawn : met, green[k]);
+    for (int i = 0; i < W * H; i++) {
+        const double own = picture_light(green[1][i]) - picture_light(green[0][i]);
+        const double of_rays = picture_light(green[3][i]) - picture_light(green[2][i]);
+
+        if (post == 32768 && abs(i % W - CX) < 9 - (i % W >= CX))
+            assert_int_equal(green[1][i], green[0][i]);
+        light += own * own;
+        off += (own - of_rays) * (own - of_rays);
+    }
+    if (off > 0.03 * light || light == 0)
+        fail_msg("%d blades, a post at %u: rays do not meet %.3f of what is drawn", blades, post,
+                 off / light);
+    refocus_aperture_destroy(&drawn);
+    refocus_aperture_destroy(&met);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+static void hidden(void **state)
+{
+    static const uint16_t posts[] = {32768, 20000, 60000};
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        expect_hidden(posts[k], 0);
+        expect_hidden(posts[k], 5);
+    }
+}
+
+/* Light of each channel, at a gain of 4, through such an iris, of what there is without. */
+static void gained(struct refocus_renderer *renderer, int blades, bool met, double times[3])
+{
+    struct refocus_aperture *aperture = iris(blades, met);
+    double light[2][3] = {{0}};
+
+    for (int k = 0; k < 2; k++) {
+        static uint8_t out[3 * W * H];
+
+        render(renderer, 512, k ? 4 : 1, aperture, out);
+        for (int i = 0; i < 3 * W * H; i++)
+            light[k][i % 3] += picture_light(out[i]);
+    }
+    for (int c = 0; c < 3; c++)
+        times[c] = light[1][c] / light[0][c];
+    refocus_aperture_destroy(&aperture);
+}
+
+/* About as much whichever way lamps go. */
+static void ways(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 6, 5, {12, 6, 1.5}};
+    struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
+    struct refocus_renderer *renderer;
+
+    (void)state;
+    draw_thing(&p, &lamp, CX + 0.3, CY - 0.2);
+    renderer = prepared(&p, 30, 2);
+    for (int blades = 0; blades <= 6; blades += 6) {
+        double drawn[3], met[3];
+
+        gained(renderer, blades, false, drawn);
+        gained(renderer, blades, true, met);
+        for (int c = 0; c < 3; c++)
+            if (fabs(drawn[c] - met[c]) > 0.05 * met[c])
+                fail_msg("%d blades: channel %d has %.3f times its light drawn, %.3f met by rays",
+                         blades, c, drawn[c], met[c]);
+    }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(discs),
+        cmocka_unit_test(hidden),
+        cmocka_unit_test(ways),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

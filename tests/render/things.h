@@ -1,0 +1,22 @@
+/* things.h: bright things drawn into test pictures, of known light, their edges lit in part. */
+#ifndef TEST_THINGS_H
+#define TEST_THINGS_H
+
+#include "pictures.h"
+
+/* Centred at the origin. */
+struct thing {
+    enum { ELLIPSE, BOX, DIAMOND } kind;
+    double wide, high; /* of all of it */
+    double light[3];
+};
+
+bool is_in_thing(const struct thing *t, double x, double y);
+
+/* Share of the pixel from (x, y) to (x + 1, y + 1) that lies in it. */
+double share_of_thing(const struct thing *t, double x, double y);
+
+/* Over what the picture has, centred at (cx, cy), pixels. */
+void draw_thing(struct picture *p, const struct thing *t, double cx, double cy);
+
+#endif
