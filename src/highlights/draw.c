@@ -190,6 +190,22 @@ static enum hidden hidden_by(const struct screen *screen, const struct rf_frame 
     return none ? HIDDEN_NOWHERE : all ? HIDDEN_WHOLLY : HIDDEN_PARTLY;
 }
 
+/* A look part of the way to the run. No pixel looks farther away than its disc reaches, and half a
+ * pixel, nor then farther than the slab is blurred. */
+static struct rf_disc_way way_to(const struct seen *run, const struct screen *screen)
+{
+    const int farthest = run->radius / 2 + UNIT, most = (abs(screen->slab->centre) + 255) >> 8;
+    struct rf_disc_way way = {0, 0};
+    double times, limit;
+
+    while (farthest << way.shift <= INT16_MAX / 4)
+        way.shift++;
+    times = floor(screen->part * (65536 >> way.shift) + 0.5);
+    limit = floor(most * 8388608.0 / (farthest << way.shift));
+    way.times = (int16_t)clamp(times, limit < INT16_MAX ? limit : INT16_MAX);
+    return way;
+}
+
 /* Sets `visible` where it is needed, and the job's; false: the run is hidden. */
 static bool set_visible(struct rf_disc_job *job, uint16_t visible[RF_TILE * RF_TILE],
                         const struct rf_frame *f, const struct rf_tile_plan *plan,
@@ -214,8 +230,7 @@ static bool set_visible(struct rf_disc_job *job, uint16_t visible[RF_TILE * RF_T
         for (int i = 0; !job->visible && i < RF_TILE * RF_TILE; i++)
             visible[i] = 0xffff;
         job->visible = visible;
-        r->kernels.hide(visible, blur, r->stride, slab, job, run->y,
-                        (int)floor(screen.part * 4096 + 0.5));
+        r->kernels.hide(visible, blur, r->stride, slab, job, run->y, way_to(run, &screen));
     }
     return true;
 }
@@ -233,26 +248,46 @@ static void draw(const struct rf_frame *f, const struct rf_tile_plan *plan, int 
         f->r->kernels.draw_disc(mean, &job);
 }
 
-/* Pixels that are not equally far out of focus, each by itself. */
-static void draw_pixels(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        int tx, int ty, const struct rf_highlight *lamp,
-                        uint16_t *const mean[3], int planes)
+/* What of a run is equally far out of focus, from pixel i on, which is in the window. */
+static struct seen part_of(const struct refocus_renderer *r, const struct rf_highlight *lamp, int i)
+{
+    const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
+    const int16_t *const blur = r->front.blur + y * r->stride + x;
+    const int end = rf_smaller(lamp->count, r->width - x);
+    const bool wholly = lamp->shining == 256 * lamp->count;
+    int least = blur[i], most = blur[i], sum = 0;
+    struct seen part = {.x = x + i, .y = y, .added = lamp->added};
+
+    for (; i < end; i++, part.count++) {
+        const int shines = wholly ? 256 : rf_lamp_shine(r, x + i, y);
+
+        least = rf_smaller(least, blur[i]);
+        most = rf_larger(most, blur[i]);
+        if (most - least > RF_BLURS_ALIKE)
+            break;
+        sum += shines * blur[i];
+        part.shining += shines;
+    }
+    part.blur = part.shining ? sum / part.shining : 0;
+    part.radius = abs(part.blur);
+    return part;
+}
+
+/* A run that is not, part by part. */
+static void draw_parts(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                       int tx, int ty, const struct rf_highlight *lamp,
+                       uint16_t *const mean[3], int planes)
 {
     const struct refocus_renderer *r = f->r;
-    const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
+    const int x = lamp->x - r->origin_x, end = rf_smaller(lamp->count, r->width - x);
 
-    for (int i = 0; i < lamp->count; i++) {
-        struct seen pixel = {.x = x + i - tx * RF_TILE,
-                             .y = y - ty * RF_TILE,
-                             .count = 1,
-                             .added = lamp->added};
+    for (int i = rf_larger(0, -x); i < end;) {
+        struct seen part = part_of(r, lamp, i);
 
-        if (x + i < 0 || x + i >= r->width)
-            continue;
-        pixel.shining = rf_lamp_shine(r, x + i, y);
-        pixel.blur = r->front.blur[y * r->stride + x + i];
-        pixel.radius = abs(pixel.blur);
-        draw(f, plan, tx, ty, &pixel, mean, planes);
+        i += part.count;
+        part.x -= tx * RF_TILE;
+        part.y -= ty * RF_TILE;
+        draw(f, plan, tx, ty, &part, mean, planes);
     }
 }
 
@@ -272,7 +307,7 @@ static void draw_lamp(const struct rf_frame *f, const struct rf_tile_plan *plan,
     };
 
     if (lamp->blur == RF_NO_BLUR)
-        draw_pixels(f, plan, tx, ty, lamp, mean, planes);
+        draw_parts(f, plan, tx, ty, lamp, mean, planes);
     else
         draw(f, plan, tx, ty, &run, mean, planes);
 }

@@ -14,7 +14,6 @@ enum {
     ALIKE = 256,     /* if it is farther away than that: else the pre-filter takes it for the same */
     EDGE_FROM = 128, /* Q7.8: what something bright is sharper by for this to be its edge, */
     EDGE_TO = 384,   /* and wholly so; from halfway on, where lamps are not drawn */
-    DIFFERENT = 128, /* Q7.8: blurs of a run that is not drawn as one */
     DOTS = 2,        /* gaps of the rays that a lamp has to be wide for not to show as dots */
 };
 
@@ -166,7 +165,7 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, int beyo
         weight += shines;
     }
     lamp->blur = (int16_t)(weight ? sum / weight : 0);
-    if (most - least > DIFFERENT)
+    if (most - least > RF_BLURS_ALIKE)
         lamp->blur = RF_NO_BLUR;
     lamp->shining = (uint16_t)weight;
 }

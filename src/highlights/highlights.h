@@ -43,10 +43,10 @@
 struct refocus_renderer;
 struct rf_bin_scale;
 
-/* Pixels of a row that lost the same. */
+/* Pixels of a row of a lamp. */
 struct rf_highlight {
     uint16_t x, y;     /* the first */
-    uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095, to each */
+    uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095: the mean of what they lost */
     uint8_t count;     /* 1 to RF_LAMP_RUN */
     uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
     uint16_t edges;    /* for this lens: a bit each of something bright and sharper, left alone, */
@@ -59,6 +59,7 @@ struct rf_highlight {
 enum {
     RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
     RF_LAMP_RUN = 16,
+    RF_BLURS_ALIKE = 128, /* Q7.8: those of a run that is drawn as one differ by that at most */
     RF_LAMP_ROWS = 64,
     RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS
 };

@@ -1,6 +1,7 @@
 /* judge.c: whether what is clipped is a lamp, and what it lost (highlights.h). */
 #include "highlights/lamps.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -11,6 +12,7 @@ enum {
     BESIDE = 2,  /* and its limbs */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3, /* full gain of 4 adds three times white */
+    ALIKE = RF_LIGHT_MAX / 4, /* what pixels of a run lose at most, wholly clipped, differs by */
 };
 
 /* What the lamp may be, and what is around it. */
@@ -298,15 +300,13 @@ static int steepness(const struct rf_lamp_photo *p, const struct lit *lit)
 
 void rf_end_list(struct rf_lamp_search *s)
 {
-    if (s->run.count)
-        rf_list_highlight(&s->lists[s->run.y / RF_LAMP_ROWS], s->run);
-    s->run.count = 0;
-}
+    struct rf_highlight *run = &s->run;
 
-static bool goes_on(const struct rf_highlight *run, int x, int y, const uint16_t added[3])
-{
-    return run->count && run->count < RF_LAMP_RUN && run->y == y && run->x + run->count == x &&
-           run->added[0] == added[0] && run->added[1] == added[1] && run->added[2] == added[2];
+    for (int c = 0; c < 3 && run->count; c++)
+        run->added[c] = (uint16_t)((s->lost[c] + run->count / 2) / run->count);
+    if (run->count)
+        rf_list_highlight(&s->lists[run->y / RF_LAMP_ROWS], *run);
+    run->count = 0;
 }
 
 /* What all pixels of a lamp have in common. */
@@ -315,25 +315,41 @@ struct lamp {
     int strength, size, pixels;
 };
 
+/* The next one of the run, of a lamp that shines about the same. */
+static bool goes_on(const struct rf_lamp_search *s, int x, int y, const int full[3])
+{
+    const struct rf_highlight *run = &s->run;
+    bool alike = true;
+
+    for (int c = 0; c < 3; c++)
+        alike = alike && abs(full[c] - s->full[c]) <= ALIKE;
+    return run->count && run->count < RF_LAMP_RUN && run->y == y && run->x + run->count == x &&
+           alike;
+}
+
 /* A channel that is not clipped has lost nothing. */
 static void list(struct rf_lamp_search *s, int x, int y, const struct lamp *lamp)
 {
-    uint16_t lost[3];
-    int colour[3];
+    int colour[3], full[3], lost[3];
 
     rf_colour_at(&s->photo, x, y, colour);
-    for (int c = 0; c < 3; c++)
-        lost[c] = (uint16_t)(lamp->added[c] * lamp->strength / 256 *
-                             rf_ramp(colour[c], RF_CLIPPED, RF_LIGHT_MAX) / 256);
+    for (int c = 0; c < 3; c++) {
+        full[c] = lamp->added[c] * lamp->strength / 256;
+        lost[c] = full[c] * rf_ramp(colour[c], RF_CLIPPED, RF_LIGHT_MAX) / 256;
+    }
     if (!(lost[0] | lost[1] | lost[2]))
         return;
-    if (!goes_on(&s->run, x, y, lost)) {
+    if (!goes_on(s, x, y, full)) {
         rf_end_list(s);
         s->run = (struct rf_highlight){
-            .x = (uint16_t)x, .y = (uint16_t)y, .added = {lost[0], lost[1], lost[2]},
+            .x = (uint16_t)x, .y = (uint16_t)y,
             .size = (uint8_t)(lamp->size < UINT8_MAX ? lamp->size : UINT8_MAX)};
+        memset(s->lost, 0, sizeof s->lost);
+        memcpy(s->full, full, sizeof s->full);
     }
     s->run.count++;
+    for (int c = 0; c < 3; c++)
+        s->lost[c] += lost[c];
 }
 
 /* What of a shape shines; clipped as in `photo`. */

@@ -25,6 +25,8 @@ struct rf_lamp_search {
     struct rf_highlights *lists;
     int y0, y1;
     struct rf_highlight run; /* what was listed last may go on; count 0: nothing */
+    int lost[3];             /* by its pixels in all, Q12 */
+    int full[3];             /* by each that is clipped wholly */
 };
 
 /* What hangs together: bit i of row[j] is cell (x + i, y + j). The row after the last is 0. */

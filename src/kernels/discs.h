@@ -21,13 +21,14 @@
  * on from its middle: the mean of what it is a quarter of a pixel above and below the middle of
  * the row.
  *
- * hide: clears `visible` in those rows where a slab that is `part` of the way to the run, Q12,
- * hides it: where blur, of the tile's first pixel, lies in it at
+ * hide: clears `visible` in those rows where a slab that is part of the way to the run hides it:
+ * where blur, of the tile's first pixel, lies in it at
  *
- *     x + round(part (m - x)), y + round(part (middle - y))
+ *     x + round(step (first + last - 128 x) / 2^23), y + round(step 128 (middle - y) / 2^23)
  *
- * m is the middle of what the pixel sees of the run, itself where that is nothing. Neither goes
- * farther than the slab is blurred, where blur is readable.
+ * halves up, step = 2^shift times. The part of the run that the pixel sees goes from first to last;
+ * where it sees nothing, x stays. Without `times` no such product is beyond int16, and no place is
+ * farther than blur is readable.
  */
 struct rf_disc_job {
     int first, end, shift, planes;
@@ -36,8 +37,12 @@ struct rf_disc_job {
 };
 typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *job);
 typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first);
+struct rf_disc_way {
+    int shift;
+    int16_t times;
+};
 typedef void rf_hide_fn(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
                         const struct rf_slab *slab, const struct rf_disc_job *job, int middle,
-                        int part);
+                        struct rf_disc_way way);
 
 #endif

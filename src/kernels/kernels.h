@@ -555,6 +555,7 @@ struct rf_kernels {
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_draw_disc_fn rf_draw_disc_c;
+rf_hide_fn rf_hide_c;
 rf_sweep_fn rf_sweep_c;
 rf_sweep1_fn rf_sweep1_c;
 rf_sweep1_weighted_fn rf_sweep1_weighted_c;
@@ -573,7 +574,7 @@ rf_weigh_chroma_fn rf_weigh_chroma_c;
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 #define RF_VECTOR_SETS(use) use##_neon, use##_sse41, use##_avx2, use##_avx512
 #define RF_ALL_SETS(use) use##_c, RF_VECTOR_SETS(use)
-rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_draw_disc_use),
+rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_draw_disc_use), RF_VECTOR_SETS(rf_hide_use),
     RF_VECTOR_SETS(rf_fill_use),
     RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
     RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep1_weighted_use),

@@ -205,6 +205,7 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
     RF_VEC(rf_weigh_use)(kernels);
     RF_VEC(rf_weigh1_use)(kernels);
     RF_VEC(rf_draw_disc_use)(kernels);
+    RF_VEC(rf_hide_use)(kernels);
     RF_VEC(rf_discs_use)(kernels);
     RF_VEC(rf_light_use)(kernels);
     RF_VEC(rf_rows_use)(kernels);

@@ -123,14 +123,6 @@ static int rounded(long v, int shift)
     return (int)((v + (1L << (shift - 1))) >> shift);
 }
 
-/* No farther than that blur, Q7.8, reaches. */
-static int within(int v, int blur)
-{
-    const int most = (int)ceil(abs(blur) / 256.0);
-
-    return v > most ? most : v < -most ? -most : v;
-}
-
 static int check_hide(const struct subject *subject)
 {
     static int16_t plane[SIDE * SIDE];
@@ -145,7 +137,8 @@ static int check_hide(const struct subject *subject)
         const int centre = noise_between(&seed, -(FAR - 1) * 256, (FAR - 1) * 256);
         const struct rf_slab slab = {
             (int16_t)low, (uint16_t)noise_between(&seed, 0, 500), (int16_t)centre};
-        const int part = noise_between(&seed, -70000, 70000) / (round % 2 ? 1 : 16);
+        const struct rf_disc_way way = {
+            noise_between(&seed, 0, 2), (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
 
         for (int y = 0; y < RF_TILE; y++) {
             job.left[y] = (int16_t)(job.left[y] % (30 * 64));
@@ -156,21 +149,22 @@ static int check_hide(const struct subject *subject)
         for (int i = 0; i < LANES; i++)
             visible[i] = should[i] = noise(&seed) % 3 ? 0xffff : 0;
         for (int y = job.first; y < job.end; y++) {
-            const int down = within(rounded((middle - y) * (long)part, 12), centre);
+            const long step = (1L << way.shift) * way.times;
+            const int down = rounded(128 * (middle - y) * step, 23);
 
             for (int x = 0; x < RF_TILE; x++) {
                 const int from = 64 * x + job.left[y], to = 64 * x + job.right[y];
                 const int sum =
                     (from > job.from ? from : job.from) + (to < job.to ? to : job.to);
                 const int away = seen(&job, x, y) > 0 ? sum - 128 * x : 0;
-                const int right = within(rounded(away * (long)part, 19), centre);
+                const int right = rounded(away * step, 23);
                 const int s = blur[(y + down) * SIDE + x + right];
 
                 if (s >= low && s <= low + slab.width)
                     should[y * RF_TILE + x] = 0;
             }
         }
-        subject->kernels.hide(visible, blur, SIDE, &slab, &job, middle, part);
+        subject->kernels.hide(visible, blur, SIDE, &slab, &job, middle, way);
         for (int i = 0; i < LANES; i++)
             if (visible[i] != should[i])
                 return wrong(subject, "hide", i, visible[i], should[i]);
