@@ -11,6 +11,7 @@
 
 enum {
     UNIT = 64,     /* of lengths, in a pixel */
+    MASKS = 2 * RF_TILE * RF_TILE,
     NEARER = 256,  /* Q7.8: what hides a lamp is so much nearer */
     BLURRED = 128, /* Q7.8: a lamp has its light from there on, */
     WHOLLY = 384,  /* and all of it from here on */
@@ -174,7 +175,8 @@ static enum hidden hidden_by(const struct screen *screen, const struct rf_frame 
 
     extent(screen, run, 0, RF_TILE - 1, run->x - 0.5, run->x + run->count - 0.5, &x0,
            &x1);
-    extent(screen, run, job->first, job->end - 1, run->y, run->y, &y0, &y1);
+    extent(screen, run, job->first, job->end - 1, run->y - 0.25, run->y + 0.25, &y0,
+           &y1);
     x0 = rf_larger(((tx * RF_TILE + x0) >> 2), -border);
     y0 = rf_larger(((ty * RF_TILE + y0) >> 2), -border);
     x1 = rf_smaller(((tx * RF_TILE + x1) >> 2), r->tiles_x * each - 1 + border);
@@ -195,7 +197,7 @@ static enum hidden hidden_by(const struct screen *screen, const struct rf_frame 
 static struct rf_disc_way way_to(const struct seen *run, const struct screen *screen)
 {
     const int farthest = run->radius / 2 + UNIT, most = (abs(screen->slab->centre) + 255) >> 8;
-    struct rf_disc_way way = {0, 0};
+    struct rf_disc_way way = {.middle = run->y, .mirrored = run->y & 1};
     double times, limit;
 
     while (farthest << way.shift <= INT16_MAX / 4)
@@ -207,7 +209,7 @@ static struct rf_disc_way way_to(const struct seen *run, const struct screen *sc
 }
 
 /* Sets `visible` where it is needed, and the job's; false: the run is hidden. */
-static bool set_visible(struct rf_disc_job *job, uint16_t visible[RF_TILE * RF_TILE],
+static bool set_visible(struct rf_disc_job *job, uint16_t visible[MASKS],
                         const struct rf_frame *f, const struct rf_tile_plan *plan,
                         int tx, int ty, const struct seen *run)
 {
@@ -218,6 +220,7 @@ static bool set_visible(struct rf_disc_job *job, uint16_t visible[RF_TILE * RF_T
     for (int k = 0; k < plan->slabs; k++) {
         const struct rf_slab *slab = &plan->slab[k];
         const struct screen screen = {slab, (double)slab->centre / run->blur};
+        struct rf_disc_way way;
         enum hidden hidden;
 
         if (slab->centre >= run->blur - NEARER)
@@ -227,10 +230,11 @@ static bool set_visible(struct rf_disc_job *job, uint16_t visible[RF_TILE * RF_T
             return false;
         if (hidden == HIDDEN_NOWHERE)
             continue;
-        for (int i = 0; !job->visible && i < RF_TILE * RF_TILE; i++)
+        way = way_to(run, &screen);
+        for (int i = 0; !job->visible && i < MASKS; i++)
             visible[i] = 0xffff;
         job->visible = visible;
-        r->kernels.hide(visible, blur, r->stride, slab, job, run->y, way_to(run, &screen));
+        r->kernels.hide(visible, blur, r->stride, slab, job, &way);
     }
     return true;
 }
@@ -239,7 +243,7 @@ static void draw(const struct rf_frame *f, const struct rf_tile_plan *plan, int 
                  int ty, const struct seen *run, uint16_t *const mean[3], int planes)
 {
     struct rf_disc_job job = {.planes = planes};
-    uint16_t visible[RF_TILE * RF_TILE];
+    uint16_t visible[MASKS];
 
     if (!reaches(run) || !set_light(&job, f, run))
         return;

@@ -9,9 +9,10 @@
  *     mean(p) += added (p's part of the run's pixels in sight) / (pi s^2)
  *
  * Of the pixels [a, b] of a run, a row of the disc shows those from max(a, x + left) to
- * min(b, x + right), its chord there. What is nearer hides it: where the way from p to
- * the middle of that meets one of the tile's nearer slabs, by the same test as a ray
- * does. Other openings have their own area in place of pi.
+ * min(b, x + right), its chord there. What is nearer hides half of it each where the ways
+ * from p to a place left and right of its middle, one above and one below it, meet one of
+ * the tile's nearer slabs, by the same test as a ray does: one way alone shows thin things
+ * in between as dots. Other openings have their own area in place of pi.
  *
  * Of openings that are evenly open and whose rows are one chord each, discs and irises,
  * by the sweep and without eq. 5, whose weights differ from pixel to pixel; else the

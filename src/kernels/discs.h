@@ -2,6 +2,7 @@
 #ifndef RF_KERNELS_DISCS_H
 #define RF_KERNELS_DISCS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -13,22 +14,25 @@
  * pixel x of row y sees what lies from 64 x + left[y] to 64 x + right[y], so of the run (from, to)
  * a part as long as v, which gives
  *
- *     mean[c] += round(2^shift v each[c] / 2^15), 65535 in all at most
+ *     mean[c] += round(2^shift w each[c] / 2^15), 65535 in all at most
  *
- * where `visible`, a mask a pixel, is all 1 or not there. 2^shift v and each are below 2^15.
+ * w = v or, with `visible`, floor(v / 2) for each of two masks, one tile of them after the other,
+ * that is all 1 there and not 0. 2^shift v and each are below 2^15.
  *
  * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`
  * on from its middle: the mean of what it is a quarter of a pixel above and below the middle of
  * the row.
  *
- * hide: clears `visible` in those rows where a slab that is part of the way to the run hides it:
- * where blur, of the tile's first pixel, lies in it at
+ * hide: clears either mask of `visible` in those rows where a slab that is part of the way to the
+ * run hides it: where blur, of the tile's first pixel, lies in it at
  *
- *     x + round(step (first + last - 128 x) / 2^23), y + round(step 128 (middle - y) / 2^23)
+ *     x + round(step away / 2^23), y + round(step (128 (middle - y) -+ 32) / 2^23)
+ *     away = first + last - 128 x -+ floor((last - first) / 2)
  *
- * halves up, step = 2^shift times. The part of the run that the pixel sees goes from first to last;
- * where it sees nothing, x stays. Without `times` no such product is beyond int16, and no place is
- * farther than blur is readable.
+ * halves up, step = 2^shift times. The part of the run that the pixel sees goes from first to last:
+ * the masks look a quarter of it and of a row to either side of its middle, the first one to the
+ * left, or to the right where `mirrored`, and up. Where a pixel sees nothing, away = 0. Without
+ * `times` no such product is beyond int16, and no place is farther than blur is readable.
  */
 struct rf_disc_job {
     int first, end, shift, planes;
@@ -38,11 +42,12 @@ struct rf_disc_job {
 typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *job);
 typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first);
 struct rf_disc_way {
-    int shift;
+    int shift, middle;
+    bool mirrored;
     int16_t times;
 };
 typedef void rf_hide_fn(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
-                        const struct rf_slab *slab, const struct rf_disc_job *job, int middle,
-                        struct rf_disc_way way);
+                        const struct rf_slab *slab, const struct rf_disc_job *job,
+                        const struct rf_disc_way *way);
 
 #endif

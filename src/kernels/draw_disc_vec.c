@@ -11,6 +11,15 @@ static inline void add(uint16_t *mean, vec_u16 seen, vec_u16 each)
     vec_u16_store(mean, vec_u16_add(vec_u16_min(vec_u16_load(mean), room), v));
 }
 
+/* Half of it of each mask that lets it through. */
+static inline vec_u16 sight(vec_u16 seen, const uint16_t *visible)
+{
+    const vec_u16 half = vec_u16_half(seen);
+
+    return vec_u16_add(vec_u16_and(half, vec_u16_load(visible)),
+                       vec_u16_and(half, vec_u16_load(visible + RF_TILE * RF_TILE)));
+}
+
 static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_job *job)
 {
     const vec_u16 times = vec_u16_set((uint16_t)(1 << job->shift)),
@@ -25,10 +34,11 @@ static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_j
         for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
             const vec_u16 place = disc_place_of(x);
             const vec_u16 v = disc_seen(&row, disc_first(&row, place), disc_last(&row, place));
-            vec_u16 seen = vec_u16_mul(vec_s16_max(v, zero), times);
+            vec_u16 seen = vec_s16_max(v, zero);
 
             if (job->visible)
-                seen = vec_u16_and(seen, vec_u16_load(job->visible + y * RF_TILE + x));
+                seen = sight(seen, job->visible + y * RF_TILE + x);
+            seen = vec_u16_mul(seen, times);
             for (int c = 0; c < job->planes; c++)
                 add(mean[c] + y * RF_TILE + x, seen, each[c]);
         }

@@ -5,50 +5,63 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-/* How far to the side pixels of a row look. */
-static inline void look(uint16_t *at, const struct rf_disc_job *job, int y, struct rf_disc_way way)
+/* How far to the side pixels of a row look for the masks, a tile of them after the other. */
+static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
+                        const struct rf_disc_way *way)
 {
     const struct disc_row row = disc_row_of(job, y);
     const vec_u16 both = vec_u16_set((uint16_t)(job->left[y] + job->right[y]));
-    const vec_u16 power = vec_u16_set((uint16_t)(1 << way.shift));
-    const vec_u16 times = vec_u16_set((uint16_t)way.times), zero = vec_u16_set(0);
+    const vec_u16 power = vec_u16_set((uint16_t)(1 << way->shift));
+    const vec_u16 times = vec_u16_set((uint16_t)way->times), zero = vec_u16_set(0);
+    uint16_t *const left = way->mirrored ? at + RF_TILE * RF_TILE : at;
+    uint16_t *const right = way->mirrored ? at : at + RF_TILE * RF_TILE;
 
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
         const vec_u16 place = disc_place_of(x);
         const vec_u16 first = disc_first(&row, place), last = disc_last(&row, place);
-        const vec_u16 some = vec_s16_less(zero, disc_seen(&row, first, last));
+        const vec_u16 seen = disc_seen(&row, first, last), some = vec_s16_less(zero, seen);
         const vec_u16 sum = vec_u16_add(vec_u16_add(first, last), both);
-        const vec_u16 away = vec_u16_sub(sum, vec_u16_add(place, place));
+        const vec_u16 away = vec_u16_and(vec_u16_sub(sum, vec_u16_add(place, place)), some);
+        const vec_u16 aside = vec_u16_half(vec_u16_and(seen, some));
 
-        vec_u16_store(at + x,
-                      vec_u16_offset(vec_u16_mul(vec_u16_and(away, some), power), times));
+        vec_u16_store(left + x, vec_u16_offset(vec_u16_mul(vec_u16_sub(away, aside), power), times));
+        vec_u16_store(right + x, vec_u16_offset(vec_u16_mul(vec_u16_add(away, aside), power), times));
     }
 }
 
+/* What is there. */
+static inline void meet(uint16_t *at, const int16_t *row)
+{
+    for (int x = 0; x < RF_TILE; x++)
+        at[x] = (uint16_t)row[x + (int16_t)at[x]];
+}
+
 static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
-                            const struct rf_slab *slab, const struct rf_disc_job *job, int middle,
-                            struct rf_disc_way way)
+                            const struct rf_slab *slab, const struct rf_disc_job *job,
+                            const struct rf_disc_way *way)
 {
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
-    const int step = 128 * way.times * (1 << way.shift);
-    uint16_t at[RF_TILE * RF_TILE];
+    const int step = way->times * (1 << way->shift), half = 1 << 22;
+    uint16_t at[2 * RF_TILE * RF_TILE];
 
     for (int y = job->first; y < job->end; y++)
         look(at + y * RF_TILE, job, y, way);
     for (int y = job->first; y < job->end; y++) {
-        const int16_t *row = blur + (y + (((middle - y) * step + (1 << 22)) >> 23)) * stride;
+        const int down = 128 * (way->middle - y);
         uint16_t *const here = at + y * RF_TILE;
 
-        for (int x = 0; x < RF_TILE; x++)
-            here[x] = (uint16_t)row[x + (int16_t)here[x]];
+        meet(here, blur + (y + (((down - 32) * step + half) >> 23)) * stride);
+        meet(here + RF_TILE * RF_TILE, blur + (y + (((down + 32) * step + half) >> 23)) * stride);
     }
-    for (int i = job->first * RF_TILE; i < job->end * RF_TILE; i += (int)VEC_U16) {
-        const vec_u16 met = vec_u16_sub(vec_u16_load(at + i), from);
+    for (int tap = 0; tap < 2; tap++)
+        for (int i = job->first * RF_TILE; i < job->end * RF_TILE; i += (int)VEC_U16) {
+            const uint16_t *const met = at + tap * RF_TILE * RF_TILE + i;
+            uint16_t *const shown = visible + tap * RF_TILE * RF_TILE + i;
+            const vec_u16 above = vec_u16_sub(vec_u16_load(met), from);
 
-        vec_u16_store(visible + i,
-                      vec_u16_without(vec_u16_load(visible + i), vec_s16_less(met, to)));
-    }
+            vec_u16_store(shown, vec_u16_without(vec_u16_load(shown), vec_s16_less(above, to)));
+        }
 }
 
 void RF_VEC(rf_hide_use)(struct rf_kernels *kernels)

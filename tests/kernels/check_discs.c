@@ -19,7 +19,7 @@ static int wrong(const struct subject *subject, const char *kernel, int at, long
 
 /* A disc of a run that reaches into the tile, of any size, whole or cut off above and
  * below. */
-static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[LANES])
+static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[2 * LANES])
 {
     const int count = noise_between(seed, 1, 16),
               most = noise_between(seed, 0, 127 * 64);
@@ -42,7 +42,7 @@ static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[LANES])
     }
     for (int c = 0; c < 3; c++)
         job.each[c] = (int16_t)(noise(seed) % (noise(seed) % 2 ? 32768 : 512));
-    for (int i = 0; i < LANES; i++)
+    for (int i = 0; i < 2 * LANES; i++)
         visible[i] = noise(seed) % 4 ? 0xffff : 0;
     return job;
 }
@@ -58,7 +58,7 @@ static int seen(const struct rf_disc_job *job, int x, int y)
 
 static int check_draw(const struct subject *subject)
 {
-    uint16_t mean[3][LANES], should[3][LANES], visible[LANES];
+    uint16_t mean[3][LANES], should[3][LANES], visible[2 * LANES];
     uint32_t seed = 31;
 
     for (int round = 0; round < 3000; round++) {
@@ -69,11 +69,15 @@ static int check_draw(const struct subject *subject)
                 mean[c][i] = should[c][i] = (uint16_t)(noise(&seed) % 65536);
         for (int y = job.first; y < job.end; y++) {
             for (int x = 0; x < RF_TILE; x++) {
-                const int i = y * RF_TILE + x, v = seen(&job, x, y) << job.shift;
+                const int i = y * RF_TILE + x, v = seen(&job, x, y);
 
-                for (int c = 0; c < job.planes && (!job.visible || visible[i]); c++) {
+                for (int c = 0; c < job.planes; c++) {
+                    const int half = v / 2;
+                    const int w = !job.visible ? v
+                                               : (visible[i] ? half : 0) +
+                                                     (visible[LANES + i] ? half : 0);
                     const long light =
-                        mean[c][i] + (v * (long)job.each[c] + 16384) / 32768;
+                        mean[c][i] + ((w << job.shift) * (long)job.each[c] + 16384) / 32768;
 
                     should[c][i] = (uint16_t)(light < 65535 ? light : 65535);
                 }
@@ -123,22 +127,38 @@ static int rounded(long v, int shift)
     return (int)((v + (1L << (shift - 1))) >> shift);
 }
 
+/* Whether pixel (x, y) meets the slab where mask k looks: the first one up and to the left, unless it
+ * is mirrored. */
+static bool meets(const struct rf_disc_job *job, const struct rf_disc_way *way,
+                  const struct rf_slab *slab, const int16_t *blur, int x, int y, int k)
+{
+    const long step = (1L << way->shift) * way->times;
+    const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
+    const int sum = (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
+    const int sees = seen(job, x, y), aside = (k ? 1 : -1) * (way->mirrored ? -1 : 1) * (sees / 2);
+    const int right = rounded((sees ? sum - 128 * x + aside : 0) * step, 23);
+    const int down = rounded((128 * (way->middle - y) + (k ? 32 : -32)) * step, 23);
+    const int s = blur[(y + down) * SIDE + x + right];
+
+    return s >= slab->low && s <= slab->low + slab->width;
+}
+
 static int check_hide(const struct subject *subject)
 {
     static int16_t plane[SIDE * SIDE];
-    uint16_t visible[LANES], should[LANES], unused[LANES];
+    uint16_t visible[2 * LANES], should[2 * LANES], unused[2 * LANES];
     uint32_t seed = 33;
 
     for (int round = 0; round < 2000; round++) {
         const int16_t *const blur = plane + FAR * SIDE + FAR;
         struct rf_disc_job job = make_job(&seed, unused);
-        const int low = noise_between(&seed, -600, 400),
-                  middle = noise_between(&seed, -12, 27);
-        const int centre = noise_between(&seed, -(FAR - 1) * 256, (FAR - 1) * 256);
-        const struct rf_slab slab = {
-            (int16_t)low, (uint16_t)noise_between(&seed, 0, 500), (int16_t)centre};
+        const int low = noise_between(&seed, -600, 400);
+        const struct rf_slab slab = {(int16_t)low, (uint16_t)noise_between(&seed, 0, 500), 0};
         const struct rf_disc_way way = {
-            noise_between(&seed, 0, 2), (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
+            .shift = noise_between(&seed, 0, 2),
+            .middle = noise_between(&seed, -12, 27),
+            .mirrored = noise(&seed) % 2,
+            .times = (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
 
         for (int y = 0; y < RF_TILE; y++) {
             job.left[y] = (int16_t)(job.left[y] % (30 * 64));
@@ -146,26 +166,15 @@ static int check_hide(const struct subject *subject)
         }
         for (int i = 0; i < SIDE * SIDE; i++)
             plane[i] = (int16_t)noise_between(&seed, -700, 1000);
-        for (int i = 0; i < LANES; i++)
+        for (int i = 0; i < 2 * LANES; i++)
             visible[i] = should[i] = noise(&seed) % 3 ? 0xffff : 0;
-        for (int y = job.first; y < job.end; y++) {
-            const long step = (1L << way.shift) * way.times;
-            const int down = rounded(128 * (middle - y) * step, 23);
-
-            for (int x = 0; x < RF_TILE; x++) {
-                const int from = 64 * x + job.left[y], to = 64 * x + job.right[y];
-                const int sum =
-                    (from > job.from ? from : job.from) + (to < job.to ? to : job.to);
-                const int away = seen(&job, x, y) > 0 ? sum - 128 * x : 0;
-                const int right = rounded(away * step, 23);
-                const int s = blur[(y + down) * SIDE + x + right];
-
-                if (s >= low && s <= low + slab.width)
-                    should[y * RF_TILE + x] = 0;
-            }
-        }
-        subject->kernels.hide(visible, blur, SIDE, &slab, &job, middle, way);
-        for (int i = 0; i < LANES; i++)
+        for (int y = job.first; y < job.end; y++)
+            for (int x = 0; x < RF_TILE; x++)
+                for (int k = 0; k < 2; k++)
+                    if (meets(&job, &way, &slab, blur, x, y, k))
+                        should[k * LANES + y * RF_TILE + x] = 0;
+        subject->kernels.hide(visible, blur, SIDE, &slab, &job, &way);
+        for (int i = 0; i < 2 * LANES; i++)
             if (visible[i] != should[i])
                 return wrong(subject, "hide", i, visible[i], should[i]);
     }
