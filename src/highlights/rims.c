@@ -29,7 +29,7 @@ static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 {
     const ptrdiff_t p = y * r->stride + x;
     const int middle = (r->disparity[p] + r->disparity[n]) / 2;
-    int64_t sum[3] = {0, 0, 0}, along = 0, contrast = 0;
+    int64_t sum[3] = {0, 0, 0}, along = 0, contrast = 0, own = 0;
     int count = 0;
 
     for (int j = -2; j <= 2; j++) {
@@ -51,8 +51,9 @@ static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 
         along += (r->front.light[c][p] - far) * (near - far);
         contrast += (near - far) * (near - far);
+        own += r->front.light[c][p] * (near - far);
     }
-    return contrast >= (int64_t)CONTRAST * CONTRAST && 10 * along > 6 * contrast;
+    return contrast >= (int64_t)CONTRAST * CONTRAST && 20 * along > contrast && 5 * along > 2 * own;
 }
 
 static void add_rim(const struct refocus_renderer *r, struct rf_photo *photo, int x, int y,

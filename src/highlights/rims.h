@@ -8,15 +8,18 @@
  *
  *     alpha = (p - F) . (N - F) / |N - F|^2
  *
- * tells how much of N it holds. Above 0.6, p is rendered at the depth of N, of several
- * the nearest.
+ * tells how much of N it holds. A lamp may be many times as bright as white: a twentieth
+ * of its light can be most of p's. So p is rendered at the depth of N, of several the
+ * nearest, from an alpha of 0.05 on where p - F is two fifths of p and more, along N - F.
  *
  * And the other way round: a wire or a hair before a lamp has pixels that the map gives to
  * it, and that are as bright as the lamp. Where a clipped pixel has at least half as many dark
  * pixels of its depth as clipped ones around it, 13 x 13, and three clipped ones farther
  * away that are nobody's rim, it is rendered at their depth, the nearest of them.
  *
- * 12 views, without and with that: standard 30.79 and 30.90 dB, best 31.56 and 31.71.
+ * 12 views, without and with that: standard 30.79 and 30.90 dB, best 31.56 and 31.71. With alpha
+ * above 0.6 alone, as then, and by p's share: 32.27 and 32.45 dB, and 28.6 in place of 27.8
+ * where lamps are before the focus.
  */
 #ifndef RF_RIMS_H
 #define RF_RIMS_H

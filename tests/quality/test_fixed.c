@@ -3,7 +3,7 @@
  * Light by the exact curve, blur and offsets as real numbers until a pixel has to be named,
  * means without rounding. The same rays, the same plan of slabs, the same background layer.
  * Rounding a coordinate the other way at a tie takes a neighbouring pixel, so bits may
- * differ; 50 dB is the bound.
+ * differ; 55 dB is the bound.
  *
  *     test-fixed FOLDER    with allfocus.png and disparity.png
  */
@@ -17,7 +17,7 @@
 #include "png_io.h"
 #include "tiles/tiles.h"
 
-static const double bound_db = 50;
+static const double bound_db = 55;
 
 struct scene {
     int width, height;
@@ -153,6 +153,21 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
     }
 }
 
+/* The scene as the sweep takes it: rims of bright things have their depth (highlights/rims.h). */
+static struct scene with_rims(const struct scene *s, const struct refocus_renderer *r)
+{
+    const struct rf_photo *photo = &r->photo[r->used];
+    const size_t size = (size_t)s->width * (size_t)s->height * sizeof *s->disparity;
+    struct scene patched = *s;
+
+    if (!(patched.disparity = malloc(size)))
+        exit(1);
+    memcpy(patched.disparity, s->disparity, size);
+    for (uint32_t i = 0; i < photo->rims; i++)
+        patched.disparity[pixel_at(s, photo->rim[i].x, photo->rim[i].y)] = photo->rim[i].disparity;
+    return patched;
+}
+
 /* Renders both ways; 0 when they agree to the bound. */
 static int compare(struct scene *s, struct refocus_renderer *r, uint32_t method, int tests,
                    uint8_t *fixed, uint8_t *exact)
@@ -173,9 +188,12 @@ static int compare(struct scene *s, struct refocus_renderer *r, uint32_t method,
     params.sigma = INFINITY;
     if (refocus_render(r, &params, &out))
         return 1;
-    if (method == REFOCUS_METHOD_SWEEP)
-        sweep_all(s, r, light, exact);
-    else
+    if (method == REFOCUS_METHOD_SWEEP) {
+        struct scene patched = with_rims(s, r);
+
+        sweep_all(&patched, r, light, exact);
+        free(patched.disparity);
+    } else
         search_all(s, light, tests, exact);
     psnr = quality_psnr(quality_rmse(fixed, exact, s->width, s->height, 0, NULL, NULL));
     printf("%s %s, T = %d, df = %.3f, K = %g: fixed point to double precision %.2f dB\n",

@@ -253,6 +253,51 @@ static void wires(void **state)
     assert_in_range(wire_blur(32768), 0, 16);
 }
 
+/* A lamp far before the focus, whose rim the map gives to what is sharp behind it. However little of
+ * the lamp a pixel of the rim holds, none stays behind as a dot: of each, how much brighter than the
+ * pixels around it is counted. */
+static int brightest_dot(double light)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){40, 40, 40}, 32768);
+    const struct thing lamp = {ELLIPSE, 9, 9, {light, light, light}};
+    uint8_t out[3 * W * H];
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+    struct refocus_renderer *renderer;
+    int most = 0;
+
+    draw_thing(&p, &lamp, CX + 0.3, CY - 0.2);
+    for (int i = 0; i < W * H; i++)
+        if (share_of_thing(&lamp, i % W - CX - 0.3, (double)(i / W) - CY + 0.2) >= 0.5)
+            p.disparity[i] = 59000;
+    renderer = prepared(&p, 30, 2);
+    params.highlight_gain = 1;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    for (int y = CY - 20; y <= CY + 20; y++)
+        for (int x = CX - 20; x <= CX + 20; x++) {
+            int around = 0;
+
+            for (int i = 0; i < 9; i++)
+                around += out[3 * ((y + i / 3 - 1) * W + x + i % 3 - 1)];
+            around = (around - out[3 * (y * W + x)]) / 8;
+            most = out[3 * (y * W + x)] - around > most ? out[3 * (y * W + x)] - around : most;
+        }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+    return most;
+}
+
+static void rims(void **state)
+{
+    (void)state;
+    for (double light = 1; light < 40; light *= 2) {
+        const int dot = brightest_dot(light);
+
+        if (dot > 36)
+            fail_msg("of a lamp of %g times white a dot is left, brighter by %d codes", light, dot);
+    }
+}
+
 /* Longer than a lamp, but no wider. */
 static void tubes(void **state)
 {
@@ -400,7 +445,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lamps),   cmocka_unit_test(paint),   cmocka_unit_test(large),
-        cmocka_unit_test(tubes),   cmocka_unit_test(colours), cmocka_unit_test(nights),
+        cmocka_unit_test(tubes),   cmocka_unit_test(rims),   cmocka_unit_test(colours), cmocka_unit_test(nights),
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
         cmocka_unit_test(wires),        cmocka_unit_test(candles),
         cmocka_unit_test(glows),        cmocka_unit_test(petals),
