@@ -12,7 +12,7 @@ enum {
     BESIDE = 2,  /* and its limbs */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3, /* full gain of 4 adds three times white */
-    ALIKE = RF_LIGHT_MAX / 4, /* what pixels of a run lose at most, wholly clipped, differs by */
+    ALIKE = 16, /* colours of a run differ by at most that part of the light, in each channel */
 };
 
 /* What the lamp may be, and what is around it. */
@@ -315,16 +315,24 @@ struct lamp {
     int strength, size, pixels;
 };
 
-/* The next one of the run, of a lamp that shines about the same. */
+/* Whether two lights are of about one colour. */
+static bool are_alike(const int a[3], const int b[3])
+{
+    const int of_a = a[0] + a[1] + a[2], of_b = b[0] + b[1] + b[2];
+
+    for (int c = 0; c < 3; c++)
+        if (ALIKE * llabs((long long)a[c] * of_b - (long long)b[c] * of_a) > (long long)of_a * of_b)
+            return false;
+    return true;
+}
+
+/* The next one of the run, of a lamp of the same colour. */
 static bool goes_on(const struct rf_lamp_search *s, int x, int y, const int full[3])
 {
     const struct rf_highlight *run = &s->run;
-    bool alike = true;
 
-    for (int c = 0; c < 3; c++)
-        alike = alike && abs(full[c] - s->full[c]) <= ALIKE;
     return run->count && run->count < RF_LAMP_RUN && run->y == y && run->x + run->count == x &&
-           alike;
+           are_alike(full, s->full);
 }
 
 /* A channel that is not clipped has lost nothing. */
