@@ -154,7 +154,7 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, int beyo
         reach = size + beyond < INT16_MAX ? size + beyond : INT16_MAX;
         if (near.sharpest < size - EDGE_FROM)
             shines = rf_lamp_shine(r, x, y);
-        if (shines < 128)
+        if (shines < (beyond ? 256 : 128))
             lamp->edges |= (uint16_t)(1 << i);
         if (shines == 0)
             continue;

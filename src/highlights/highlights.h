@@ -49,7 +49,8 @@ struct rf_highlight {
     uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095: the mean of what they lost */
     uint8_t count;     /* 1 to RF_LAMP_RUN */
     uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
-    uint16_t edges;    /* for this lens: a bit each of something bright and sharper, left alone, */
+    uint16_t edges;    /* for this lens: a bit each that is the edge of something bright and sharper;
+                          rays leave those alone that are mostly that, drawn ones fade, */
     int16_t blur;      /* and the mean of the others, Q7.8, RF_NO_BLUR where they differ, */
     uint16_t shining;  /* by how much all of them shine together, 256 each */
 };

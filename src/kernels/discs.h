@@ -32,7 +32,8 @@
  * halves up, step = 2^shift times. The part of the run that the pixel sees goes from first to last:
  * the masks look a quarter of it and of a row to either side of its middle, the first one to the
  * left, or to the right where `mirrored`, and up. Where a pixel sees nothing, away = 0. Without
- * `times` no such product is beyond int16, and no place is farther than blur is readable.
+ * `times` no such product is beyond int16, and no place is farther than blur is readable. What is
+ * found for a row holds for `rows` from it on.
  */
 struct rf_disc_job {
     int first, end, shift, planes;
@@ -42,7 +43,7 @@ struct rf_disc_job {
 typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *job);
 typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first);
 struct rf_disc_way {
-    int shift, middle;
+    int shift, middle, rows;
     bool mirrored;
     int16_t times;
 };

@@ -14,13 +14,14 @@ void rf_hide_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
 
     for (int i = 2 * RF_TILE * job->first; i < 2 * RF_TILE * job->end; i++) {
         const int y = i / RF_TILE / 2, x = i % RF_TILE, side = i / RF_TILE % 2 ? 1 : -1;
-        const int first = rf_larger(64 * x + job->left[y], job->from);
-        const int last = rf_smaller(64 * x + job->right[y], job->to);
+        const int like = y - (y - job->first) % way->rows;
+        const int first = rf_larger(64 * x + job->left[like], job->from);
+        const int last = rf_smaller(64 * x + job->right[like], job->to);
         const int aside = (last - first) / 2 * (way->mirrored ? -side : side);
         const int away = first < last ? first + last - 128 * x + aside : 0;
-        const int down = go(way, 128 * (way->middle - y) + 32 * side);
+        const int down = go(way, 128 * (way->middle - like) + 32 * side);
 
-        if (rf_in_range(low, to, blur[(y + down) * stride + x + go(way, away)]))
+        if (rf_in_range(low, to, blur[(like + down) * stride + x + go(way, away)]))
             visible[(side > 0 ? RF_TILE * RF_TILE : 0) + y * RF_TILE + x] = 0;
     }
 }

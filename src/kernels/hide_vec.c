@@ -36,6 +36,18 @@ static inline void meet(uint16_t *at, const int16_t *row)
         at[x] = (uint16_t)row[x + (int16_t)at[x]];
 }
 
+/* Hides pixels of rows y to end - 1 by what those of one row met. */
+static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, vec_u16 to, int y,
+                         int end)
+{
+    for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
+        const vec_u16 hidden = vec_s16_less(vec_u16_sub(vec_u16_load(met + x), from), to);
+
+        for (int i = y * RF_TILE + x; i < end * RF_TILE; i += RF_TILE)
+            vec_u16_store(visible + i, vec_u16_without(vec_u16_load(visible + i), hidden));
+    }
+}
+
 static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
                             const struct rf_slab *slab, const struct rf_disc_job *job,
                             const struct rf_disc_way *way)
@@ -43,25 +55,22 @@ static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t st
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
     const int step = way->times * (1 << way->shift), half = 1 << 22;
-    uint16_t at[2 * RF_TILE * RF_TILE];
+    uint16_t at[2 * RF_TILE * RF_TILE], *const second = at + RF_TILE * RF_TILE;
 
-    for (int y = job->first; y < job->end; y++)
+    for (int y = job->first; y < job->end; y += way->rows)
         look(at + y * RF_TILE, job, y, way);
-    for (int y = job->first; y < job->end; y++) {
+    for (int y = job->first; y < job->end; y += way->rows) {
         const int down = 128 * (way->middle - y);
-        uint16_t *const here = at + y * RF_TILE;
 
-        meet(here, blur + (y + (((down - 32) * step + half) >> 23)) * stride);
-        meet(here + RF_TILE * RF_TILE, blur + (y + (((down + 32) * step + half) >> 23)) * stride);
+        meet(at + y * RF_TILE, blur + (y + (((down - 32) * step + half) >> 23)) * stride);
+        meet(second + y * RF_TILE, blur + (y + (((down + 32) * step + half) >> 23)) * stride);
     }
-    for (int tap = 0; tap < 2; tap++)
-        for (int i = job->first * RF_TILE; i < job->end * RF_TILE; i += (int)VEC_U16) {
-            const uint16_t *const met = at + tap * RF_TILE * RF_TILE + i;
-            uint16_t *const shown = visible + tap * RF_TILE * RF_TILE + i;
-            const vec_u16 above = vec_u16_sub(vec_u16_load(met), from);
+    for (int y = job->first; y < job->end; y += way->rows) {
+        const int end = y + way->rows < job->end ? y + way->rows : job->end;
 
-            vec_u16_store(shown, vec_u16_without(vec_u16_load(shown), vec_s16_less(above, to)));
-        }
+        judge(visible, at + y * RF_TILE, from, to, y, end);
+        judge(visible + RF_TILE * RF_TILE, second + y * RF_TILE, from, to, y, end);
+    }
 }
 
 void RF_VEC(rf_hide_use)(struct rf_kernels *kernels)

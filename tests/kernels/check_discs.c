@@ -157,6 +157,7 @@ static int check_hide(const struct subject *subject)
         const struct rf_disc_way way = {
             .shift = noise_between(&seed, 0, 2),
             .middle = noise_between(&seed, -12, 27),
+            .rows = 1 << noise_between(&seed, 0, 2),
             .mirrored = noise(&seed) % 2,
             .times = (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
 
@@ -171,7 +172,7 @@ static int check_hide(const struct subject *subject)
         for (int y = job.first; y < job.end; y++)
             for (int x = 0; x < RF_TILE; x++)
                 for (int k = 0; k < 2; k++)
-                    if (meets(&job, &way, &slab, blur, x, y, k))
+                    if (meets(&job, &way, &slab, blur, x, y - (y - job.first) % way.rows, k))
                         should[k * LANES + y * RF_TILE + x] = 0;
         subject->kernels.hide(visible, blur, SIDE, &slab, &job, &way);
         for (int i = 0; i < 2 * LANES; i++)
