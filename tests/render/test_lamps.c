@@ -394,15 +394,16 @@ static struct picture night(uint32_t seed, int w, int h)
     return p;
 }
 
-static void render_night(const struct picture *p, uint32_t in_place, int threads, uint8_t *out)
+static void render_night(const struct picture *p, float blur, uint32_t in_place, int threads,
+                         uint8_t *out)
 {
     struct refocus_renderer_params limits =
-        refocus_renderer_params_default(p->width, p->height, 9);
+        refocus_renderer_params_default(p->width, p->height, blur);
     const struct refocus_image photo = picture_image(p);
     const struct refocus_disparity disparity = picture_disparity(p);
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, p->width, p->height, 3 * p->width);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 9);
+    struct refocus_render_params params = refocus_render_params_default(0.5f, blur);
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
@@ -415,17 +416,17 @@ static void render_night(const struct picture *p, uint32_t in_place, int threads
     refocus_renderer_destroy(&renderer);
 }
 
-static void expect_same_night(uint32_t seed, int w, int h)
+static void expect_same_night(uint32_t seed, int w, int h, float blur)
 {
     struct picture p = night(seed, w, h);
     uint8_t *whole = malloc(3 * (size_t)w * (size_t)h), *is = malloc(3 * (size_t)w * (size_t)h);
 
     assert_non_null(whole);
     assert_non_null(is);
-    render_night(&p, 0, 1, whole);
-    render_night(&p, 0, 4, is);
+    render_night(&p, blur, 0, 1, whole);
+    render_night(&p, blur, 0, 4, is);
     assert_same_pixels(is, whole, w, h, "lamps found by four threads");
-    render_night(&p, 1, 1, is);
+    render_night(&p, blur, 1, 1, is);
     assert_same_pixels(is, whole, w, h, "lamps found in blocks");
     free(whole);
     free(is);
@@ -436,9 +437,11 @@ static void nights(void **state)
 {
     (void)state;
     for (uint32_t seed = 1; seed <= 6; seed++)
-        expect_same_night(seed, NIGHT_W, NIGHT_H);
-    expect_same_night(7, 1441, 391);
-    expect_same_night(8, 290, 2883);
+        expect_same_night(seed, NIGHT_W, NIGHT_H, 9);
+    expect_same_night(7, 1441, 391, 9);
+    expect_same_night(9, 1441, 391, 30);
+    expect_same_night(8, 290, 2883, 9);
+    expect_same_night(10, NIGHT_W, NIGHT_H, 40);
 }
 
 int main(void)
