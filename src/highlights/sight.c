@@ -139,7 +139,7 @@ static bool serves(const struct rf_lamp_look *look, const struct rf_lamp_look *w
 {
     return look->slabs == wanted->slabs && look->first <= wanted->first &&
            look->end >= wanted->end && (look->run.blur < 0) == (wanted->run.blur < 0) &&
-           apart(look, &wanted->run) <= 0.5f;
+           apart(look, &wanted->run) <= 0.25f;
 }
 
 static void set_sight(struct rf_lamp_sight *sight, const struct rf_lamp_sights *tile,

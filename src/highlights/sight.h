@@ -23,7 +23,8 @@ struct rf_seen {
 };
 
 /* Runs of about one place are hidden alike: the rows of a lamp behind something in focus all are. So
- * what was found for one serves for those that no look is half a pixel away from by that. */
+ * what was found for one serves for those that no look is a quarter of a pixel away from by that;
+ * with half a pixel, lamps behind hair flicker as the focus moves. */
 struct rf_lamp_sight {
     struct rf_lamp_look {
         struct rf_seen run;
