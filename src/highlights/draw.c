@@ -137,8 +137,10 @@ static void draw(struct canvas *canvas, const struct rf_seen *run)
         f->r->kernels.draw_disc(canvas->mean, &job);
 }
 
-/* What of a run is equally far out of focus, from pixel i on, which is in the window. */
-static struct rf_seen part_of(const struct refocus_renderer *r, const struct rf_highlight *lamp, int i)
+/* What of a run is equally far out of focus, from pixel i on, which is in the window.
+ */
+static struct rf_seen part_of(const struct refocus_renderer *r,
+                              const struct rf_highlight *lamp, int i)
 {
     const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
     const int16_t *const blur = r->front.blur + y * r->stride + x;

@@ -46,7 +46,7 @@ struct rf_bin_scale;
 /* Pixels of a row of a lamp. */
 struct rf_highlight {
     uint16_t x, y;     /* the first */
-    uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095: the mean of what they lost */
+    uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095: mean of what they lost */
     uint8_t count;     /* 1 to RF_LAMP_RUN */
     uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
     uint16_t edges;    /* for this lens: a bit each that is the edge of something bright and sharper;

@@ -75,7 +75,8 @@ static enum hidden hidden_by(const struct screen *screen, const struct rf_frame 
     return none ? HIDDEN_NOWHERE : all ? HIDDEN_WHOLLY : HIDDEN_PARTLY;
 }
 
-/* Rows of pixels that look at one place, to half a pixel: the nearer it is to the run, the more. */
+/* Rows of pixels that look at one place, to half a pixel: the nearer it is to the run,
+ * the more. */
 static int rows_alike(double part)
 {
     int rows = 1;
@@ -85,11 +86,12 @@ static int rows_alike(double part)
     return rows;
 }
 
-/* A look part of the way to the run. No pixel looks farther away than its disc reaches, and half a
- * pixel, nor then farther than the slab is blurred. */
+/* A look part of the way to the run. No pixel looks farther away than its disc reaches,
+ * and half a pixel, nor then farther than the slab is blurred. */
 static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen *screen)
 {
-    const int farthest = run->radius / 2 + RF_LAMP_UNIT, most = (abs(screen->slab->centre) + 255) >> 8;
+    const int farthest = run->radius / 2 + RF_LAMP_UNIT,
+              most = (abs(screen->slab->centre) + 255) >> 8;
     struct rf_disc_way way = {
         .middle = run->y, .rows = rows_alike(screen->part), .mirrored = run->y & 1};
     double times, limit;
@@ -112,13 +114,15 @@ void rf_start_sights(struct rf_lamp_sights *sights, const struct rf_frame *f,
     sights->count = 0;
 }
 
-static struct rf_lamp_look look_of(const struct rf_tile_plan *plan, const struct rf_disc_job *job,
+static struct rf_lamp_look look_of(const struct rf_tile_plan *plan,
+                                   const struct rf_disc_job *job,
                                    const struct rf_seen *run)
 {
     struct rf_lamp_look look = {.run = *run, .first = job->first, .end = job->end};
     int most = 0;
 
-    for (; look.slabs < plan->slabs && plan->slab[look.slabs].centre < run->blur - NEARER;
+    for (;
+         look.slabs < plan->slabs && plan->slab[look.slabs].centre < run->blur - NEARER;
          look.slabs++)
         most = rf_larger(most, abs(plan->slab[look.slabs].centre));
     look.part = (float)most / (float)run->radius;
@@ -129,7 +133,8 @@ static struct rf_lamp_look look_of(const struct rf_tile_plan *plan, const struct
 static float apart(const struct rf_lamp_look *look, const struct rf_seen *run)
 {
     const struct rf_seen *own = &look->run;
-    const int left = abs(run->x - own->x), right = abs(run->x + run->count - own->x - own->count);
+    const int left = abs(run->x - own->x),
+              right = abs(run->x + run->count - own->x - own->count);
     const int aside = rf_larger(rf_larger(left, right), abs(run->y - own->y));
 
     return look->part * ((float)aside + (float)abs(run->blur - own->blur) / 256);
@@ -154,7 +159,8 @@ static void set_sight(struct rf_lamp_sight *sight, const struct rf_lamp_sights *
     for (int k = 0; k < sight->look.slabs && !sight->hidden; k++) {
         const struct rf_slab *slab = &tile->plan->slab[k];
         const struct screen screen = {slab, (double)slab->centre / run->blur};
-        const enum hidden hidden = hidden_by(&screen, tile->f, tile->tx, tile->ty, run, job);
+        const enum hidden hidden =
+            hidden_by(&screen, tile->f, tile->tx, tile->ty, run, job);
         struct rf_disc_way way;
 
         sight->hidden = hidden == HIDDEN_WHOLLY;
@@ -168,7 +174,8 @@ static void set_sight(struct rf_lamp_sight *sight, const struct rf_lamp_sights *
     }
 }
 
-bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job, const struct rf_seen *run)
+bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job,
+                  const struct rf_seen *run)
 {
     const struct rf_lamp_look wanted = look_of(sights->plan, job, run);
     struct rf_lamp_sight *sight = NULL;

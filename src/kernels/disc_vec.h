@@ -5,7 +5,9 @@
 #include "kernels/discs.h"
 #include "simd/vec.h"
 
-enum { DISC_SIGN = 0x8000 }; /* added to signed lanes makes them comparable as unsigned ones */
+enum {
+    DISC_SIGN = 0x8000
+}; /* added to signed lanes makes them comparable as unsigned ones */
 
 struct disc_row {
     vec_u16 chord, low, high;
@@ -24,15 +26,16 @@ static inline struct disc_row disc_row_of(const struct rf_disc_job *job, int y)
 static inline vec_u16 disc_place_of(int x)
 {
 #define AT(x) (uint16_t)(64 * (x) + DISC_SIGN)
-    static const uint16_t place[RF_TILE] = {AT(0),  AT(1),  AT(2),  AT(3), AT(4),  AT(5),
-                                            AT(6),  AT(7),  AT(8),  AT(9), AT(10), AT(11),
-                                            AT(12), AT(13), AT(14), AT(15)};
+    static const uint16_t place[RF_TILE] = {
+        AT(0), AT(1), AT(2),  AT(3),  AT(4),  AT(5),  AT(6),  AT(7),
+        AT(8), AT(9), AT(10), AT(11), AT(12), AT(13), AT(14), AT(15)};
 #undef AT
 
     return vec_u16_load(place + x);
 }
 
-/* What pixels there see begins `left` beyond the one, and ends `right` beyond the other. */
+/* What pixels there see begins `left` beyond the one, and ends `right` beyond the
+ * other. */
 static inline vec_u16 disc_first(const struct disc_row *row, vec_u16 place)
 {
     return vec_u16_max(place, row->high);

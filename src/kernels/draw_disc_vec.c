@@ -33,7 +33,8 @@ static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_j
 
         for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
             const vec_u16 place = disc_place_of(x);
-            const vec_u16 v = disc_seen(&row, disc_first(&row, place), disc_last(&row, place));
+            const vec_u16 v =
+                disc_seen(&row, disc_first(&row, place), disc_last(&row, place));
             vec_u16 seen = vec_s16_max(v, zero);
 
             if (job->visible)

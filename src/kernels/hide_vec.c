@@ -1,11 +1,12 @@
-/* hide_vec.c: where nearer things hide the lamp of a disc, a vector of pixels at a time. Places are
- * found for all rows before what is there is looked up, and that before it is judged, so that no
- * vector waits for its elements. */
+/* hide_vec.c: where nearer things hide the lamp of a disc, a vector of pixels at a
+ * time. Places are found for all rows before what is there is looked up, and that
+ * before it is judged, so that no vector waits for its elements. */
 #include "kernels/disc_vec.h"
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-/* How far to the side pixels of a row look for the masks, a tile of them after the other. */
+/* How far to the side pixels of a row look for the masks, a tile of them after the
+ * other. */
 static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
                         const struct rf_disc_way *way)
 {
@@ -19,13 +20,19 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
         const vec_u16 place = disc_place_of(x);
         const vec_u16 first = disc_first(&row, place), last = disc_last(&row, place);
-        const vec_u16 seen = disc_seen(&row, first, last), some = vec_s16_less(zero, seen);
+        const vec_u16 seen = disc_seen(&row, first, last),
+                      some = vec_s16_less(zero, seen);
         const vec_u16 sum = vec_u16_add(vec_u16_add(first, last), both);
-        const vec_u16 away = vec_u16_and(vec_u16_sub(sum, vec_u16_add(place, place)), some);
+        const vec_u16 away =
+            vec_u16_and(vec_u16_sub(sum, vec_u16_add(place, place)), some);
         const vec_u16 aside = vec_u16_half(vec_u16_and(seen, some));
 
-        vec_u16_store(left + x, vec_u16_offset(vec_u16_mul(vec_u16_sub(away, aside), power), times));
-        vec_u16_store(right + x, vec_u16_offset(vec_u16_mul(vec_u16_add(away, aside), power), times));
+        vec_u16_store(
+            left + x,
+            vec_u16_offset(vec_u16_mul(vec_u16_sub(away, aside), power), times));
+        vec_u16_store(
+            right + x,
+            vec_u16_offset(vec_u16_mul(vec_u16_add(away, aside), power), times));
     }
 }
 
@@ -37,14 +44,16 @@ static inline void meet(uint16_t *at, const int16_t *row)
 }
 
 /* Hides pixels of rows y to end - 1 by what those of one row met. */
-static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, vec_u16 to, int y,
-                         int end)
+static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from,
+                         vec_u16 to, int y, int end)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-        const vec_u16 hidden = vec_s16_less(vec_u16_sub(vec_u16_load(met + x), from), to);
+        const vec_u16 hidden =
+            vec_s16_less(vec_u16_sub(vec_u16_load(met + x), from), to);
 
         for (int i = y * RF_TILE + x; i < end * RF_TILE; i += RF_TILE)
-            vec_u16_store(visible + i, vec_u16_without(vec_u16_load(visible + i), hidden));
+            vec_u16_store(visible + i,
+                          vec_u16_without(vec_u16_load(visible + i), hidden));
     }
 }
 
@@ -62,8 +71,10 @@ static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t st
     for (int y = job->first; y < job->end; y += way->rows) {
         const int down = 128 * (way->middle - y);
 
-        meet(at + y * RF_TILE, blur + (y + (((down - 32) * step + half) >> 23)) * stride);
-        meet(second + y * RF_TILE, blur + (y + (((down + 32) * step + half) >> 23)) * stride);
+        meet(at + y * RF_TILE,
+             blur + (y + (((down - 32) * step + half) >> 23)) * stride);
+        meet(second + y * RF_TILE,
+             blur + (y + (((down + 32) * step + half) >> 23)) * stride);
     }
     for (int y = job->first; y < job->end; y += way->rows) {
         const int end = y + way->rows < job->end ? y + way->rows : job->end;

@@ -574,8 +574,8 @@ rf_weigh_chroma_fn rf_weigh_chroma_c;
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 #define RF_VECTOR_SETS(use) use##_neon, use##_sse41, use##_avx2, use##_avx512
 #define RF_ALL_SETS(use) use##_c, RF_VECTOR_SETS(use)
-rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_draw_disc_use), RF_VECTOR_SETS(rf_hide_use),
-    RF_VECTOR_SETS(rf_fill_use),
+rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_draw_disc_use),
+    RF_VECTOR_SETS(rf_fill_use), RF_VECTOR_SETS(rf_hide_use),
     RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
     RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep1_weighted_use),
     RF_VECTOR_SETS(rf_sweep_weighted_use),

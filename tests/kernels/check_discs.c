@@ -77,7 +77,8 @@ static int check_draw(const struct subject *subject)
                                                : (visible[i] ? half : 0) +
                                                      (visible[LANES + i] ? half : 0);
                     const long light =
-                        mean[c][i] + ((w << job.shift) * (long)job.each[c] + 16384) / 32768;
+                        mean[c][i] +
+                        ((w << job.shift) * (long)job.each[c] + 16384) / 32768;
 
                     should[c][i] = (uint16_t)(light < 65535 ? light : 65535);
                 }
@@ -127,15 +128,17 @@ static int rounded(long v, int shift)
     return (int)((v + (1L << (shift - 1))) >> shift);
 }
 
-/* Whether pixel (x, y) meets the slab where mask k looks: the first one up and to the left, unless it
- * is mirrored. */
+/* Whether pixel (x, y) meets the slab where mask k looks: the first one up and to the
+ * left, unless it is mirrored. */
 static bool meets(const struct rf_disc_job *job, const struct rf_disc_way *way,
                   const struct rf_slab *slab, const int16_t *blur, int x, int y, int k)
 {
     const long step = (1L << way->shift) * way->times;
     const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
-    const int sum = (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
-    const int sees = seen(job, x, y), aside = (k ? 1 : -1) * (way->mirrored ? -1 : 1) * (sees / 2);
+    const int sum =
+        (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
+    const int sees = seen(job, x, y),
+              aside = (k ? 1 : -1) * (way->mirrored ? -1 : 1) * (sees / 2);
     const int right = rounded((sees ? sum - 128 * x + aside : 0) * step, 23);
     const int down = rounded((128 * (way->middle - y) + (k ? 32 : -32)) * step, 23);
     const int s = blur[(y + down) * SIDE + x + right];
@@ -153,13 +156,15 @@ static int check_hide(const struct subject *subject)
         const int16_t *const blur = plane + FAR * SIDE + FAR;
         struct rf_disc_job job = make_job(&seed, unused);
         const int low = noise_between(&seed, -600, 400);
-        const struct rf_slab slab = {(int16_t)low, (uint16_t)noise_between(&seed, 0, 500), 0};
+        const struct rf_slab slab = {(int16_t)low,
+                                     (uint16_t)noise_between(&seed, 0, 500), 0};
         const struct rf_disc_way way = {
             .shift = noise_between(&seed, 0, 2),
             .middle = noise_between(&seed, -12, 27),
             .rows = 1 << noise_between(&seed, 0, 2),
             .mirrored = noise(&seed) % 2,
-            .times = (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
+            .times =
+                (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
 
         for (int y = 0; y < RF_TILE; y++) {
             job.left[y] = (int16_t)(job.left[y] % (30 * 64));
@@ -172,7 +177,8 @@ static int check_hide(const struct subject *subject)
         for (int y = job.first; y < job.end; y++)
             for (int x = 0; x < RF_TILE; x++)
                 for (int k = 0; k < 2; k++)
-                    if (meets(&job, &way, &slab, blur, x, y - (y - job.first) % way.rows, k))
+                    if (meets(&job, &way, &slab, blur, x,
+                              y - (y - job.first) % way.rows, k))
                         should[k * LANES + y * RF_TILE + x] = 0;
         subject->kernels.hide(visible, blur, SIDE, &slab, &job, &way);
         for (int i = 0; i < 2 * LANES; i++)

@@ -1,11 +1,13 @@
-/* Lamps that are drawn: even discs, hidden where rays say so, of the light that rays would meet. */
+/* Lamps that are drawn: even discs, hidden where rays say so, of the light that rays
+ * would meet. */
 #include "pictures.h"
 #include "things.h"
 
 enum { W = 160, H = 144, CX = W / 2, CY = H / 2 };
 enum { BEHIND = 6554 }; /* 12 pixels of blur behind the focus at 0.5 */
 
-/* An iris of so many blades, 0: round. Its lamps are drawn, but with a hole rays meet them. */
+/* An iris of so many blades, 0: round. Its lamps are drawn, but with a hole rays meet
+ * them. */
 static struct refocus_aperture *iris(int blades, bool met)
 {
     struct refocus_aperture_params params = refocus_aperture_params_default();
@@ -21,7 +23,8 @@ static struct refocus_aperture *iris(int blades, bool met)
 static void render(struct refocus_renderer *renderer, int rays, float gain,
                    const struct refocus_aperture *aperture, uint8_t out[3 * W * H])
 {
-    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
     struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
 
     params.rays = rays;
@@ -41,8 +44,8 @@ static void render_green(struct refocus_renderer *renderer, int rays, float gain
         green[i] = out[3 * i + 1];
 }
 
-/* A small lamp before or behind the focus is one even disc with a crisp rim, of few rays and of
- * many. */
+/* A small lamp before or behind the focus is one even disc with a crisp rim, of few
+ * rays and of many. */
 static void discs(void **state)
 {
     static const uint16_t depths[] = {6554, 24000, 59000, 42000};
@@ -73,16 +76,18 @@ static void discs(void **state)
                 most = with[i] - without[i] > most ? with[i] - without[i] : most;
             }
             if (inside < 3 || least < 4 || most - least > least / 4 + 1)
-                fail_msg("a disc of %g pixels, %d rays: %d pixels gained %d to %d codes", radius,
-                         rays, inside, least, most);
+                fail_msg(
+                    "a disc of %g pixels, %d rays: %d pixels gained %d to %d codes",
+                    radius, rays, inside, least, most);
         }
         refocus_renderer_destroy(&renderer);
         picture_free(&p);
     }
 }
 
-/* Lamps behind a post: in focus it keeps its codes, and what is nearer cuts discs off where rays
- * say so, too; of a round opening, and of one of five blades, which has no two sides alike. */
+/* Lamps behind a post: in focus it keeps its codes, and what is nearer cuts discs off
+ * where rays say so, too; of a round opening, and of one of five blades, which has no
+ * two sides alike. */
 static void expect_hidden(uint16_t post, int blades)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
@@ -93,7 +98,8 @@ static void expect_hidden(uint16_t post, int blades)
 
     for (int i = 0; i < 8; i++)
         for (int j = 0; j < 9; j++)
-            memset(p.rgb + 3 * ((20 + 13 * i + j % 3) * W + 18 + 17 * i + j / 3), 255, 3);
+            memset(p.rgb + 3 * ((20 + 13 * i + j % 3) * W + 18 + 17 * i + j / 3), 255,
+                   3);
     for (int y = 0; y < H; y++)
         for (int x = CX - 9; x < CX + 9; x++) {
             p.disparity[y * W + x] = post;
@@ -112,8 +118,8 @@ static void expect_hidden(uint16_t post, int blades)
         off += (own - of_rays) * (own - of_rays);
     }
     if (off > 0.03 * light || light == 0)
-        fail_msg("%d blades, a post at %u: rays do not meet %.3f of what is drawn", blades, post,
-                 off / light);
+        fail_msg("%d blades, a post at %u: rays do not meet %.3f of what is drawn",
+                 blades, post, off / light);
     refocus_aperture_destroy(&drawn);
     refocus_aperture_destroy(&met);
     refocus_renderer_destroy(&renderer);
@@ -131,8 +137,10 @@ static void hidden(void **state)
     }
 }
 
-/* Light of each channel, at a gain of 4, through such an iris, of what there is without. */
-static void gained(struct refocus_renderer *renderer, int blades, bool met, double times[3])
+/* Light of each channel, at a gain of 4, through such an iris, of what there is
+ * without. */
+static void gained(struct refocus_renderer *renderer, int blades, bool met,
+                   double times[3])
 {
     struct refocus_aperture *aperture = iris(blades, met);
     double light[2][3] = {{0}};
@@ -166,7 +174,8 @@ static void ways(void **state)
         gained(renderer, blades, true, met);
         for (int c = 0; c < 3; c++)
             if (fabs(drawn[c] - met[c]) > 0.05 * met[c])
-                fail_msg("%d blades: channel %d has %.3f times its light drawn, %.3f met by rays",
+                fail_msg("%d blades: channel %d has %.3f times its light drawn, %.3f "
+                         "met by rays",
                          blades, c, drawn[c], met[c]);
     }
     refocus_renderer_destroy(&renderer);

@@ -280,7 +280,8 @@ static int brightest_dot(double light)
             for (int i = 0; i < 9; i++)
                 around += out[3 * ((y + i / 3 - 1) * W + x + i % 3 - 1)];
             around = (around - out[3 * (y * W + x)]) / 8;
-            most = out[3 * (y * W + x)] - around > most ? out[3 * (y * W + x)] - around : most;
+            around = out[3 * (y * W + x)] - around;
+            most = around > most ? around : most;
         }
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
@@ -447,11 +448,13 @@ static void nights(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),   cmocka_unit_test(paint),   cmocka_unit_test(large),
-        cmocka_unit_test(tubes),   cmocka_unit_test(rims),   cmocka_unit_test(colours), cmocka_unit_test(nights),
+        cmocka_unit_test(lamps),        cmocka_unit_test(paint),
+        cmocka_unit_test(large),        cmocka_unit_test(rims),
+        cmocka_unit_test(tubes),        cmocka_unit_test(colours),
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
         cmocka_unit_test(wires),        cmocka_unit_test(candles),
         cmocka_unit_test(glows),        cmocka_unit_test(petals),
+        cmocka_unit_test(nights),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* things.h: bright things drawn into test pictures, of known light, their edges lit in part. */
+/* things.h: bright things drawn into test pictures, of known light, their edges lit in
+ * part. */
 #ifndef TEST_THINGS_H
 #define TEST_THINGS_H
 
