@@ -92,8 +92,11 @@ static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen 
 {
     const int farthest = run->radius / 2 + RF_LAMP_UNIT,
               most = (abs(screen->slab->centre) + 255) >> 8;
-    struct rf_disc_way way = {
-        .middle = run->y, .rows = rows_alike(screen->part), .mirrored = run->y & 1};
+    static const int aside[4] = {14, 6, 2, 10}; /* of a lamp's rows, so that all of it is met */
+    struct rf_disc_way way = {.middle = run->y,
+                              .rows = rows_alike(screen->part),
+                              .aside = aside[run->y & 3],
+                              .mirrored = run->y & 1};
     double times, limit;
 
     while (farthest << way.shift <= INT16_MAX / 4)

@@ -27,13 +27,16 @@
  * run hides it: where blur, of the tile's first pixel, lies in it at
  *
  *     x + round(step away / 2^23), y + round(step (128 (middle - y) -+ 32) / 2^23)
- *     away = first + last - 128 x -+ floor((last - first) / 2)
+ *     away = first + last - 128 x - floor(aside (last - first) / 16) for the one, and
+ *            first + last - 128 x + floor((16 - aside) (last - first) / 16) for the other
  *
  * halves up, step = 2^shift times. The part of the run that the pixel sees goes from first to last:
- * the masks look a quarter of it and of a row to either side of its middle, the first one to the
- * left, or to the right where `mirrored`, and up. Where a pixel sees nothing, away = 0. Without
- * `times` no such product is beyond int16, and no place is farther than blur is readable. What is
- * found for a row holds for `rows` from it on.
+ * the masks look half of it apart, from aside / 32 of it to the left of its middle on, and a quarter
+ * of a row to either side, the first one to the left, or to the right where `mirrored`, and up.
+ * Where a pixel sees nothing, both look for the middle of the run as far as it sees: away is
+ * from + to - 128 x, at least 2 left and at most 2 right. Without `times` no such product is beyond
+ * int16, and no place is farther than blur is readable. What is found for a row holds for `rows`
+ * from it on.
  */
 struct rf_disc_job {
     int first, end, shift, planes;
@@ -44,6 +47,7 @@ typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *
 typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first);
 struct rf_disc_way {
     int shift, middle, rows;
+    int aside; /* 1 to 15 */
     bool mirrored;
     int16_t times;
 };

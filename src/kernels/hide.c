@@ -17,8 +17,13 @@ void rf_hide_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
         const int like = y - (y - job->first) % way->rows;
         const int first = rf_larger(64 * x + job->left[like], job->from);
         const int last = rf_smaller(64 * x + job->right[like], job->to);
-        const int aside = (last - first) / 2 * (way->mirrored ? -side : side);
-        const int away = first < last ? first + last - 128 * x + aside : 0;
+        const bool right = way->mirrored ? side < 0 : side > 0;
+        const int aside = right ? (16 - way->aside) * (last - first) / 16
+                                : -(way->aside * (last - first) / 16);
+        const int whole = job->from + job->to - 128 * x;
+        const int away = first < last ? first + last - 128 * x + aside
+                                      : rf_larger(rf_smaller(whole, 2 * job->right[like]),
+                                                  2 * job->left[like]);
         const int down = go(way, 128 * (way->middle - like) + 32 * side);
 
         if (rf_in_range(low, to, blur[(like + down) * stride + x + go(way, away)]))

@@ -14,6 +14,11 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
     const vec_u16 both = vec_u16_set((uint16_t)(job->left[y] + job->right[y]));
     const vec_u16 power = vec_u16_set((uint16_t)(1 << way->shift));
     const vec_u16 times = vec_u16_set((uint16_t)way->times), zero = vec_u16_set(0);
+    const vec_u16 before = vec_u16_set((uint16_t)(way->aside << 12));
+    const vec_u16 after = vec_u16_set((uint16_t)((16 - way->aside) << 12));
+    const vec_u16 middle = vec_u16_set((uint16_t)(job->from + job->to + DISC_SIGN));
+    const vec_u16 nearest = vec_u16_set((uint16_t)(2 * job->left[y] + DISC_SIGN));
+    const vec_u16 farthest = vec_u16_set((uint16_t)(2 * job->right[y] + DISC_SIGN));
     uint16_t *const left = way->mirrored ? at + RF_TILE * RF_TILE : at;
     uint16_t *const right = way->mirrored ? at : at + RF_TILE * RF_TILE;
 
@@ -23,16 +28,17 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
         const vec_u16 seen = disc_seen(&row, first, last),
                       some = vec_s16_less(zero, seen);
         const vec_u16 sum = vec_u16_add(vec_u16_add(first, last), both);
-        const vec_u16 away =
-            vec_u16_and(vec_u16_sub(sum, vec_u16_add(place, place)), some);
-        const vec_u16 aside = vec_u16_half(vec_u16_and(seen, some));
+        const vec_u16 twice = vec_u16_add(place, place);
+        const vec_u16 far = vec_u16_max(
+            vec_u16_min(vec_u16_sub(middle, twice), farthest), nearest);
+        const vec_u16 away = vec_u16_select(some, vec_u16_sub(sum, twice),
+                                            vec_u16_sub(far, vec_u16_set(DISC_SIGN)));
+        const vec_u16 length = vec_u16_and(seen, some);
+        const vec_u16 a = vec_u16_sub(away, vec_u16_mul_high(length, before));
+        const vec_u16 b = vec_u16_add(away, vec_u16_mul_high(length, after));
 
-        vec_u16_store(
-            left + x,
-            vec_u16_offset(vec_u16_mul(vec_u16_sub(away, aside), power), times));
-        vec_u16_store(
-            right + x,
-            vec_u16_offset(vec_u16_mul(vec_u16_add(away, aside), power), times));
+        vec_u16_store(left + x, vec_u16_offset(vec_u16_mul(a, power), times));
+        vec_u16_store(right + x, vec_u16_offset(vec_u16_mul(b, power), times));
     }
 }
 

@@ -137,9 +137,12 @@ static bool meets(const struct rf_disc_job *job, const struct rf_disc_way *way,
     const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
     const int sum =
         (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
-    const int sees = seen(job, x, y),
-              aside = (k ? 1 : -1) * (way->mirrored ? -1 : 1) * (sees / 2);
-    const int right = rounded((sees ? sum - 128 * x + aside : 0) * step, 23);
+    const int sees = seen(job, x, y), is_left = way->mirrored ? k : !k;
+    const int aside = is_left ? -(way->aside * sees / 16) : (16 - way->aside) * sees / 16;
+    const int whole = job->from + job->to - 128 * x;
+    const int least = 2 * job->left[y], most = 2 * job->right[y];
+    const int limited = whole < least ? least : whole > most ? most : whole;
+    const int right = rounded((sees ? sum - 128 * x + aside : limited) * step, 23);
     const int down = rounded((128 * (way->middle - y) + (k ? 32 : -32)) * step, 23);
     const int s = blur[(y + down) * SIDE + x + right];
 
@@ -162,13 +165,14 @@ static int check_hide(const struct subject *subject)
             .shift = noise_between(&seed, 0, 2),
             .middle = noise_between(&seed, -12, 27),
             .rows = 1 << noise_between(&seed, 0, 2),
+            .aside = noise_between(&seed, 1, 15),
             .mirrored = noise(&seed) % 2,
             .times =
                 (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
 
         for (int y = 0; y < RF_TILE; y++) {
-            job.left[y] = (int16_t)(job.left[y] % (30 * 64));
-            job.right[y] = (int16_t)(job.right[y] % (30 * 64));
+            job.right[y] = (int16_t)noise_between(&seed, 0, 30 * 64);
+            job.left[y] = (int16_t)noise_between(&seed, -30 * 64, job.right[y]);
         }
         for (int i = 0; i < SIDE * SIDE; i++)
             plane[i] = (int16_t)noise_between(&seed, -700, 1000);
