@@ -116,7 +116,9 @@ static bool is_left(struct rf_pool *pool, unsigned seen)
     return nobody_in(atomic_load(&pool->state));
 }
 
-/* Either sleepers is seen by whoever opens a loop, or the loop by the sleeper. */
+/* Either sleepers is seen by whoever opens a loop, or the loop by the sleeper: both
+ * exchange before they look. A store would do for processors, but emulators of ARM let
+ * the load after it go first, and both sides sleep. */
 static void wait_for_loop(struct rf_pool *pool, unsigned seen)
 {
     if (spin(pool, is_called, seen))
@@ -171,7 +173,8 @@ static void *thread_main(void *argument)
 
 static void open_loop(struct rf_pool *pool)
 {
-    atomic_store(&pool->state, ((atomic_load(&pool->state) & ~OPEN) + LOOP) | OPEN);
+    atomic_exchange(&pool->state,
+                    ((atomic_load(&pool->state) & ~OPEN) + LOOP) | OPEN);
     if (atomic_load(&pool->sleepers) > 0) {
         pthread_mutex_lock(&pool->lock);
         pthread_cond_broadcast(&pool->wake);
@@ -185,7 +188,7 @@ static void close_loop(struct rf_pool *pool)
         spin(pool, is_left, 0))
         return;
     pthread_mutex_lock(&pool->lock);
-    atomic_store(&pool->waits, true);
+    atomic_exchange(&pool->waits, true); /* as with sleepers */
     while (!is_left(pool, 0))
         pthread_cond_wait(&pool->done, &pool->lock);
     atomic_store(&pool->waits, false);
