@@ -10,9 +10,9 @@
  *
  * Of the pixels [a, b] of a run, a row of the disc shows those from max(a, x + left) to
  * min(b, x + right), its chord there. What is nearer hides half of it each where the ways
- * from p to a place left and right of its middle, one above and one below it, meet one of
- * the tile's nearer slabs, by the same test as a ray does: one way alone shows thin things
- * in between as dots. Other openings have their own area in place of pi.
+ * from p to a place left and right of its middle, one above and one below it, others in
+ * each row, meet one of the tile's nearer slabs, by the same test as a ray does: one way
+ * alone shows thin things in between as dots, and edges as steps. Other openings have their own area in place of pi.
  *
  * Of openings that are evenly open and whose rows are one chord each, discs and irises,
  * by the sweep and without eq. 5, whose weights differ from pixel to pixel; else the
@@ -22,10 +22,6 @@
 #define RF_DRAW_H
 
 #include "methods/method.h"
-
-/* Half a pixel at its rim, and half of what blurs of a run may differ by: how far a disc goes beyond
- * the blur of a lamp's pixel, Q7.8, and some. */
-enum { RF_DISC_RIM = 256 };
 
 /* Whether this frame's lamps are drawn. */
 bool rf_draws_lamps(const struct rf_frame *f);

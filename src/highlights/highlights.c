@@ -5,6 +5,7 @@
 
 #include "highlights/clipped.h"
 #include "renderer/bands.h"
+#include "support/compare.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
@@ -14,6 +15,8 @@ enum {
     ALIKE = 256,     /* if it is farther away than that: else the pre-filter takes it for the same */
     EDGE_FROM = 128, /* Q7.8: what something bright is sharper by for this to be its edge, */
     EDGE_TO = 384,   /* and wholly so; from halfway on, where lamps are not drawn */
+    DISC_RIM = 256,  /* Q7.8: what a disc goes beyond the blur of a lamp's pixel, half a pixel at its
+                        rim and half of what blurs of a run may differ by, and some */
     DOTS = 2,        /* gaps of the rays that a lamp has to be wide for not to show as dots */
 };
 
@@ -136,7 +139,7 @@ int rf_lamp_shine(const struct refocus_renderer *r, int x, int y)
     return 256 - rf_ramp(edge_of(r, x, y), EDGE_FROM, EDGE_TO);
 }
 
-static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, int beyond)
+static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool drawn)
 {
     const struct blurs near = blurs_in(r, around_lamp(r, lamp, 2));
     int sum = 0, weight = 0, least = INT16_MAX, most = INT16_MIN;
@@ -151,10 +154,10 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, int beyo
         bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
         blur = r->front.blur[y * r->stride + x];
         size = abs(blur);
-        reach = size + beyond < INT16_MAX ? size + beyond : INT16_MAX;
+        reach = drawn ? rf_smaller(size + DISC_RIM, INT16_MAX) : size;
         if (near.sharpest < size - EDGE_FROM)
             shines = rf_lamp_shine(r, x, y);
-        if (shines < (beyond ? 256 : 128))
+        if (shines < (drawn ? 256 : 128))
             lamp->edges |= (uint16_t)(1 << i);
         if (shines == 0)
             continue;
@@ -170,7 +173,7 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, int beyo
     lamp->shining = (uint16_t)weight;
 }
 
-bool rf_mark_highlights(struct refocus_renderer *r, int beyond)
+bool rf_mark_highlights(struct refocus_renderer *r, bool drawn)
 {
     bool any = false;
 
@@ -178,7 +181,7 @@ bool rf_mark_highlights(struct refocus_renderer *r, int beyond)
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)
-            mark(r, &found->lamp[i], beyond);
+            mark(r, &found->lamp[i], drawn);
         any = any || found->count;
     }
     return any;

@@ -107,9 +107,9 @@ void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp);
 void rf_sort_highlights(struct refocus_renderer *r);
 
 /* In the window, for the lens setting of r->front.blur and r->bins: tell edges from
- * lamps, and note in its tile how far a lamp is blurred, and how far discs go beyond that, Q7.8.
- * False: there are none. */
-bool rf_mark_highlights(struct refocus_renderer *r, int beyond);
+ * lamps, and note in its tile how far a lamp is blurred; where lamps are drawn, how far its disc
+ * reaches. False: there are none. */
+bool rf_mark_highlights(struct refocus_renderer *r, bool drawn);
 
 /* How much of its light a lamp's pixel of the window has, 0 to 256: less where it is but the edge,
  * by its depth, of something bright and sharper. */

@@ -302,10 +302,11 @@ void rf_end_list(struct rf_lamp_search *s)
 {
     struct rf_highlight *run = &s->run;
 
-    for (int c = 0; c < 3 && run->count; c++)
+    if (!run->count)
+        return;
+    for (int c = 0; c < 3; c++)
         run->added[c] = (uint16_t)((s->lost[c] + run->count / 2) / run->count);
-    if (run->count)
-        rf_list_highlight(&s->lists[run->y / RF_LAMP_ROWS], *run);
+    rf_list_highlight(&s->lists[run->y / RF_LAMP_ROWS], *run);
     run->count = 0;
 }
 

@@ -22,9 +22,10 @@ struct rf_seen {
     const uint16_t *added;
 };
 
-/* Runs of about one place are hidden alike: the rows of a lamp behind something in focus all are. So
- * what was found for one serves for those that no look is a quarter of a pixel away from by that;
- * with half a pixel, lamps behind hair flicker as the focus moves. */
+/* Runs of about one place are hidden alike: the rows of a lamp behind something in focus
+ * all are. So what was found for one serves for those whose looks are no farther than a
+ * quarter of a pixel from its own; with half a pixel, lamps behind hair flicker as the
+ * focus moves. */
 struct rf_lamp_sight {
     struct rf_lamp_look {
         struct rf_seen run;
@@ -49,6 +50,7 @@ void rf_start_sights(struct rf_lamp_sights *sights, const struct rf_frame *f,
                      const struct rf_tile_plan *plan, int tx, int ty);
 
 /* Sets job->visible, in `sights`, for a job whose shape is set; false: the run is hidden. */
-bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job, const struct rf_seen *run);
+bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job,
+                  const struct rf_seen *run);
 
 #endif

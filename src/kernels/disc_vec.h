@@ -5,27 +5,27 @@
 #include "kernels/discs.h"
 #include "simd/vec.h"
 
-enum {
-    DISC_SIGN = 0x8000
-}; /* added to signed lanes makes them comparable as unsigned ones */
+/* Added to signed lanes makes them comparable as unsigned ones. */
+enum { RF_DISC_SIGN = 0x8000 };
 
-struct disc_row {
+struct rf_disc_row {
     vec_u16 chord, low, high;
 };
 
-static inline struct disc_row disc_row_of(const struct rf_disc_job *job, int y)
+static inline struct rf_disc_row rf_disc_row_of(const struct rf_disc_job *job, int y)
 {
     const int left = job->left[y], right = job->right[y];
 
-    return (struct disc_row){vec_u16_set((uint16_t)(right - left)),
-                             vec_u16_set((uint16_t)(job->to - right + DISC_SIGN)),
-                             vec_u16_set((uint16_t)(job->from - left + DISC_SIGN))};
+    return (struct rf_disc_row){
+        vec_u16_set((uint16_t)(right - left)),
+        vec_u16_set((uint16_t)(job->to - right + RF_DISC_SIGN)),
+        vec_u16_set((uint16_t)(job->from - left + RF_DISC_SIGN))};
 }
 
-/* Where pixels from x on are, 1/64 pixel, DISC_SIGN added. */
-static inline vec_u16 disc_place_of(int x)
+/* Where pixels from x on are, 1/64 pixel, RF_DISC_SIGN added. */
+static inline vec_u16 rf_disc_place_of(int x)
 {
-#define AT(x) (uint16_t)(64 * (x) + DISC_SIGN)
+#define AT(x) (uint16_t)(64 * (x) + RF_DISC_SIGN)
     static const uint16_t place[RF_TILE] = {
         AT(0), AT(1), AT(2),  AT(3),  AT(4),  AT(5),  AT(6),  AT(7),
         AT(8), AT(9), AT(10), AT(11), AT(12), AT(13), AT(14), AT(15)};
@@ -36,18 +36,19 @@ static inline vec_u16 disc_place_of(int x)
 
 /* What pixels there see begins `left` beyond the one, and ends `right` beyond the
  * other. */
-static inline vec_u16 disc_first(const struct disc_row *row, vec_u16 place)
+static inline vec_u16 rf_disc_first(const struct rf_disc_row *row, vec_u16 place)
 {
     return vec_u16_max(place, row->high);
 }
 
-static inline vec_u16 disc_last(const struct disc_row *row, vec_u16 place)
+static inline vec_u16 rf_disc_last(const struct rf_disc_row *row, vec_u16 place)
 {
     return vec_u16_min(place, row->low);
 }
 
 /* How long it is, signed: less than nothing is nothing. */
-static inline vec_u16 disc_seen(const struct disc_row *row, vec_u16 first, vec_u16 last)
+static inline vec_u16 rf_disc_seen(const struct rf_disc_row *row, vec_u16 first,
+                                   vec_u16 last)
 {
     return vec_u16_add(vec_u16_sub(last, first), row->chord);
 }

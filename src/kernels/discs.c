@@ -1,4 +1,4 @@
-/* discs.c: the rows of a disc, and what hides it, plain C for the vectoriser. */
+/* discs.c: how wide a disc is in each row, plain C for the vectoriser. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 

@@ -29,12 +29,12 @@ static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_j
     for (int c = 0; c < job->planes; c++)
         each[c] = vec_u16_set((uint16_t)job->each[c]);
     for (int y = job->first; y < job->end; y++) {
-        const struct disc_row row = disc_row_of(job, y);
+        const struct rf_disc_row row = rf_disc_row_of(job, y);
 
         for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-            const vec_u16 place = disc_place_of(x);
-            const vec_u16 v =
-                disc_seen(&row, disc_first(&row, place), disc_last(&row, place));
+            const vec_u16 place = rf_disc_place_of(x);
+            const vec_u16 v = rf_disc_seen(&row, rf_disc_first(&row, place),
+                                           rf_disc_last(&row, place));
             vec_u16 seen = vec_s16_max(v, zero);
 
             if (job->visible)

@@ -10,29 +10,30 @@
 static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
                         const struct rf_disc_way *way)
 {
-    const struct disc_row row = disc_row_of(job, y);
+    const struct rf_disc_row row = rf_disc_row_of(job, y);
     const vec_u16 both = vec_u16_set((uint16_t)(job->left[y] + job->right[y]));
     const vec_u16 power = vec_u16_set((uint16_t)(1 << way->shift));
     const vec_u16 times = vec_u16_set((uint16_t)way->times), zero = vec_u16_set(0);
     const vec_u16 before = vec_u16_set((uint16_t)(way->aside << 12));
     const vec_u16 after = vec_u16_set((uint16_t)((16 - way->aside) << 12));
-    const vec_u16 middle = vec_u16_set((uint16_t)(job->from + job->to + DISC_SIGN));
-    const vec_u16 nearest = vec_u16_set((uint16_t)(2 * job->left[y] + DISC_SIGN));
-    const vec_u16 farthest = vec_u16_set((uint16_t)(2 * job->right[y] + DISC_SIGN));
+    const vec_u16 middle = vec_u16_set((uint16_t)(job->from + job->to + RF_DISC_SIGN));
+    const vec_u16 nearest = vec_u16_set((uint16_t)(2 * job->left[y] + RF_DISC_SIGN));
+    const vec_u16 farthest = vec_u16_set((uint16_t)(2 * job->right[y] + RF_DISC_SIGN));
     uint16_t *const left = way->mirrored ? at + RF_TILE * RF_TILE : at;
     uint16_t *const right = way->mirrored ? at : at + RF_TILE * RF_TILE;
 
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-        const vec_u16 place = disc_place_of(x);
-        const vec_u16 first = disc_first(&row, place), last = disc_last(&row, place);
-        const vec_u16 seen = disc_seen(&row, first, last),
+        const vec_u16 place = rf_disc_place_of(x);
+        const vec_u16 first = rf_disc_first(&row, place),
+                      last = rf_disc_last(&row, place);
+        const vec_u16 seen = rf_disc_seen(&row, first, last),
                       some = vec_s16_less(zero, seen);
         const vec_u16 sum = vec_u16_add(vec_u16_add(first, last), both);
         const vec_u16 twice = vec_u16_add(place, place);
-        const vec_u16 far = vec_u16_max(
-            vec_u16_min(vec_u16_sub(middle, twice), farthest), nearest);
-        const vec_u16 away = vec_u16_select(some, vec_u16_sub(sum, twice),
-                                            vec_u16_sub(far, vec_u16_set(DISC_SIGN)));
+        const vec_u16 far =
+            vec_u16_max(vec_u16_min(vec_u16_sub(middle, twice), farthest), nearest);
+        const vec_u16 away = vec_u16_select(
+            some, vec_u16_sub(sum, twice), vec_u16_sub(far, vec_u16_set(RF_DISC_SIGN)));
         const vec_u16 length = vec_u16_and(seen, some);
         const vec_u16 a = vec_u16_sub(away, vec_u16_mul_high(length, before));
         const vec_u16 b = vec_u16_add(away, vec_u16_mul_high(length, after));

@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "background/background.h"
-#include "highlights/draw.h"
 #include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/render_yuv.h"
@@ -168,8 +167,7 @@ static void mark_lamps(struct rf_frame *f)
     const float gain = rf_lamp_gain(f);
 
     f->bright = RF_WHITE;
-    if (f->params->highlight_gain <= 1 ||
-        !rf_mark_highlights(f->r, f->draws ? RF_DISC_RIM : 0) || f->draws)
+    if (f->params->highlight_gain <= 1 || !rf_mark_highlights(f->r, f->draws) || f->draws)
         return;
     rf_widen_highlights(f->r, f->scale, ray_gap(f->params));
     f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT

@@ -21,13 +21,15 @@ static struct refocus_aperture *iris(int blades, bool met)
 }
 
 static void render(struct refocus_renderer *renderer, int rays, float gain,
-                   const struct refocus_aperture *aperture, uint8_t out[3 * W * H])
+                   bool prefilter, const struct refocus_aperture *aperture,
+                   uint8_t out[3 * W * H])
 {
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
     struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
 
     params.rays = rays;
+    params.prefilter = prefilter;
     params.highlight_gain = gain;
     params.aperture = aperture;
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
@@ -39,7 +41,7 @@ static void render_green(struct refocus_renderer *renderer, int rays, float gain
 {
     static uint8_t out[3 * W * H];
 
-    render(renderer, rays, gain, aperture, out);
+    render(renderer, rays, gain, true, aperture, out);
     for (int i = 0; i < W * H; i++)
         green[i] = out[3 * i + 1];
 }
@@ -148,7 +150,7 @@ static void gained(struct refocus_renderer *renderer, int blades, bool met,
     for (int k = 0; k < 2; k++) {
         static uint8_t out[3 * W * H];
 
-        render(renderer, 512, k ? 4 : 1, aperture, out);
+        render(renderer, 512, k ? 4 : 1, false, aperture, out);
         for (int i = 0; i < 3 * W * H; i++)
             light[k][i % 3] += picture_light(out[i]);
     }
