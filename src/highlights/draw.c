@@ -27,10 +27,11 @@ bool rf_draws_lamps(const struct rf_frame *f)
 /* Whether the discs of its pixels reach into the tile. */
 static bool reaches(const struct rf_seen *run)
 {
-    const int far = run->radius / 256 + 1;
+    const int far = run->radius / 256 + run->rows;
+    const int y = run->middle >> 1;
 
-    return run->blur != 0 && run->x - far < RF_TILE && run->x + run->count + far > 0 &&
-           run->y - far < RF_TILE && run->y + far >= 0;
+    return run->blur != 0 && run->from - RF_LAMP_UNIT * far < RF_LAMP_UNIT * RF_TILE &&
+           run->to + RF_LAMP_UNIT * far > 0 && y - far < RF_TILE && y + far >= 0;
 }
 
 /* The light of each pixel of the run that a pixel sees whole, Q14, times 2^(15 - shift)
@@ -47,12 +48,12 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
     bool any = false;
 
     job->shift = 8;
-    for (int n = 1; n < run->count; n *= 2)
+    for (int length = RF_LAMP_UNIT; length < run->to - run->from; length *= 2)
         job->shift--;
-    share = 4 * (gain - 1) / 3 * blurred / 256 * run->shining / (256 * run->count);
-    share *= (double)(1 << (15 - job->shift)) / RF_LAMP_UNIT / area;
+    share = 4 * (gain - 1) / 3 * blurred / 65536 / (run->to - run->from);
+    share *= (double)(1 << (15 - job->shift)) / area;
     for (int c = 0; c < job->planes; c++) {
-        const double each = run->added[c] * share + 0.5;
+        const double each = run->light[c] * share + 0.5;
 
         job->each[c] = (int16_t)(each < 32767 ? each : 32767);
         any = any || job->each[c] > 0;
@@ -74,30 +75,32 @@ static void chord_at(const struct refocus_aperture *a, double height, double end
 }
 
 /* Of a disc rows are as wide to both sides. Behind the focus an iris is seen as it is,
- * and pixels see through it to the other side; before it the other way round. Means of
- * a quarter of a pixel above and below the middle of the row, as kernels->half_chords.
+ * and pixels see through it to the other side; before it the other way round. Means, as
+ * kernels->half_chords.
  */
 static void set_chords(struct rf_disc_job *job, const struct rf_frame *f,
                        const struct rf_seen *run)
 {
     const struct refocus_aperture *a = f->aperture;
-    const double unit = run->blur * (RF_LAMP_UNIT / (2 * 256.0 * 16384));
+    const double unit = run->blur * (RF_LAMP_UNIT / (2 * 256.0 * 16384)) / run->rows;
 
     if (a->shape == RF_SHAPE_DISC) {
-        f->r->kernels.half_chords(job->right, run->radius, -run->y);
+        f->r->kernels.half_chords(job->right, run->radius, -run->middle, run->rows);
         for (int y = 0; y < RF_TILE; y++)
             job->left[y] = (int16_t)-job->right[y];
         return;
     }
     for (int y = 0; y < RF_TILE; y++) {
-        const double height = 256.0 * (y - run->y) / run->blur,
-                     quarter = 64.0 / run->blur;
-        double above[2], below[2], first, last;
+        double first = 0, last = 0;
 
-        chord_at(a, height - quarter, above);
-        chord_at(a, height + quarter, below);
-        first = -unit * (above[1] + below[1]);
-        last = -unit * (above[0] + below[0]);
+        for (int k = 0; k < 2 * run->rows; k++) {
+            const double away = y + (k - run->rows - run->middle) * 0.5 + 0.25;
+            double ends[2];
+
+            chord_at(a, 256 * away / run->blur, ends);
+            first -= unit * ends[1];
+            last -= unit * ends[0];
+        }
         job->left[y] = (int16_t)floor((first < last ? first : last) + 0.5);
         job->right[y] = (int16_t)floor((first < last ? last : first) + 0.5);
     }
@@ -114,8 +117,8 @@ static void set_shape(struct rf_disc_job *job, const struct rf_frame *f,
         job->first++;
     while (job->end > job->first && job->left[job->end - 1] == job->right[job->end - 1])
         job->end--;
-    job->from = (int16_t)(RF_LAMP_UNIT * run->x - RF_LAMP_UNIT / 2);
-    job->to = (int16_t)(RF_LAMP_UNIT * (run->x + run->count) - RF_LAMP_UNIT / 2);
+    job->from = (int16_t)run->from;
+    job->to = (int16_t)run->to;
 }
 
 /* The means of a tile that lamps are drawn into. */
@@ -137,30 +140,67 @@ static void draw(struct canvas *canvas, const struct rf_seen *run)
         f->r->kernels.draw_disc(canvas->mean, &job);
 }
 
-/* What of a run is equally far out of focus, from pixel i on, which is in the window.
- */
-static struct rf_seen part_of(const struct refocus_renderer *r,
-                              const struct rf_highlight *lamp, int i)
+/* Puts `count` pixels of a row of the window in a run, from (x, y) on. */
+static void place(struct rf_seen *run, const struct rf_lamp_sights *tile, int x, int y,
+                  int count)
 {
+    x -= tile->tx * RF_TILE;
+    run->from = RF_LAMP_UNIT * x - RF_LAMP_UNIT / 2;
+    run->to = run->from + RF_LAMP_UNIT * count;
+    run->middle = 2 * (y - tile->ty * RF_TILE);
+    run->rows = 1;
+    run->turn = y;
+}
+
+static void set_blur(struct rf_seen *run, int blur)
+{
+    run->blur = blur;
+    run->radius = abs(blur);
+}
+
+/* What of a run is equally far out of focus, from pixel i on, which is in the window:
+ * so many pixels. */
+static int part_of(struct rf_seen *part, const struct rf_lamp_sights *tile,
+                   const struct rf_highlight *lamp, int i)
+{
+    const struct refocus_renderer *r = tile->f->r;
     const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
     const int16_t *const blur = r->front.blur + y * r->stride + x;
-    const int end = rf_smaller(lamp->count, r->width - x);
-    int least = blur[i], most = blur[i], sum = 0;
-    struct rf_seen part = {.x = x + i, .y = y, .added = lamp->added};
+    const int first = i, end = rf_smaller(lamp->count, r->width - x);
+    int least = blur[i], most = blur[i], sum = 0, shining = 0;
 
-    for (; i < end; i++, part.count++) {
+    for (; i < end; i++) {
         const int shines = lamp->edges >> i & 1 ? rf_lamp_shine(r, x + i, y) : 256;
 
         least = rf_smaller(least, blur[i]);
         most = rf_larger(most, blur[i]);
-        if (most - least > RF_BLURS_ALIKE)
+        if (most - least > rf_blurs_alike(least))
             break;
         sum += shines * blur[i];
-        part.shining += shines;
+        shining += shines;
     }
-    part.blur = part.shining ? sum / part.shining : 0;
-    part.radius = abs(part.blur);
-    return part;
+    place(part, tile, x + first, y, i - first);
+    set_blur(part, shining ? sum / shining : 0);
+    for (int c = 0; c < 3; c++)
+        part->light[c] = lamp->added[c] * shining;
+    return i - first;
+}
+
+/* Whether any of pixels i to end - 1 of a run does. */
+static bool may_reach(const struct rf_lamp_sights *tile,
+                      const struct rf_highlight *lamp, int i, int end)
+{
+    const struct refocus_renderer *r = tile->f->r;
+    const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
+    const int16_t *const blur = r->front.blur + y * r->stride + x;
+    struct rf_seen run;
+    int most = 0;
+
+    place(&run, tile, x + i, y, end - i);
+    for (; i < end; i++)
+        most = rf_larger(most, abs(blur[i]));
+    set_blur(&run, most);
+    return reaches(&run);
 }
 
 /* A run that is not, part by part. */
@@ -168,36 +208,86 @@ static void draw_parts(struct canvas *canvas, const struct rf_highlight *lamp)
 {
     const struct rf_lamp_sights *tile = &canvas->sights;
     const struct refocus_renderer *r = tile->f->r;
-    const int x = lamp->x - r->origin_x, end = rf_smaller(lamp->count, r->width - x);
+    const int x = lamp->x - r->origin_x, first = rf_larger(0, -x),
+              end = rf_smaller(lamp->count, r->width - x);
 
-    for (int i = rf_larger(0, -x); i < end;) {
-        struct rf_seen part = part_of(r, lamp, i);
+    if (!may_reach(tile, lamp, first, end))
+        return;
+    for (int i = first; i < end;) {
+        struct rf_seen part;
 
-        i += part.count;
-        part.x -= tile->tx * RF_TILE;
-        part.y -= tile->ty * RF_TILE;
+        i += part_of(&part, tile, lamp, i);
         draw(canvas, &part);
+    }
+}
+
+/* Rows that are drawn as one: in their middle, as wide as they are in the mean. */
+static struct rf_seen stack_of(const struct rf_lamp_sights *tile,
+                               const struct rf_highlight *top, int rows)
+{
+    const struct refocus_renderer *r = tile->f->r;
+    const struct rf_highlight *lamp = top;
+    int x = 0, count = 0, blur = 0;
+    struct rf_seen run = {.light = {0}};
+
+    for (int k = 0; k < rows; k++, lamp += lamp->below) {
+        x += lamp->x;
+        count += lamp->count;
+        blur += lamp->blur;
+        for (int c = 0; c < 3; c++)
+            run.light[c] += lamp->added[c] * lamp->shining;
+    }
+    place(&run, tile, -r->origin_x, top->y - r->origin_y, 0);
+    run.from += RF_LAMP_UNIT * x / rows;
+    run.to = run.from + RF_LAMP_UNIT * count / rows;
+    run.middle += rows - 1;
+    run.rows = rows;
+    run.turn = top->y / rows;
+    set_blur(&run, blur / rows);
+    return run;
+}
+
+/* Where nothing hides them; else they are drawn in parts, for each to see past that by
+ * other ways. */
+static void draw_stack(struct canvas *canvas, const struct rf_highlight *top)
+{
+    const struct rf_frame *f = canvas->sights.f;
+    const struct rf_seen run = stack_of(&canvas->sights, top, top->rows);
+    struct rf_disc_job job = {.planes = canvas->planes};
+    const struct rf_highlight *lamp = top;
+    const int most = top->rows > 2 ? 2 : 1;
+    enum rf_hidden hidden;
+
+    if (!reaches(&run) || !set_light(&job, f, &run))
+        return;
+    set_shape(&job, f, &run);
+    hidden = job.first < job.end ? rf_lamp_hidden(&canvas->sights, &job, &run)
+                                 : RF_HIDDEN_WHOLLY;
+    if (hidden == RF_HIDDEN_NOWHERE)
+        f->r->kernels.draw_disc(canvas->mean, &job);
+    if (hidden != RF_HIDDEN_PARTLY)
+        return;
+    for (int k = 0; k < top->rows; k += most) {
+        const int rows = rf_smaller(most, top->rows - k);
+        const struct rf_seen part = stack_of(&canvas->sights, lamp, rows);
+
+        draw(canvas, &part);
+        for (int i = 0; i < rows; i++)
+            lamp += lamp->below;
     }
 }
 
 static void draw_lamp(struct canvas *canvas, const struct rf_highlight *lamp)
 {
-    const struct rf_lamp_sights *tile = &canvas->sights;
-    const struct refocus_renderer *r = tile->f->r;
-    const struct rf_seen run = {
-        .x = lamp->x - r->origin_x - tile->tx * RF_TILE,
-        .y = lamp->y - r->origin_y - tile->ty * RF_TILE,
-        .count = lamp->count,
-        .blur = lamp->blur,
-        .radius = abs(lamp->blur),
-        .shining = lamp->shining,
-        .added = lamp->added,
-    };
-
-    if (lamp->blur == RF_NO_BLUR)
+    if (lamp->blur == RF_NO_BLUR) {
         draw_parts(canvas, lamp);
-    else
+    } else if (lamp->rows > 1) {
+        draw_stack(canvas, lamp);
+    } else if (lamp->rows == 1) {
+        const struct rf_seen run = stack_of(&canvas->sights, lamp, 1);
+
         draw(canvas, &run);
+    }
 }
 
 void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
@@ -206,7 +296,7 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
     const struct refocus_renderer *r = f->r;
     const int reach = plan->lamp / 256 + 1;
     const int x0 = r->origin_x + tx * RF_TILE - reach - RF_LAMP_RUN;
-    const int y0 = rf_larger(r->origin_y + ty * RF_TILE - reach, 0);
+    const int y0 = rf_larger(r->origin_y + ty * RF_TILE - reach - RF_LAMP_STACK, 0);
     const int y1 = r->origin_y + (ty + 1) * RF_TILE + reach;
     const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_LAMP_RUN);
     const int parts = rf_lamp_parts(r->photo[r->used].height);

@@ -17,6 +17,9 @@ enum {
     EDGE_TO = 384,   /* and wholly so; from halfway on, where lamps are not drawn */
     DISC_RIM = 256,  /* Q7.8: what a disc goes beyond the blur of a lamp's pixel, half a pixel at its
                         rim and half of what blurs of a run may differ by, and some */
+    STACKED = 4096,  /* Q7.8: from this blur on two rows of a lamp are drawn as one, from twice that on
+                        four, */
+    STACK_RIM = 512, /* which may reach farther by what rows differ by at their ends */
     DOTS = 2,        /* gaps of the rays that a lamp has to be wide for not to show as dots */
 };
 
@@ -154,7 +157,8 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool dra
         bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
         blur = r->front.blur[y * r->stride + x];
         size = abs(blur);
-        reach = drawn ? rf_smaller(size + DISC_RIM, INT16_MAX) : size;
+        reach = drawn ? size + DISC_RIM + (size < STACKED ? 0 : STACK_RIM) : size;
+        reach = rf_smaller(reach, INT16_MAX);
         if (near.sharpest < size - EDGE_FROM)
             shines = rf_lamp_shine(r, x, y);
         if (shines < (drawn ? 256 : 128))
@@ -168,9 +172,51 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool dra
         weight += shines;
     }
     lamp->blur = (int16_t)(weight ? sum / weight : 0);
-    if (most - least > RF_BLURS_ALIKE)
+    if (most - least > rf_blurs_alike(least))
         lamp->blur = RF_NO_BLUR;
     lamp->shining = (uint16_t)weight;
+    lamp->rows = 1;
+}
+
+static bool is_even(const struct rf_highlight *lamp)
+{
+    return lamp->rows == 1 && lamp->shining && lamp->blur != RF_NO_BLUR;
+}
+
+/* Of the next row, what of the same lamp is under a run; NULL: nothing as wide and as blurred. */
+static struct rf_highlight *find_below(struct rf_highlight *lamp, const struct rf_highlight *end)
+{
+    const int last = lamp->x + lamp->count;
+
+    for (struct rf_highlight *under = lamp + 1;
+         under < end && under <= lamp + UINT8_MAX && under->y <= lamp->y + 1; under++)
+        if (under->y > lamp->y && is_even(under) && abs(under->x - lamp->x) <= 2 &&
+            abs(under->x + under->count - last) <= 2 &&
+            abs(under->blur - lamp->blur) <= rf_blurs_alike(lamp->blur) / 2)
+            return under;
+    return NULL;
+}
+
+/* The larger a disc, the less it shows that rows beside each other are drawn as one: which those
+ * are depends on where they are in the photo, not in the window. */
+static void stack(const struct rf_highlights *found)
+{
+    const struct rf_highlight *const end = found->lamp + found->count;
+
+    for (struct rf_highlight *top = found->lamp; top < end; top++) {
+        const int size = abs(top->blur);
+        const int most = size < STACKED ? 1 : size < 2 * STACKED ? 2 : RF_LAMP_STACK;
+        struct rf_highlight *lowest = top, *under;
+
+        if (!is_even(top))
+            continue;
+        while ((lowest->y & (most - 1)) != most - 1 && (under = find_below(lowest, end))) {
+            lowest->below = (uint8_t)(under - lowest);
+            under->rows = 0;
+            top->rows++;
+            lowest = under;
+        }
+    }
 }
 
 bool rf_mark_highlights(struct refocus_renderer *r, bool drawn)
@@ -182,6 +228,8 @@ bool rf_mark_highlights(struct refocus_renderer *r, bool drawn)
 
         for (uint32_t i = 0; i < found->count; i++)
             mark(r, &found->lamp[i], drawn);
+        if (drawn)
+            stack(found);
         any = any || found->count;
     }
     return any;

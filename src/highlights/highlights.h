@@ -53,6 +53,8 @@ struct rf_highlight {
                           rays leave those alone that are mostly that, drawn ones fade, */
     int16_t blur;      /* and the mean of the others, Q7.8, RF_NO_BLUR where they differ, */
     uint16_t shining;  /* by how much all of them shine together, 256 each */
+    uint8_t rows;      /* that are drawn as one, from this one on; 0: with one above */
+    uint8_t below;     /* the next of them is so much further in the list */
 };
 
 /* Highlights are kept in parts of so many rows, each with room for one run in 52 pixels; further
@@ -60,7 +62,7 @@ struct rf_highlight {
 enum {
     RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
     RF_LAMP_RUN = 16,
-    RF_BLURS_ALIKE = 128, /* Q7.8: those of a run that is drawn as one differ by that at most */
+    RF_LAMP_STACK = 4,    /* rows that are drawn as one at most */
     RF_LAMP_ROWS = 64,
     RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS
 };
@@ -75,6 +77,15 @@ static inline int rf_lamp_cell(int width, int height)
     while (cell < RF_LAMP_ROWS && longer >= 2 * 720 * cell)
         cell *= 2;
     return cell;
+}
+
+/* What blurs around one differ by at most to be drawn as one disc, Q7.8: half a pixel, and 1/32 of
+ * large ones. */
+static inline int rf_blurs_alike(int blur)
+{
+    const int size = blur < 0 ? -blur : blur;
+
+    return size < 4096 ? 128 : size / 32;
 }
 
 struct rf_highlights {

@@ -10,14 +10,30 @@
 
 enum {
     NEARER = 256, /* Q7.8: what hides a lamp is so much nearer */
+    LARGE = 32,   /* pixels */
     MOST_ROWS = 4,
+    TOGETHER = 448, /* Q7.8: slabs that are no wider are looked at as one */
 };
 
-/* A slab that may hide the run: where the tile sees it on its way there. */
+/* What of a slab may hide the run, and where the tile sees it on its way there. */
 struct screen {
-    const struct rf_slab *slab;
+    struct rf_slab slab;
     double part; /* of the way */
 };
+
+/* A slab may hold the run itself, and what is about as near. */
+static struct screen screen_of(const struct rf_slab *slab, const struct rf_seen *run)
+{
+    const int most = run->blur - NEARER - slab->low;
+    struct screen screen = {*slab, 0};
+
+    if (most < slab->width) {
+        screen.slab.width = (uint16_t)most;
+        screen.slab.centre = (int16_t)(slab->low + (most + 1) / 2);
+    }
+    screen.part = (double)screen.slab.centre / run->blur;
+    return screen;
+}
 
 static double clamp(double v, double most)
 {
@@ -30,7 +46,7 @@ static double clamp(double v, double most)
 static void extent(const struct screen *screen, const struct rf_seen *run, double first,
                    double last, double from, double to, int *least, int *most)
 {
-    const double far = run->radius / 256.0 + 0.5, part = screen->part;
+    const double far = run->radius / 256.0 + run->rows * 0.5, part = screen->part;
     double a, b;
 
     if (part > 1) { /* the farther a pixel, the more it looks to the other side */
@@ -44,35 +60,56 @@ static void extent(const struct screen *screen, const struct rf_seen *run, doubl
     *most = (int)floor(b) + 2;
 }
 
-enum hidden { HIDDEN_NOWHERE, HIDDEN_PARTLY, HIDDEN_WHOLLY };
+/* Whether any pixel of a region, places from the photo's first one on, is in a slab; of
+ * a large one some may be. */
+static bool may_meet(const struct refocus_renderer *r, const struct rf_slab *slab,
+                     int x0, int y0, int x1, int y1)
+{
+    if (x1 - x0 > LARGE || y1 - y0 > LARGE)
+        return true;
+    x1 = rf_smaller(x1, r->tiles_x * RF_TILE + r->pad - 1);
+    y1 = rf_smaller(y1, r->tiles_y * RF_TILE + r->pad - 1);
+    x0 = rf_smaller(rf_larger(x0, -r->pad), x1 - RF_TILE + 1);
+    y0 = rf_larger(y0, -r->pad);
+    return r->kernels.meets(r->front.blur + y0 * r->stride + x0, r->stride, x1 - x0 + 1,
+                            y1 - y0 + 1, slab);
+}
 
 /* By the ranges of what may be met, tiles/ranges.h. */
-static enum hidden hidden_by(const struct screen *screen, const struct rf_frame *f,
-                             int tx, int ty, const struct rf_seen *run,
-                             const struct rf_disc_job *job)
+static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_frame *f,
+                                int tx, int ty, const struct rf_seen *run,
+                                const struct rf_disc_job *job)
 {
     const struct refocus_renderer *r = f->r;
-    const int low = screen->slab->low, high = low + screen->slab->width;
+    const int low = screen->slab.low, high = low + screen->slab.width;
+    const double middle = run->middle * 0.5, apart = run->rows * 0.5 - 0.25;
     const int border = rf_range_border(r->pad), each = RF_TILE / RF_CELL;
     int x0, x1, y0, y1, none = true, all = true;
 
-    extent(screen, run, 0, RF_TILE - 1, run->x - 0.5, run->x + run->count - 0.5, &x0,
-           &x1);
-    extent(screen, run, job->first, job->end - 1, run->y - 0.25, run->y + 0.25, &y0,
+    extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_LAMP_UNIT,
+           run->to / (double)RF_LAMP_UNIT, &x0, &x1);
+    extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart, &y0,
            &y1);
-    x0 = rf_larger(((tx * RF_TILE + x0) >> 2), -border);
-    y0 = rf_larger(((ty * RF_TILE + y0) >> 2), -border);
-    x1 = rf_smaller(((tx * RF_TILE + x1) >> 2), r->tiles_x * each - 1 + border);
-    y1 = rf_smaller(((ty * RF_TILE + y1) >> 2), r->tiles_y * each - 1 + border);
-    for (int y = y0; y <= y1; y += RF_STRIP / RF_CELL)
-        for (int x = x0; x <= x1; x += each) {
+    x0 += tx * RF_TILE;
+    x1 += tx * RF_TILE;
+    y0 += ty * RF_TILE;
+    y1 += ty * RF_TILE;
+    for (int y = rf_larger(y0 >> 2, -border),
+             last = rf_smaller(y1 >> 2, r->tiles_y * each - 1 + border);
+         y <= last; y += RF_STRIP / RF_CELL)
+        for (int x = rf_larger(x0 >> 2, -border),
+                 end = rf_smaller(x1 >> 2, r->tiles_x * each - 1 + border);
+             x <= end; x += each) {
             const uint32_t range = r->range[y * r->range_stride + x];
             const int least = rf_range_least(range), most = rf_range_most(range);
 
             none = none && (most < low || least > high);
             all = all && least >= low && most <= high;
         }
-    return none ? HIDDEN_NOWHERE : all ? HIDDEN_WHOLLY : HIDDEN_PARTLY;
+    if (all)
+        return RF_HIDDEN_WHOLLY;
+    return none || !may_meet(r, &screen->slab, x0, y0, x1, y1) ? RF_HIDDEN_NOWHERE
+                                                               : RF_HIDDEN_PARTLY;
 }
 
 /* Rows of pixels that look at one place, to half a pixel: the nearer it is to the run,
@@ -87,114 +124,179 @@ static int rows_alike(double part)
 }
 
 /* A look part of the way to the run. No pixel looks farther away than its disc reaches,
- * and half a pixel, nor then farther than the slab is blurred. */
-static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen *screen)
+ * and half its rows, nor then farther than may be read. */
+static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen *screen,
+                                 int pad)
 {
-    const int farthest = run->radius / 2 + RF_LAMP_UNIT,
-              most = (abs(screen->slab->centre) + 255) >> 8;
-    static const int aside[4] = {14, 6, 2, 10}; /* of a lamp's rows, so that all of it is met */
-    struct rf_disc_way way = {.middle = run->y,
-                              .rows = rows_alike(screen->part),
-                              .aside = aside[run->y & 3],
-                              .mirrored = run->y & 1};
+    const int farthest = run->radius / 2 + RF_LAMP_UNIT * run->rows;
+    static const int aside[4] = {14, 6, 2, 10}; /* so that all of a lamp is met */
+    struct rf_disc_way way = {.rows = rows_alike(screen->part),
+                              .most = pad,
+                              .middle = run->middle,
+                              .aside = aside[run->turn & 3],
+                              .mirrored = run->turn & 1};
     double times, limit;
 
     while (farthest << way.shift <= INT16_MAX / 4)
         way.shift++;
     times = floor(screen->part * (65536 >> way.shift) + 0.5);
-    limit = floor(most * 8388608.0 / (farthest << way.shift));
+    limit = floor(pad * 8388608.0 / (farthest << way.shift));
     way.times = (int16_t)clamp(times, limit < INT16_MAX ? limit : INT16_MAX);
     return way;
+}
+
+/* Whether the slab is near enough to the last one to be tested with it; it then is one
+ * with that. */
+static bool joins(struct rf_lamp_sights *sights, const struct rf_slab *next)
+{
+    struct rf_slab *last = sights->slab + sights->slabs - 1;
+    int width;
+
+    if (!sights->slabs || last->centre == 0 || next->centre == 0)
+        return false;
+    width = next->low + next->width - last->low;
+    if (width > TOGETHER || (last->low < 0) != (next->low < 0))
+        return false;
+    last->width = (uint16_t)width;
+    last->centre = (int16_t)(last->low + (width + 1) / 2);
+    return true;
 }
 
 void rf_start_sights(struct rf_lamp_sights *sights, const struct rf_frame *f,
                      const struct rf_tile_plan *plan, int tx, int ty)
 {
     sights->f = f;
-    sights->plan = plan;
     sights->tx = tx;
     sights->ty = ty;
     sights->count = 0;
-}
-
-static struct rf_lamp_look look_of(const struct rf_tile_plan *plan,
-                                   const struct rf_disc_job *job,
-                                   const struct rf_seen *run)
-{
-    struct rf_lamp_look look = {.run = *run, .first = job->first, .end = job->end};
-    int most = 0;
-
-    for (;
-         look.slabs < plan->slabs && plan->slab[look.slabs].centre < run->blur - NEARER;
-         look.slabs++)
-        most = rf_larger(most, abs(plan->slab[look.slabs].centre));
-    look.part = (float)most / (float)run->radius;
-    return look;
+    sights->slabs = 0;
+    for (int k = 0; k < plan->slabs; k++)
+        if (!joins(sights, &plan->slab[k]))
+            sights->slab[sights->slabs++] = plan->slab[k];
 }
 
 /* How far from where it leads the other may lead at most, pixels. */
-static float apart(const struct rf_lamp_look *look, const struct rf_seen *run)
+static float apart(const struct rf_seen *one, const struct rf_seen *other, int centre)
 {
-    const struct rf_seen *own = &look->run;
-    const int left = abs(run->x - own->x),
-              right = abs(run->x + run->count - own->x - own->count);
-    const int aside = rf_larger(rf_larger(left, right), abs(run->y - own->y));
+    const int right = rf_larger(abs(one->from - other->from), abs(one->to - other->to));
+    const int down = RF_LAMP_UNIT / 2 * abs(one->middle - other->middle);
+    const int blurs = abs(one->blur - other->blur) * RF_LAMP_UNIT / 256;
+    const int away = rf_larger(right, down) + blurs;
 
-    return look->part * ((float)aside + (float)abs(run->blur - own->blur) / 256);
+    return (float)abs(centre * away) / (float)(RF_LAMP_UNIT * one->radius);
 }
 
-static bool serves(const struct rf_lamp_look *look, const struct rf_lamp_look *wanted)
+static bool serves(const struct rf_lamp_look *look, const struct rf_lamp_look *wanted,
+                   int centre)
 {
-    return look->slabs == wanted->slabs && look->first <= wanted->first &&
+    return look->slab == wanted->slab && look->first <= wanted->first &&
            look->end >= wanted->end && (look->run.blur < 0) == (wanted->run.blur < 0) &&
-           apart(look, &wanted->run) <= 0.25f;
+           apart(&look->run, &wanted->run, centre) <= 0.25f;
 }
 
-static void set_sight(struct rf_lamp_sight *sight, const struct rf_lamp_sights *tile,
+/* Whether some pixel of its rows sees it, and whether all do. */
+static enum rf_hidden hidden_in(const uint16_t *visible, int first, int end)
+{
+    uint16_t any = 0, all = 0xffff;
+
+    for (int i = RF_TILE * first; i < RF_TILE * end; i++) {
+        any |= visible[i] | visible[RF_TILE * RF_TILE + i];
+        all &= visible[i] & visible[RF_TILE * RF_TILE + i];
+    }
+    return all ? RF_HIDDEN_NOWHERE : any ? RF_HIDDEN_PARTLY : RF_HIDDEN_WHOLLY;
+}
+
+static void set_shade(struct rf_lamp_shade *shade, const struct rf_lamp_sights *tile,
                       const struct rf_disc_job *job)
 {
     const struct refocus_renderer *r = tile->f->r;
-    const struct rf_seen *run = &sight->look.run;
+    const struct rf_seen *run = &shade->look.run;
+    const struct rf_slab *slab = &tile->slab[shade->look.slab];
+    const struct screen screen = screen_of(slab, run);
     const int16_t *const blur =
         r->front.blur + tile->ty * RF_TILE * r->stride + tile->tx * RF_TILE;
+    struct rf_disc_way way;
 
-    sight->hidden = sight->masked = false;
-    for (int k = 0; k < sight->look.slabs && !sight->hidden; k++) {
-        const struct rf_slab *slab = &tile->plan->slab[k];
-        const struct screen screen = {slab, (double)slab->centre / run->blur};
-        const enum hidden hidden =
-            hidden_by(&screen, tile->f, tile->tx, tile->ty, run, job);
-        struct rf_disc_way way;
+    shade->hidden = hidden_by(&screen, tile->f, tile->tx, tile->ty, run, job);
+    if (shade->hidden != RF_HIDDEN_PARTLY)
+        return;
+    way = way_to(run, &screen, r->pad);
+    r->kernels.hide(shade->visible, blur, r->stride, &screen.slab, job, &way);
+    shade->hidden = hidden_in(shade->visible, job->first, job->end);
+}
 
-        sight->hidden = hidden == HIDDEN_WHOLLY;
-        if (hidden != HIDDEN_PARTLY)
-            continue;
-        way = way_to(run, &screen);
-        if (!sight->masked)
-            memset(sight->visible, 0xff, sizeof sight->visible);
-        sight->masked = true;
-        r->kernels.hide(sight->visible, blur, r->stride, slab, job, &way);
+static const struct rf_lamp_shade *shade_of(struct rf_lamp_sights *tile,
+                                            const struct rf_disc_job *job,
+                                            const struct rf_seen *run, int slab)
+{
+    const struct rf_lamp_look wanted = {*run, job->first, job->end, slab};
+    const int centre = tile->slab[slab].centre;
+    const bool kept =
+        4 * abs(centre) <= run->radius; /* else it serves for no other row */
+    struct rf_lamp_shade *shade = &tile->other;
+
+    for (int i = 0; kept && i < RF_SHADES && i < tile->count; i++)
+        if (serves(&tile->shade[i].look, &wanted, centre))
+            return &tile->shade[i];
+    if (kept)
+        shade = &tile->shade[tile->count++ % RF_SHADES];
+    shade->look = wanted;
+    set_shade(shade, tile, job);
+    return shade;
+}
+
+/* What is seen past a further slab. */
+static void see_past(struct rf_lamp_sights *tile, struct rf_disc_job *job,
+                     const struct rf_lamp_shade *shade)
+{
+    for (int side = 0; side < 2; side++) {
+        const int first = RF_TILE * (RF_TILE * side + job->first);
+        const int count = RF_TILE * (job->end - job->first);
+        const uint16_t *const further = shade->visible + first;
+        uint16_t *const visible = tile->visible + first;
+
+        if (!job->visible)
+            memcpy(visible, further, (size_t)count * sizeof *visible);
+        else
+            for (int i = 0; i < count; i++)
+                visible[i] &= further[i];
     }
+    job->visible = tile->visible;
+}
+
+static bool is_nearer(const struct rf_slab *slab, const struct rf_seen *run)
+{
+    return slab->low <= run->blur - NEARER;
+}
+
+enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights,
+                              const struct rf_disc_job *job, const struct rf_seen *run)
+{
+    enum rf_hidden hidden = RF_HIDDEN_NOWHERE;
+
+    for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {
+        const struct screen screen = screen_of(&sights->slab[k], run);
+        const enum rf_hidden by =
+            hidden_by(&screen, sights->f, sights->tx, sights->ty, run, job);
+
+        if (by == RF_HIDDEN_WHOLLY)
+            return by;
+        hidden = by == RF_HIDDEN_PARTLY ? by : hidden;
+    }
+    return hidden;
 }
 
 bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job,
                   const struct rf_seen *run)
 {
-    const struct rf_lamp_look wanted = look_of(sights->plan, job, run);
-    struct rf_lamp_sight *sight = NULL;
-
     job->visible = NULL;
-    if (!wanted.slabs)
-        return true;
-    for (int i = 0; i < RF_SIGHTS && i < sights->count && !sight; i++)
-        if (serves(&sights->sight[i].look, &wanted))
-            sight = &sights->sight[i];
-    if (!sight) {
-        sight = &sights->sight[sights->count++ % RF_SIGHTS];
-        sight->look = wanted;
-        set_sight(sight, sights, job);
+    for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {
+        const struct rf_lamp_shade *shade = shade_of(sights, job, run, k);
+
+        if (shade->hidden == RF_HIDDEN_WHOLLY)
+            return false;
+        if (shade->hidden == RF_HIDDEN_PARTLY)
+            see_past(sights, job, shade);
     }
-    if (sight->masked)
-        job->visible = sight->visible;
-    return !sight->hidden;
+    return true;
 }

@@ -4,18 +4,27 @@
 
 #include <math.h>
 
-static void RF_VEC(rf_half_chords)(int16_t *restrict half, int radius, int first)
+static void RF_VEC(rf_half_chords)(int16_t *restrict half, int radius, int first,
+                                   int tall)
 {
     const float r = (float)radius * (1 / 256.0f), square = r * r;
+    const float scale = 32 / (float)tall;
+    float sum[RF_TILE];
+
+    for (int y = 0; y < RF_TILE; y++)
+        sum[y] = 0.5f;
+    for (int k = 0; k < 2 * tall; k++) {
+        const float from = (float)(first - tall + k) * 0.5f + 0.25f;
 
 #pragma GCC unroll 1
-    for (int y = 0; y < RF_TILE; y++) {
-        const float d = (float)(first + y), above = d - 0.25f, below = d + 0.25f;
-        const float a = square - above * above, b = square - below * below;
+        for (int y = 0; y < RF_TILE; y++) {
+            const float d = from + (float)y, rest = square - d * d;
 
-        half[y] =
-            (int16_t)(sqrtf(a > 0 ? a : 0) * 32 + sqrtf(b > 0 ? b : 0) * 32 + 0.5f);
+            sum[y] += sqrtf(rest > 0 ? rest : 0) * scale;
+        }
     }
+    for (int y = 0; y < RF_TILE; y++)
+        half[y] = (int16_t)sum[y];
 }
 
 void RF_VEC(rf_discs_use)(struct rf_kernels *kernels)

@@ -1,4 +1,4 @@
-/* discs.h: the contracts of draw_disc, half_chords and hide, by which lamps are drawn. */
+/* discs.h: the contracts of draw_disc, half_chords, meets and hide, by which lamps are drawn. */
 #ifndef RF_KERNELS_DISCS_H
 #define RF_KERNELS_DISCS_H
 
@@ -19,14 +19,17 @@
  * w = v or, with `visible`, floor(v / 2) for each of two masks, one tile of them after the other,
  * that is all 1 there and not 0. 2^shift v and each are below 2^15.
  *
- * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`
- * on from its middle: the mean of what it is a quarter of a pixel above and below the middle of
+ * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`,
+ * half pixels, on from its middle. Or of as many discs one above the other, of rows of a lamp, as it
+ * is `tall`, 1 to 4, the mean: of what each is a quarter of a pixel above and below the middle of
  * the row.
  *
- * hide: clears either mask of `visible` in those rows where a slab that is part of the way to the
- * run hides it: where blur, of the tile's first pixel, lies in it at
+ * meets: whether any of width x height pixels from `blur` on lies in a slab; width: RF_TILE at least.
  *
- *     x + round(step away / 2^23), y + round(step (128 (middle - y) -+ 32) / 2^23)
+ * hide: both masks of `visible` in those rows: not where a slab that is part of the way to the run
+ * hides it, where blur, of the tile's first pixel, lies in it at
+ *
+ *     x + round(step away / 2^23), y + round(step (64 middle - 128 y -+ 32) / 2^23)
  *     away = first + last - 128 x - floor(aside (last - first) / 16) for the one, and
  *            first + last - 128 x + floor((16 - aside) (last - first) / 16) for the other
  *
@@ -35,8 +38,8 @@
  * of a row to either side, the first one to the left, or to the right where `mirrored`, and up.
  * Where a pixel sees nothing, both look for the middle of the run as far as it sees: away is
  * from + to - 128 x, at least 2 left and at most 2 right. Without `times` no such product is beyond
- * int16, and no place is farther than blur is readable. What is found for a row holds for `rows`
- * from it on.
+ * int16, and no place is farther than `most` to a side, nor than blur is readable. What is found
+ * for a row holds for `rows` from it on.
  */
 struct rf_disc_job {
     int first, end, shift, planes;
@@ -44,13 +47,16 @@ struct rf_disc_job {
     const uint16_t *visible;
 };
 typedef void rf_draw_disc_fn(uint16_t *const mean[3], const struct rf_disc_job *job);
-typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first);
+typedef void rf_half_chords_fn(int16_t half[RF_TILE], int radius, int first, int tall);
 struct rf_disc_way {
-    int shift, middle, rows;
-    int aside; /* 1 to 15 */
+    int shift, rows, most;
+    int middle; /* half pixels */
+    int aside;  /* 1 to 15 */
     bool mirrored;
     int16_t times;
 };
+typedef bool rf_meets_fn(const int16_t *blur, ptrdiff_t stride, int width, int height,
+                         const struct rf_slab *slab);
 typedef void rf_hide_fn(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
                         const struct rf_slab *slab, const struct rf_disc_job *job,
                         const struct rf_disc_way *way);

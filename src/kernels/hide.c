@@ -1,6 +1,18 @@
 #include "kernels/kernels.h"
 #include "support/compare.h"
 
+bool rf_meets_c(const int16_t *blur, ptrdiff_t stride, int width, int height,
+                const struct rf_slab *slab)
+{
+    const uint16_t from = rf_range_from(slab), to = rf_range_to(slab, slab);
+
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (rf_in_range(from, to, blur[y * stride + x]))
+                return true;
+    return false;
+}
+
 static int go(const struct rf_disc_way *way, int v)
 {
     return (v * (1 << way->shift) * way->times + (1 << 22)) >> 23;
@@ -21,12 +33,15 @@ void rf_hide_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
         const int aside = right ? (16 - way->aside) * (last - first) / 16
                                 : -(way->aside * (last - first) / 16);
         const int whole = job->from + job->to - 128 * x;
-        const int away = first < last ? first + last - 128 * x + aside
-                                      : rf_larger(rf_smaller(whole, 2 * job->right[like]),
-                                                  2 * job->left[like]);
-        const int down = go(way, 128 * (way->middle - like) + 32 * side);
+        const int away = first < last
+                             ? first + last - 128 * x + aside
+                             : rf_larger(rf_smaller(whole, 2 * job->right[like]),
+                                         2 * job->left[like]);
+        const int down = go(way, 64 * way->middle - 128 * like + 32 * side);
 
-        if (rf_in_range(low, to, blur[(like + down) * stride + x + go(way, away)]))
-            visible[(side > 0 ? RF_TILE * RF_TILE : 0) + y * RF_TILE + x] = 0;
+        const int16_t met = blur[(like + down) * stride + x + go(way, away)];
+
+        visible[(side > 0 ? RF_TILE * RF_TILE : 0) + y * RF_TILE + x] =
+            rf_in_range(low, to, met) ? 0 : 0xffff;
     }
 }

@@ -5,8 +5,29 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-/* How far to the side pixels of a row look for the masks, a tile of them after the
- * other. */
+static bool RF_VEC(rf_meets)(const int16_t *blur, ptrdiff_t stride, int width,
+                             int height, const struct rf_slab *slab)
+{
+    const vec_u16 from = vec_u16_set(rf_range_from(slab));
+    const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
+    const int last = width - (int)VEC_U16;
+    vec_u16 met = vec_u16_set(0);
+
+    for (int y = 0; y < height; y++, blur += stride)
+        for (int x = 0; x < width; x += (int)VEC_U16) {
+            const int16_t *const s = blur + (x < last ? x : last);
+            const vec_u16 away = vec_u16_sub(vec_u16_load((const uint16_t *)s), from);
+
+            met = vec_u16_or(met, vec_s16_less(away, to));
+        }
+    return vec_u16_any(met);
+}
+
+static const uint16_t column[RF_TILE] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                         8, 9, 10, 11, 12, 13, 14, 15};
+
+/* Where in a row, way->most from its first one readable on, pixels look for the masks, a
+ * tile of them after the other. */
 static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
                         const struct rf_disc_way *way)
 {
@@ -19,6 +40,7 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
     const vec_u16 middle = vec_u16_set((uint16_t)(job->from + job->to + RF_DISC_SIGN));
     const vec_u16 nearest = vec_u16_set((uint16_t)(2 * job->left[y] + RF_DISC_SIGN));
     const vec_u16 farthest = vec_u16_set((uint16_t)(2 * job->right[y] + RF_DISC_SIGN));
+    const vec_u16 to = vec_u16_set((uint16_t)way->most);
     uint16_t *const left = way->mirrored ? at + RF_TILE * RF_TILE : at;
     uint16_t *const right = way->mirrored ? at : at + RF_TILE * RF_TILE;
 
@@ -38,8 +60,12 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
         const vec_u16 a = vec_u16_sub(away, vec_u16_mul_high(length, before));
         const vec_u16 b = vec_u16_add(away, vec_u16_mul_high(length, after));
 
-        vec_u16_store(left + x, vec_u16_offset(vec_u16_mul(a, power), times));
-        vec_u16_store(right + x, vec_u16_offset(vec_u16_mul(b, power), times));
+        const vec_u16 own = vec_u16_add(vec_u16_load(column + x), to);
+
+        vec_u16_store(left + x,
+                      vec_u16_add(own, vec_u16_offset(vec_u16_mul(a, power), times)));
+        vec_u16_store(right + x,
+                      vec_u16_add(own, vec_u16_offset(vec_u16_mul(b, power), times)));
     }
 }
 
@@ -47,20 +73,20 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
 static inline void meet(uint16_t *at, const int16_t *row)
 {
     for (int x = 0; x < RF_TILE; x++)
-        at[x] = (uint16_t)row[x + (int16_t)at[x]];
+        at[x] = (uint16_t)row[at[x]];
 }
 
-/* Hides pixels of rows y to end - 1 by what those of one row met. */
+/* Pixels of rows y to end - 1, by what those of one row met. */
 static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from,
                          vec_u16 to, int y, int end)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
         const vec_u16 hidden =
             vec_s16_less(vec_u16_sub(vec_u16_load(met + x), from), to);
+        const vec_u16 seen = vec_u16_without(vec_u16_set(0xffff), hidden);
 
         for (int i = y * RF_TILE + x; i < end * RF_TILE; i += RF_TILE)
-            vec_u16_store(visible + i,
-                          vec_u16_without(vec_u16_load(visible + i), hidden));
+            vec_u16_store(visible + i, seen);
     }
 }
 
@@ -76,12 +102,12 @@ static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t st
     for (int y = job->first; y < job->end; y += way->rows)
         look(at + y * RF_TILE, job, y, way);
     for (int y = job->first; y < job->end; y += way->rows) {
-        const int down = 128 * (way->middle - y);
+        const int down = 64 * way->middle - 128 * y;
+        const int above = y + (((down - 32) * step + half) >> 23);
+        const int below = y + (((down + 32) * step + half) >> 23);
 
-        meet(at + y * RF_TILE,
-             blur + (y + (((down - 32) * step + half) >> 23)) * stride);
-        meet(second + y * RF_TILE,
-             blur + (y + (((down + 32) * step + half) >> 23)) * stride);
+        meet(at + y * RF_TILE, blur + above * stride - way->most);
+        meet(second + y * RF_TILE, blur + below * stride - way->most);
     }
     for (int y = job->first; y < job->end; y += way->rows) {
         const int end = y + way->rows < job->end ? y + way->rows : job->end;
@@ -93,5 +119,6 @@ static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t st
 
 void RF_VEC(rf_hide_use)(struct rf_kernels *kernels)
 {
+    kernels->meets = RF_VEC(rf_meets);
     kernels->hide = RF_VEC(rf_hide);
 }

@@ -536,6 +536,7 @@ struct rf_kernels {
     rf_brightest_fn *brightest;
     rf_draw_disc_fn *draw_disc;
     rf_half_chords_fn *half_chords;
+    rf_meets_fn *meets;
     rf_hide_fn *hide;
     rf_blend4_fn *blend4;
     rf_widen4_fn *widen4;
@@ -555,6 +556,7 @@ struct rf_kernels {
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu);
 
 rf_draw_disc_fn rf_draw_disc_c;
+rf_meets_fn rf_meets_c;
 rf_hide_fn rf_hide_c;
 rf_sweep_fn rf_sweep_c;
 rf_sweep1_fn rf_sweep1_c;

@@ -48,6 +48,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     if (!has(*cpu))
         return false;
     kernels->draw_disc = rf_draw_disc_c;
+    kernels->meets = rf_meets_c;
     kernels->hide = rf_hide_c;
     kernels->search = rf_search_c;
     kernels->sweep = rf_sweep_c;

@@ -100,19 +100,32 @@ static double half_at(double radius, double y)
     return y * y < radius * radius ? sqrt(radius * radius - y * y) : 0;
 }
 
+/* The mean of discs of so many rows, half pixels apart from y on. */
+static double mean_half(double radius, int y, int tall)
+{
+    double sum = 0;
+
+    for (int row = 0; row < tall; row++) {
+        const double away = 0.5 * y + row - 0.5 * (tall - 1);
+
+        sum += half_at(radius, away - 0.25) + half_at(radius, away + 0.25);
+    }
+    return sum / (2 * tall);
+}
+
 /* The same in plain C, and nearly that in double precision. */
 static int check_chords(const struct subject *subject)
 {
     for (int radius = 0; radius <= 127 * 256; radius += radius < 1024 ? 1 : 61) {
-        for (int first = -150; first <= 140; first += radius % 2 ? 7 : 16) {
+        for (int first = -300; first <= 280; first += radius % 2 ? 15 : 32) {
+            const int tall = 1 + (radius + first + 300) % 4;
             int16_t half[RF_TILE], plain[RF_TILE];
 
-            subject->kernels.half_chords(half, radius, first);
-            subject->plain.half_chords(plain, radius, first);
+            subject->kernels.half_chords(half, radius, first, tall);
+            subject->plain.half_chords(plain, radius, first, tall);
             for (int i = 0; i < RF_TILE; i++) {
-                const double r = radius / 256.0, y = first + i;
                 const double should =
-                    32 * (half_at(r, y - 0.25) + half_at(r, y + 0.25));
+                    64 * mean_half(radius / 256.0, first + 2 * i, tall);
 
                 if (half[i] != plain[i] || fabs(half[i] - should) > 0.51)
                     return wrong(subject, "half_chords", i, half[i], lround(should));
@@ -138,12 +151,13 @@ static bool meets(const struct rf_disc_job *job, const struct rf_disc_way *way,
     const int sum =
         (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
     const int sees = seen(job, x, y), is_left = way->mirrored ? k : !k;
-    const int aside = is_left ? -(way->aside * sees / 16) : (16 - way->aside) * sees / 16;
+    const int aside =
+        is_left ? -(way->aside * sees / 16) : (16 - way->aside) * sees / 16;
     const int whole = job->from + job->to - 128 * x;
     const int least = 2 * job->left[y], most = 2 * job->right[y];
     const int limited = whole < least ? least : whole > most ? most : whole;
     const int right = rounded((sees ? sum - 128 * x + aside : limited) * step, 23);
-    const int down = rounded((128 * (way->middle - y) + (k ? 32 : -32)) * step, 23);
+    const int down = rounded((64 * way->middle - 128 * y + (k ? 32 : -32)) * step, 23);
     const int s = blur[(y + down) * SIDE + x + right];
 
     return s >= slab->low && s <= slab->low + slab->width;
@@ -163,8 +177,9 @@ static int check_hide(const struct subject *subject)
                                      (uint16_t)noise_between(&seed, 0, 500), 0};
         const struct rf_disc_way way = {
             .shift = noise_between(&seed, 0, 2),
-            .middle = noise_between(&seed, -12, 27),
+            .middle = noise_between(&seed, -24, 54),
             .rows = 1 << noise_between(&seed, 0, 2),
+            .most = FAR,
             .aside = noise_between(&seed, 1, 15),
             .mirrored = noise(&seed) % 2,
             .times =
@@ -177,13 +192,15 @@ static int check_hide(const struct subject *subject)
         for (int i = 0; i < SIDE * SIDE; i++)
             plane[i] = (int16_t)noise_between(&seed, -700, 1000);
         for (int i = 0; i < 2 * LANES; i++)
-            visible[i] = should[i] = noise(&seed) % 3 ? 0xffff : 0;
+            visible[i] = should[i] = (uint16_t)noise(&seed);
         for (int y = job.first; y < job.end; y++)
             for (int x = 0; x < RF_TILE; x++)
                 for (int k = 0; k < 2; k++)
-                    if (meets(&job, &way, &slab, blur, x,
-                              y - (y - job.first) % way.rows, k))
-                        should[k * LANES + y * RF_TILE + x] = 0;
+                    should[k * LANES + y * RF_TILE + x] =
+                        meets(&job, &way, &slab, blur, x,
+                              y - (y - job.first) % way.rows, k)
+                            ? 0
+                            : 0xffff;
         subject->kernels.hide(visible, blur, SIDE, &slab, &job, &way);
         for (int i = 0; i < 2 * LANES; i++)
             if (visible[i] != should[i])
@@ -193,7 +210,34 @@ static int check_hide(const struct subject *subject)
     return 0;
 }
 
+static int check_meets(const struct subject *subject)
+{
+    static int16_t plane[SIDE * SIDE];
+    uint32_t seed = 34;
+
+    for (int round = 0; round < 20000; round++) {
+        const int width = noise_between(&seed, RF_TILE, SIDE),
+                  height = noise_between(&seed, 1, 12),
+                  low = noise_between(&seed, -32000, 32000);
+        const struct rf_slab slab = {(int16_t)low,
+                                     (uint16_t)noise_between(&seed, 0, 900), 0};
+        const int at = noise_between(&seed, 0, SIDE * height - 1);
+        const bool inside = at % SIDE < width;
+        bool met;
+
+        for (int i = 0; i < SIDE * SIDE; i++)
+            plane[i] = (int16_t)(low < 0 ? low + slab.width + 1 : low - 1);
+        plane[at] = (int16_t)(low + (noise(&seed) % 2 ? slab.width : 0));
+        met = subject->kernels.meets(plane, SIDE, width, height, &slab);
+        if (met != inside)
+            return wrong(subject, "meets", at, met, inside);
+    }
+    printf("ok    %-12s %-6s\n", "meets", subject->cpu);
+    return 0;
+}
+
 int check_discs(const struct subject *subject)
 {
-    return check_draw(subject) + check_chords(subject) + check_hide(subject);
+    return check_draw(subject) + check_chords(subject) + check_meets(subject) +
+           check_hide(subject);
 }

@@ -20,13 +20,14 @@ static struct refocus_aperture *iris(int blades, bool met)
     return aperture;
 }
 
-static void render(struct refocus_renderer *renderer, int rays, float gain,
+static void render(struct refocus_renderer *renderer, int blur, int rays, float gain,
                    bool prefilter, const struct refocus_aperture *aperture,
                    uint8_t out[3 * W * H])
 {
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+    struct refocus_render_params params =
+        refocus_render_params_default(0.5f, (float)blur);
 
     params.rays = rays;
     params.prefilter = prefilter;
@@ -36,14 +37,39 @@ static void render(struct refocus_renderer *renderer, int rays, float gain,
 }
 
 /* Codes of green alone. */
-static void render_green(struct refocus_renderer *renderer, int rays, float gain,
-                         const struct refocus_aperture *aperture, int green[W * H])
+static void render_green(struct refocus_renderer *renderer, int blur, int rays,
+                         float gain, const struct refocus_aperture *aperture,
+                         int green[W * H])
 {
     static uint8_t out[3 * W * H];
 
-    render(renderer, rays, gain, true, aperture, out);
+    render(renderer, blur, rays, gain, true, aperture, out);
     for (int i = 0; i < W * H; i++)
         green[i] = out[3 * i + 1];
+}
+
+/* A lamp of 2 half + 1 pixels at (x, y) is one even disc: what it adds to `without`
+ * differs by a quarter inside, and is nothing outside. */
+static void expect_disc(const int with[W * H], const int without[W * H], double x,
+                        double y, int half, double radius)
+{
+    int inside = 0, least = 255, most = 0;
+
+    for (int i = 0; i < W * H; i++) {
+        const double away = hypot(i % W - x, i / W - y);
+        const int gained = with[i] - without[i];
+
+        if (away > radius + 1.5 * half + 1)
+            assert_int_equal(with[i], without[i]);
+        if (away > radius - half - 1)
+            continue;
+        inside++;
+        least = gained < least ? gained : least;
+        most = gained > most ? gained : most;
+    }
+    if (inside < 3 || least < 4 || most - least > least / 4 + 1)
+        fail_msg("a disc of %g pixels: %d pixels gained %d to %d codes", radius, inside,
+                 least, most);
 }
 
 /* A small lamp before or behind the focus is one even disc with a crisp rim, of few
@@ -62,26 +88,38 @@ static void discs(void **state)
             memset(p.rgb + 3 * (y * W + CX - 1), 255, 9);
         renderer = prepared(&p, 30, 2);
         for (int rays = 32; rays <= 128; rays *= 4) {
-            int with[W * H], without[W * H], inside = 0, least = 255, most = 0;
+            int with[W * H], without[W * H];
 
-            render_green(renderer, rays, 1, NULL, without);
-            render_green(renderer, rays, 16, NULL, with);
-            for (int i = 0; i < W * H; i++) {
-                const double away = hypot(i % W - CX, (double)(i / W) - CY);
-
-                if (away > radius + 2.5)
-                    assert_int_equal(with[i], without[i]);
-                if (away > radius - 2)
-                    continue;
-                inside++;
-                least = with[i] - without[i] < least ? with[i] - without[i] : least;
-                most = with[i] - without[i] > most ? with[i] - without[i] : most;
-            }
-            if (inside < 3 || least < 4 || most - least > least / 4 + 1)
-                fail_msg(
-                    "a disc of %g pixels, %d rays: %d pixels gained %d to %d codes",
-                    radius, rays, inside, least, most);
+            render_green(renderer, 30, rays, 1, NULL, without);
+            render_green(renderer, 30, rays, 16, NULL, with);
+            expect_disc(with, without, CX, CY, 1, radius);
         }
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
+}
+
+/* A lamp on a slanted wall is, too: a tile's slabs are wide where the wall is that much
+ * out of focus, and what is about as near as the lamp does not hide it. */
+static void slanted(void **state)
+{
+    struct refocus_renderer *renderer;
+    int with[W * H], without[W * H];
+
+    (void)state;
+    for (int k = -3; k <= 3; k++) {
+        struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
+        const int x = CX + 9 * k, y = CY + 4 * k;
+
+        for (int i = 0; i < W * H; i++)
+            p.disparity[i] = (uint16_t)(12000 - 50 * (i % W) - 20 * (i / W));
+        for (int j = y - 2; j <= y + 2; j++)
+            memset(p.rgb + 3 * (j * W + x - 2), 255, 15);
+        renderer = prepared(&p, 100, 2);
+        render_green(renderer, 100, 128, 1, NULL, without);
+        render_green(renderer, 100, 128, 16, NULL, with);
+        expect_disc(with, without, x, y, 2,
+                    100 * (0.5 - p.disparity[y * W + x] / 65535.0));
         refocus_renderer_destroy(&renderer);
         picture_free(&p);
     }
@@ -109,7 +147,7 @@ static void expect_hidden(uint16_t post, int blades)
         }
     renderer = prepared(&p, 30, 2);
     for (int k = 0; k < 4; k++)
-        render_green(renderer, 192, k % 2 ? 6 : 1, k < 2 ? drawn : met, green[k]);
+        render_green(renderer, 30, 192, k % 2 ? 6 : 1, k < 2 ? drawn : met, green[k]);
     for (int i = 0; i < W * H; i++) {
         const double own = picture_light(green[1][i]) - picture_light(green[0][i]);
         const double of_rays = picture_light(green[3][i]) - picture_light(green[2][i]);
@@ -150,7 +188,7 @@ static void gained(struct refocus_renderer *renderer, int blades, bool met,
     for (int k = 0; k < 2; k++) {
         static uint8_t out[3 * W * H];
 
-        render(renderer, 512, k ? 4 : 1, false, aperture, out);
+        render(renderer, 30, 512, k ? 4 : 1, false, aperture, out);
         for (int i = 0; i < 3 * W * H; i++)
             light[k][i % 3] += picture_light(out[i]);
     }
@@ -188,6 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(discs),
+        cmocka_unit_test(slanted),
         cmocka_unit_test(hidden),
         cmocka_unit_test(ways),
     };
