@@ -34,6 +34,7 @@ static int blocks(const struct refocus_renderer *r, int block)
     return (all.x1 + block - 1) / block * ((all.y1 + block - 1) / block);
 }
 
+/* A block with its margin, but for what of that lies beyond the photo. */
 static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block,
                              int margin)
 {
@@ -64,9 +65,10 @@ static struct refocus_image image_part(const struct refocus_image *image,
     return out;
 }
 
-/* Make a part of the caller's photo the window. */
-static void load(struct refocus_renderer *r, struct rf_rect window)
+/* Make a block of the caller's photo and its margin the window. */
+static void load(struct refocus_renderer *r, struct rf_rect block, int margin)
 {
+    const struct rf_rect window = around(r, block, margin);
     const struct refocus_image photo = image_part(&r->in_place.photo, window);
     struct refocus_disparity map = r->in_place.map;
 
@@ -74,6 +76,9 @@ static void load(struct refocus_renderer *r, struct rf_rect window)
                   (ptrdiff_t)window.x0 * (map.bits / 8);
     map.width = photo.width;
     map.height = photo.height;
+    r->in_place.beyond = (struct rf_rect){
+        margin - (block.x0 - window.x0), margin - (block.y0 - window.y0),
+        margin - (window.x1 - block.x1), margin - (window.y1 - block.y1)};
     rf_use(r, 0, window);
     rf_load_light(r, &photo, NULL);
     rf_load_disparity(r, &map);
@@ -86,18 +91,19 @@ void rf_find_rims_in_blocks(struct refocus_renderer *r)
     for (int i = 0; i < blocks(r, in_place->block) && !rf_cancelled(r); i++) {
         const struct rf_rect block = block_of(r, in_place->block, i);
 
-        load(r, around(r, block, RF_TILE));
+        load(r, block, RF_TILE);
         if (!rf_cancelled(r))
             rf_find_rims(r, in_window(r, block));
     }
 }
 
-/* Light, blur and smooth light of a window. */
-static void make_window(struct rf_frame *f, struct rf_rect window, enum rf_need need)
+/* Light, blur and smooth light of a block and its margin. */
+static void make_window(struct rf_frame *f, struct rf_rect block, int margin,
+                        enum rf_need need)
 {
     struct refocus_renderer *r = f->r;
 
-    load(r, window);
+    load(r, block, margin);
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
     rf_pass_blur(f, need == RF_NEED_LAYERS);
@@ -161,7 +167,7 @@ static void mark(struct rf_frame *f)
     for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(r); i++) {
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
-        make_window(f, around(r, block, in_place->mark_margin), RF_NEED_LAYERS);
+        make_window(f, block, in_place->mark_margin, RF_NEED_LAYERS);
         rf_pass_mark(f, RF_KEPT);
         keep_known(r, block);
         if (!rf_cancelled(r))
@@ -267,7 +273,7 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
 
         if (part.x0 >= part.x1 || part.y0 >= part.y1)
             continue;
-        make_window(f, around(r, b, in_place->margin), need);
+        make_window(f, b, in_place->margin, need);
         if (need == RF_NEED_LAYERS && !rf_cancelled(r))
             make_behind(f);
         if (need == RF_NEED_LAYERS && !rf_cancelled(r))

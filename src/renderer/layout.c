@@ -181,8 +181,7 @@ static int up_to_tiles(int v)
 /*
  * The mark of a pixel depends on pixels 2 K + 1 away; the fill of one, by way of levels
  * below RF_KEPT, on known ones 12 away, whose light depends on 7 more; blur, where
- * there are lamps, on 5 more. Margins also have room for the border of a window at the
- * photo's side.
+ * there are lamps, on 5 more.
  */
 static void shape_blocks(struct rf_in_place *in_place, int pad)
 {
@@ -209,7 +208,7 @@ static void take_blocks(struct refocus_renderer *r,
 
     shape_blocks(in_place, rf_padding_for(params->max_blur_radius));
     photo->pad = rf_padding_for(params->max_blur_radius);
-    side = rf_block_side(in_place, photo->pad);
+    side = rf_block_side(in_place);
     photo->pitch = rf_pitch_for(side + RF_TILE, 0);
     photo->stride = RF_GROUP * photo->pitch;
     size = (uint64_t)photo->stride * (uint64_t)(side + RF_TILE + 2 * RF_SPARE_ROWS);
@@ -258,7 +257,7 @@ static int block_side(const struct refocus_renderer_params *params)
     struct rf_in_place in_place;
 
     shape_blocks(&in_place, rf_padding_for(params->max_blur_radius));
-    return rf_block_side(&in_place, rf_padding_for(params->max_blur_radius));
+    return rf_block_side(&in_place);
 }
 
 /* As many as the largest full mask, or all sets of N, have. */

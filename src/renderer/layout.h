@@ -9,12 +9,12 @@ ptrdiff_t rf_pitch_for(int width, int pad);
 int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height);
 
 /* Strip mode: rows above and below a window that may be read, though nothing is in
- * them; and the most pixels on a side of a window and its border. */
+ * them; and the most pixels on a side of a window and its border, which ends where the
+ * margin would. */
 enum { RF_SPARE_ROWS = 8 };
-static inline int rf_block_side(const struct rf_in_place *in_place, int pad)
+static inline int rf_block_side(const struct rf_in_place *in_place)
 {
-    return in_place->block + in_place->margin +
-           (in_place->margin > 2 * pad ? in_place->margin : 2 * pad);
+    return in_place->block + 2 * in_place->margin;
 }
 
 /* Bytes of a renderer; UINT64_MAX: too many to address. */

@@ -126,6 +126,7 @@ struct rf_in_place {
     struct refocus_disparity map;
     int block, margin;           /* pixels of a block that is rendered, and around it */
     int mark_block, mark_margin; /* of one whose background is marked */
+    struct rf_rect beyond;       /* of the margin in use, what lies beyond the photo */
     uint8_t *known;              /* known_stride bytes a row, bit x % 8 of byte x / 8 */
     ptrdiff_t known_stride;
     struct rf_level kept[RF_LEVELS]; /* [i]: level i + 1, from RF_KEPT on */

@@ -1,6 +1,7 @@
 #include "renderer/layout.h"
 #include "planes/yuv.h"
 #include "renderer/renderer.h"
+#include "support/compare.h"
 
 /* Pixel (0, 0) of the window in a group of planes of a photo; see rf_use(). */
 static uint16_t *origin(const struct refocus_renderer *r, const struct rf_photo *photo,
@@ -32,6 +33,7 @@ static void place_planes(struct refocus_renderer *r, const struct rf_photo *phot
 void rf_use(struct refocus_renderer *r, int number, struct rf_rect window)
 {
     const struct rf_photo *photo = &r->photo[number];
+    const struct rf_rect *const beyond = &r->in_place.beyond;
     const int pad = photo->pad;
 
     r->used = number;
@@ -47,13 +49,13 @@ void rf_use(struct refocus_renderer *r, int number, struct rf_rect window)
     r->alpha_stride = photo->width;
     if (r->in_place.on) {
         r->border = (struct rf_rect){
-            window.x0 ? 0 : pad,
-            window.y0 ? 0 : pad,
-            window.x1 < photo->width ? 0 : pad,
-            window.y1 < photo->height ? 0 : pad + RF_TILE,
+            window.x0 ? 0 : rf_smaller(pad, beyond->x0),
+            window.y0 ? 0 : rf_smaller(pad, beyond->y0),
+            window.x1 < photo->width ? 0 : rf_smaller(pad, beyond->x1),
+            window.y1 < photo->height ? 0 : rf_smaller(pad, beyond->y1) + RF_TILE,
         };
         r->alpha = photo->alpha;
-        r->alpha_stride = rf_block_side(&r->in_place, pad);
+        r->alpha_stride = rf_block_side(&r->in_place);
     }
     place_planes(r, photo);
     rf_yuv_use(r);

@@ -443,6 +443,9 @@ static void nights(void **state)
     expect_same_night(9, 1441, 391, 30);
     expect_same_night(8, 290, 2883, 9);
     expect_same_night(10, NIGHT_W, NIGHT_H, 40);
+    expect_same_night(11, 290, 700, 90);
+    expect_same_night(12, NIGHT_W, NIGHT_H, 4);
+    expect_same_night(109, 333, 619, 120); /* windows from side to side, with all of their margins */
 }
 
 int main(void)
