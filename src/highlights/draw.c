@@ -34,6 +34,12 @@ static bool reaches(const struct rf_seen *run)
            run->to + RF_LAMP_UNIT * far > 0 && y - far < RF_TILE && y + far >= 0;
 }
 
+/* Of a pixel that shines, Q12: what it lost, and what was taken out. */
+static double light_of(const struct rf_frame *f, const struct rf_highlight *lamp, int c)
+{
+    return lamp->added[c] * (f->params->highlight_gain - 1.0) / 3 + lamp->own[c];
+}
+
 /* The light of each pixel of the run that a pixel sees whole, Q14, times 2^(15 - shift)
  * / RF_LAMP_UNIT: all of it, over the disc. */
 static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
@@ -42,7 +48,6 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
     const struct refocus_aperture *a = f->aperture;
     const double unit = a->shape == RF_SHAPE_DISC ? 3.14159265358979 : a->chord_area;
     const double area = unit * run->radius * run->radius / 65536.0;
-    const double gain = f->params->highlight_gain;
     const int blurred = rf_ramp(run->radius, BLURRED, WHOLLY);
     double share;
     bool any = false;
@@ -50,7 +55,7 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
     job->shift = 8;
     for (int length = RF_LAMP_UNIT; length < run->to - run->from; length *= 2)
         job->shift--;
-    share = 4 * (gain - 1) / 3 * blurred / 65536 / (run->to - run->from);
+    share = 4.0 * blurred / 65536 / (run->to - run->from);
     share *= (double)(1 << (15 - job->shift)) / area;
     for (int c = 0; c < job->planes; c++) {
         const double each = run->light[c] * share + 0.5;
@@ -182,7 +187,7 @@ static int part_of(struct rf_seen *part, const struct rf_lamp_sights *tile,
     place(part, tile, x + first, y, i - first);
     set_blur(part, shining ? sum / shining : 0);
     for (int c = 0; c < 3; c++)
-        part->light[c] = lamp->added[c] * shining;
+        part->light[c] = light_of(tile->f, lamp, c) * shining;
     return i - first;
 }
 
@@ -235,7 +240,7 @@ static struct rf_seen stack_of(const struct rf_lamp_sights *tile,
         count += lamp->count;
         blur += lamp->blur;
         for (int c = 0; c < 3; c++)
-            run.light[c] += lamp->added[c] * lamp->shining;
+            run.light[c] += light_of(tile->f, lamp, c) * lamp->shining;
     }
     place(&run, tile, -r->origin_x, top->y - r->origin_y, 0);
     run.from += RF_LAMP_UNIT * x / rows;

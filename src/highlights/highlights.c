@@ -14,7 +14,8 @@ enum {
     BLURRED = 512,   /* Q7.8: what it may be widened over, */
     ALIKE = 256,     /* if it is farther away than that: else the pre-filter takes it for the same */
     EDGE_FROM = 128, /* Q7.8: what something bright is sharper by for this to be its edge, */
-    EDGE_TO = 384,   /* and wholly so; from halfway on, where lamps are not drawn */
+    EDGE_PART = 16,  /* by that part of this blur at least, and wholly so by 3 times that; where
+                        lamps are not drawn, by twice that */
     DISC_RIM = 256,  /* Q7.8: what a disc goes beyond the blur of a lamp's pixel, half a pixel at its
                         rim and half of what blurs of a run may differ by, and some */
     STACKED = 4096,  /* Q7.8: from this blur on two rows of a lamp are drawn as one, from twice that on
@@ -57,13 +58,12 @@ static bool is_left_alone(const struct rf_highlight *lamp, int i)
     return lamp->edges >> i & 1;
 }
 
-/* The parts that the window has rows of: first to last. */
-static int first_part(const struct refocus_renderer *r)
+int rf_first_lamp_part(const struct refocus_renderer *r)
 {
     return r->origin_y / RF_LAMP_ROWS;
 }
 
-static int last_part(const struct refocus_renderer *r)
+int rf_last_lamp_part(const struct refocus_renderer *r)
 {
     return (r->origin_y + r->height - 1) / RF_LAMP_ROWS;
 }
@@ -139,7 +139,10 @@ static struct blurs {
 
 int rf_lamp_shine(const struct refocus_renderer *r, int x, int y)
 {
-    return 256 - rf_ramp(edge_of(r, x, y), EDGE_FROM, EDGE_TO);
+    const int size = abs(r->front.blur[y * r->stride + x]);
+    const int from = rf_larger(EDGE_FROM, size / EDGE_PART);
+
+    return 256 - rf_ramp(edge_of(r, x, y), from, 3 * from);
 }
 
 static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool drawn)
@@ -176,6 +179,8 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool dra
         lamp->blur = RF_NO_BLUR;
     lamp->shining = (uint16_t)weight;
     lamp->rows = 1;
+    lamp->below = 0;
+    lamp->own[0] = lamp->own[1] = lamp->own[2] = 0;
 }
 
 static bool is_even(const struct rf_highlight *lamp)
@@ -223,7 +228,7 @@ bool rf_mark_highlights(struct refocus_renderer *r, bool drawn)
 {
     bool any = false;
 
-    for (int part = first_part(r); part <= last_part(r) && !rf_cancelled(r); part++) {
+    for (int part = rf_first_lamp_part(r); part <= rf_last_lamp_part(r) && !rf_cancelled(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)
@@ -268,7 +273,7 @@ static void widen_all(struct refocus_renderer *r, const struct rf_highlight *lam
 
 void rf_widen_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap)
 {
-    for (int part = first_part(r); part <= last_part(r) && !rf_cancelled(r); part++) {
+    for (int part = rf_first_lamp_part(r); part <= rf_last_lamp_part(r) && !rf_cancelled(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)
@@ -292,7 +297,7 @@ static void put_in_front(struct refocus_renderer *r, const struct rf_highlight *
 
 void rf_put_lamps_in_front(struct refocus_renderer *r, double gap)
 {
-    for (int part = first_part(r); part <= last_part(r); part++) {
+    for (int part = rf_first_lamp_part(r); part <= rf_last_lamp_part(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)
@@ -388,7 +393,7 @@ void rf_add_highlights(struct refocus_renderer *r, float gain, double gap, int m
 {
     const int share = (int)((gain - 1) * (256 / 3) + 0.5f); /* Q8, of what is three times white */
 
-    for (int part = first_part(r); part <= last_part(r); part++) {
+    for (int part = rf_first_lamp_part(r); part <= rf_last_lamp_part(r); part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
 
         for (uint32_t i = 0; i < found->count; i++)

@@ -53,11 +53,12 @@ struct rf_highlight {
                           rays leave those alone that are mostly that, drawn ones fade, */
     int16_t blur;      /* and the mean of the others, Q7.8, RF_NO_BLUR where they differ, */
     uint16_t shining;  /* by how much all of them shine together, 256 each */
+    uint16_t own[3];   /* Q12 light that was taken out of what rays meet, mean of what shines */
     uint8_t rows;      /* that are drawn as one, from this one on; 0: with one above */
     uint8_t below;     /* the next of them is so much further in the list */
 };
 
-/* Highlights are kept in parts of so many rows, each with room for one run in 52 pixels; further
+/* Highlights are kept in parts of so many rows, each with room for one run in 76 pixels; further
  * ones, farther down, stay as they are. */
 enum {
     RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
@@ -100,7 +101,7 @@ static inline int rf_lamp_parts(int height)
 
 static inline uint32_t rf_lamp_capacity(int width)
 {
-    return (uint32_t)width * RF_LAMP_ROWS / 52 + 6;
+    return (uint32_t)width * RF_LAMP_ROWS / 76 + 6;
 }
 
 /* Forget the highlights of the photo in use. */
@@ -116,6 +117,10 @@ void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp);
 
 /* Put what was found in the order of the rows. */
 void rf_sort_highlights(struct refocus_renderer *r);
+
+/* The parts that the window has rows of: first to last. */
+int rf_first_lamp_part(const struct refocus_renderer *r);
+int rf_last_lamp_part(const struct refocus_renderer *r);
 
 /* In the window, for the lens setting of r->front.blur and r->bins: tell edges from
  * lamps, and note in its tile how far a lamp is blurred; where lamps are drawn, how far its disc

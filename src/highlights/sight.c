@@ -10,9 +10,11 @@
 
 enum {
     NEARER = 256, /* Q7.8: what hides a lamp is so much nearer */
-    LARGE = 32,   /* pixels */
+    LARGE = 32,   /* pixels: no larger region is looked through */
     MOST_ROWS = 4,
-    TOGETHER = 448, /* Q7.8: slabs that are no wider are looked at as one */
+    LEAST_RADIUS = 2048, /* Q7.8: rows that look at one place are an eighth of a pixel
+                            apart, of larger discs more */
+    TOGETHER = 448,      /* Q7.8: slabs that are no wider are looked at as one */
 };
 
 /* What of a slab may hide the run, and where the tile sees it on its way there. */
@@ -60,65 +62,84 @@ static void extent(const struct screen *screen, const struct rf_seen *run, doubl
     *most = (int)floor(b) + 2;
 }
 
-/* Whether any pixel of a region, places from the photo's first one on, is in a slab; of
- * a large one some may be. */
-static bool may_meet(const struct refocus_renderer *r, const struct rf_slab *slab,
-                     int x0, int y0, int x1, int y1)
+/* Of the photo, where the tile sees the screen on its way to the run; to the last. */
+static struct rf_rect region_of(const struct screen *screen, int tx, int ty,
+                                const struct rf_seen *run,
+                                const struct rf_disc_job *job)
 {
-    if (x1 - x0 > LARGE || y1 - y0 > LARGE)
-        return true;
-    x1 = rf_smaller(x1, r->tiles_x * RF_TILE + r->pad - 1);
-    y1 = rf_smaller(y1, r->tiles_y * RF_TILE + r->pad - 1);
-    x0 = rf_smaller(rf_larger(x0, -r->pad), x1 - RF_TILE + 1);
-    y0 = rf_larger(y0, -r->pad);
-    return r->kernels.meets(r->front.blur + y0 * r->stride + x0, r->stride, x1 - x0 + 1,
-                            y1 - y0 + 1, slab);
+    const double middle = run->middle * 0.5, apart = run->rows * 0.5 - 0.25;
+    struct rf_rect at;
+
+    extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_LAMP_UNIT,
+           run->to / (double)RF_LAMP_UNIT, &at.x0, &at.x1);
+    extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart,
+           &at.y0, &at.y1);
+    at.x0 += tx * RF_TILE;
+    at.x1 += tx * RF_TILE;
+    at.y0 += ty * RF_TILE;
+    at.y1 += ty * RF_TILE;
+    return at;
 }
 
 /* By the ranges of what may be met, tiles/ranges.h. */
-static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_frame *f,
-                                int tx, int ty, const struct rf_seen *run,
-                                const struct rf_disc_job *job)
+static enum rf_hidden hidden_in_ranges(const struct refocus_renderer *r,
+                                       const struct rf_slab *slab, struct rf_rect at)
 {
-    const struct refocus_renderer *r = f->r;
-    const int low = screen->slab.low, high = low + screen->slab.width;
-    const double middle = run->middle * 0.5, apart = run->rows * 0.5 - 0.25;
+    const int low = slab->low, high = low + slab->width;
     const int border = rf_range_border(r->pad), each = RF_TILE / RF_CELL;
-    int x0, x1, y0, y1, none = true, all = true;
+    const int first = rf_larger(at.x0 >> 2, -border),
+              end = rf_smaller(at.x1 >> 2, r->tiles_x * each - 1 + border),
+              last = rf_smaller(at.y1 >> 2, r->tiles_y * each - 1 + border);
+    bool none = true, all = true;
 
-    extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_LAMP_UNIT,
-           run->to / (double)RF_LAMP_UNIT, &x0, &x1);
-    extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart, &y0,
-           &y1);
-    x0 += tx * RF_TILE;
-    x1 += tx * RF_TILE;
-    y0 += ty * RF_TILE;
-    y1 += ty * RF_TILE;
-    for (int y = rf_larger(y0 >> 2, -border),
-             last = rf_smaller(y1 >> 2, r->tiles_y * each - 1 + border);
-         y <= last; y += RF_STRIP / RF_CELL)
-        for (int x = rf_larger(x0 >> 2, -border),
-                 end = rf_smaller(x1 >> 2, r->tiles_x * each - 1 + border);
-             x <= end; x += each) {
+    for (int y = rf_larger(at.y0 >> 2, -border); y <= last && (none || all);
+         y += RF_STRIP / RF_CELL)
+        for (int x = first; x <= end; x += each) {
             const uint32_t range = r->range[y * r->range_stride + x];
             const int least = rf_range_least(range), most = rf_range_most(range);
 
             none = none && (most < low || least > high);
             all = all && least >= low && most <= high;
         }
-    if (all)
-        return RF_HIDDEN_WHOLLY;
-    return none || !may_meet(r, &screen->slab, x0, y0, x1, y1) ? RF_HIDDEN_NOWHERE
-                                                               : RF_HIDDEN_PARTLY;
+    return all ? RF_HIDDEN_WHOLLY : none ? RF_HIDDEN_NOWHERE : RF_HIDDEN_PARTLY;
 }
 
-/* Rows of pixels that look at one place, to half a pixel: the nearer it is to the run,
- * the more. */
-static int rows_alike(double part)
+/* Whether any pixel of a region is in a slab; of a large one some may be. */
+static bool may_meet(const struct refocus_renderer *r, const struct rf_slab *slab,
+                     struct rf_rect at)
 {
+    if (at.x1 - at.x0 > LARGE || at.y1 - at.y0 > LARGE)
+        return true;
+    at.x1 = rf_smaller(at.x1, r->tiles_x * RF_TILE + r->pad - 1);
+    at.y1 = rf_smaller(at.y1, r->tiles_y * RF_TILE + r->pad - 1);
+    at.x0 = rf_smaller(rf_larger(at.x0, -r->pad), at.x1 - RF_TILE + 1);
+    at.y0 = rf_larger(at.y0, -r->pad);
+    return r->kernels.meets(r->front.blur + at.y0 * r->stride + at.x0, r->stride,
+                            at.x1 - at.x0 + 1, at.y1 - at.y0 + 1, slab);
+}
+
+static enum rf_hidden hidden_by(const struct screen *screen,
+                                const struct rf_lamp_sights *tile,
+                                const struct rf_seen *run,
+                                const struct rf_disc_job *job)
+{
+    const struct refocus_renderer *r = tile->f->r;
+    const struct rf_rect at = region_of(screen, tile->tx, tile->ty, run, job);
+    const enum rf_hidden hidden = hidden_in_ranges(r, &screen->slab, at);
+
+    return hidden == RF_HIDDEN_PARTLY && !may_meet(r, &screen->slab, at)
+               ? RF_HIDDEN_NOWHERE
+               : hidden;
+}
+
+/* Rows of pixels that look at about one place: the nearer it is to the run, and the
+ * larger the disc, the more. */
+static int rows_alike(double part, int radius)
+{
+    const double away = rf_larger(radius, LEAST_RADIUS) / (64 * 256.0);
     int rows = 1;
 
-    while (rows < MOST_ROWS && 4 * rows * fabs(1 - part) <= 1)
+    while (rows < MOST_ROWS && (2 * rows - 1) * fabs(1 - part) <= away)
         rows *= 2;
     return rows;
 }
@@ -130,7 +151,7 @@ static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen 
 {
     const int farthest = run->radius / 2 + RF_LAMP_UNIT * run->rows;
     static const int aside[4] = {14, 6, 2, 10}; /* so that all of a lamp is met */
-    struct rf_disc_way way = {.rows = rows_alike(screen->part),
+    struct rf_disc_way way = {.rows = rows_alike(screen->part, run->radius),
                               .most = pad,
                               .middle = run->middle,
                               .aside = aside[run->turn & 3],
@@ -217,7 +238,7 @@ static void set_shade(struct rf_lamp_shade *shade, const struct rf_lamp_sights *
         r->front.blur + tile->ty * RF_TILE * r->stride + tile->tx * RF_TILE;
     struct rf_disc_way way;
 
-    shade->hidden = hidden_by(&screen, tile->f, tile->tx, tile->ty, run, job);
+    shade->hidden = hidden_by(&screen, tile, run, job);
     if (shade->hidden != RF_HIDDEN_PARTLY)
         return;
     way = way_to(run, &screen, r->pad);
@@ -276,8 +297,7 @@ enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights,
 
     for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {
         const struct screen screen = screen_of(&sights->slab[k], run);
-        const enum rf_hidden by =
-            hidden_by(&screen, sights->f, sights->tx, sights->ty, run, job);
+        const enum rf_hidden by = hidden_by(&screen, sights, run, job);
 
         if (by == RF_HIDDEN_WHOLLY)
             return by;

@@ -21,7 +21,7 @@ struct rf_seen {
     int turn;         /* which of such runs, in the photo */
     int blur;         /* Q7.8, signed */
     int radius;
-    int light[3]; /* of all its pixels, Q12 times 256 */
+    double light[3]; /* of all its pixels, Q12 times 256 */
 };
 
 /* What one slab hides of a run. Runs of about one place are hidden alike: all rows of a

@@ -91,19 +91,22 @@ void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
                        bool fades, int step, int ty)
 {
     const int over = rf_prefilter_over(above[step], fades);
+    const struct rf_bins *bins = r->bins + (size_t)ty * r->tiles_x;
     const int y0 = ty * RF_TILE, y1 = y0 + RF_TILE < r->height ? y0 + RF_TILE : r->height;
 
     for (int tx = 0, end; tx < r->tiles_x; tx = end) {
         const enum rf_task task = rf_prefilter_task(r, above, step, tx, ty);
+        const bool taken = step == 0 && bins[tx].taken;
         const int x0 = tx * RF_TILE;
         int n;
 
         for (end = tx + 1;
-             end < r->tiles_x && rf_prefilter_task(r, above, step, end, ty) == task;)
+             end < r->tiles_x && rf_prefilter_task(r, above, step, end, ty) == task &&
+             taken == (step == 0 && bins[end].taken);)
             end++;
         n = (end * RF_TILE < r->width ? end * RF_TILE : r->width) - x0;
         for (int y = y0; y < y1; y++)
-            do_task(r, task, out, in, y * r->stride + x0, step, above[step], over, n);
+            do_task(r, task, out, taken ? r->behind.light : in, y * r->stride + x0, step, above[step], over, n);
     }
     for (int c = 0; c < 3; c++)
         rf_extend_rows(r, out[c], y0, y1);

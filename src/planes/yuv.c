@@ -265,6 +265,7 @@ void rf_yuv_blur_rows(struct refocus_renderer *r, int y0, int y1)
 struct filter {
     uint16_t *out;
     const uint16_t *in;
+    const uint16_t *taken; /* in place of it, of tiles that lamps are taken out of; or NULL */
     const int16_t *blur;
     const int *above; /* |s| that the steps begin at */
     bool fades;       /* see rf_prefilter_rows() */
@@ -274,13 +275,13 @@ struct filter {
 };
 
 /* n elements of a row, from `at` on. */
-static void smooth_run(const struct refocus_renderer *r, const struct filter *f, ptrdiff_t at,
-                       int n)
+static void smooth_run(const struct refocus_renderer *r, const struct filter *f,
+                       const uint16_t *in, ptrdiff_t at, int n)
 {
     const int step = f->across, least = f->above[f->number];
     const int over = rf_prefilter_over(least, f->fades);
     const ptrdiff_t down = r->stride << f->number;
-    const uint16_t *from = f->in + at - step;
+    const uint16_t *from = in + at - step;
     const int16_t *s = f->blur + at;
     uint16_t *const row = f->scratch + step;
 
@@ -292,22 +293,27 @@ static void smooth_run(const struct refocus_renderer *r, const struct filter *f,
 static void smooth_rows(const struct refocus_renderer *r, const struct filter *f, int ty, int y0,
                         int y1, int w)
 {
+    const struct rf_bins *bins = r->bins + (size_t)ty * r->tiles_x;
+
     for (int tx = 0, end; tx < r->tiles_x; tx = end) {
         const enum rf_task task = rf_prefilter_task(r, f->above, f->number, tx, ty);
+        const bool taken = f->taken && bins[tx].taken;
+        const uint16_t *const in = taken ? f->taken : f->in;
         const int x0 = tx * RF_TILE;
         int n;
 
         for (end = tx + 1; end < r->tiles_x &&
-                           rf_prefilter_task(r, f->above, f->number, end, ty) == task;)
+                           rf_prefilter_task(r, f->above, f->number, end, ty) == task &&
+                           taken == (f->taken && bins[end].taken);)
             end++;
         n = (end * RF_TILE < w ? end * RF_TILE : w) - x0;
         for (int y = y0; y < y1 && task != RF_SKIP; y++) {
             const ptrdiff_t at = y * r->stride + x0;
 
             if (task == RF_FILTER)
-                smooth_run(r, f, at, n);
+                smooth_run(r, f, in, at, n);
             else
-                memcpy(f->out + at, f->in + at, (size_t)n * 2);
+                memcpy(f->out + at, in + at, (size_t)n * 2);
         }
     }
 }
@@ -316,8 +322,9 @@ void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint
                            const int above[RF_PREFILTER_STEPS], bool fades, int step,
                            uint16_t *scratch, int ty)
 {
-    const struct filter filter = {out,  in,        r->front.blur, above, fades,
-                                  step, 1 << step, scratch};
+    const struct filter filter = {
+        out,   in,   step == 0 ? r->behind.light[0] : NULL, r->front.blur, above,
+        fades, step, 1 << step,                             scratch};
 
     smooth_rows(r, &filter, ty, rf_band_start(ty), rf_band_end(r, ty), r->width);
     rf_extend_rows(r, out, rf_band_start(ty), rf_band_end(r, ty));
@@ -327,8 +334,8 @@ void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const ui
                              const int above[RF_PREFILTER_STEPS], bool fades, int step,
                              uint16_t *scratch, int ty)
 {
-    const struct filter filter = {out,  in,        r->yuv.blur, above, fades,
-                                  step, 2 << step, scratch};
+    const struct filter filter = {out,   in,   NULL,      r->yuv.blur, above,
+                                  fades, step, 2 << step, scratch};
     const int c0 = rf_band_start(ty) >> r->yuv.down;
     const int c1 = rf_chroma_end(r, rf_band_end(r, ty));
 

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "background/background.h"
+#include "highlights/draw.h"
 #include "planes/yuv.h"
 #include "renderer/bands.h"
 #include "renderer/render_yuv.h"
@@ -190,6 +191,8 @@ void rf_pass_prefilter(struct rf_frame *f)
 {
     if (rf_takes_apart(f))
         rf_swap_thin_light(f);
+    if (f->draws)
+        rf_take_lamps_out(f->r);
     prefilter(f);
     if (rf_takes_apart(f))
         rf_swap_thin_light_back(f);

@@ -148,6 +148,7 @@ struct rf_bins {
     int16_t dots;        /* of one that is small beside the gaps of the rays */
     int16_t behind;      /* blur of the background in the middle, once that is filled */
     uint16_t brightest;  /* light of either layer, as it is summed; or more */
+    bool taken;          /* lamps are taken out of its light, highlights/taken.c */
 };
 
 /*
