@@ -12,6 +12,7 @@
 enum {
     BLURRED = 128, /* Q7.8: a lamp has its light from there on, */
     WHOLLY = 384,  /* and all of it from here on */
+    PAIRS = 8192,  /* rows that are hidden in part are drawn by twos from there on */
 };
 
 bool rf_draws_lamps(const struct rf_frame *f)
@@ -260,7 +261,7 @@ static void draw_stack(struct canvas *canvas, const struct rf_highlight *top)
     const struct rf_seen run = stack_of(&canvas->sights, top, top->rows);
     struct rf_disc_job job = {.planes = canvas->planes};
     const struct rf_highlight *lamp = top;
-    const int most = top->rows > 2 ? 2 : 1;
+    const int most = run.radius < PAIRS ? 1 : 2;
     enum rf_hidden hidden;
 
     if (!reaches(&run) || !set_light(&job, f, &run))

@@ -145,6 +145,47 @@ int rf_lamp_shine(const struct refocus_renderer *r, int x, int y)
     return 256 - rf_ramp(edge_of(r, x, y), from, 3 * from);
 }
 
+/* How far the disc of a pixel so blurred may reach where it is drawn with others. */
+static int disc_reach(int size)
+{
+    return rf_smaller(size + DISC_RIM + (size < STACKED ? 0 : STACK_RIM), INT16_MAX);
+}
+
+static void note_reach(struct refocus_renderer *r, int x, int y, int reach)
+{
+    struct rf_bins *bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
+
+    bins->lamp = (int16_t)rf_larger(reach, bins->lamp);
+}
+
+/* The mean blur of what of a run is blurred as its middle is, if that is two thirds of what
+ * shines: the rest, its rim with the depth of what is beside it, belongs to it as well. */
+static int blur_of_most(struct refocus_renderer *r, const struct rf_highlight *lamp)
+{
+    int x, y, middle, sum = 0, weight = 0, reach;
+
+    if (!place_of(r, lamp, lamp->count / 2, &x, &y))
+        return RF_NO_BLUR;
+    middle = r->front.blur[y * r->stride + x];
+    for (int i = 0; i < lamp->count; i++) {
+        const int shines =
+            !place_of(r, lamp, i, &x, &y) ? 0 : lamp->edges >> i & 1 ? rf_lamp_shine(r, x, y) : 256;
+        const int blur = shines ? r->front.blur[y * r->stride + x] : 0;
+
+        if (shines && 2 * abs(blur - middle) <= rf_blurs_alike(middle)) {
+            sum += shines * blur;
+            weight += shines;
+        }
+    }
+    if (3 * weight < 2 * lamp->shining || !weight)
+        return RF_NO_BLUR;
+    reach = disc_reach(abs(sum / weight));
+    for (int i = 0; i < lamp->count; i++)
+        if (place_of(r, lamp, i, &x, &y))
+            note_reach(r, x, y, reach);
+    return sum / weight;
+}
+
 static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool drawn)
 {
     const struct blurs near = blurs_in(r, around_lamp(r, lamp, 2));
@@ -152,32 +193,28 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool dra
 
     lamp->edges = 0;
     for (int i = 0, x, y; i < lamp->count; i++) {
-        struct rf_bins *bins;
-        int blur, size, reach, shines = 256;
+        int blur, size, shines = 256;
 
         if (!place_of(r, lamp, i, &x, &y))
             continue;
-        bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
         blur = r->front.blur[y * r->stride + x];
         size = abs(blur);
-        reach = drawn ? size + DISC_RIM + (size < STACKED ? 0 : STACK_RIM) : size;
-        reach = rf_smaller(reach, INT16_MAX);
         if (near.sharpest < size - EDGE_FROM)
             shines = rf_lamp_shine(r, x, y);
         if (shines < (drawn ? 256 : 128))
             lamp->edges |= (uint16_t)(1 << i);
         if (shines == 0)
             continue;
-        bins->lamp = (int16_t)(reach > bins->lamp ? reach : bins->lamp);
+        note_reach(r, x, y, drawn ? disc_reach(size) : size);
         least = blur < least ? blur : least;
         most = blur > most ? blur : most;
         sum += shines * blur;
         weight += shines;
     }
     lamp->blur = (int16_t)(weight ? sum / weight : 0);
-    if (most - least > rf_blurs_alike(least))
-        lamp->blur = RF_NO_BLUR;
     lamp->shining = (uint16_t)weight;
+    if (most - least > rf_blurs_alike(least))
+        lamp->blur = (int16_t)(drawn ? blur_of_most(r, lamp) : RF_NO_BLUR);
     lamp->rows = 1;
     lamp->below = 0;
     lamp->own[0] = lamp->own[1] = lamp->own[2] = 0;
