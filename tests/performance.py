@@ -120,6 +120,43 @@ def qualities(refocus, scenes, repeat, rounds=6):
                        + [f"{c}, {n} thread{'s' * (n > 1)}" for c, n in columns], rows)])
 
 
+def large_blurs(refocus, scenes, repeat, rounds=4):
+    """What K = 64 costs beside K = 16, of all views of the small scenes."""
+    blurs = (16, 64)
+    best = {}
+    views = [(path.parent, focus)
+             for path in sorted(scenes.glob("*/scene.json")) if "1080" not in path.parent.name
+             for focus in sorted({g["df"] for g in json.loads(path.read_text("utf-8"))["gt"]})]
+    for turn in range(rounds):
+        for path, focus in views:
+            for quality in ("preview", "standard"):
+                for blur in blurs:
+                    with tempfile.TemporaryDirectory() as work:
+                        done = subprocess.run(
+                            [refocus, "render", path / "allfocus.png", "--depth",
+                             path / "disparity.png", "--focus", f"{focus:.4f}", "--blur",
+                             str(blur), "--quality", quality, "--threads", "1", "--repeat",
+                             str(repeat), "--json", "-o", Path(work) / "out.png"],
+                            stdout=subprocess.PIPE, check=True)
+                    key = path.name, focus, quality, blur
+                    best[key] = min(best.get(key, 1e9),
+                                    json.loads(done.stdout)["render_ms"]["min"])
+        print(f"large blurs: round {turn + 1} of {rounds}", file=sys.stderr)
+    rows = []
+    for path, focus in views:
+        row = [path.name, f"{focus:.3f}"]
+        for quality in ("preview", "standard"):
+            few, many = (best[path.name, focus, quality, blur] for blur in blurs)
+            row += [f"{few:.1f}", f"{many:.1f}", f"{many / few:.2f}"]
+        rows.append(row)
+    return "\n".join([
+        "## Large blurs\n",
+        f"Frames of 720x540 in ms, one thread, the best of {rounds} rounds of {repeat} by turns.\n",
+        machine() + "\n",
+        sections.table(["scene", "focus"] + [f"{q}, {c}" for q in ("preview", "standard")
+                                             for c in ("K = 16", "K = 64", "ratio")], rows)])
+
+
 def large(refocus, repeat):
     """Twelve megapixels at the largest blur that is asked for."""
     rows = []
@@ -233,6 +270,9 @@ def main():
     sections.put(args.out, "methods", "tests/performance.py", methods(refocus, args.repeat))
     sections.put(args.out, "qualities", "tests/performance.py",
                  qualities(refocus, scenes, args.repeat))
+    if scenes.is_dir():
+        sections.put(args.out, "blurs", "tests/performance.py",
+                     large_blurs(refocus, scenes, args.repeat))
     sections.put(args.out, "large", "tests/performance.py", large(refocus, 5))
     sections.put(args.out, "frames", "tests/performance.py", frames(refocus, args.repeat))
     sections.put(args.out, "interactive", "tests/performance.py", interactive(args.build))
