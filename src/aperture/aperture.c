@@ -248,7 +248,7 @@ int refocus_aperture_create(struct refocus_aperture **aperture,
     }
     if (status == REFOCUS_OK && !is_simple(p))
         add_profiles(*aperture, p);
-    if (status == REFOCUS_OK && rf_aperture_has_chords(*aperture))
+    if (status == REFOCUS_OK)
         rf_chords_make(*aperture);
     return status;
 }

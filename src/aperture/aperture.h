@@ -16,8 +16,8 @@ enum { RF_CURVE_SIDE = 64 };
 /* Vertices of an outline, one for each step of the circle; see outline.c. */
 enum { RF_OUTLINE = 720 };
 
-/* Heights that chords are kept of; see chords.c. */
-enum { RF_CHORDS = 256 };
+/* Heights that chords are kept of, and how many of each at most; see chords.c. */
+enum { RF_CHORDS = 256, RF_CHORD_SETS = 3 };
 
 /* How light is spread from the middle to the rim; see refocus_aperture_params. */
 struct rf_profile {
@@ -37,8 +37,9 @@ struct refocus_aperture {
     double squeeze_x, squeeze_y; /* factors of what is drawn */
     struct rf_profile behind, before; /* the focus */
     bool figure;                      /* an outline that no iris has */
-    int16_t chord[RF_CHORDS + 1][2];  /* of an iris: first and last x, Q14, */
-    double chord_area;                /* and its area */
+    int chord_sets; /* of an outline: so many chords in a row at most; 0: too many, or none kept */
+    int16_t chord[RF_CHORD_SETS][RF_CHORDS + 1][2]; /* first and last x, Q14, */
+    double chord_area;                              /* and its area */
 };
 
 /* Whether rays before the focus differ from those behind it. */
@@ -74,9 +75,8 @@ void rf_outline_at(const struct refocus_aperture *aperture, double share, double
 /* rho^2 of a place, 1 on the outline. */
 double rf_outline_square(const struct refocus_aperture *aperture, double x, double y);
 
-/* Whether each row of it is one chord, evenly lit, that is kept: of an iris that is no disc. Makes
- * them, once it is known all but its id. */
-bool rf_aperture_has_chords(const struct refocus_aperture *aperture);
+/* Its rows as chords, once all of it is known but its id, if it is evenly lit: of irises and
+ * figures that are no discs. */
 void rf_chords_make(struct refocus_aperture *aperture);
 
 /* The disc that a NULL aperture stands for. */

@@ -1,7 +1,9 @@
-/* chords.c: how wide an iris is at each height.
+/* chords.c: where an iris or a figure is open at each height.
  *
- * Every row of an iris is one chord, as it is convex. Where they begin and end is kept
- * for heights 2 / RF_CHORDS of its radius apart.
+ * Every row of an iris is one chord, as it is convex; of a heart two may be, of a star
+ * three. Where they begin and end is kept for heights 2 / RF_CHORDS of the radius
+ * apart. Where a row has fewer than others, the last ones are as long as nothing, at
+ * its end: as chords are straight from height to height, so is what is open of a row.
  */
 #include "aperture/aperture.h"
 
@@ -31,30 +33,62 @@ static int16_t to_q14(double v)
     return (int16_t)floor(v * 16384 + 0.5);
 }
 
-/* The chord at a height; of none both its ends are 0. */
-static void set_chord(struct refocus_aperture *a, int row)
+static void sort(double x[], int count)
 {
-    const double y = 2.0 * row / RF_CHORDS - 1;
-    double least = 2, most = -2;
+    for (int i = 1; i < count; i++)
+        for (int k = i; k > 0 && x[k] < x[k - 1]; k--) {
+            const double more = x[k - 1];
+
+            x[k - 1] = x[k];
+            x[k] = more;
+        }
+}
+
+/* Where the outline crosses a height, from left to right: so many, or one more than
+ * there is room for. */
+static int crossings(const struct refocus_aperture *a, double y,
+                     double x[2 * RF_CHORD_SETS])
+{
+    int count = 0;
 
     for (int i = 0; i < corners(a); i++) {
         const struct point p = corner(a, i), q = corner(a, i + 1);
-        double x;
 
         if ((p.y < y) == (q.y < y))
             continue;
-        x = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
-        least = x < least ? x : least;
-        most = x > most ? x : most;
+        if (count == 2 * RF_CHORD_SETS)
+            return count + 1;
+        x[count++] = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
     }
-    a->chord[row][0] = to_q14(least < most ? least : 0);
-    a->chord[row][1] = to_q14(least < most ? most : 0);
+    sort(x, count);
+    return count;
+}
+
+/* The chords at a height; of none both ends are 0. False: they are too many. */
+static bool set_chords(struct refocus_aperture *a, int row)
+{
+    double x[2 * RF_CHORD_SETS];
+    const int count = crossings(a, 2.0 * row / RF_CHORDS - 1, x), sets = count / 2;
+
+    if (sets > RF_CHORD_SETS)
+        return false;
+    a->chord_sets = sets > a->chord_sets ? sets : a->chord_sets;
+    for (int set = 0; set < RF_CHORD_SETS; set++)
+        for (int k = 0; k < 2; k++)
+            a->chord[set][row][k] = to_q14(count == 0   ? 0
+                                           : set < sets ? x[2 * set + k]
+                                                        : x[count - 1]);
+    return true;
 }
 
 void rf_chords_make(struct refocus_aperture *a)
 {
     double twice = 0;
 
+    a->chord_sets = 0;
+    if ((a->shape != RF_SHAPE_POLYGON && a->shape != RF_SHAPE_OUTLINE) ||
+        !rf_profile_is_even(&a->behind) || !rf_profile_is_even(&a->before))
+        return;
     for (int i = 0; i < corners(a); i++) {
         const struct point p = corner(a, i), q = corner(a, i + 1);
 
@@ -62,13 +96,8 @@ void rf_chords_make(struct refocus_aperture *a)
     }
     a->chord_area = fabs(twice) / 2;
     for (int row = 0; row <= RF_CHORDS; row++)
-        set_chord(a, row);
-}
-
-bool rf_aperture_has_chords(const struct refocus_aperture *a)
-{
-    const bool shape =
-        a->shape == RF_SHAPE_POLYGON || (a->shape == RF_SHAPE_OUTLINE && !a->figure);
-
-    return shape && rf_profile_is_even(&a->behind) && rf_profile_is_even(&a->before);
+        if (!set_chords(a, row)) {
+            a->chord_sets = 0;
+            return;
+        }
 }

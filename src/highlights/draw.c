@@ -21,8 +21,8 @@ bool rf_draws_lamps(const struct rf_frame *f)
     const struct refocus_aperture *a = f->aperture;
 
     return rf_is_sweep(f) && p->highlight_gain > 1 && !rf_weighs(p) &&
-           (a->shape == RF_SHAPE_DISC || rf_aperture_has_chords(a)) &&
-           p->cat_eye == 0 && p->fringe == 0;
+           (a->shape == RF_SHAPE_DISC || a->chord_sets) && p->cat_eye == 0 &&
+           p->fringe == 0;
 }
 
 /* Whether the discs of its pixels reach into the tile. */
@@ -68,16 +68,18 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
 }
 
 /* Where a chord begins and ends at a height, in parts of the radius. */
-static void chord_at(const struct refocus_aperture *a, double height, double ends[2])
+static void chord_at(const struct refocus_aperture *a, int set, double height,
+                     double ends[2])
 {
+    const int16_t(*const chord)[2] = a->chord[set];
     const double at = (height + 1) * (RF_CHORDS / 2);
     const int row = (int)floor(at);
 
     for (int k = 0; k < 2; k++)
-        ends[k] = row < 0 || row >= RF_CHORDS
-                      ? 0
-                      : a->chord[row][k] +
-                            (at - row) * (a->chord[row + 1][k] - a->chord[row][k]);
+        ends[k] =
+            row < 0 || row >= RF_CHORDS
+                ? 0
+                : chord[row][k] + (at - row) * (chord[row + 1][k] - chord[row][k]);
 }
 
 /* Of a disc rows are as wide to both sides. Behind the focus an iris is seen as it is,
@@ -103,7 +105,7 @@ static void set_chords(struct rf_disc_job *job, const struct rf_frame *f,
             const double away = y + (k - run->rows - run->middle) * 0.5 + 0.25;
             double ends[2];
 
-            chord_at(a, 256 * away / run->blur, ends);
+            chord_at(a, run->set, 256 * away / run->blur, ends);
             first -= unit * ends[1];
             last -= unit * ends[0];
         }
@@ -134,7 +136,14 @@ struct canvas {
     int planes;
 };
 
-static void draw(struct canvas *canvas, const struct rf_seen *run)
+/* So many as a row of the opening may have. */
+static int chord_sets(const struct rf_frame *f)
+{
+    return f->aperture->shape == RF_SHAPE_DISC ? 1 : f->aperture->chord_sets;
+}
+
+/* One set of them. */
+static void draw_set(struct canvas *canvas, const struct rf_seen *run)
 {
     const struct rf_frame *f = canvas->sights.f;
     struct rf_disc_job job = {.planes = canvas->planes};
@@ -144,6 +153,12 @@ static void draw(struct canvas *canvas, const struct rf_seen *run)
     set_shape(&job, f, run);
     if (job.first < job.end && rf_sees_lamp(&canvas->sights, &job, run))
         f->r->kernels.draw_disc(canvas->mean, &job);
+}
+
+static void draw(struct canvas *canvas, struct rf_seen run)
+{
+    for (run.set = 0; run.set < chord_sets(canvas->sights.f); run.set++)
+        draw_set(canvas, &run);
 }
 
 /* Puts `count` pixels of a row of the window in a run, from (x, y) on. */
@@ -156,6 +171,7 @@ static void place(struct rf_seen *run, const struct rf_lamp_sights *tile, int x,
     run->middle = 2 * (y - tile->ty * RF_TILE);
     run->rows = 1;
     run->turn = y;
+    run->set = 0;
 }
 
 static void set_blur(struct rf_seen *run, int blur)
@@ -223,7 +239,7 @@ static void draw_parts(struct canvas *canvas, const struct rf_highlight *lamp)
         struct rf_seen part;
 
         i += part_of(&part, tile, lamp, i);
-        draw(canvas, &part);
+        draw(canvas, part);
     }
 }
 
@@ -255,13 +271,13 @@ static struct rf_seen stack_of(const struct rf_lamp_sights *tile,
 
 /* Where nothing hides them; else they are drawn in parts, for each to see past that by
  * other ways. */
-static void draw_stack(struct canvas *canvas, const struct rf_highlight *top)
+static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
+                       struct rf_seen run)
 {
     const struct rf_frame *f = canvas->sights.f;
-    const struct rf_seen run = stack_of(&canvas->sights, top, top->rows);
     struct rf_disc_job job = {.planes = canvas->planes};
-    const struct rf_highlight *lamp = top;
     const int most = run.radius < PAIRS ? 1 : 2;
+    const struct rf_highlight *lamp = top;
     enum rf_hidden hidden;
 
     if (!reaches(&run) || !set_light(&job, f, &run))
@@ -271,13 +287,12 @@ static void draw_stack(struct canvas *canvas, const struct rf_highlight *top)
                                  : RF_HIDDEN_WHOLLY;
     if (hidden == RF_HIDDEN_NOWHERE)
         f->r->kernels.draw_disc(canvas->mean, &job);
-    if (hidden != RF_HIDDEN_PARTLY)
-        return;
-    for (int k = 0; k < top->rows; k += most) {
+    for (int k = 0; hidden == RF_HIDDEN_PARTLY && k < top->rows; k += most) {
         const int rows = rf_smaller(most, top->rows - k);
-        const struct rf_seen part = stack_of(&canvas->sights, lamp, rows);
+        struct rf_seen part = stack_of(&canvas->sights, lamp, rows);
 
-        draw(canvas, &part);
+        part.set = run.set;
+        draw_set(canvas, &part);
         for (int i = 0; i < rows; i++)
             lamp += lamp->below;
     }
@@ -285,15 +300,20 @@ static void draw_stack(struct canvas *canvas, const struct rf_highlight *top)
 
 static void draw_lamp(struct canvas *canvas, const struct rf_highlight *lamp)
 {
+    const struct rf_frame *f = canvas->sights.f;
+    struct rf_seen run;
+
     if (lamp->blur == RF_NO_BLUR) {
         draw_parts(canvas, lamp);
-    } else if (lamp->rows > 1) {
-        draw_stack(canvas, lamp);
-    } else if (lamp->rows == 1) {
-        const struct rf_seen run = stack_of(&canvas->sights, lamp, 1);
-
-        draw(canvas, &run);
+        return;
     }
+    if (lamp->rows == 0)
+        return;
+    run = stack_of(&canvas->sights, lamp, lamp->rows);
+    if (lamp->rows == 1)
+        draw(canvas, run);
+    for (; lamp->rows > 1 && run.set < chord_sets(f); run.set++)
+        draw_stack(canvas, lamp, run);
 }
 
 void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,

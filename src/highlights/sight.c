@@ -210,8 +210,9 @@ static float apart(const struct rf_seen *one, const struct rf_seen *other, int c
 static bool serves(const struct rf_lamp_look *look, const struct rf_lamp_look *wanted,
                    int centre)
 {
-    return look->slab == wanted->slab && look->first <= wanted->first &&
-           look->end >= wanted->end && (look->run.blur < 0) == (wanted->run.blur < 0) &&
+    return look->slab == wanted->slab && look->run.set == wanted->run.set &&
+           look->first <= wanted->first && look->end >= wanted->end &&
+           (look->run.blur < 0) == (wanted->run.blur < 0) &&
            apart(&look->run, &wanted->run, centre) <= 0.25f;
 }
 

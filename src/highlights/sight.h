@@ -19,6 +19,7 @@ struct rf_seen {
     int from, to;     /* RF_LAMP_UNIT */
     int middle, rows; /* half pixels; so many */
     int turn;         /* which of such runs, in the photo */
+    int set;          /* which of the chords of a row of the opening */
     int blur;         /* Q7.8, signed */
     int radius;
     double light[3]; /* of all its pixels, Q12 times 256 */

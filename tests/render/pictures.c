@@ -315,7 +315,7 @@ static void set_look(struct refocus_render_params *params, int i)
     params->grain = i == IRIS + 9 || all ? 1.5f : 0;
     params->seed = 99;
     params->highlight_gain = i == IRIS + 8 || all                ? 4
-                             : i == IRIS + 10                    ? 8
+                             : i == IRIS + 10 || i == IRIS + 17 || i == IRIS + 18 ? 8
                              : i == IRIS + 11 || i == IRIS + 12 ? 16
                                                                  : 1;
 }
@@ -334,7 +334,7 @@ bool effect_params(int i, float focus, float blur, struct refocus_render_params 
         "heart weighted",  "fringe",         "fringe full",  "star filter",
         "grain",           "lamps 8",        "lamps 16",     "lamps 16 weighted",
         "mask, sides",     "all of bokeh",   "star cut off",
-        "blades cut off, full"};
+        "blades cut off, full", "hearts of lamps", "stars of lamps"};
     const int count = sizeof names / sizeof *names;
 
     *params = refocus_render_params_default(focus, blur);
@@ -374,12 +374,12 @@ struct refocus_aperture *effect_aperture(int i)
                : i == IRIS + 4 || i == IRIS + 15 ? 7
                : i == IRIS + 16                  ? 5
                                                  : 0;
-    p.rotation_deg = p.blades ? 20 : 0;
+    p.rotation_deg = p.blades ? 20 : i == IRIS + 17 || i == IRIS + 18 ? 25 : 0;
     p.curvature = i == IRIS ? 0.4 : 0;
     p.opening = i == IRIS ? 0.8 : 0;
-    p.figure = i == IRIS + 4 || i == IRIS + 15 ? REFOCUS_FIGURE_STAR
-               : i == IRIS + 5                 ? REFOCUS_FIGURE_HEART
-                                               : REFOCUS_FIGURE_NONE;
+    p.figure = i == IRIS + 4 || i == IRIS + 15 || i == IRIS + 18 ? REFOCUS_FIGURE_STAR
+               : i == IRIS + 5 || i == IRIS + 17                 ? REFOCUS_FIGURE_HEART
+                                                                 : REFOCUS_FIGURE_NONE;
     p.squeeze = i == IRIS + 4 || i == IRIS + 14 ? 0.6 : 1;
     p.hole = i == IRIS + 3 || i == IRIS + 14 ? 0.4 : 0;
     p.edge_behind = i == IRIS + 2 || i == IRIS + 14 ? 0.6 : i == IRIS + 3 ? -0.5 : 0;

@@ -7,14 +7,19 @@ enum { AROUND = 30 }; /* codes, where there is no lamp */
 enum { W = 160, H = 144, CX = W / 2, CY = H / 2 };
 enum { BEHIND = 6554 }; /* 12 pixels of blur behind the focus at 0.5 */
 
-/* An iris of so many blades, 0: round. Its lamps are drawn, but with a hole rays meet
- * them. */
+enum { HEART = -1, STAR = -2 };
+
+/* An iris of so many blades, 0: round, or a figure, turned. Its lamps are drawn, but
+ * with a hole rays meet them. */
 static struct refocus_aperture *iris(int blades, bool met)
 {
     struct refocus_aperture_params params = refocus_aperture_params_default();
     struct refocus_aperture *aperture;
 
-    params.blades = blades;
+    params.blades = blades > 0 ? blades : 0;
+    params.figure = blades == HEART  ? REFOCUS_FIGURE_HEART
+                    : blades == STAR ? REFOCUS_FIGURE_STAR
+                                     : REFOCUS_FIGURE_NONE;
     params.rotation_deg = 17;
     params.hole = met ? 0.02 : 0;
     assert_int_equal(refocus_aperture_create(&aperture, &params), REFOCUS_OK);
@@ -126,8 +131,8 @@ static void slanted(void **state)
 }
 
 /* Lamps behind a post: in focus it keeps its codes, and what is nearer cuts discs off
- * where rays say so, too; of a round opening, and of one of five blades, which has no
- * two sides alike. */
+ * where rays say so, too; of a round opening, of one of five blades, which has no two
+ * sides alike, and of figures whose rows are several chords. */
 static void expect_hidden(uint16_t post, int blades)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
@@ -174,6 +179,8 @@ static void hidden(void **state)
     for (int k = 0; k < 3; k++) {
         expect_hidden(posts[k], 0);
         expect_hidden(posts[k], 5);
+        expect_hidden(posts[k], HEART);
+        expect_hidden(posts[k], STAR);
     }
 }
 
@@ -207,16 +214,17 @@ static void ways(void **state)
     (void)state;
     draw_thing(&p, &lamp, CX + 0.3, CY - 0.2);
     renderer = prepared(&p, 30, 2);
-    for (int blades = 0; blades <= 6; blades += 6) {
+    for (int k = 0; k < 4; k++) {
+        static const int openings[] = {0, 6, HEART, STAR};
         double drawn[3], met[3];
 
-        gained(renderer, blades, false, drawn);
-        gained(renderer, blades, true, met);
+        gained(renderer, openings[k], false, drawn);
+        gained(renderer, openings[k], true, met);
         for (int c = 0; c < 3; c++)
             if (fabs(drawn[c] - met[c]) > 0.05 * met[c])
                 fail_msg("%d blades: channel %d has %.3f times its light drawn, %.3f "
                          "met by rays",
-                         blades, c, drawn[c], met[c]);
+                         openings[k], c, drawn[c], met[c]);
     }
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
