@@ -62,23 +62,29 @@ static void extent(const struct screen *screen, const struct rf_seen *run, doubl
     *most = (int)floor(b) + 2;
 }
 
+/* How far the tile looks at most, pixels: by the frame alone, as all that is seen. */
+static int farthest_look(const struct rf_frame *f)
+{
+    return ((f->focus.radius + 254) >> 8) + 2;
+}
+
 /* Of the photo, where the tile sees the screen on its way to the run; to the last. */
-static struct rf_rect region_of(const struct screen *screen, int tx, int ty,
+static struct rf_rect region_of(const struct screen *screen,
+                                const struct rf_lamp_sights *tile,
                                 const struct rf_seen *run,
                                 const struct rf_disc_job *job)
 {
     const double middle = run->middle * 0.5, apart = run->rows * 0.5 - 0.25;
+    const int x = tile->tx * RF_TILE, y = tile->ty * RF_TILE,
+              far = farthest_look(tile->f), most = RF_TILE - 1 + far;
     struct rf_rect at;
 
     extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_LAMP_UNIT,
            run->to / (double)RF_LAMP_UNIT, &at.x0, &at.x1);
     extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart,
            &at.y0, &at.y1);
-    at.x0 += tx * RF_TILE;
-    at.x1 += tx * RF_TILE;
-    at.y0 += ty * RF_TILE;
-    at.y1 += ty * RF_TILE;
-    return at;
+    return (struct rf_rect){x + rf_larger(at.x0, -far), y + rf_larger(at.y0, -far),
+                            x + rf_smaller(at.x1, most), y + rf_smaller(at.y1, most)};
 }
 
 /* By the ranges of what may be met, tiles/ranges.h. */
@@ -104,18 +110,17 @@ static enum rf_hidden hidden_in_ranges(const struct refocus_renderer *r,
     return all ? RF_HIDDEN_WHOLLY : none ? RF_HIDDEN_NOWHERE : RF_HIDDEN_PARTLY;
 }
 
-/* Whether any pixel of a region is in a slab; of a large one some may be. */
+/* Whether any pixel of a region, or beside one that is narrow, is in a slab; of a large
+ * one some may be. */
 static bool may_meet(const struct refocus_renderer *r, const struct rf_slab *slab,
-                     struct rf_rect at)
+                     struct rf_rect at, int far)
 {
-    if (at.x1 - at.x0 > LARGE || at.y1 - at.y0 > LARGE)
-        return true;
-    at.x1 = rf_smaller(at.x1, r->tiles_x * RF_TILE + r->pad - 1);
-    at.y1 = rf_smaller(at.y1, r->tiles_y * RF_TILE + r->pad - 1);
-    at.x0 = rf_smaller(rf_larger(at.x0, -r->pad), at.x1 - RF_TILE + 1);
-    at.y0 = rf_larger(at.y0, -r->pad);
-    return r->kernels.meets(r->front.blur + at.y0 * r->stride + at.x0, r->stride,
-                            at.x1 - at.x0 + 1, at.y1 - at.y0 + 1, slab);
+    const int wide = rf_larger(at.x1 - at.x0 + 1, RF_TILE), high = at.y1 - at.y0 + 1;
+    const int x = rf_larger(at.x1 - wide + 1, -far);
+
+    return wide > LARGE || high > LARGE ||
+           r->kernels.meets(r->front.blur + at.y0 * r->stride + x, r->stride, wide,
+                            high, slab);
 }
 
 static enum rf_hidden hidden_by(const struct screen *screen,
@@ -124,10 +129,11 @@ static enum rf_hidden hidden_by(const struct screen *screen,
                                 const struct rf_disc_job *job)
 {
     const struct refocus_renderer *r = tile->f->r;
-    const struct rf_rect at = region_of(screen, tile->tx, tile->ty, run, job);
+    const struct rf_rect at = region_of(screen, tile, run, job);
     const enum rf_hidden hidden = hidden_in_ranges(r, &screen->slab, at);
 
-    return hidden == RF_HIDDEN_PARTLY && !may_meet(r, &screen->slab, at)
+    return hidden == RF_HIDDEN_PARTLY &&
+                   !may_meet(r, &screen->slab, at, farthest_look(tile->f))
                ? RF_HIDDEN_NOWHERE
                : hidden;
 }
@@ -145,14 +151,14 @@ static int rows_alike(double part, int radius)
 }
 
 /* A look part of the way to the run. No pixel looks farther away than its disc reaches,
- * and half its rows, nor then farther than may be read. */
+ * and half its rows, nor then farther than `far`. */
 static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen *screen,
-                                 int pad)
+                                 int far)
 {
     const int farthest = run->radius / 2 + RF_LAMP_UNIT * run->rows;
     static const int aside[4] = {14, 6, 2, 10}; /* so that all of a lamp is met */
     struct rf_disc_way way = {.rows = rows_alike(screen->part, run->radius),
-                              .most = pad,
+                              .most = far,
                               .middle = run->middle,
                               .aside = aside[run->turn & 3],
                               .mirrored = run->turn & 1};
@@ -161,7 +167,7 @@ static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen 
     while (farthest << way.shift <= INT16_MAX / 4)
         way.shift++;
     times = floor(screen->part * (65536 >> way.shift) + 0.5);
-    limit = floor(pad * 8388608.0 / (farthest << way.shift));
+    limit = floor(far * 8388608.0 / (farthest << way.shift));
     way.times = (int16_t)clamp(times, limit < INT16_MAX ? limit : INT16_MAX);
     return way;
 }
@@ -242,7 +248,7 @@ static void set_shade(struct rf_lamp_shade *shade, const struct rf_lamp_sights *
     shade->hidden = hidden_by(&screen, tile, run, job);
     if (shade->hidden != RF_HIDDEN_PARTLY)
         return;
-    way = way_to(run, &screen, r->pad);
+    way = way_to(run, &screen, farthest_look(tile->f));
     r->kernels.hide(shade->visible, blur, r->stride, &screen.slab, job, &way);
     shade->hidden = hidden_in(shade->visible, job->first, job->end);
 }

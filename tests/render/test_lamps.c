@@ -395,11 +395,12 @@ static struct picture night(uint32_t seed, int w, int h)
     return p;
 }
 
-static void render_night(const struct picture *p, float blur, uint32_t in_place, int threads,
-                         uint8_t *out)
+/* By a renderer for blurs up to `most`. */
+static void render_night(const struct picture *p, float blur, float most, uint32_t in_place,
+                         int threads, uint8_t *out)
 {
     struct refocus_renderer_params limits =
-        refocus_renderer_params_default(p->width, p->height, blur);
+        refocus_renderer_params_default(p->width, p->height, most);
     const struct refocus_image photo = picture_image(p);
     const struct refocus_disparity disparity = picture_disparity(p);
     const struct refocus_image image =
@@ -424,11 +425,13 @@ static void expect_same_night(uint32_t seed, int w, int h, float blur)
 
     assert_non_null(whole);
     assert_non_null(is);
-    render_night(&p, blur, 0, 1, whole);
-    render_night(&p, blur, 0, 4, is);
+    render_night(&p, blur, blur, 0, 1, whole);
+    render_night(&p, blur, blur, 0, 4, is);
     assert_same_pixels(is, whole, w, h, "lamps found by four threads");
-    render_night(&p, blur, 1, 1, is);
+    render_night(&p, blur, blur, 1, 1, is);
     assert_same_pixels(is, whole, w, h, "lamps found in blocks");
+    render_night(&p, blur, 127, 0, 2, is);
+    assert_same_pixels(is, whole, w, h, "lamps by a renderer for larger blurs");
     free(whole);
     free(is);
     picture_free(&p);
