@@ -44,14 +44,14 @@ def machine():
            f"{compiler[0] if compiler else 'unknown compiler'}"
 
 
-def measure(refocus, method, options, threads, repeat):
+def render(refocus, scene, *options, check=True):
+    """What `refocus render --json` says of a scene; None if it fails and may."""
     with tempfile.TemporaryDirectory() as work:
         done = subprocess.run(
-            [refocus, "render", SCENE / "allfocus.png", "--depth", SCENE / "disparity.png",
-             "--focus", "0.689", "--blur", "20", "--method", method, *options, "--threads",
-             str(threads), "--repeat", str(repeat), "--json", "-o", Path(work) / "out.png"],
-            stdout=subprocess.PIPE, check=True)
-    return json.loads(done.stdout)
+            [refocus, "render", scene / "allfocus.png", "--depth", scene / "disparity.png",
+             *map(str, options), "--json", "-o", Path(work) / "out.png"],
+            stdout=subprocess.PIPE, check=check)
+    return None if done.returncode else json.loads(done.stdout)
 
 
 def methods(refocus, repeat_most):
@@ -59,7 +59,8 @@ def methods(refocus, repeat_most):
     for method, options, repeat in RUNS:
         for threads in (1, 2):
             n = repeat or repeat_most
-            r = measure(refocus, method, options, threads, n)
+            r = render(refocus, SCENE, "--focus", 0.689, "--blur", 20, "--method", method, *options,
+                       "--threads", threads, "--repeat", n)
             ms = r["render_ms"]
             rows.append([f"`{r['method']}`", " ".join(options), r["threads"], r["cpu"], n,
                          f"{r['prepare_ms']:.1f}", f"{ms['min']:.1f}", f"{ms['median']:.1f}",
@@ -94,16 +95,11 @@ def qualities(refocus, scenes, repeat, rounds=6):
         for frame in frames_of:
             path, focus, blur, quality = frame
             for cpu, threads in columns:
-                with tempfile.TemporaryDirectory() as work:
-                    done = subprocess.run(
-                        [refocus, "render", path / "allfocus.png", "--depth",
-                         path / "disparity.png", "--focus", f"{focus:.4f}", "--blur", str(blur),
-                         "--quality", quality, "--cpu", cpu, "--threads", str(threads),
-                         "--repeat", str(repeat), "--json", "-o", Path(work) / "out.png"],
-                        stdout=subprocess.PIPE, check=False)
-                if done.returncode:
+                report = render(refocus, path, "--focus", f"{focus:.4f}", "--blur", blur,
+                                "--quality", quality, "--cpu", cpu, "--threads", threads,
+                                "--repeat", repeat, check=False)
+                if not report:
                     continue  # a set that this processor lacks
-                report = json.loads(done.stdout)
                 size = f"{report['width']}x{report['height']}"
                 used = report["cpu"] if cpu == "auto" else used
                 key = frame, cpu, threads
@@ -131,16 +127,10 @@ def large_blurs(refocus, scenes, repeat, rounds=4):
         for path, focus in views:
             for quality in ("preview", "standard"):
                 for blur in blurs:
-                    with tempfile.TemporaryDirectory() as work:
-                        done = subprocess.run(
-                            [refocus, "render", path / "allfocus.png", "--depth",
-                             path / "disparity.png", "--focus", f"{focus:.4f}", "--blur",
-                             str(blur), "--quality", quality, "--threads", "1", "--repeat",
-                             str(repeat), "--json", "-o", Path(work) / "out.png"],
-                            stdout=subprocess.PIPE, check=True)
+                    report = render(refocus, path, "--focus", f"{focus:.4f}", "--blur", blur,
+                                    "--quality", quality, "--threads", 1, "--repeat", repeat)
                     key = path.name, focus, quality, blur
-                    best[key] = min(best.get(key, 1e9),
-                                    json.loads(done.stdout)["render_ms"]["min"])
+                    best[key] = min(best.get(key, 1e9), report["render_ms"]["min"])
         print(f"large blurs: round {turn + 1} of {rounds}", file=sys.stderr)
     rows = []
     for path, focus in views:

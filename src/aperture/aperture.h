@@ -17,7 +17,7 @@ enum { RF_CURVE_SIDE = 64 };
 enum { RF_OUTLINE = 720 };
 
 /* Heights that chords are kept of, and how many of each at most; see chords.c. */
-enum { RF_CHORDS = 256, RF_CHORD_SETS = 3 };
+enum { RF_CHORDS = 256, RF_CHORD_SETS = 2 };
 
 /* How light is spread from the middle to the rim; see refocus_aperture_params. */
 struct rf_profile {

@@ -1,9 +1,9 @@
 /* chords.c: where an iris or a figure is open at each height.
  *
- * Every row of an iris is one chord, as it is convex; of a heart two may be, of a star
- * three. Where they begin and end is kept for heights 2 / RF_CHORDS of the radius
- * apart. Where a row has fewer than others, the last ones are as long as nothing, at
- * its end: as chords are straight from height to height, so is what is open of a row.
+ * Every row of an iris is one chord, as it is convex; of a heart and a star two may be,
+ * however they are turned. Where they begin and end is kept for heights 2 / RF_CHORDS
+ * of the radius apart. Where a row has but one, the other is as long as nothing, at its
+ * end: as chords are straight from height to height, so is what is open of a row.
  */
 #include "aperture/aperture.h"
 
@@ -33,17 +33,6 @@ static int16_t to_q14(double v)
     return (int16_t)floor(v * 16384 + 0.5);
 }
 
-static void sort(double x[], int count)
-{
-    for (int i = 1; i < count; i++)
-        for (int k = i; k > 0 && x[k] < x[k - 1]; k--) {
-            const double more = x[k - 1];
-
-            x[k - 1] = x[k];
-            x[k] = more;
-        }
-}
-
 /* Where the outline crosses a height, from left to right: so many, or one more than
  * there is room for. */
 static int crossings(const struct refocus_aperture *a, double y,
@@ -53,14 +42,18 @@ static int crossings(const struct refocus_aperture *a, double y,
 
     for (int i = 0; i < corners(a); i++) {
         const struct point p = corner(a, i), q = corner(a, i + 1);
+        double at;
+        int k;
 
         if ((p.y < y) == (q.y < y))
             continue;
         if (count == 2 * RF_CHORD_SETS)
             return count + 1;
-        x[count++] = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
+        at = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
+        for (k = count++; k > 0 && at < x[k - 1]; k--)
+            x[k] = x[k - 1];
+        x[k] = at;
     }
-    sort(x, count);
     return count;
 }
 
@@ -70,7 +63,7 @@ static bool set_chords(struct refocus_aperture *a, int row)
     double x[2 * RF_CHORD_SETS];
     const int count = crossings(a, 2.0 * row / RF_CHORDS - 1, x), sets = count / 2;
 
-    if (sets > RF_CHORD_SETS)
+    if (count > 2 * RF_CHORD_SETS)
         return false;
     a->chord_sets = sets > a->chord_sets ? sets : a->chord_sets;
     for (int set = 0; set < RF_CHORD_SETS; set++)

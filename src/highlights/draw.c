@@ -300,7 +300,6 @@ static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
 
 static void draw_lamp(struct canvas *canvas, const struct rf_highlight *lamp)
 {
-    const struct rf_frame *f = canvas->sights.f;
     struct rf_seen run;
 
     if (lamp->blur == RF_NO_BLUR) {
@@ -312,8 +311,9 @@ static void draw_lamp(struct canvas *canvas, const struct rf_highlight *lamp)
     run = stack_of(&canvas->sights, lamp, lamp->rows);
     if (lamp->rows == 1)
         draw(canvas, run);
-    for (; lamp->rows > 1 && run.set < chord_sets(f); run.set++)
-        draw_stack(canvas, lamp, run);
+    else
+        for (; run.set < chord_sets(canvas->sights.f); run.set++)
+            draw_stack(canvas, lamp, run);
 }
 
 void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,

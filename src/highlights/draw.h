@@ -18,7 +18,7 @@
  * openings have their own area in place of pi. Rows of large discs are drawn as one,
  * their chords' mean, where nothing hides them.
  *
- * Of openings that are evenly open and whose rows are a few chords, discs, irises, hearts
+ * Of openings that are evenly open and whose rows are one chord or two, discs, irises, hearts
  * and stars, by the sweep and without eq. 5, whose weights differ from pixel to pixel;
  * else the light is added to what rays meet (highlights.h). The first chords of all rows
  * are drawn as one opening, and so are the second ones.

@@ -51,7 +51,7 @@ struct rf_highlight {
     uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
     uint16_t edges;    /* for this lens: a bit each that is the edge of something bright and sharper;
                           rays leave those alone that are mostly that, drawn ones fade, */
-    int16_t blur;      /* and the mean of the others, Q7.8, RF_NO_BLUR where they differ, */
+    int16_t blur;      /* and the mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ, */
     uint16_t shining;  /* by how much all of them shine together, 256 each */
     uint16_t own[3];   /* Q12 light that was taken out of what rays meet, mean of what shines */
     uint8_t rows;      /* that are drawn as one, from this one on; 0: with one above */

@@ -43,8 +43,9 @@ struct rf_lamp_shade {
 /* Of a tile, the last ones that may serve again. */
 struct rf_lamp_sights {
     const struct rf_frame *f;
-    int tx, ty, count, slabs;
+    int tx, ty, slabs;
     struct rf_slab slab[RF_MAX_SLABS]; /* those of the tile, near ones as one */
+    int count;                         /* shades that were kept so far */
     struct rf_lamp_shade shade[RF_SHADES], other;
     uint16_t visible[2 * RF_TILE * RF_TILE]; /* past more than one slab */
 };

@@ -7,19 +7,19 @@ enum { AROUND = 30 }; /* codes, where there is no lamp */
 enum { W = 160, H = 144, CX = W / 2, CY = H / 2 };
 enum { BEHIND = 6554 }; /* 12 pixels of blur behind the focus at 0.5 */
 
+/* Openings: so many blades, 0: round, or these. */
 enum { HEART = -1, STAR = -2 };
 
-/* An iris of so many blades, 0: round, or a figure, turned. Its lamps are drawn, but
- * with a hole rays meet them. */
-static struct refocus_aperture *iris(int blades, bool met)
+/* One that is turned. Its lamps are drawn, but with a hole rays meet them. */
+static struct refocus_aperture *make_opening(int opening, bool met)
 {
     struct refocus_aperture_params params = refocus_aperture_params_default();
     struct refocus_aperture *aperture;
 
-    params.blades = blades > 0 ? blades : 0;
-    params.figure = blades == HEART  ? REFOCUS_FIGURE_HEART
-                    : blades == STAR ? REFOCUS_FIGURE_STAR
-                                     : REFOCUS_FIGURE_NONE;
+    params.blades = opening > 0 ? opening : 0;
+    params.figure = opening == HEART  ? REFOCUS_FIGURE_HEART
+                    : opening == STAR ? REFOCUS_FIGURE_STAR
+                                      : REFOCUS_FIGURE_NONE;
     params.rotation_deg = 17;
     params.hole = met ? 0.02 : 0;
     assert_int_equal(refocus_aperture_create(&aperture, &params), REFOCUS_OK);
@@ -133,10 +133,11 @@ static void slanted(void **state)
 /* Lamps behind a post: in focus it keeps its codes, and what is nearer cuts discs off
  * where rays say so, too; of a round opening, of one of five blades, which has no two
  * sides alike, and of figures whose rows are several chords. */
-static void expect_hidden(uint16_t post, int blades)
+static void expect_hidden(uint16_t post, int opening)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
-    struct refocus_aperture *drawn = iris(blades, false), *met = iris(blades, true);
+    struct refocus_aperture *drawn = make_opening(opening, false),
+                            *met = make_opening(opening, true);
     int green[4][W * H];
     struct refocus_renderer *renderer;
     double light = 0, off = 0;
@@ -163,8 +164,8 @@ static void expect_hidden(uint16_t post, int blades)
         off += (own - of_rays) * (own - of_rays);
     }
     if (off > 0.03 * light || light == 0)
-        fail_msg("%d blades, a post at %u: rays do not meet %.3f of what is drawn",
-                 blades, post, off / light);
+        fail_msg("opening %d, a post at %u: rays do not meet %.3f of what is drawn",
+                 opening, post, off / light);
     refocus_aperture_destroy(&drawn);
     refocus_aperture_destroy(&met);
     refocus_renderer_destroy(&renderer);
@@ -186,10 +187,10 @@ static void hidden(void **state)
 
 /* Light of each channel, at a gain of 4, through such an iris, of what there is
  * without. */
-static void gained(struct refocus_renderer *renderer, int blades, bool met,
+static void gained(struct refocus_renderer *renderer, int opening, bool met,
                    double times[3])
 {
-    struct refocus_aperture *aperture = iris(blades, met);
+    struct refocus_aperture *aperture = make_opening(opening, met);
     double light[2][3] = {{0}};
 
     for (int k = 0; k < 2; k++) {
@@ -222,7 +223,7 @@ static void ways(void **state)
         gained(renderer, openings[k], true, met);
         for (int c = 0; c < 3; c++)
             if (fabs(drawn[c] - met[c]) > 0.05 * met[c])
-                fail_msg("%d blades: channel %d has %.3f times its light drawn, %.3f "
+                fail_msg("opening %d: channel %d has %.3f times its light drawn, %.3f "
                          "met by rays",
                          openings[k], c, drawn[c], met[c]);
     }
