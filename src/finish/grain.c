@@ -19,6 +19,7 @@
 
 #include "methods/method.h"
 #include "planes/format.h"
+#include "renderer/bands.h"
 
 #define SMOOTHEST 0.71
 
@@ -82,7 +83,7 @@ static uint32_t count_blocks(const struct rf_frame *f, bool any_blur)
     uint32_t count = 0;
 
     memset(grain->blocks, 0, sizeof grain->blocks);
-    for (int y = 0; y + BLOCK <= photo->height; y += BLOCK) {
+    for (int y = 0; y + BLOCK <= photo->height && !rf_cancelled(f->r); y += BLOCK) {
         for (int x = 0; x + BLOCK <= photo->width; x += BLOCK) {
             int mean;
             const int variance = block_variance(f, x, y, any_blur, &mean);

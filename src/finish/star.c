@@ -14,6 +14,7 @@
 
 #include "aperture/aperture.h"
 #include "methods/method.h"
+#include "renderer/bands.h"
 
 enum { LANES = RF_TILE * RF_TILE };
 
@@ -71,6 +72,8 @@ void rf_find_stars(struct rf_frame *f)
         for (uint32_t i = 0; i < photo->highlights[part].count; i++) {
             const struct rf_highlight *lamp = &photo->highlights[part].lamp[i];
 
+            if (i % 64 == 0 && rf_cancelled(r))
+                return;
             for (int k = 0; k < lamp->count; k++) {
                 struct rf_star *star = touched(r, lamp->x + k, lamp->y);
 

@@ -122,6 +122,14 @@ void rf_sort_highlights(struct refocus_renderer *r);
 int rf_first_lamp_part(const struct refocus_renderer *r);
 int rf_last_lamp_part(const struct refocus_renderer *r);
 
+static inline int rf_lamp_parts_in(const struct refocus_renderer *r)
+{
+    return rf_last_lamp_part(r) - rf_first_lamp_part(r) + 1;
+}
+
+/* Whether they hold any. */
+bool rf_has_highlights(const struct refocus_renderer *r);
+
 /* In the window, for the lens setting of r->front.blur and r->bins: tell edges from
  * lamps, and note in its tile how far a lamp is blurred; where lamps are drawn, how far its disc
  * reaches. False: there are none. */

@@ -6,7 +6,7 @@
 
 #include "highlights/clipped.h"
 #include "highlights/highlights.h"
-#include "renderer/renderer.h"
+#include "renderer/bands.h"
 #include "support/compare.h"
 
 enum {
@@ -117,23 +117,49 @@ static void take_run(struct refocus_renderer *r, struct rf_highlight *lamp,
     }
 }
 
+/* A part of the window's: those from `first` on, every `step`th. */
+struct taken {
+    struct refocus_renderer *r;
+    int first, step;
+    bool copies; /* what the others change; else they take */
+};
+
+static void take_part(void *context, int item, int worker)
+{
+    enum { OFTEN = 64 };
+    const struct taken *taken = context;
+    struct refocus_renderer *r = taken->r;
+    const struct rf_highlights *found =
+        &r->photo[r->used].highlights[taken->first + item * taken->step];
+    struct rf_highlight *lamp = found->lamp, *const end = lamp + found->count;
+
+    (void)worker;
+    for (int n = 0; lamp < end; n++) {
+        const struct chain chain = chain_of(r, lamp, end);
+
+        if (n % OFTEN == 0 && rf_cancelled(r))
+            return;
+        lamp += chain.count;
+        if (!may_take(r, &chain) || !is_blurred(r, &chain))
+            continue;
+        if (taken->copies)
+            copy_around(r, &chain);
+        for (int i = 0; !taken->copies && i < chain.count; i++)
+            take_run(r, &chain.first[i], &chain);
+    }
+}
+
+/* All are copied before any is taken: the tiles that a part copies reach into those beside it,
+ * which are not copied at the same time. */
 void rf_take_lamps_out(struct refocus_renderer *r)
 {
-    for (int pass = 0; pass < 2; pass++)
-        for (int part = rf_first_lamp_part(r); part <= rf_last_lamp_part(r); part++) {
-            const struct rf_highlights *found = &r->photo[r->used].highlights[part];
-            struct rf_highlight *lamp = found->lamp, *const end = lamp + found->count;
+    const int first = rf_first_lamp_part(r), parts = rf_lamp_parts_in(r);
+    struct taken even = {r, first, 2, true}, odd = {r, first + 1, 2, true};
+    struct taken all = {r, first, 1, false};
 
-            while (lamp < end) {
-                const struct chain chain = chain_of(r, lamp, end);
-
-                lamp += chain.count;
-                if (!may_take(r, &chain) || !is_blurred(r, &chain))
-                    continue;
-                if (pass == 0)
-                    copy_around(r, &chain);
-                for (int i = 0; pass == 1 && i < chain.count; i++)
-                    take_run(r, &chain.first[i], &chain);
-            }
-        }
+    if (!rf_has_highlights(r))
+        return;
+    rf_pool_run(&r->pool, take_part, &even, (parts + 1) / 2);
+    rf_pool_run(&r->pool, take_part, &odd, parts / 2);
+    rf_pool_run(&r->pool, take_part, &all, parts);
 }

@@ -235,7 +235,8 @@ static void measure(void **state)
             call.params = refocus_render_params_default(0.5f, blur);
             call.params.method = m;
             call.params.rays = full ? REFOCUS_RAYS_FULL : 128;
-            call.params.highlight_gain = full ? 4 : 1;
+            if (full)
+                call.params.highlight_gain = 4;
             call.params.star_spikes = 8;
             call.params.star_length = 127;
             call.params.attention_angle = 90;

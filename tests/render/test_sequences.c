@@ -415,15 +415,14 @@ static void reduced(void **state)
     free(expected);
 }
 
-/* Cancelled at each of the moments at which it looks, a render leaves nothing half
- * made. */
-static void every_moment(void **state)
+/* Cancelled at each of the moments at which it looks, a render with these settings leaves nothing
+ * half made. */
+static void cancel_at_every_moment(struct refocus_render_params params)
 {
     struct picture p[2] = {picture_make(97, 83, 31), picture_make(97, 83, 32)};
     const struct refocus_image photo[2] = {picture_image(&p[0]), picture_image(&p[1])};
     const struct refocus_disparity disparity[2] = {picture_disparity(&p[0]),
                                                    picture_disparity(&p[1])};
-    struct refocus_render_params params = refocus_render_params_default(0.3f, 12);
     uint8_t expected[3 * 97 * 83], out[3 * 97 * 83];
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 97, 83, 3 * 97);
@@ -432,9 +431,6 @@ static void every_moment(void **state)
     int status = REFOCUS_ERR_CANCELLED, cancelled = 0;
     const int each = left_out(1, 2) ? 3 : 1;
 
-    (void)state;
-    params.rays = 16;
-    params.highlight_gain = 3;
     params.blend = REFOCUS_BLEND_GAMMA;
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
     memcpy(expected, out, sizeof out);
@@ -468,6 +464,25 @@ static void every_moment(void **state)
     refocus_renderer_destroy(&renderer);
     for (int i = 0; i < 2; i++)
         picture_free(&p[i]);
+}
+
+/* Lamps drawn; lamps met by rays, grain and stars. */
+static void every_moment(void **state)
+{
+    struct refocus_render_params params = refocus_render_params_default(0.3f, 12);
+
+    (void)state;
+    params.rays = 16;
+    params.highlight_gain = 3;
+    cancel_at_every_moment(params);
+    params.rays = REFOCUS_RAYS_FULL;
+    params.max_blur_radius = 5;
+    params.highlight_gain = 4;
+    params.grain = 1;
+    params.star_spikes = 6;
+    params.star_length = 20;
+    params.star_strength = 0.5f;
+    cancel_at_every_moment(params);
 }
 
 /* Refused without previews, and for other parts. */
