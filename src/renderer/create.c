@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "renderer/layout.h"
+#include "support/pages.h"
 
 /* Methods that need the whole photo. */
 #define FRAME_METHODS                                                                  \
@@ -15,8 +16,12 @@
 
 static void *default_allocate(void *user, size_t size)
 {
+    void *block = malloc(size);
+
     (void)user;
-    return malloc(size);
+    if (block)
+        rf_prefer_large_pages(block, size);
+    return block;
 }
 
 static void default_release(void *user, void *memory)
