@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "support/compare.h"
 #include "tiles/ranges.h"
 
 enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
@@ -185,13 +186,11 @@ void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float larg
 }
 
 /* Add what reaches from a tile. */
-static void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
-                     const struct rf_kept *kept)
+static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
+                            const struct rf_kept *kept)
 {
-    const bool near_kept = bins->least < kept->low || bins->least >= kept->high;
-    const bool far_kept = bins->most < kept->low || bins->most >= kept->high;
-    const int least = near_kept ? bins->least : kept->high;
-    const int most = far_kept ? bins->most : kept->low - 1;
+    const int least = bins->least, most = bins->most;
+    const bool near = least < kept->low, far = most >= kept->high;
 
     if (bins->brightest > sum->brightest)
         sum->brightest = bins->brightest;
@@ -199,26 +198,33 @@ static void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
         sum->lamp = bins->lamp;
     if (bins->dots > sum->dots && bins->dots >= kept->blur)
         sum->dots = bins->dots;
-    if (!near_kept && !far_kept)
+    if (!near && !far)
         return;
     for (int k = 0; k < RF_BINS / 64; k++)
         sum->word[k] |= bins->word[k] & kept->word[k];
-    sum->least = (int16_t)(least < sum->least ? least : sum->least);
-    sum->most = (int16_t)(most > sum->most ? most : sum->most);
+    sum->least = (int16_t)rf_smaller(sum->least, near ? least : rf_larger(least, kept->high));
+    sum->most = (int16_t)rf_larger(sum->most, far ? most : rf_smaller(most, kept->low - 1));
 }
 
 /* Bins that reach tile (tx, ty). */
 static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_reach *reach,
                               int tx, int ty)
 {
-    const int x0 = tx > reach->tiles ? tx - reach->tiles : 0;
-    const int y0 = ty > reach->tiles ? ty - reach->tiles : 0;
+    const int x0 = rf_larger(tx - reach->tiles, 0);
+    const int x1 = rf_smaller(tx + reach->tiles, r->tiles_x - 1);
+    const int y0 = rf_larger(ty - reach->tiles, 0);
+    const int y1 = rf_smaller(ty + reach->tiles, r->tiles_y - 1);
     struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
 
-    for (int y = y0; y <= ty + reach->tiles && y < r->tiles_y; y++)
-        for (int x = x0; x <= tx + reach->tiles && x < r->tiles_x; x++)
-            add_kept(&sum, &r->bins[(size_t)y * r->tiles_x + x],
-                     &reach->kept[abs(y - ty)][abs(x - tx)]);
+    for (int y = y0; y <= y1; y++) {
+        const struct rf_bins *row = &r->bins[(size_t)y * r->tiles_x];
+        const struct rf_kept *kept = reach->kept[abs(y - ty)];
+
+        for (int x = x0; x <= tx; x++)
+            add_kept(&sum, &row[x], &kept[tx - x]);
+        for (int x = tx + 1; x <= x1; x++)
+            add_kept(&sum, &row[x], &kept[x - tx]);
+    }
     return sum;
 }
 
