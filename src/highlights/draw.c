@@ -134,7 +134,41 @@ struct canvas {
     struct rf_lamp_sights sights;
     uint16_t *const *mean;
     int planes;
+    int even[3]; /* light that all its pixels get alike, not yet added */
 };
+
+/* Whether all pixels see the whole run. */
+static bool is_even(const struct rf_disc_job *job)
+{
+    if (job->visible || job->first > 0 || job->end < RF_TILE)
+        return false;
+    for (int y = 0; y < RF_TILE; y++)
+        if (RF_LAMP_UNIT * (RF_TILE - 1) + job->left[y] > job->from || job->right[y] < job->to)
+            return false;
+    return true;
+}
+
+/* As kernels->draw_disc, which adds nothing below 0, so that the order does not count. */
+static void add_disc(struct canvas *canvas, const struct rf_disc_job *job)
+{
+    const int seen = (job->to - job->from) << job->shift;
+
+    if (!is_even(job)) {
+        canvas->sights.f->r->kernels.draw_disc(canvas->mean, job);
+        return;
+    }
+    for (int c = 0; c < job->planes; c++)
+        canvas->even[c] =
+            rf_smaller(canvas->even[c] + ((seen * job->each[c] + (1 << 14)) >> 15), UINT16_MAX);
+}
+
+static void add_even(const struct canvas *canvas)
+{
+    for (int c = 0; c < canvas->planes; c++)
+        for (int i = 0; canvas->even[c] && i < RF_TILE * RF_TILE; i++)
+            canvas->mean[c][i] =
+                (uint16_t)rf_smaller(canvas->mean[c][i] + canvas->even[c], UINT16_MAX);
+}
 
 /* So many as a row of the opening may have. */
 static int chord_sets(const struct rf_frame *f)
@@ -142,8 +176,8 @@ static int chord_sets(const struct rf_frame *f)
     return f->aperture->shape == RF_SHAPE_DISC ? 1 : f->aperture->chord_sets;
 }
 
-/* One set of them. */
-static void draw_set(struct canvas *canvas, const struct rf_seen *run)
+/* One set of them, past all slabs but those that are clear. */
+static void draw_set(struct canvas *canvas, const struct rf_seen *run, uint64_t clear)
 {
     const struct rf_frame *f = canvas->sights.f;
     struct rf_disc_job job = {.planes = canvas->planes};
@@ -151,14 +185,14 @@ static void draw_set(struct canvas *canvas, const struct rf_seen *run)
     if (!reaches(run) || !set_light(&job, f, run))
         return;
     set_shape(&job, f, run);
-    if (job.first < job.end && rf_sees_lamp(&canvas->sights, &job, run))
-        f->r->kernels.draw_disc(canvas->mean, &job);
+    if (job.first < job.end && rf_sees_lamp(&canvas->sights, &job, run, clear))
+        add_disc(canvas, &job);
 }
 
 static void draw(struct canvas *canvas, struct rf_seen run)
 {
     for (run.set = 0; run.set < chord_sets(canvas->sights.f); run.set++)
-        draw_set(canvas, &run);
+        draw_set(canvas, &run, 0);
 }
 
 /* Puts `count` pixels of a row of the window in a run, from (x, y) on. */
@@ -279,20 +313,21 @@ static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
     const int most = run.radius < PAIRS ? 1 : 2;
     const struct rf_highlight *lamp = top;
     enum rf_hidden hidden;
+    uint64_t clear = 0;
 
     if (!reaches(&run) || !set_light(&job, f, &run))
         return;
     set_shape(&job, f, &run);
-    hidden = job.first < job.end ? rf_lamp_hidden(&canvas->sights, &job, &run)
+    hidden = job.first < job.end ? rf_lamp_hidden(&canvas->sights, &job, &run, &clear)
                                  : RF_HIDDEN_WHOLLY;
     if (hidden == RF_HIDDEN_NOWHERE)
-        f->r->kernels.draw_disc(canvas->mean, &job);
+        add_disc(canvas, &job);
     for (int k = 0; hidden == RF_HIDDEN_PARTLY && k < top->rows; k += most) {
         const int rows = rf_smaller(most, top->rows - k);
         struct rf_seen part = stack_of(&canvas->sights, lamp, rows);
 
         part.set = run.set;
-        draw_set(canvas, &part);
+        draw_set(canvas, &part, clear);
         for (int i = 0; i < rows; i++)
             lamp += lamp->below;
     }
@@ -326,12 +361,13 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
     const int y1 = r->origin_y + (ty + 1) * RF_TILE + reach;
     const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_LAMP_RUN);
     const int parts = rf_lamp_parts(r->photo[r->used].height);
-    struct canvas canvas;
+    struct canvas canvas; /* large: not all of it set */
 
     if (!plan->lamp)
         return;
     canvas.mean = mean;
     canvas.planes = planes;
+    canvas.even[0] = canvas.even[1] = canvas.even[2] = 0;
     rf_start_sights(&canvas.sights, f, plan, tx, ty);
     for (int part = y0 / RF_LAMP_ROWS; part < parts && part * RF_LAMP_ROWS < y1;
          part++) {
@@ -344,4 +380,5 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
             if ((unsigned)(lamp->x - x0) < wide)
                 draw_lamp(&canvas, lamp);
     }
+    add_even(&canvas);
 }

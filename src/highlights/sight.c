@@ -42,6 +42,13 @@ static double clamp(double v, double most)
     return v < -most ? -most : v > most ? most : v;
 }
 
+static int round_down(double v)
+{
+    const int i = (int)v;
+
+    return i - (i > v);
+}
+
 /* Pixels, from the tile's first one on, among which all lie that rays from pixels
  * `first` to `last` to the run from `from` to `to` see of a screen, in one direction.
  */
@@ -58,8 +65,8 @@ static void extent(const struct screen *screen, const struct rf_seen *run, doubl
         a = first + part * clamp((part < 0 ? to : from) - first, far);
         b = last + part * clamp((part < 0 ? from : to) - last, far);
     }
-    *least = (int)floor(a) - 1;
-    *most = (int)floor(b) + 2;
+    *least = round_down(a) - 1;
+    *most = round_down(b) + 2;
 }
 
 /* How far the tile looks at most, pixels: by the frame alone, as all that is seen. */
@@ -298,28 +305,36 @@ static bool is_nearer(const struct rf_slab *slab, const struct rf_seen *run)
 }
 
 enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights,
-                              const struct rf_disc_job *job, const struct rf_seen *run)
+                              const struct rf_disc_job *job, const struct rf_seen *run,
+                              uint64_t *clear)
 {
     enum rf_hidden hidden = RF_HIDDEN_NOWHERE;
 
+    *clear = 0;
     for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {
         const struct screen screen = screen_of(&sights->slab[k], run);
         const enum rf_hidden by = hidden_by(&screen, sights, run, job);
 
         if (by == RF_HIDDEN_WHOLLY)
             return by;
-        hidden = by == RF_HIDDEN_PARTLY ? by : hidden;
+        if (by == RF_HIDDEN_PARTLY)
+            hidden = by;
+        else if (k < 64)
+            *clear |= UINT64_C(1) << k;
     }
     return hidden;
 }
 
 bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job,
-                  const struct rf_seen *run)
+                  const struct rf_seen *run, uint64_t clear)
 {
     job->visible = NULL;
     for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {
-        const struct rf_lamp_shade *shade = shade_of(sights, job, run, k);
+        const struct rf_lamp_shade *shade;
 
+        if (k < 64 && clear >> k & 1)
+            continue;
+        shade = shade_of(sights, job, run, k);
         if (shade->hidden == RF_HIDDEN_WHOLLY)
             return false;
         if (shade->hidden == RF_HIDDEN_PARTLY)
