@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "renderer/layout.h"
-#include "support/pages.h"
 
 /* Methods that need the whole photo. */
 #define FRAME_METHODS                                                                  \
@@ -16,12 +15,8 @@
 
 static void *default_allocate(void *user, size_t size)
 {
-    void *block = malloc(size);
-
     (void)user;
-    if (block)
-        rf_prefer_large_pages(block, size);
-    return block;
+    return malloc(size);
 }
 
 static void default_release(void *user, void *memory)
