@@ -12,6 +12,7 @@
 
 #include "highlights/lamps.h"
 #include "renderer/bands.h"
+#include "support/compare.h"
 
 enum {
     MOST = RF_LAMP_SIDE,
@@ -44,22 +45,58 @@ static uint64_t word_at(const uint16_t *bits, int x)
     return word;
 }
 
-/* Set those of a row of pixels. */
+/* Whether any of n pixels of a row may be clipped. */
+static bool may_be_clipped(const struct search *s, int x, int y, int n)
+{
+    const struct rf_lamp_photo *p = &s->lamps.photo;
+    const ptrdiff_t at = y * p->stride + x;
+
+    return !p->light || s->lamps.r->kernels.brightest(p->light[0] + at, p->light[1] + at,
+                                                      p->light[2] + at, n) > RF_CLIPPED;
+}
+
+/* Which of n pixels of a row are, n at most 64: a bit each. */
+static uint64_t clipped_in(const struct rf_lamp_photo *p, int x, int y, int n)
+{
+    uint8_t clipped[64];
+    uint64_t bits = 0;
+
+    if (p->light) {
+        const ptrdiff_t at = y * p->stride + x;
+        const uint16_t *r = p->light[0] + at, *g = p->light[1] + at, *b = p->light[2] + at;
+
+        for (int i = 0; i < n; i++)
+            clipped[i] = (r[i] > RF_CLIPPED) | (g[i] > RF_CLIPPED) | (b[i] > RF_CLIPPED);
+    } else {
+        for (int i = 0; i < n; i++)
+            clipped[i] = rf_is_clipped(p, x + i, y);
+    }
+    for (int i = 0; i < n; i++)
+        bits |= (uint64_t)clipped[i] << i;
+    return bits;
+}
+
+/* Set those of a row of pixels. Few runs hold any; no cell is of two. */
 static void add_bits(const struct search *s, uint16_t *bits, int y)
 {
-    const struct refocus_renderer *r = s->lamps.r;
+    enum { RUN = 64 };
     const struct rf_lamp_photo *p = &s->lamps.photo;
-    const ptrdiff_t at = y * p->stride;
+    const int cell = p->cell;
+    const uint64_t first = UINT64_MAX >> (RUN - cell); /* of the pixels of a cell */
 
-    if (p->light && r->kernels.brightest(p->light[0] + at, p->light[1] + at, p->light[2] + at,
-                                         p->width) <= RF_CLIPPED)
+    if (!may_be_clipped(s, 0, y, p->width))
         return;
-    for (int x = 0; x < p->width; x++)
-        if (rf_is_clipped(p, x, y)) {
-            const int i = x / p->cell;
+    for (int x = 0; x < p->width; x += RUN) {
+        const int n = rf_smaller(p->width - x, RUN);
+        uint64_t clipped = may_be_clipped(s, x, y, n) ? clipped_in(p, x, y, n) : 0;
 
-            bits[i / 16] |= (uint16_t)(1 << i % 16);
+        while (clipped) {
+            const int i = __builtin_ctzll(clipped) / cell, at = x / cell + i;
+
+            bits[at / 16] |= (uint16_t)(1 << at % 16);
+            clipped &= ~(first << i * cell);
         }
+    }
 }
 
 /* Bits of row y; beyond the picture nothing is clipped. */
@@ -171,6 +208,20 @@ static bool is_full(const struct search *s, int x, int y)
     return __builtin_popcountll(around) > FULL;
 }
 
+/* How many cells from x on are the middle of squares that are clipped wholly, or as good as that;
+ * 0: look closer. */
+static int inside(const struct search *s, int x, int y)
+{
+    const uint64_t all = UINT64_MAX;
+    const int before = x - FULL;
+
+    return word_at(bits_of(s, y), before) == all &&
+                   (word_at(bits_of(s, y - BEFORE), before) == all ||
+                    word_at(bits_of(s, y + BEFORE), before) == all)
+               ? 64 - 2 * FULL
+               : 0;
+}
+
 /* What the shapes that begin at a row, or before, have left, but for what is wide and high. */
 static void take_rest(struct search *s, int y)
 {
@@ -178,13 +229,16 @@ static void take_rest(struct search *s, int y)
 
     for (int x = 0; x < s->lamps.photo.across; x++) {
         const uint64_t word = word_at(bits, x);
+        int skipped;
 
         if (!word) {
             x += 63;
             continue;
         }
         x += __builtin_ctzll(word);
-        if (!(is_full(s, x, y) && (is_full(s, x, y - BEFORE) || is_full(s, x, y + BEFORE))))
+        if ((skipped = inside(s, x, y)))
+            x += skipped - 1;
+        else if (!(is_full(s, x, y) && (is_full(s, x, y - BEFORE) || is_full(s, x, y + BEFORE))))
             rf_list_cell(&s->lamps, x, y);
     }
 }

@@ -12,6 +12,7 @@ enum {
     BESIDE = 2,  /* and its limbs */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3, /* full gain of 4 adds three times white */
+    SMALL = 5, LARGE = 6, /* halves of its surroundings that a lamp has to exceed: small or of cells */
     ALIKE = 16, /* colours of a run differ by at most that part of the light, in each channel */
 };
 
@@ -33,11 +34,16 @@ static int64_t luminance(const int64_t colour[3])
     return (218 * colour[0] + 732 * colour[1] + 74 * colour[2]) / 1024;
 }
 
+/* The pixel in the middle of a cell, in one direction. */
+static int middle_of(const struct rf_lamp_photo *p, int cell, int pixels)
+{
+    return rf_within(cell * p->cell + p->cell / 2, pixels - 1);
+}
+
 /* The colour in the middle of a cell of the photo. */
 static void sample(const struct rf_lamp_photo *p, int x, int y, int colour[3])
 {
-    rf_colour_at(p, rf_within(x * p->cell + p->cell / 2, p->width - 1),
-                 rf_within(y * p->cell + p->cell / 2, p->height - 1), colour);
+    rf_colour_at(p, middle_of(p, x, p->width), middle_of(p, y, p->height), colour);
 }
 
 /* Add the clipped pixels of a cell up; returns how many. */
@@ -416,7 +422,7 @@ static struct lamp lamp_of(const struct rf_lamp_photo *p, const struct rf_lamp_s
 
     if (!look_around(p, body, shape, &lit))
         return lamp;
-    lamp.strength = isolation(&lit, 5);
+    lamp.strength = isolation(&lit, SMALL);
     if (!lamp.strength)
         return lamp;
     look_beyond(p, body, &limbs, &lit);
@@ -529,27 +535,49 @@ static void list_pixels(struct rf_lamp_search *s, struct rf_rect in, const struc
                 list(s, x, y, lamp);
 }
 
+/* Mean colour of a sparse grid around a cell, and in it. False: `own` does not stand out; where much
+ * is white the rows beside it tell. */
+static bool look_at_square(const struct rf_lamp_photo *p, int x, int y, struct lit *lit)
+{
+    enum { ACROSS = 2 * AROUND / GRID + 1, ALL = ACROSS * ACROSS };
+    const int64_t own = luminance(lit->own);
+    int64_t sum[3] = {0, 0, 0};
+    int column[ACROSS];
+
+    for (int i = 0; i < ACROSS; i++)
+        column[i] = middle_of(p, rf_within(x + i * GRID - AROUND, p->across - 1), p->width);
+    for (int k = 0; k < ACROSS; k++) {
+        const int j = GRID * (k % 2 ? -(k + 1) / 2 : k / 2); /* from the middle on */
+        const int row = middle_of(p, rf_within(y + j, p->down - 1), p->height);
+
+        for (int i = 0; i < ACROSS; i++) {
+            int colour[3];
+
+            rf_colour_at(p, column[i], row, colour);
+            for (int c = 0; c < 3; c++)
+                sum[c] += colour[c];
+        }
+        for (int c = 0; c < 3; c++)
+            lit->around[c] = sum[c] / ALL;
+        if (ramp_above(own, luminance(lit->around), LARGE) == 0)
+            return false;
+    }
+    return true;
+}
+
 void rf_list_cell(struct rf_lamp_search *s, int x, int y)
 {
     const struct rf_lamp_photo *p = &s->photo;
     struct lit lit = {0};
     struct lamp lamp = {.size = 1};
-    int n = 0, own, clipped;
+    const int own = add_own(p, x, y, lit.own);
+    int clipped;
 
-    for (int j = -AROUND; j <= AROUND; j += GRID)
-        for (int i = -AROUND; i <= AROUND; i += GRID, n++) {
-            int colour[3];
-
-            sample(p, rf_within(x + i, p->across - 1), rf_within(y + j, p->down - 1), colour);
-            for (int c = 0; c < 3; c++)
-                lit.around[c] += colour[c];
-        }
-    own = add_own(p, x, y, lit.own);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         lit.own[c] /= own;
-        lit.around[c] /= n;
-    }
-    lamp.strength = isolation(&lit, 6);
+    if (!look_at_square(p, x, y, &lit))
+        return;
+    lamp.strength = isolation(&lit, LARGE);
     if (!lamp.strength)
         return;
     clipped = look_near(p, x, y, &lit);

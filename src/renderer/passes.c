@@ -48,22 +48,32 @@ void rf_set_weights(struct rf_frame *f)
     f->premultiplied = r->keep_codes && may_premultiply(f);
 }
 
-/* As many rows as lamps may be high, and some: each item looks at as many again around them. */
+/* Rows of an item: as many as lamps may be high, and some, or many times so few, as each item looks
+ * at as many again around them. */
+static int rows_of_item(const struct refocus_renderer *r)
+{
+    enum { EACH = 3 }; /* items for each thread */
+    const struct rf_photo *photo = &r->photo[r->used];
+    const int rows = RF_LAMP_ROWS * rf_lamp_cell(photo->width, photo->height);
+    const int items = r->pool.threads > 1 ? EACH * r->pool.threads : 1;
+
+    return rows * ((photo->height + rows * items - 1) / (rows * items));
+}
+
 static void find_item(void *context, int item, int worker)
 {
     struct refocus_renderer *r = context;
-    const struct rf_photo *photo = &r->photo[r->used];
-    const int rows = RF_LAMP_ROWS * rf_lamp_cell(photo->width, photo->height);
+    const int height = r->photo[r->used].height, rows = rows_of_item(r);
     const int y0 = item * rows, y1 = y0 + rows;
 
-    rf_find_highlights(r, y0, y1 < photo->height ? y1 : photo->height, rf_scratch(r, worker));
+    rf_find_highlights(r, y0, y1 < height ? y1 : height, rf_scratch(r, worker));
 }
 
 void rf_pass_lamps(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     struct rf_photo *photo = &r->photo[r->used];
-    const int rows = RF_LAMP_ROWS * rf_lamp_cell(photo->width, photo->height);
+    const int rows = rows_of_item(r);
 
     if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
         return;
