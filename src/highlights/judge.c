@@ -28,10 +28,15 @@ struct lit {
                     part of it, from 0.4 on, and the lower one, from 0.1 */
 };
 
-/* Rec. 709. */
-static int64_t luminance(const int64_t colour[3])
+/* Rec. 709, of light of 12 bits. */
+static int luminance_of(int r, int g, int b)
 {
-    return (218 * colour[0] + 732 * colour[1] + 74 * colour[2]) / 1024;
+    return (218 * r + 732 * g + 74 * b) / 1024;
+}
+
+static int luminance(const int64_t colour[3])
+{
+    return luminance_of((int)colour[0], (int)colour[1], (int)colour[2]);
 }
 
 /* The pixel in the middle of a cell, in one direction. */
@@ -540,9 +545,8 @@ static void list_pixels(struct rf_lamp_search *s, struct rf_rect in, const struc
 static bool look_at_square(const struct rf_lamp_photo *p, int x, int y, struct lit *lit)
 {
     enum { ACROSS = 2 * AROUND / GRID + 1, ALL = ACROSS * ACROSS };
-    const int64_t own = luminance(lit->own);
-    int64_t sum[3] = {0, 0, 0};
-    int column[ACROSS];
+    const int own = luminance(lit->own);
+    int sum[3] = {0, 0, 0}, column[ACROSS];
 
     for (int i = 0; i < ACROSS; i++)
         column[i] = middle_of(p, rf_within(x + i * GRID - AROUND, p->across - 1), p->width);
@@ -557,11 +561,12 @@ static bool look_at_square(const struct rf_lamp_photo *p, int x, int y, struct l
             for (int c = 0; c < 3; c++)
                 sum[c] += colour[c];
         }
-        for (int c = 0; c < 3; c++)
-            lit->around[c] = sum[c] / ALL;
-        if (ramp_above(own, luminance(lit->around), LARGE) == 0)
+        /* as isolation() will find, so far; cells are many, and 32 bits enough */
+        if (2 * own <= LARGE * luminance_of(sum[0] / ALL, sum[1] / ALL, sum[2] / ALL))
             return false;
     }
+    for (int c = 0; c < 3; c++)
+        lit->around[c] = sum[c] / ALL;
     return true;
 }
 

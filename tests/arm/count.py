@@ -91,9 +91,9 @@ class Counter:
         return found
 
     def frame(self, arch, program, size, rays):
-        """Blocks of one refocus_prepare() and of one refocus_render()."""
-        def of(prepares, renders):
-            return self.blocks(arch, program, *size, BLUR, rays, prepares, renders)
+        """Blocks of a new photo, prepared and rendered, and of rendering it once more."""
+        def of(photos, renders):
+            return self.blocks(arch, program, *size, BLUR, rays, photos, renders)
         one = of(1, 1)
         return difference(of(2, 1), one, 1), difference(of(1, 3), one, 2)
 
@@ -180,13 +180,6 @@ def where_it_goes(program, blocks, cycles, pixels, most):
     return rows
 
 
-def add(a, b):
-    both = dict(a)
-    for key, (n, runs) in b.items():
-        both[key] = n, both.get(key, (0, 0))[1] + runs
-    return both
-
-
 def report(counter, programs, mca, rays_list):
     counts, needs, goes = [], [], None
     for size in SIZES:
@@ -194,13 +187,14 @@ def report(counter, programs, mca, rays_list):
         for rays in rays_list:
             for arch, program in programs.items():
                 print(f"{arch} {size[0]}x{size[1]}, {rays} rays", file=sys.stderr)
-                prepare, render = counter.frame(arch, program, size, rays)
-                row = [f"{size[0]}x{size[1]}", rays, arch, f"{total(prepare) / pixels:.0f}",
+                frame, render = counter.frame(arch, program, size, rays)
+                row = [f"{size[0]}x{size[1]}", rays, arch,
+                       f"{(total(frame) - total(render)) / pixels:.0f}",
                        f"{total(render) / pixels:.0f}"]
                 if arch != "aarch64" or not mca:
                     counts.append(row + ["-"] * len(CORES))
                     continue
-                elf, frame = Program(arch, program), add(prepare, render)
+                elf = Program(arch, program)
                 cycles = model(elf, frame, mca)
                 whole = {core: frame_cycles(frame, cycles[core]) for core in CORES}
                 counts.append(row + [f"{whole[core] / pixels:.0f}" for core in CORES])
@@ -241,12 +235,12 @@ def main():
     text = ["## ARM: instructions counted, cycles estimated\n",
             f"examples/data/portrait brought to each size by repeating pixels, K = {BLUR}, `sweep`, "
             "focus 0.689, NEON, "
-            "one thread, RGB in and out. Instructions are counted exactly, under emulation. Cycles "
+            "one thread, RGB in and out, lamps drawn. Instructions are counted exactly, under emulation. Cycles "
             "are an ESTIMATE that no ARM machine has confirmed: LLVM's models of the cores (the "
             "A57's schedule stands for the A72, the Neoverse N1's for the A76), each block as if "
             "it followed itself, all data in the first cache, no branch missed; a lower bound, "
             "and easily 30 % off.\n",
-            sections.table(["size", "rays", "", "prepare, instructions a pixel",
+            sections.table(["size", "rays", "", "prepare and lamps, instructions a pixel",
                             "render, instructions a pixel"] +
                            [f"{core}, cycles a pixel, both" for core in CORES], counts)]
     if needs:

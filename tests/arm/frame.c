@@ -1,8 +1,9 @@
 /* Renders a scene so that instructions can be counted:
  *
- *     frame SCENE WIDTH HEIGHT K RAYS PREPARES RENDERS [CPU]
+ *     frame SCENE WIDTH HEIGHT K RAYS PHOTOS RENDERS [CPU]
  *
- * One thread, RGB in and out. SCENE is raw: two 32-bit numbers, width and height; RGB, three
+ * One thread, RGB in and out. PHOTOS times it is prepared and rendered, then the last RENDERS times
+ * more; lamps are drawn. SCENE is raw: two 32-bit numbers, width and height; RGB, three
  * bytes a pixel; 16-bit disparities. It is brought to WIDTH x HEIGHT by repeating pixels. The
  * focus goes back and forth between renders, so that none can rest on the one before. */
 #include <stdbool.h>
@@ -68,7 +69,7 @@ int main(int argc, char **argv)
         cpu++;
     if (argc < 8 || number[0] < 1 || number[1] < 1 ||
         !read_scene(&scene, argv[1], number[0], number[1])) {
-        fprintf(stderr, "usage: frame SCENE WIDTH HEIGHT K RAYS PREPARES RENDERS [CPU]\n");
+        fprintf(stderr, "usage: frame SCENE WIDTH HEIGHT K RAYS PHOTOS RENDERS [CPU]\n");
         return 2;
     }
     const struct refocus_image photo = refocus_image_packed(
@@ -86,9 +87,11 @@ int main(int argc, char **argv)
     lens.rays = number[3];
     lens.highlight_gain = 9.5f; /* as the command line has it */
     status = refocus_renderer_create(&renderer, &params);
-    for (int i = 0; i < number[4] && status == REFOCUS_OK; i++)
-        status = refocus_prepare(renderer, &photo, &disparity);
-    for (int i = 0; i < number[5] && status == REFOCUS_OK; i++) {
+    for (int i = 0; i < number[4] + number[5] && status == REFOCUS_OK; i++) {
+        if (i < number[4])
+            status = refocus_prepare(renderer, &photo, &disparity);
+        if (status != REFOCUS_OK)
+            break;
         lens.focus_disparity = i % 2 ? 0.689f : 0.689f - 1 / 512.0f;
         status = refocus_render(renderer, &lens, &out);
     }
