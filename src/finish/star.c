@@ -72,7 +72,7 @@ void rf_find_stars(struct rf_frame *f)
         for (uint32_t i = 0; i < photo->highlights[part].count; i++) {
             const struct rf_highlight *lamp = &photo->highlights[part].lamp[i];
 
-            if (i % 64 == 0 && rf_cancelled(r))
+            if (rf_cancelled_at(r, i))
                 return;
             for (int k = 0; k < lamp->count; k++) {
                 struct rf_star *star = touched(r, lamp->x + k, lamp->y);

@@ -185,7 +185,6 @@ struct marks {
 /* Of the window's parts. A part begins with a row of tiles, so that no other notes in its tiles. */
 static void mark_part(void *context, int item, int worker)
 {
-    enum { OFTEN = 64 };
     const struct marks *marks = context;
     struct refocus_renderer *r = marks->r;
     const struct rf_highlights *found =
@@ -193,7 +192,7 @@ static void mark_part(void *context, int item, int worker)
 
     (void)worker;
     for (uint32_t i = 0; i < found->count; i++) {
-        if (i % OFTEN == 0 && rf_cancelled(r))
+        if (rf_cancelled_at(r, i))
             return;
         mark(r, &found->lamp[i], marks->drawn);
     }

@@ -15,7 +15,6 @@ enum {
     BLURRED = 512, /* Q7.8: what it may be widened over, */
     ALIKE = 256,   /* if it is farther away than that: else the pre-filter takes it for the same */
     DOTS = 2,      /* gaps of the rays that a lamp has to be wide for not to show as dots */
-    OFTEN = 64,    /* lamps, after which it is asked whether the run was cancelled */
 };
 
 /* How rays meet them. */
@@ -34,7 +33,7 @@ static void for_each(const struct met *met, int part,
     const struct rf_highlights *found = &met->r->photo[met->r->used].highlights[part];
 
     for (uint32_t i = 0; i < found->count; i++) {
-        if (i % OFTEN == 0 && rf_cancelled(met->r))
+        if (rf_cancelled_at(met->r, i))
             return;
         then(met, &found->lamp[i]);
     }

@@ -126,7 +126,6 @@ struct taken {
 
 static void take_part(void *context, int item, int worker)
 {
-    enum { OFTEN = 64 };
     const struct taken *taken = context;
     struct refocus_renderer *r = taken->r;
     const struct rf_highlights *found =
@@ -134,10 +133,10 @@ static void take_part(void *context, int item, int worker)
     struct rf_highlight *lamp = found->lamp, *const end = lamp + found->count;
 
     (void)worker;
-    for (int n = 0; lamp < end; n++) {
+    for (uint32_t n = 0; lamp < end; n++) {
         const struct chain chain = chain_of(r, lamp, end);
 
-        if (n % OFTEN == 0 && rf_cancelled(r))
+        if (rf_cancelled_at(r, n))
             return;
         lamp += chain.count;
         if (!may_take(r, &chain) || !is_blurred(r, &chain))

@@ -33,6 +33,12 @@ static inline bool rf_cancelled(const struct refocus_renderer *r)
     return rf_run_cancelled(&((struct refocus_renderer *)r)->run);
 }
 
+/* The same, for the i-th of many small things: each 64th looks. */
+static inline bool rf_cancelled_at(const struct refocus_renderer *r, uint32_t i)
+{
+    return i % 64 == 0 && rf_cancelled(r);
+}
+
 /* Whether the run that ends here was cancelled. */
 static inline bool rf_run_end(struct refocus_renderer *r)
 {
