@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "depth/dequantise.h"
+
 enum {
     PAD = RF_UPSAMPLE_PAD,
     SPAN = 4, /* rows of samples of a work item */
@@ -142,6 +144,14 @@ static void load_samples(const struct rf_upsampler *up, uint16_t *out, const voi
             out[x] = (uint16_t)(((const uint8_t *)in)[walk.at] * 257);
 }
 
+static void repeat_ends(uint16_t *row, int n)
+{
+    for (int i = 1; i <= PAD; i++) {
+        row[-i] = row[0];
+        row[n - 1 + i] = row[n - 1];
+    }
+}
+
 /* A row of samples, what the photo shows there, and how sure they are. */
 static void load_row(void *context, int item, int worker)
 {
@@ -154,13 +164,38 @@ static void load_row(void *context, int item, int worker)
 
     (void)worker;
     load_samples(up, out, in);
-    for (int i = 1; i <= PAD; i++) {
-        out[-i] = out[0];
-        out[n - 1 + i] = out[n - 1];
-    }
+    repeat_ends(out, n);
     load_colours(up, y);
     if (up->confidence)
         load_trust(up, y);
+}
+
+/* Slopes in place of the steps of a map with few codes. The planes of what comes later are free. */
+static void dequantise_samples(const struct rf_upsampler *up, struct rf_pool *pool)
+{
+    const struct rf_dequantiser d = {
+        .kernels = up->kernels,
+        .code = up->coarse,
+        .stride = up->coarse_stride,
+        .spare = {up->wide, up->settled},
+        .spare_stride = {up->wide_stride, up->settled_stride},
+        .width = up->columns,
+        .height = up->rows,
+        .step = rf_code_step(up->map),
+    };
+
+    if (!d.step)
+        return;
+    rf_dequantise(&d, pool);
+    for (int y = 0; y < up->rows; y++)
+        repeat_ends(up->coarse + y * up->coarse_stride, up->columns);
+    for (int i = 1; i <= PAD; i++) {
+        const size_t bytes = (size_t)(up->columns + 2 * PAD) * sizeof *up->coarse;
+        uint16_t *const last = up->coarse + (up->rows - 1) * up->coarse_stride;
+
+        memcpy(up->coarse - i * up->coarse_stride - PAD, up->coarse - PAD, bytes);
+        memcpy(last + i * up->coarse_stride - PAD, last - PAD, bytes);
+    }
 }
 
 static void widen_row(void *context, int y, int worker)
@@ -326,6 +361,7 @@ void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
     for (int y = 0; y < height; y++)
         up->down[y] = taps_at(y, height, up->rows);
     rf_pool_run(pool, load_row, up, up->rows + 2 * PAD);
+    dequantise_samples(up, pool);
     rf_pool_run(pool, widen_row, up, up->rows);
     rf_pool_run(pool, fill_band, up, bands);
     rf_pool_run(pool, settle_border, up, bands);

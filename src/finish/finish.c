@@ -1,5 +1,8 @@
 #include "finish/finish.h"
 
+#include <string.h>
+
+#include "depth/dequantise.h"
 #include "methods/method.h"
 
 void rf_finish_begin(struct rf_frame *f)
@@ -21,23 +24,25 @@ void rf_finish_rect(const struct rf_frame *f, struct rf_rect rect)
         rf_add_grain(f, rect);
 }
 
-int rf_disparity_at(const struct refocus_renderer *r, int x, int y)
+static void copy_disparities(const struct refocus_renderer *r, int x, int y, int width, int height,
+                             uint16_t *out)
 {
     const struct rf_photo *photo = &r->photo[r->used];
-    const struct refocus_disparity *map = &r->in_place.map;
-    const uint8_t *row;
+    const struct rf_in_place *in_place = &r->in_place;
 
-    if (!r->in_place.on)
-        return photo->disparity[y * photo->stride + x];
-    row = (const uint8_t *)map->samples + y * map->stride;
-    return map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
+    if (in_place->on)
+        rf_dequantised_patch(&r->kernels, &in_place->map, in_place->code_step, x, y, width, height,
+                             out);
+    for (int v = 0; v < height && !in_place->on; v++)
+        memcpy(out + v * width, photo->disparity + (y + v) * photo->stride + x,
+               (size_t)width * sizeof *out);
 }
 
-int rf_blur_at(const struct rf_frame *f, int x, int y)
+void rf_blurs_at(const struct rf_frame *f, int x, int y, int width, int height, int16_t *blur)
 {
-    const uint16_t disparity = (uint16_t)rf_disparity_at(f->r, x, y);
-    int16_t blur;
+    uint16_t disparity[RF_DEQUANTISE_PATCH * RF_DEQUANTISE_PATCH];
 
-    rf_focus_row(&f->plan, &blur, &disparity, x, y, 1);
-    return blur;
+    copy_disparities(f->r, x, y, width, height, disparity);
+    for (int v = 0; v < height; v++)
+        rf_focus_row(&f->plan, blur + v * width, disparity + v * width, x, y + v, width);
 }

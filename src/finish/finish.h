@@ -50,9 +50,9 @@ void rf_finish_rect(const struct rf_frame *f, struct rf_rect rect);
 void rf_find_stars(struct rf_frame *f);
 void rf_measure_grain(struct rf_frame *f);
 
-/* At a pixel of the photo in use. */
-int rf_disparity_at(const struct refocus_renderer *r, int x, int y);
-int rf_blur_at(const struct rf_frame *f, int x, int y);
+/* Signed blurs of a few pixels of the photo in use, at most RF_DEQUANTISE_PATCH in width and
+ * height, row by row. */
+void rf_blurs_at(const struct rf_frame *f, int x, int y, int width, int height, int16_t *blur);
 
 void rf_add_stars(const struct rf_frame *f, struct rf_rect rect);
 void rf_add_grain(const struct rf_frame *f, struct rf_rect rect);

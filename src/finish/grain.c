@@ -17,6 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "depth/dequantise.h"
 #include "methods/method.h"
 #include "planes/format.h"
 #include "renderer/bands.h"
@@ -49,6 +50,18 @@ static int luma_at(const struct refocus_renderer *r, int x, int y)
                 to_code[4 * photo->light[2][at]]);
 }
 
+static bool is_blurred(const struct rf_frame *f, int x0, int y0)
+{
+    int16_t blur[BLOCK * BLOCK];
+
+    _Static_assert((int)BLOCK <= (int)RF_DEQUANTISE_PATCH, "blocks are patches");
+    rf_blurs_at(f, x0, y0, BLOCK, BLOCK, blur);
+    for (int i = 0; i < BLOCK * BLOCK; i++)
+        if (abs(blur[i]) >= SHARP)
+            return true;
+    return false;
+}
+
 /* Variance of a block's noise in 1/16, and its mean; -1 when it does not count: it is
  * not sharp, or touches black or white, where noise is cut off. */
 static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blur,
@@ -56,14 +69,15 @@ static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blu
 {
     int sum = 0, square = 0;
 
+    if (!any_blur && is_blurred(f, x0, y0))
+        return -1;
     for (int y = y0; y < y0 + BLOCK; y++) {
         int v[BLOCK];
 
         for (int x = 0; x < BLOCK; x++) {
             v[x] = luma_at(f->r, x0 + x, y);
             sum += v[x];
-            if (v[x] < 2 || v[x] > 253 ||
-                (!any_blur && abs(rf_blur_at(f, x0 + x, y)) >= SHARP))
+            if (v[x] < 2 || v[x] > 253)
                 return -1;
         }
         for (int x = 1; x < BLOCK - 1; x++) {

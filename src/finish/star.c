@@ -49,8 +49,12 @@ static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp,
                       int i, struct rf_star *star)
 {
     const uint32_t times = (uint32_t)floorf(f->params->highlight_gain * 256 + 0.5f);
-    const int x = lamp->x + i, blur = abs(rf_blur_at(f, x, lamp->y));
+    const int x = lamp->x + i;
+    int16_t signed_blur;
+    int blur;
 
+    rf_blurs_at(f, x, lamp->y, 1, 1, &signed_blur);
+    blur = abs(signed_blur);
     star->x0 = x < star->x0 ? x : star->x0;
     star->x1 = x > star->x1 ? x : star->x1;
     star->y1 = lamp->y;

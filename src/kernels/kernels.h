@@ -268,6 +268,24 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
     return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
 }
 
+/*
+ * Codes of a disparity map that has few of them; src/depth/dequantise.h says why.
+ *
+ * smooth_codes: a 3x3 binomial mean of row[1], with neighbours `apart` pixels to either side and in
+ * row[0] and row[2], of which pixels -apart to n - 1 + apart are read:
+ *
+ *     out = own + (sum of w (neighbour - own) + 8 >> 4)
+ *
+ * w is 2 beside, above and below, and 1 in the corners; but 0 for two opposite neighbours of which
+ * one's code is more than `most` away: so a plane stays one up to its edge. most <=
+ * RF_MOST_SMOOTHED, so sums stay below 2^15.
+ * clamp_codes: each code becomes the smooth value, or what is nearest to it within `most`.
+ */
+enum { RF_MOST_SMOOTHED = (32767 - 8) / 12 };
+typedef void rf_smooth_codes_fn(uint16_t *out, const uint16_t *const row[3], int apart,
+                                uint16_t most, int n);
+typedef void rf_clamp_codes_fn(uint16_t *code, const uint16_t *smooth, uint16_t most, int n);
+
 /* at_most: none of n values above `most`. */
 typedef void rf_at_most_fn(uint16_t *value, uint16_t most, int n);
 
@@ -524,6 +542,8 @@ struct rf_kernels {
     rf_pull_blur_fn *pull_blur;
     rf_means_fn *means;
     rf_at_most_fn *at_most;
+    rf_smooth_codes_fn *smooth_codes;
+    rf_clamp_codes_fn *clamp_codes;
     rf_weighted_means_fn *weighted_means;
     rf_weigh_fn *weigh;
     rf_weigh1_fn *weigh1;
@@ -584,7 +604,7 @@ rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_draw_disc_us
     RF_VECTOR_SETS(rf_weigh_use), RF_VECTOR_SETS(rf_weigh1_use);
 rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
     RF_ALL_SETS(rf_discs_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
-    RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use),
+    RF_ALL_SETS(rf_dequantise_use), RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use),
     RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_windows_use), RF_ALL_SETS(rf_yuv_use),
     RF_ALL_SETS(rf_yuv_codes_use);
 

@@ -108,6 +108,14 @@ static void series_row(const struct rf_kernels *k, struct rows *r)
     k->series_row(r->floats[0], &job, N);
 }
 
+static void smooth_codes(const struct rf_kernels *k, struct rows *r)
+{
+    const uint16_t *const row[3] = {r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
+                                    r->shorts[2] + MARGIN};
+
+    k->smooth_codes(r->shorts[6], row, 1, 411, N);
+}
+
 /* A chunk of rays over a strip, each with one test that some pixels pass. */
 static void sweep(const struct rf_kernels *k, struct rows *r)
 {
@@ -152,6 +160,7 @@ static const struct {
     {"blend4", "pixel", blend4, N},
     {"lean3", "pixel", lean3, N},
     {"series_row", "pixel", series_row, N},
+    {"smooth_codes", "pixel", smooth_codes, N},
 };
 
 static void fill(struct rows *r)

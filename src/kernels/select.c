@@ -72,6 +72,7 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
     rf_upsample_use_c(kernels);
     rf_choose_use_c(kernels);
     rf_part_use_c(kernels);
+    rf_dequantise_use_c(kernels);
     rf_series_use_c(kernels);
     rf_surfaces_use_c(kernels);
     rf_thin_use_c(kernels);

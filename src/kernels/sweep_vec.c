@@ -210,6 +210,7 @@ void RF_VEC(rf_kernels_use)(struct rf_kernels *kernels)
     RF_VEC(rf_light_use)(kernels);
     RF_VEC(rf_rows_use)(kernels);
     RF_VEC(rf_search_use)(kernels);
+    RF_VEC(rf_dequantise_use)(kernels);
     RF_VEC(rf_series_use)(kernels);
     RF_VEC(rf_part_use)(kernels);
     RF_VEC(rf_surfaces_use)(kernels);

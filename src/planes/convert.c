@@ -58,17 +58,17 @@ void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int
     }
 }
 
-void rf_disparity_rows(struct refocus_renderer *r, const struct refocus_disparity *map,
+void rf_disparity_rows(uint16_t *disparity, ptrdiff_t stride, const struct refocus_disparity *map,
                        int y0, int y1)
 {
     for (int y = y0; y < y1; y++) {
         const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
-        uint16_t *out = r->disparity + y * r->stride;
+        uint16_t *out = disparity + y * stride;
 
         if (map->bits == 16)
-            memcpy(out, in, (size_t)r->width * 2);
+            memcpy(out, in, (size_t)map->width * 2);
         else
-            for (int x = 0; x < r->width; x++)
+            for (int x = 0; x < map->width; x++)
                 out[x] = (uint16_t)(in[x] * 257);
     }
 }

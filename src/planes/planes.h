@@ -15,8 +15,8 @@ void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *pho
 /* Change light planes from one blend to another. */
 void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int y0, int y1);
 
-/* Disparities of the photo's size, copied. */
-void rf_disparity_rows(struct refocus_renderer *r, const struct refocus_disparity *map,
+/* Rows y0 to y1 - 1 of a map, as Q16, to a plane. */
+void rf_disparity_rows(uint16_t *disparity, ptrdiff_t stride, const struct refocus_disparity *map,
                        int y0, int y1);
 
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "background/background.h"
+#include "depth/dequantise.h"
 #include "planes/format.h"
 #include "renderer/bands.h"
 #include "renderer/layout.h"
@@ -65,23 +66,31 @@ static struct refocus_image image_part(const struct refocus_image *image,
     return out;
 }
 
+static struct refocus_disparity map_part(const struct refocus_disparity *map, struct rf_rect part)
+{
+    struct refocus_disparity out = *map;
+
+    out.samples = (const uint8_t *)map->samples + part.y0 * map->stride +
+                  (ptrdiff_t)part.x0 * (map->bits / 8);
+    out.width = part.x1 - part.x0;
+    out.height = part.y1 - part.y0;
+    return out;
+}
+
 /* Make a block of the caller's photo and its margin the window. */
 static void load(struct refocus_renderer *r, struct rf_rect block, int margin)
 {
     const struct rf_rect window = around(r, block, margin);
+    const struct rf_rect mapped = around(r, window, r->in_place.code_step ? RF_DEQUANTISE_REACH : 0);
     const struct refocus_image photo = image_part(&r->in_place.photo, window);
-    struct refocus_disparity map = r->in_place.map;
+    const struct refocus_disparity map = map_part(&r->in_place.map, mapped);
 
-    map.samples = (const uint8_t *)map.samples + window.y0 * map.stride +
-                  (ptrdiff_t)window.x0 * (map.bits / 8);
-    map.width = photo.width;
-    map.height = photo.height;
     r->in_place.beyond = (struct rf_rect){
         margin - (block.x0 - window.x0), margin - (block.y0 - window.y0),
         margin - (window.x1 - block.x1), margin - (window.y1 - block.y1)};
     rf_use(r, 0, window);
     rf_load_light(r, &photo, NULL);
-    rf_load_disparity(r, &map);
+    rf_load_disparity(r, &map, r->in_place.code_step, window.x0 - mapped.x0, window.y0 - mapped.y0);
 }
 
 void rf_find_rims_in_blocks(struct refocus_renderer *r)

@@ -11,7 +11,7 @@ int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height);
 /* Strip mode: rows above and below a window that may be read, though nothing is in
  * them; and the most pixels on a side of a window and its border, which ends where the
  * margin would. */
-enum { RF_SPARE_ROWS = 8 };
+enum { RF_SPARE_ROWS = 8 }; /* as many as RF_DEQUANTISE_REACH at least */
 static inline int rf_block_side(const struct rf_in_place *in_place)
 {
     return in_place->block + 2 * in_place->margin;

@@ -1,13 +1,16 @@
 #include "renderer/load.h"
 
+#include "depth/dequantise.h"
 #include "planes/planes.h"
 #include "planes/yuv.h"
 #include "renderer/bands.h"
+#include "support/compare.h"
 
 struct job {
     struct refocus_renderer *r;
     const struct refocus_image *photo;
     const struct refocus_disparity *map;
+    uint16_t *disparity; /* of the map's first pixel */
     const struct refocus_image *guide;
 };
 
@@ -26,22 +29,44 @@ static void convert_band(void *context, int band, int worker)
 static void disparity_band(void *context, int band, int worker)
 {
     const struct job *job = context;
+    const int end = rf_smaller((band + 1) * RF_TILE, job->map->height);
 
     (void)worker;
-    rf_disparity_rows(job->r, job->map, rf_band_start(band), rf_band_end(job->r, band));
+    rf_disparity_rows(job->disparity, job->r->stride, job->map, band * RF_TILE, end);
 }
 
 void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo,
                    const struct refocus_image *guide)
 {
-    struct job job = {r, photo, NULL, guide};
+    struct job job = {.r = r, .photo = photo, .guide = guide};
 
     rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
 }
 
-void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map)
+/* The planes of pre-filtered light are free until something is rendered. */
+static void dequantise(struct refocus_renderer *r, const struct job *job, int step, ptrdiff_t first)
 {
-    struct job job = {r, NULL, map, NULL};
+    const struct rf_dequantiser d = {
+        .kernels = &r->kernels,
+        .code = job->disparity,
+        .stride = r->stride,
+        .spare = {r->smooth[1] + first, r->smooth[2] + first},
+        .spare_stride = {r->stride, r->stride},
+        .width = job->map->width,
+        .height = job->map->height,
+        .step = step,
+    };
 
-    rf_pool_run(&r->pool, disparity_band, &job, rf_bands(r));
+    rf_dequantise(&d, &r->pool);
+}
+
+void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map, int step,
+                       int left, int above)
+{
+    const ptrdiff_t first = -above * r->stride - left;
+    struct job job = {.r = r, .map = map, .disparity = r->disparity + first};
+
+    rf_pool_run(&r->pool, disparity_band, &job, (map->height + RF_TILE - 1) / RF_TILE);
+    if (step)
+        dequantise(r, &job, step, first);
 }

@@ -9,8 +9,11 @@
 void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo,
                    const struct refocus_image *guide);
 
-/* Disparities; the map is of the window's size. */
-void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map);
+/* Disparities, and of a map with few codes slopes in place of its steps: `step` is its
+ * rf_code_step(). The map is of the window's size. In strip mode it is larger by what the slopes
+ * depend on: it begins at (-left, -above) of the window, up to RF_DEQUANTISE_REACH pixels. */
+void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map, int step,
+                       int left, int above);
 
 /* Strip mode: the rims of the photo, block by block. */
 void rf_find_rims_in_blocks(struct refocus_renderer *r);

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "depth/dequantise.h"
 #include "depth/upsample.h"
 #include "planes/format.h"
 #include "planes/planes.h"
@@ -54,7 +55,7 @@ static void take_in(struct refocus_renderer *r, const struct refocus_image *phot
 
     rf_load_light(r, photo, same_size ? NULL : &guide);
     if (same_size)
-        rf_load_disparity(r, disparity);
+        rf_load_disparity(r, disparity, rf_code_step(disparity), 0, 0);
     else
         upsample(r, &guide, disparity);
     if (!rf_cancelled(r))
@@ -91,6 +92,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     if (r->in_place.on) {
         r->in_place.photo = *photo;
         r->in_place.map = *disparity;
+        r->in_place.code_step = rf_code_step(disparity);
         rf_find_rims_in_blocks(r);
     } else {
         rf_use(r, 0, rf_whole(r, 0));

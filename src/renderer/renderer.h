@@ -124,6 +124,7 @@ struct rf_in_place {
     bool on;
     struct refocus_image photo; /* the caller's */
     struct refocus_disparity map;
+    int code_step;               /* of the map, rf_code_step() */
     int block, margin;           /* pixels of a block that is rendered, and around it */
     int mark_block, mark_margin; /* of one whose background is marked */
     struct rf_rect beyond;       /* of the margin in use, what lies beyond the photo */

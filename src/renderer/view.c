@@ -3,22 +3,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "depth/dequantise.h"
 #include "planes/format.h"
 #include "renderer/renderer.h"
+#include "support/compare.h"
 
-static void read_disparity(const struct refocus_renderer *r, int y, uint16_t *out)
+/* The prepared disparities; those of strip mode, where none are kept, are made again. */
+static void copy_disparities(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
+    enum { SIDE = RF_DEQUANTISE_PATCH };
     const struct rf_photo *photo = &r->photo[0];
-    const struct refocus_disparity *map = &r->in_place.map;
-    const uint8_t *row = (const uint8_t *)map->samples;
+    const struct rf_in_place *in_place = &r->in_place;
+    uint16_t patch[SIDE * SIDE];
 
-    if (!r->in_place.on)
-        memcpy(out, photo->disparity + y * photo->stride, (size_t)photo->width * 2);
-    else if (map->bits == 16)
-        memcpy(out, row + y * map->stride, (size_t)photo->width * 2);
-    else
-        for (int x = 0; x < photo->width; x++)
-            out[x] = (uint16_t)(row[y * map->stride + x] * 257);
+    for (int y = 0; y < photo->height && !in_place->on; y++)
+        memcpy(out + y * pitch, photo->disparity + y * photo->stride, (size_t)photo->width * 2);
+    for (int y = 0; y < photo->height && in_place->on; y += SIDE)
+        for (int x = 0; x < photo->width; x += SIDE) {
+            const int width = rf_smaller(SIDE, photo->width - x);
+            const int height = rf_smaller(SIDE, photo->height - y);
+
+            rf_dequantised_patch(&r->kernels, &in_place->map, in_place->code_step, x, y, width,
+                                 height, patch);
+            for (int v = 0; v < height; v++)
+                memcpy(out + (y + v) * pitch + x, patch + v * width, (size_t)width * 2);
+        }
 }
 
 enum { RUN = 256 };
@@ -62,8 +71,7 @@ int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out,
     photo = &r->photo[0];
     if (!rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
-    for (int y = 0; y < photo->height; y++)
-        read_disparity(r, y, out + y * (stride / 2));
+    copy_disparities(r, out, stride / 2);
     if (view == REFOCUS_VIEW_BLUR)
         to_blur(r, out, stride / 2);
     return REFOCUS_OK;

@@ -9,9 +9,10 @@ enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
 
 enum {
     HALF = 128, /* Q7.8 pixels, as all of these */
-    OVERLAP = 32,
+    OVERLAP = 32,        /* of a slab with each of those beside it */
+    SHARP = HALF + 2 * OVERLAP, /* less is met by the slab of what is sharp */
     WIDE = 16 * 256,     /* where slabs begin to be wider than a pixel */
-    MOST_SPREAD = 61440, /* of blurs, so that no slab of up to 16 is met modulo 2^16 */
+    MOST_SPREAD = 60416, /* of blurs, so that no slab of up to 20 is met modulo 2^16 */
 };
 
 struct rf_bin_scale rf_bin_scale_of(float largest_blur)
@@ -241,9 +242,14 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
 
 /* Cover the occupied bins from the near side. Slabs are a pixel wide, half of that where
  * the blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on,
- * where rays lie farther apart than what is off by half of that. The blurs below half a
- * pixel are a slab of their own with offset 0, which nothing else may take: they stay as
- * they are. */
+ * where rays lie farther apart than what is off by half of that.
+ *
+ * The blurs below half a pixel are a slab of their own with offset 0, so that these pixels stay as
+ * they are. No other slab may take them, as its rays would bring what is beside them. Yet a ray
+ * must not pass between the two slabs where a surface crosses half a pixel of blur: so the sharp
+ * one takes what is up to 2 OVERLAP beyond, as far as any two others overlap. With OVERLAP = 1/8
+ * pixel that closes surfaces of slope up to 1/4: of two neighbours of blur 0.45 and 0.60 pixels a
+ * ray at offset 0 meets the second one in the sharp slab, where it missed both before. */
 static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
                   struct rf_tile_plan *plan)
 {
@@ -255,10 +261,11 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
     plan->least = INT16_MAX;
     plan->sharp = true;
     for (int bin = next_bin(bins, 0); bin < RF_BINS; bin = next_bin(bins, bin)) {
-        int end = bin + pixel, last = bin, low, high, centre;
+        int end = bin + pixel, last = bin, low, high, centre, overlap;
 
         if (bin >= scale.focus && bin < focus_end) {
-            add_slab(plan, scale, (struct rf_slab){-HALF, 2 * HALF - 1, 0});
+            add_slab(plan, scale,
+                     (struct rf_slab){-SHARP, 2 * SHARP - 1, 0});
             plan->least = 0;
             bin = focus_end;
             continue;
@@ -286,8 +293,9 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
             plan->least = low;
         if (high < 0 && -high < plan->least)
             plan->least = -high;
-        low -= OVERLAP;
-        high += OVERLAP;
+        overlap = rf_larger(OVERLAP, (high - low) / 8);
+        low -= overlap;
+        high += overlap;
         if (centre < 0 && high >= -HALF)
             high = -HALF - 1;
         if (centre > 0 && low < HALF)

@@ -376,7 +376,64 @@ static void expect_join2(void *const *row, int parameter, int n)
         ((uint16_t *)row[0])[i] = ((const uint16_t *)row[1 + i % 2])[i / 2];
 }
 
+/* The parameter holds how far the neighbours are away, and how much they may differ. */
+static int code_apart_of(int parameter)
+{
+    static const int apart[] = {1, 2, 4};
+
+    return apart[parameter % 3];
+}
+
+static void run_smooth_codes(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    const uint16_t *const in[3] = {row[1], row[2], row[3]};
+
+    k->smooth_codes(row[0], in, code_apart_of(parameter), (uint16_t)parameter, n);
+}
+
+static void expect_smooth_codes(void *const *row, int parameter, int n)
+{
+    const int apart = code_apart_of(parameter);
+
+    for (int x = 0; x < n; x++) {
+        const int own = ((const uint16_t *)row[2])[x];
+        int sum = 0;
+
+        for (int j = -1; j <= 1; j++)
+            for (int i = -1; i <= 1; i++) {
+                const int away = ((const uint16_t *)row[2 + j])[x + i * apart] - own;
+                const int opposite = ((const uint16_t *)row[2 - j])[x - i * apart] - own;
+
+                if (abs(away) <= parameter && abs(opposite) <= parameter)
+                    sum += (2 - abs(i)) * (2 - abs(j)) * away;
+            }
+        ((uint16_t *)row[0])[x] = (uint16_t)(own + (int)floor((sum + 8) / 16.0));
+    }
+}
+
+static void run_clamp_codes(const struct rf_kernels *k, void *const *row, int parameter, int n)
+{
+    k->clamp_codes(row[0], row[1], (uint16_t)parameter, n);
+}
+
+static void expect_clamp_codes(void *const *row, int parameter, int n)
+{
+    uint16_t *code = row[0];
+
+    for (int x = 0; x < n; x++) {
+        const int smooth = ((const uint16_t *)row[1])[x], away = smooth - code[x];
+
+        code[x] = (uint16_t)(abs(away) <= parameter ? smooth
+                                                    : code[x] + (away < 0 ? -1 : 1) * parameter);
+    }
+}
+
 const struct row_kernel row_kernels[] = {
+    {"smooth_codes", 4,
+     {{DISPARITY, 1, 0, 0}, {DISPARITY, 1, 4, 0}, {DISPARITY, 1, 4, 0}, {DISPARITY, 1, 4, 0}},
+     0, RF_MOST_SMOOTHED, run_smooth_codes, expect_smooth_codes},
+    {"clamp_codes", 2, {{DISPARITY, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, UINT16_MAX,
+     run_clamp_codes, expect_clamp_codes},
     {"smooth1", 3, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 4, 0}, {BLUR, 1, 4, 0}}, 0, INT16_MAX,
      run_smooth1, expect_smooth1},
     {"sharpest4", 3, {{BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}}, 0, 0,

@@ -93,6 +93,51 @@ static void same_bytes(void **state)
     }
 }
 
+/* A map of few codes: slopes are made of its steps, whose neighbours may lie in other blocks. */
+static void few_codes(void **state)
+{
+    static const struct {
+        int width, height;
+        float blur;
+    } views[] = {{330, 290, 9}, {403, 170, 40}, {161, 350, 1}};
+
+    (void)state;
+    for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
+        struct picture p = picture_make(views[v].width, views[v].height, 5);
+        const size_t size = 3 * (size_t)p.width * (size_t)p.height;
+        struct refocus_render_params params = refocus_render_params_default(0.4f, views[v].blur);
+        uint8_t *out[2] = {malloc(size), malloc(size)};
+        uint16_t *slopes[2] = {malloc(size), malloc(size)};
+
+        assert_true(out[0] && out[1] && slopes[0] && slopes[1]);
+        params.grain = 1;
+        for (int i = 0; i < p.width * p.height; i++) {
+            const int x = i % p.width, y = i / p.width;
+            const int slope = 60 * x + 37 * y + (x / 19 % 3 == 2) * 30000;
+
+            p.disparity[i] = (uint16_t)(slope / 500 * 500);
+        }
+        for (int in_place = 0; in_place < 2; in_place++) {
+            const struct refocus_image to = refocus_image_packed(
+                REFOCUS_FORMAT_RGB8, out[in_place], p.width, p.height, 3 * p.width);
+            struct refocus_renderer *renderer = create(&p, views[v].blur, in_place);
+
+            assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
+            assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, slopes[in_place],
+                                              2 * p.width), REFOCUS_OK);
+            refocus_renderer_destroy(&renderer);
+        }
+        assert_memory_equal(out[0], out[1], size);
+        assert_memory_equal(slopes[0], slopes[1], size * 2 / 3);
+        assert_memory_not_equal(slopes[0], p.disparity, size * 2 / 3);
+        for (int i = 0; i < 2; i++) {
+            free(out[i]);
+            free(slopes[i]);
+        }
+        picture_free(&p);
+    }
+}
+
 /* Formats, strides, 8-bit disparities, alpha, the views. */
 static void formats(void **state)
 {
@@ -181,6 +226,7 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes),
+                                       cmocka_unit_test(few_codes),
                                        cmocka_unit_test(formats),
                                        cmocka_unit_test(refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);

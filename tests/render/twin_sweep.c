@@ -127,13 +127,15 @@ static struct plan cover(const struct bins *bins, double width)
         const double low = edge_of(width, bin);
         int end = bin + pixel, last = bin;
         struct slab slab;
+        double wide;
 
         if (!bins->has[bin]) {
             bin++;
             continue;
         }
         if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel) {
-            plan.slab[plan.slabs++] = (struct slab){-0.5, nextafter(0.5, 0), 0, 0, 0};
+            plan.slab[plan.slabs++] = (struct slab){
+                -0.5 - 2 * overlap, nextafter(0.5 + 2 * overlap, 0), 0, 0, 0};
             bin = FOCUS_BIN + pixel;
             continue;
         }
@@ -148,8 +150,9 @@ static struct plan cover(const struct bins *bins, double width)
         slab = slab_over(bins, width, bin, last);
         plan.sharp = false;
         plan.reach = fmax(plan.reach, fmax(-slab.low, slab.high));
-        slab.low -= overlap;
-        slab.high += overlap;
+        wide = fmax(overlap, (slab.high - slab.low) / 8);
+        slab.low -= wide;
+        slab.high += wide;
         if (slab.centre < 0 && slab.high >= -0.5)
             slab.high = nextafter(-0.5, -1);
         if (slab.centre > 0 && slab.low < 0.5)

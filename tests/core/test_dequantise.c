@@ -1,0 +1,190 @@
+/* Which maps are taken for maps of few codes, and what becomes of them. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "depth/dequantise.h"
+#include "support/pool.h"
+
+enum { WIDTH = 203, HEIGHT = 151, PIXELS = WIDTH * HEIGHT };
+
+/* A slanted plane with a ball before it: 8000 to 52000. */
+static double surface(int x, int y)
+{
+    const double dx = x - 120, dy = y - 70, in = 45 * 45 - dx * dx - dy * dy;
+    const double plane = 8000 + 61.3 * x + 37.7 * y;
+
+    return in > 0 ? 42000 + 220 * sqrt(in) : plane;
+}
+
+static void draw(uint16_t *map, int step)
+{
+    for (int i = 0; i < PIXELS; i++)
+        map[i] = (uint16_t)(floor(surface(i % WIDTH, i / WIDTH) / step + 0.5) * step);
+}
+
+static struct refocus_disparity map_of(const uint16_t *map)
+{
+    return refocus_disparity16(map, WIDTH, HEIGHT, 2 * WIDTH);
+}
+
+static void steps_of_maps(void **state)
+{
+    static uint16_t map[PIXELS];
+    static uint8_t bytes[PIXELS];
+    struct refocus_disparity d = map_of(map);
+
+    (void)state;
+    draw(map, 1);
+    assert_int_equal(rf_code_step(&d), 0);
+    draw(map, 257);
+    assert_int_equal(rf_code_step(&d), 257);
+    draw(map, 700);
+    assert_int_equal(rf_code_step(&d), 700);
+    draw(map, 1500); /* coarser than 6 bits */
+    assert_int_equal(rf_code_step(&d), 0);
+    for (int i = 0; i < PIXELS; i++)
+        bytes[i] = (uint8_t)(map[i] / 1500 * 3);
+    d.bits = 8;
+    d.samples = bytes;
+    d.stride = WIDTH;
+    assert_int_equal(rf_code_step(&d), 0); /* 30 codes, drawn by hand perhaps */
+    for (int i = 0; i < PIXELS; i++)
+        bytes[i] = (uint8_t)(surface(i % WIDTH, i / WIDTH) / 257);
+    assert_int_equal(rf_code_step(&d), 257);
+    d.width = d.height = 60; /* a few thousand pixels: not so many of each code */
+    assert_int_equal(rf_code_step(&d), 0);
+}
+
+/* 40 boards one behind the other, 1600 apart: each edge is real. */
+static void boards_stay(void **state)
+{
+    static uint16_t map[PIXELS];
+    const struct refocus_disparity d = map_of(map);
+
+    (void)state;
+    for (int i = 0; i < PIXELS; i++)
+        map[i] = (uint16_t)(i % WIDTH / 5 * 1600);
+    assert_int_equal(rf_code_step(&d), 0);
+}
+
+static double greatest_error(const uint16_t *map)
+{
+    double most = 0;
+
+    for (int i = 0; i < PIXELS; i++)
+        most = fmax(most, fabs(map[i] - surface(i % WIDTH, i / WIDTH)));
+    return most;
+}
+
+/* Steps that two neighbours inside one surface make, in the mean and the greatest. */
+static void steps_between(const uint16_t *map, double *mean, int *most)
+{
+    double sum = 0;
+    int count = 0;
+
+    *most = 0;
+    for (int i = 0; i < PIXELS - WIDTH; i++) {
+        const int real = abs((int)surface(i % WIDTH, i / WIDTH) -
+                             (int)surface(i % WIDTH, i / WIDTH + 1));
+        const int step = abs(map[i] - map[i + WIDTH]);
+
+        if (real > 60)
+            continue;
+        *most = step > *most ? step : *most;
+        sum += step * step;
+        count++;
+    }
+    *mean = sqrt(sum / count);
+}
+
+static void run(uint16_t *map, int step, uint32_t cpu, int threads)
+{
+    static uint16_t spare[2][PIXELS];
+    struct rf_kernels kernels;
+    struct rf_pool pool;
+    struct rf_run state = {.looked_at = NULL};
+    struct rf_dequantiser d = {.kernels = &kernels, .code = map, .stride = WIDTH,
+                               .spare = {spare[0], spare[1]}, .spare_stride = {WIDTH, WIDTH},
+                               .width = WIDTH, .height = HEIGHT, .step = step};
+
+    assert_true(rf_kernels_select(&kernels, &cpu));
+    atomic_init(&state.state, RF_RUN_RUNNING);
+    assert_int_equal(rf_pool_start(&pool, threads, NULL, &state), REFOCUS_OK);
+    rf_dequantise(&d, &pool);
+    rf_pool_end(&pool);
+}
+
+static void slopes_come_back(void **state)
+{
+    static uint16_t map[PIXELS], coarse[PIXELS], other[PIXELS];
+    double before, after;
+    int most_before, most_after, edges = 0;
+
+    (void)state;
+    draw(coarse, 257);
+    memcpy(map, coarse, sizeof map);
+    run(map, 257, REFOCUS_CPU_C, 1);
+    steps_between(coarse, &before, &most_before);
+    steps_between(map, &after, &most_after);
+    assert_int_equal(most_before, 257);
+    assert_in_range(most_after, 1, 230); /* less than a step everywhere */
+    assert_true(after < 0.55 * before);
+    assert_true(greatest_error(map) <= 257);
+    for (int i = 0; i < PIXELS; i++)
+        assert_in_range(abs(map[i] - coarse[i]), 0, 128);
+    for (int i = 1; i < PIXELS; i++) /* of the ball: as high as they were, within two halves */
+        if (i % WIDTH && abs(coarse[i] - coarse[i - 1]) > 3000) {
+            assert_in_range(abs(map[i] - map[i - 1]), abs(coarse[i] - coarse[i - 1]) - 256,
+                            abs(coarse[i] - coarse[i - 1]) + 256);
+            edges++;
+        }
+    assert_true(edges > 50);
+    memcpy(other, coarse, sizeof other);
+    run(other, 257, REFOCUS_CPU_AUTO, 3);
+    assert_memory_equal(other, map, sizeof map);
+}
+
+/* Codes at both ends of the range, and pictures smaller than the reach. */
+static void ends_and_small_maps(void **state)
+{
+    (void)state;
+    for (int width = 1; width <= 20; width++)
+        for (int height = 1; height <= 20; height++) {
+            uint16_t map[400], spare[2][400];
+            struct rf_kernels kernels;
+            struct rf_pool pool;
+            struct rf_run run_state = {.looked_at = NULL};
+            uint32_t cpu = REFOCUS_CPU_AUTO;
+            struct rf_dequantiser d = {.kernels = &kernels, .code = map, .stride = width,
+                                       .spare = {spare[0], spare[1]},
+                                       .spare_stride = {width, width}, .width = width,
+                                       .height = height, .step = 257};
+
+            for (int i = 0; i < width * height; i++)
+                map[i] = i / 2 % 2 ? 65535 : 65535 - 257;
+            map[0] = 0;
+            assert_true(rf_kernels_select(&kernels, &cpu));
+            atomic_init(&run_state.state, RF_RUN_RUNNING);
+            assert_int_equal(rf_pool_start(&pool, 1, NULL, &run_state), REFOCUS_OK);
+            rf_dequantise(&d, &pool);
+            rf_pool_end(&pool);
+            assert_int_equal(map[0], 0);
+            for (int i = 1; i < width * height; i++)
+                assert_in_range(map[i], 65535 - 257 - 128, 65535);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_of_maps), cmocka_unit_test(boards_stay),
+        cmocka_unit_test(slopes_come_back), cmocka_unit_test(ends_and_small_maps)};
+
+    return cmocka_run_group_tests_name("dequantise", tests, NULL, NULL);
+}
