@@ -270,7 +270,8 @@ struct refocus_render_params {
     float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
                                  eq. 5: >= 1; INFINITY = plain average */
     float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 16
-                                 times white, 2^stops, where they are blurred by s. Of a disc or an
+                                 times white, 2^stops, where they are blurred by s; none where
+                                 one channel of R, G, B alone is clipped. Of a disc or an
                                  iris, and with sigma from 1e6 on, drawn over the area of the
                                  opening times s^2; else rays meet it */
     int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */

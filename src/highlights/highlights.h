@@ -6,7 +6,8 @@
  * than what is around them, with a steep rim. Never large clipped areas: a white wall is
  * just white.
  *
- *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing
+ *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing, nor
+ *                where one channel alone is clipped: hair, leaves, petals
  *     isolation  ramp of mean luminance / that of all else up to 12 cells away, 2.5 to 3.75, and
  *                of the bright channel that stands out most: what is blue among blue is a petal
  *     steepness  ramp of pixels of the edge / half lit ones beside them, 1.67 to 2.25: those

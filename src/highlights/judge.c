@@ -347,12 +347,22 @@ static bool goes_on(const struct rf_lamp_search *s, int x, int y, const int full
            are_alike(full, s->full);
 }
 
-/* A channel that is not clipped has lost nothing. */
+static int second_of(const int colour[3])
+{
+    const struct rf_lamp_photo core = {.core = true};
+
+    return rf_level_of(&core, colour);
+}
+
+/* A channel that is not clipped has lost nothing; and where one channel alone is clipped there is a
+ * colour, red hair or a petal, and no light. */
 static void list(struct rf_lamp_search *s, int x, int y, const struct lamp *lamp)
 {
     int colour[3], full[3], lost[3];
 
     rf_colour_at(&s->photo, x, y, colour);
+    if (second_of(colour) <= RF_CLIPPED)
+        return;
     for (int c = 0; c < 3; c++) {
         full[c] = lamp->added[c] * lamp->strength / 256;
         lost[c] = full[c] * rf_ramp(colour[c], RF_CLIPPED, RF_LIGHT_MAX) / 256;

@@ -85,7 +85,7 @@ int main(int argc, char **argv)
     params.threads = 1;
     params.cpu = cpu;
     lens.rays = number[3];
-    lens.highlight_gain = 9.5f; /* as the command line has it */
+    lens.highlight_gain = 4; /* as the command line has it */
     status = refocus_renderer_create(&renderer, &params);
     for (int i = 0; i < number[4] + number[5] && status == REFOCUS_OK; i++) {
         if (i < number[4])

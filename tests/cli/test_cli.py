@@ -204,6 +204,12 @@ class Limits(Case):
         self.fails(2, 'bench: --depth, --depth-unit, --near, --far and --focus-distance go '
                       'with a photo; give one', 'bench', '--depth', 'depth.pgm')
 
+    def test_light_is_given_back_with_care(self):
+        # two stops: paper and petals are found as often as lamps in photos of cameras
+        self.assertEqual(self.reports(*self.render())['highlights'], 4)
+        self.assertEqual(self.reports(*self.render('--sigma', '60'))['highlights'], 4)
+        self.assertEqual(self.reports(*self.render('--highlights', 'off'))['highlights'], 1)
+
     def test_what_would_change_nothing(self):
         for method, other, *option in (
                 ('search', 'sweep', '--iterations', '1'), ('search', 'blur', '--mirror'),

@@ -21,6 +21,7 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights", "portrait1080"]
 # label, an entry of `refocus compare --methods`; {full}: every ray of the mask
 METHODS = [
     ("sweep", "sweep:rays=64"),
+    ("sweep, highlights off", "sweep:rays=64:highlights=off"),
     ("search T=1", "search:iterations=1:rays={full}"),
     ("search T=2", "search:iterations=2:rays={full}"),
     ("raytrace", "raytrace:rays={full}"),

@@ -21,10 +21,11 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 # label, settings (see refocus-quality --help), what it is
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
-    ("standard", "method=sweep,highlight=9.5,thin=1",
+    ("standard", "method=sweep,highlight=4,thin=1",
      "the default: two layers, 64 rays, light given back to clipped lamps, thin things drawn"),
+    ("standard-off", "method=sweep,thin=1", "the same with `--highlights off`"),
     ("sweep", "method=sweep", "the same of what is in the photo"),
-    ("best", "method=sweep,rays=128,highlight=9.5,thin=1", "the same with 128 rays"),
+    ("best", "method=sweep,rays=128,highlight=4,thin=1", "the default with 128 rays"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "the paper to the letter: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
@@ -51,14 +52,14 @@ LIGHTS = [
     ("gain-1", "highlight=1", "as the photo has them"),
     ("gain-2", "highlight=2", "lamps up to twice as bright as white"),
     ("gain-3", "highlight=3", "three times"),
-    ("gain-4", "highlight=4", "four times"),
+    ("gain-4", "highlight=4", "four times: standard"),
     ("gain-4-s400", "highlight=4,sigma=400", "four times, σ = 400"),
     ("gain-8", "highlight=8", "eight times"),
-    ("gain-9.5", "highlight=9.5", "nine and a half times: standard"),
+    ("gain-9.5", "highlight=9.5", "nine and a half times"),
     ("gain-8-s400", "highlight=8,sigma=400", "eight times, σ = 400"),
     ("gain-16", "highlight=16", "sixteen times"),
-    ("gain-4-128", "highlight=4,rays=128", "four times, 128 rays"),
-    ("gain-9.5-128", "highlight=9.5,rays=128", "nine and a half times, 128 rays: best"),
+    ("gain-4-128", "highlight=4,rays=128", "four times, 128 rays: best"),
+    ("gain-9.5-128", "highlight=9.5,rays=128", "nine and a half times, 128 rays"),
     ("gain-8-128-s400", "highlight=8,rays=128,sigma=400", "eight times, 128 rays, σ = 400"),
 ]
 BLENDS = [
@@ -76,14 +77,14 @@ BLENDS = [
     ("stored-s64", "blend=stored,sigma=64", "stored values, σ = 64"),
 ]
 THIN = [
-    ("met", "highlight=9.5", "thin things are met by 64 rays"),
-    ("drawn", "highlight=9.5,thin=1",
+    ("met", "highlight=4", "thin things are met by 64 rays"),
+    ("drawn", "highlight=4,thin=1",
      "far before the focus and in it they are drawn: standard"),
-    ("met-32", "highlight=9.5,rays=32", "32 rays: preview"),
-    ("drawn-32", "highlight=9.5,rays=32,thin=1", "32 rays, drawn"),
-    ("met-128", "highlight=9.5,rays=128", "128 rays"),
-    ("drawn-128", "highlight=9.5,rays=128,thin=1", "128 rays, drawn: best"),
-    ("met-512", "highlight=9.5,rays=512", "512 rays"),
+    ("met-32", "highlight=4,rays=32", "32 rays: preview"),
+    ("drawn-32", "highlight=4,rays=32,thin=1", "32 rays, drawn"),
+    ("met-128", "highlight=4,rays=128", "128 rays"),
+    ("drawn-128", "highlight=4,rays=128,thin=1", "128 rays, drawn: best"),
+    ("met-512", "highlight=4,rays=512", "512 rays"),
 ]
 SCORES = [("psnr", "PSNR", "{:.2f}"), ("edge_psnr", "near edges", "{:.2f}"),
           ("ssim", "SSIM", "{:.4f}"), ("rmse", "RMSE", "{:.2f}")]

@@ -120,7 +120,7 @@ const char *engine_blend_summary(uint32_t index);
      .word = "off",                                                                    \
      .word_value = 1,                                                                  \
      .help = "sweep: light given back to small clipped lamps, up to GAIN times "       \
-             "white; default 9.5, with --sigma 8",                                     \
+             "white; default 4",                                                      \
      OF_METHODS(type, member.method, OF_SWEEP)}
 #define RUN_OPTIONS(type, member)                                                      \
     {.kind = OPTION_INTEGER,                                                           \
