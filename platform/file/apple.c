@@ -124,6 +124,7 @@ static int take_depth(struct rf_read *read, const struct auxiliary *auxiliary,
     }
     if (status == REFOCUS_OK) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_APPLE_MPF;
+        read->info->simulated_f_number = rf_xmp_simulated_f_number(&auxiliary->xmp);
     }
     return status;
 }

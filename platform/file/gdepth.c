@@ -2,7 +2,14 @@
  * phone's own focus. https://developers.google.com/depthmap-metadata/reference */
 #include "internal.h"
 
+#include <math.h>
 #include <string.h>
+
+/* Near and Far as the file says them, and its unit. */
+struct range {
+    double near, far; /* both 0: not said */
+    double metres;    /* in a unit; 0: no unit that is known */
+};
 
 void rf_xmp_free(struct rf_xmp *xmp)
 {
@@ -28,62 +35,102 @@ int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp,
     return REFOCUS_OK;
 }
 
-/* Near and Far as metres; both 0 when not said. */
+double rf_xmp_simulated_f_number(const struct rf_xmp *xmp)
+{
+    const char *const text = xmp->value[RF_XMP_APPLE_APERTURE];
+    double value;
+
+    /* What is no number is passed over: the depth is as good without it. */
+    return text && rf_parse_number(text, &value) && value > 0.0 ? value : 0.0;
+}
+
 static int read_range(const struct rf_read *read, const struct rf_xmp *xmp,
-                      double *near_m, double *far_m, double *unit)
+                      struct range *range)
 {
     const char *const units = xmp->value[RF_XMP_DEPTH_UNITS];
     bool has_near, has_far;
     int status;
 
-    status =
-        rf_xmp_number(read, xmp, RF_XMP_DEPTH_NEAR, "GDepth:Near", &has_near, near_m);
+    status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_NEAR, "GDepth:Near", &has_near,
+                           &range->near);
     if (status == REFOCUS_OK) {
-        status =
-            rf_xmp_number(read, xmp, RF_XMP_DEPTH_FAR, "GDepth:Far", &has_far, far_m);
+        status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_FAR, "GDepth:Far", &has_far,
+                               &range->far);
     }
     if (status != REFOCUS_OK) {
         return status;
     }
-    *unit = units && strcmp(units, "mm") == 0 ? 0.001 : 1.0;
+    range->metres = !units                     ? 0.0
+                    : strcmp(units, "m") == 0  ? 1.0
+                    : strcmp(units, "mm") == 0 ? 0.001
+                                               : 0.0;
     if (!has_near || !has_far) {
-        *near_m = *far_m = 0.0;
+        range->near = range->far = 0.0;
         rf_note(read->info, "GDepth: no Near and Far: distances are unknown");
         return REFOCUS_OK;
     }
-    if (*near_m < 0.0 || *far_m <= *near_m) {
+    if (range->near < 0.0 || range->far <= range->near) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: its GDepth:Near %g and GDepth:Far %g are no range",
-                       *near_m, *far_m);
+                       range->near, range->far);
     }
     if (!units) {
-        rf_note(read->info, "GDepth: Near %g, Far %g without a unit: taken for metres",
-                *near_m, *far_m);
-    } else if (*unit != 1.0 || strcmp(units, "m") == 0) {
-        rf_note(read->info, "GDepth: Near %g %s, Far %g %s", *near_m, units, *far_m,
-                units);
+        rf_note(read->info, "GDepth: Near %g, Far %g without a unit: no metres",
+                range->near, range->far);
+    } else if (range->metres > 0.0) {
+        rf_note(read->info, "GDepth: Near %g %s, Far %g %s", range->near, units,
+                range->far, units);
     } else {
-        rf_note(read->info, "GDepth: Near %g, Far %g in \"%.40s\": taken for metres",
-                *near_m, *far_m, units);
+        rf_note(read->info, "GDepth: Near %g, Far %g in \"%.40s\": no metres",
+                range->near, range->far, units);
     }
-    *near_m *= *unit;
-    *far_m *= *unit;
     return REFOCUS_OK;
 }
 
-static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp, double *unit)
+/* Distances of an unknown unit as disparities, which need none: linear in 1/z, the
+ * nearest 65535. */
+static int linear_to_disparity(struct rf_read *read, const struct range *range)
+{
+    struct rf_raster disparity = read->samples;
+    const size_t count = (size_t)disparity.width * (size_t)disparity.height;
+    const double step = (range->far - range->near) / disparity.max_value;
+    const double near = range->near > 0.0 ? range->near : step; /* 1/0 is no disparity */
+    int status;
+
+    disparity.sample = REFOCUS_SAMPLE_U16;
+    disparity.max_value = 65535;
+    status = rf_raster_alloc(read, &disparity);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const double z = fmax(range->near + rf_raster_sample(&read->samples, i) * step, near);
+        const double d = (1.0 / z - 1.0 / range->far) / (1.0 / near - 1.0 / range->far);
+
+        ((uint16_t *)(void *)disparity.pixels)[i] = (uint16_t)(d * 65535.0 + 0.5);
+    }
+    rf_raster_free(&read->samples);
+    read->samples = disparity;
+    read->depth.meaning = REFOCUS_DEPTH_DISPARITY;
+    read->depth.value_near = 65535.0;
+    read->depth.value_far = 0.0;
+    rf_note(read->info, "GDepth: RangeLinear without a unit: taken over as disparities");
+    return REFOCUS_OK;
+}
+
+static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp,
+                       struct range *range)
 {
     const char *const format = xmp->value[RF_XMP_DEPTH_FORMAT];
     struct refocus_depth_map *const map = &read->depth;
     const double max = read->samples.max_value;
-    double near_m, far_m;
-    int status = read_range(read, xmp, &near_m, &far_m, unit);
+    int status = read_range(read, xmp, range);
 
     if (status != REFOCUS_OK) {
         return status;
     }
-    map->near_m = near_m;
-    map->far_m = far_m;
+    map->near_m = range->near * range->metres;
+    map->far_m = range->far * range->metres;
     if (format && strcmp(format, "RangeInverse") == 0) {
         map->meaning = REFOCUS_DEPTH_DISPARITY;
         map->value_near = 0.0;
@@ -93,13 +140,16 @@ static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp, double *u
         return REFOCUS_OK;
     }
     if (format && strcmp(format, "RangeLinear") == 0) {
-        if (far_m <= 0.0) {
+        if (range->far <= 0.0) {
             return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                            "damaged: its GDepth is RangeLinear without Near and Far");
         }
+        if (range->metres == 0.0) {
+            return linear_to_disparity(read, range);
+        }
         map->meaning = REFOCUS_DEPTH_DISTANCE;
-        map->metres_at_zero = near_m;
-        map->metres_per_unit = (far_m - near_m) / max;
+        map->metres_at_zero = map->near_m;
+        map->metres_per_unit = (map->far_m - map->near_m) / max;
         rf_note(read->info, "GDepth: RangeLinear: linear in z, 0 is near, %g is far",
                 max);
         return REFOCUS_OK;
@@ -149,7 +199,43 @@ static int read_samples(struct rf_read *read, struct rf_xmp *xmp)
     return status;
 }
 
-static int read_focus(struct rf_read *read, const struct rf_xmp *xmp, double unit)
+/* Disparity at the focus point, or NAN. */
+static double focus_disparity(const struct rf_read *read)
+{
+    const struct rf_raster *const samples = &read->samples;
+    const struct refocus_depth_map *const map = &read->depth;
+    const double x = read->info->focus_x * samples->width;
+    const double y = read->info->focus_y * samples->height;
+
+    if (map->meaning != REFOCUS_DEPTH_DISPARITY || x < 0.0 || y < 0.0) {
+        return NAN;
+    }
+    return (rf_raster_sample(samples,
+                             (size_t)fmin(y, samples->height - 1) * (size_t)samples->width +
+                                 (size_t)fmin(x, samples->width - 1)) -
+            map->value_far) /
+           (map->value_near - map->value_far);
+}
+
+/* K of the blur at infinity B, see own_blur in file.h. With 1/near - 1/far = 0.0515,
+ * zf = 26.5 and B = 0.008 it is 0.0109 of the larger side. Where the range is not said,
+ * disparity 0 stands for infinity, and K = B / d of the focus point. */
+static double find_own_blur(const struct rf_read *read, const struct range *range)
+{
+    const struct refocus_photo_info *const info = read->info;
+    const bool known = range->near > 0.0;
+    const double inverse_far = known ? 1.0 / range->far : 0.0;
+    const double across = (known ? 1.0 / range->near : 1.0) - inverse_far;
+    const double inverse_focus = known && info->focus_distance > 0.0
+                                     ? 1.0 / info->focus_distance
+                                     : inverse_far + focus_disparity(read) * across;
+    const double blur = info->blur_at_infinity * across / inverse_focus;
+
+    return isfinite(blur) && blur > 0.0 ? blur : 0.0;
+}
+
+static int read_focus(struct rf_read *read, const struct rf_xmp *xmp,
+                      const struct range *range)
 {
     struct refocus_photo_info *const info = read->info;
     double x, y;
@@ -170,10 +256,13 @@ static int read_focus(struct rf_read *read, const struct rf_xmp *xmp, double uni
                                &found, &info->blur_at_infinity);
     }
     if (status == REFOCUS_OK) {
-        info->focus_distance *= unit;
         if (has_x && has_y && x >= 0.0 && x <= 1.0 && y >= 0.0 && y <= 1.0) {
             info->focus_x = x;
             info->focus_y = y;
+        }
+        info->own_blur = find_own_blur(read, range);
+        if (range->metres > 0.0) {
+            info->focus_distance *= range->metres;
         }
     }
     return status;
@@ -205,7 +294,7 @@ static int read_original(struct rf_read *read, struct rf_xmp *xmp)
 
 int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp)
 {
-    double unit;
+    struct range range = {0.0, 0.0, 0.0};
     int status;
 
     if (!xmp->value[RF_XMP_DEPTH_DATA]) {
@@ -217,10 +306,10 @@ int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp)
     }
     status = read_samples(read, xmp);
     if (status == REFOCUS_OK) {
-        status = set_meaning(read, xmp, &unit);
+        status = set_meaning(read, xmp, &range);
     }
     if (status == REFOCUS_OK) {
-        status = read_focus(read, xmp, unit);
+        status = read_focus(read, xmp, &range);
     }
     if (status == REFOCUS_OK) {
         status = read_original(read, xmp);

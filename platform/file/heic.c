@@ -154,6 +154,45 @@ static bool set_meaning(struct rf_read *read,
     }
 }
 
+/* Apple's XMP of the depth image, of which only the simulated aperture is wanted: what is
+ * damaged there is passed over. */
+static int read_simulated(struct heic *heic, const struct heif_image_handle *depth)
+{
+    int status = REFOCUS_OK;
+#ifdef RF_HAVE_XMP
+    struct refocus_reason unused;
+    struct rf_read quiet = {.limits = heic->read->limits, .reason = &unused};
+    struct rf_xmp xmp = {{NULL}, {0}};
+    struct rf_bytes packet;
+    heif_item_id item;
+    uint8_t *bytes;
+
+    if (heif_image_handle_get_list_of_metadata_block_IDs(depth, "mime", &item, 1) < 1) {
+        return REFOCUS_OK;
+    }
+    packet.size = heif_image_handle_get_metadata_size(depth, item);
+    if (packet.size == 0 ||
+        rf_check_bytes(&quiet, packet.size, "its XMP") != REFOCUS_OK) {
+        return REFOCUS_OK;
+    }
+    packet.data = bytes = malloc(packet.size);
+    if (!bytes) {
+        return rf_fail_memory(heic->read->reason);
+    }
+    if (heif_image_handle_get_metadata(depth, item, bytes).code == heif_error_Ok &&
+        rf_xmp_parse(&quiet, packet, &xmp) == REFOCUS_ERR_MEMORY) {
+        status = rf_fail_memory(heic->read->reason);
+    }
+    heic->read->info->simulated_f_number = rf_xmp_simulated_f_number(&xmp);
+    rf_xmp_free(&xmp);
+    free(bytes);
+#else
+    (void)heic;
+    (void)depth;
+#endif
+    return status;
+}
+
 static int take_depth(struct heic *heic, heif_item_id item,
                       const struct heif_depth_representation_info *about)
 {
@@ -167,6 +206,9 @@ static int take_depth(struct heic *heic, heif_item_id item,
         return fail_heif(read, error);
     }
     status = decode(heic, handle, false, &read->samples);
+    if (status == REFOCUS_OK) {
+        status = read_simulated(heic, handle);
+    }
     heif_image_handle_release(handle);
     if (status != REFOCUS_OK) {
         return status;

@@ -78,6 +78,8 @@ int rf_check_bytes(const struct rf_read *read, uint64_t bytes, const char *what)
 int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster);
 void rf_raster_free(struct rf_raster *raster);
 size_t rf_raster_stride(const struct rf_raster *raster);
+/* A sample of 8 or 16 bits; those of a pixel follow each other. */
+uint32_t rf_raster_sample(const struct rf_raster *raster, size_t index);
 
 /* number.c: decimal numbers without the locale ------------------------ */
 
@@ -233,6 +235,7 @@ enum rf_xmp_key {
     RF_XMP_APPLE_INT_MIN,
     RF_XMP_APPLE_INT_MAX,
     RF_XMP_APPLE_ACCURACY,
+    RF_XMP_APPLE_APERTURE,
     RF_XMP_GAIN_MAP, /* hdrgm:Version */
     RF_XMP_KEYS
 };
@@ -249,6 +252,8 @@ void rf_xmp_free(struct rf_xmp *xmp);
 /* A number; false when the property is absent. A property that is no number fails. */
 int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp,
                   enum rf_xmp_key key, const char *name, bool *found, double *value);
+/* f-number of the blur that an iPhone shows; 0: not said. */
+double rf_xmp_simulated_f_number(const struct rf_xmp *xmp);
 
 /* xmp_extended.c: put the chunks of one GUID together, in whatever order they come. */
 int rf_xmp_extended(struct rf_read *read, struct rf_bytes jpeg, const char *guid,

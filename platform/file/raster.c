@@ -1,11 +1,11 @@
 /* From samples as they are stored to RGB8 photos and to one channel of depth. */
 #include "internal.h"
 
-static uint32_t load_sample(const uint8_t *pixels, uint32_t sample, size_t index)
+uint32_t rf_raster_sample(const struct rf_raster *raster, size_t index)
 {
-    return sample == REFOCUS_SAMPLE_U8
-               ? pixels[index]
-               : ((const uint16_t *)(const void *)pixels)[index];
+    return raster->sample == REFOCUS_SAMPLE_U8
+               ? raster->pixels[index]
+               : ((const uint16_t *)(const void *)raster->pixels)[index];
 }
 
 int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
@@ -29,7 +29,7 @@ int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
     for (size_t i = 0; i < count; i++) {
         for (int c = 0; c < 3; c++) {
             const size_t from = i * (size_t)channels + (size_t)(channels == 3 ? c : 0);
-            const uint32_t v = load_sample(raster->pixels, raster->sample, from);
+            const uint32_t v = rf_raster_sample(raster, from);
             rgb.pixels[3 * i + (size_t)c] = (uint8_t)((v * 255u + max / 2) / max);
         }
     }
@@ -58,9 +58,9 @@ int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster)
         return status;
     }
     for (size_t i = 0; i < count; i++) {
-        const uint32_t r = load_sample(raster->pixels, raster->sample, 3 * i);
-        const uint32_t g = load_sample(raster->pixels, raster->sample, 3 * i + 1);
-        const uint32_t b = load_sample(raster->pixels, raster->sample, 3 * i + 2);
+        const uint32_t r = rf_raster_sample(raster, 3 * i);
+        const uint32_t g = rf_raster_sample(raster, 3 * i + 1);
+        const uint32_t b = rf_raster_sample(raster, 3 * i + 2);
         const uint32_t low = r < g ? (r < b ? r : b) : (g < b ? g : b);
         const uint32_t high = r > g ? (r > b ? r : b) : (g > b ? g : b);
         const uint32_t v = (r + 2 * g + b + 2) / 4;

@@ -14,6 +14,7 @@
 #define FOCUS       "http://ns.google.com/photos/1.0/focus/" SEPARATOR
 #define APPLE       "http://ns.apple.com/pixeldatainfo/1.0/" SEPARATOR
 #define APPLE_DEPTH "http://ns.apple.com/depthData/1.0/" SEPARATOR
+#define APPLE_BLUR  "http://ns.apple.com/depthBlurEffect/1.0/" SEPARATOR
 
 static const char *const names[RF_XMP_KEYS] = {
     [RF_XMP_EXTENDED] = "http://ns.adobe.com/xmp/note/" SEPARATOR "HasExtendedXMP",
@@ -35,6 +36,7 @@ static const char *const names[RF_XMP_KEYS] = {
     [RF_XMP_APPLE_INT_MIN] = APPLE "IntMinValue",
     [RF_XMP_APPLE_INT_MAX] = APPLE "IntMaxValue",
     [RF_XMP_APPLE_ACCURACY] = APPLE_DEPTH "Accuracy",
+    [RF_XMP_APPLE_APERTURE] = APPLE_BLUR "SimulatedAperture",
     [RF_XMP_GAIN_MAP] = "http://ns.adobe.com/hdr-gain-map/1.0/" SEPARATOR "Version",
 };
 

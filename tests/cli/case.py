@@ -46,6 +46,13 @@ class Case(unittest.TestCase):
         self.assertEqual((result.returncode, result.stderr), (0, ''), arguments)
         return result.stdout
 
+    def warns(self, line, *arguments):
+        """Success with this one line on standard error; returns the report of --json."""
+        result = self.run_it(*arguments, '--json')
+        self.assertEqual((result.returncode, result.stderr), (0, 'refocus: ' + line + '\n'),
+                         arguments)
+        return json.loads(result.stdout)
+
     def reports(self, *arguments):
         """The object that --json prints, alone on standard output."""
         return json.loads(self.succeeds(*arguments, '--json'))

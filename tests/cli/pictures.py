@@ -37,6 +37,20 @@ def png(path, width, height, rows, depth=8, colour=2):
                    chunk(b'IEND', b''))
 
 
+def insert_xmp(path, attributes):
+    """An XMP packet of Google's depth behind the SOI of a JPEG."""
+    places = ''.join(' xmlns:%s="http://ns.google.com/photos/1.0/%s/"' % place for place in (
+        ('GDepth', 'depthmap'), ('GFocus', 'focus'), ('GImage', 'image')))
+    packet = (b'http://ns.adobe.com/xap/1.0/\0' + (
+        '<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF '
+        'xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description%s %s/>'
+        '</rdf:RDF></x:xmpmeta>' % (places, attributes)).encode())
+    data = read_bytes(path)
+    with open(path, 'wb') as file:
+        file.write(data[:2] + b'\xff\xe1' + struct.pack('>H', len(packet) + 2) + packet +
+                   data[2:])
+
+
 def read_bytes(path):
     with open(path, 'rb') as file:
         return file.read()

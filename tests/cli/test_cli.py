@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The refocus command: every option at and beyond its limits, every error line, no
 leftovers. Usage: test_cli.py REFOCUS [unittest arguments]"""
+import base64
 import json
 import os
 import re
@@ -467,8 +468,8 @@ class Results(Case):
             self.fails(2, '--focus-distance: %s m lies outside of the depth of depth.pgm; give '
                           '0.5 to 4 m' % metres,
                        *self.render('--focus-distance', metres, *near_far))
-        self.fails(1, 'depth.pgm: --focus-distance needs distances, which it does not say; '
-                      'give --near and --far in metres, or --focus',
+        self.fails(1, 'depth.pgm: --focus-distance needs distances in metres, which it does not '
+                      'say; give --near and --far, or --focus or --focus-at in its place',
                    *self.render('--focus-distance', '1', '--near', '1'))
 
     def test_focus_at_is_robust(self):
@@ -489,19 +490,95 @@ class Results(Case):
         expected = 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4)
         self.assertAlmostEqual(blur(*lens), expected, 5)
         self.assertAlmostEqual(blur(*lens, '--sensor-width', '18'), 2 * expected, 5)
-        self.fails(1, 'depth.pgm: --f-number needs distances, which it does not say; give '
-                      '--near and --far in metres, or --blur', *self.render('--f-number', '2'))
+        self.fails(1, 'depth.pgm: --focal-length needs distances in metres, which it does not '
+                      'say; give --near and --far, or leave it out',
+                   *self.render('--f-number', '2', '--focal-length', '50'))
         self.fails(1, 'photo.ppm: --f-number needs a focal length, which it does not say; give '
                       '--focal-length and --sensor-width, or --blur',
                    *self.render('--f-number', '2', '--near', '1', '--far', '2'))
-        wide = ('--near', '0.01', '--far', 'inf', '--focal-length', '85', '--f-number')
-        result = self.run_it(*self.render(*wide, '1.4'))
-        self.assertEqual(result.returncode, 2)
-        least = re.fullmatch(r'refocus: --f-number: f/1.4 blurs by 344 pixels, 127 is the most; '
-                             r'give f/([\d.]+) or more\n', result.stderr)
-        self.assertIsNotNone(least, result.stderr)
-        self.assertLessEqual(blur(*wide, least[1]), 127)  # and what it says does work
-        self.assertGreater(blur(*wide, least[1]), 100)
+
+    WIDE = ('--near', '0.01', '--far', 'inf', '--focal-length', '85')
+
+    def test_f_number_is_limited(self):
+        """More blur than there can be is the most that there can be."""
+        line = ('--f-number: f/1.4 gives 344 pixels of blur, limited to 127, the most, which '
+                'f/3.79 has')
+        report = self.warns(line, *self.render(*self.WIDE, '--f-number', '1.4'))
+        limited = pictures.read_bytes('out.ppm')
+        self.assertEqual((report['blur'], report['blur_from']), (127, 'lens'))
+        self.assertAlmostEqual(report['f_number'], 1.4 * 344 / 127, 2)
+        least = self.reports(*self.render(*self.WIDE, '--f-number', '3.8'))
+        self.assertEqual(least['f_number'], 3.8)  # and what it says does work
+        self.assertLess(126, least['blur'])
+        self.assertLess(least['blur'], 127)
+        self.succeeds(*self.render(*self.WIDE[:4], '--blur', '127'))
+        self.same(pictures.read_bytes('out.ppm'), limited)
+        self.assertEqual(self.warns(line, 'pull', 'photo.ppm', '--depth', 'depth.pgm', '-o',
+                                    'p.y4m', '--seconds', '0.1', *self.WIDE, '--f-number',
+                                    '1.4')['blur_from'], 'lens')
+        sheet = self.warns(line, 'sheet', 'photo.ppm', '--depth', 'depth.pgm', '-o', 's.ppm',
+                           '--focuses', '0', *self.WIDE, '--f-numbers', '1.4,8')
+        self.assertEqual(sheet['cells'], ['focus 0  f/3.793', 'focus 0  f/8'])
+        for name in ('p.y4m', 's.ppm'):
+            os.remove(name)
+
+    def test_f_number_without_metres(self):
+        """The default blur stands for f/2."""
+        line = ('--f-number: depth.pgm says no distances in metres; f/%s gives %s pixels of '
+                'blur%s, by the default of 1.0 at f/2; --near and --far give that of a lens')
+        for number, words, limit in (('0.5', '3.8', ''), ('2', '1.0', ''), ('4', '0.5', ''),
+                                     ('0.01', '192.0',
+                                      ', limited to 127, the most, which f/0.0151 has')):
+            report = self.warns(line % (number, words, limit),
+                                *self.render('--focus', '1', '--f-number', number))
+            self.assertAlmostEqual(report['blur'], min(W / 50 * 2 / float(number), 127), 5)
+            self.assertEqual(report['blur_from'], 'default')
+
+    def gdepth(self, attributes):
+        """photo.jpg with depth of six grey bars, dark = near, and what GFocus says."""
+        pictures.png('bars.png', W, H, [bytes(40 * (x // 8) for x in range(W))] * H, colour=0)
+        with open('bars.png', 'rb') as file:
+            data = base64.b64encode(file.read()).decode()
+        self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
+                      'photo.jpg')
+        pictures.insert_xmp('photo.jpg', 'GDepth:Format="RangeInverse" GDepth:Mime="image/png" '
+                            'GDepth:Data="%s" %s' % (data, attributes))
+
+    def test_f_number_by_the_files_own_blur(self):
+        """Of Google's Lens Blur: a range without a unit, and BlurAtInfinity. By hand:
+        K = 0.1 (1/20 - 1/100) 25 of 48 pixels = 4.8."""
+        self.gdepth('GDepth:Near="20" GDepth:Far="100" GFocus:FocalDistance="25" '
+                    'GFocus:FocalPointX="0.5" GFocus:FocalPointY="0.5" '
+                    'GFocus:BlurAtInfinity="0.1"')
+        command = ('render', 'photo.jpg', '-o', 'out.ppm')
+        blurs = []
+        for number, words in (('1.4', '6.9'), ('2', '4.8'), ('8', '1.2')):
+            report = self.warns(
+                '--f-number: photo.jpg says no distances in metres; f/%s gives %s pixels of '
+                'blur, by the file\'s own of 4.8 at f/2; --near and --far give that of a lens' %
+                (number, words), *command, '--f-number', number)
+            self.assertEqual((report['blur_from'], report['depth']['near_m']), ('file', None))
+            blurs.append(report['blur'])
+        for blur, number in zip(blurs, (1.4, 2, 8)):
+            self.assertAlmostEqual(blur, 9.6 / number, 4)
+        self.assertAlmostEqual(self.reports(*command)['blur'], W / 50, 5)
+        self.fails(1, 'photo.jpg: --focus-distance needs distances in metres, which it does not '
+                      'say; give --near and --far, or --focus or --focus-at in its place',
+                   *command, '--focus-distance', '30')
+        info = self.reports('info', 'photo.jpg')
+        self.assertEqual(info['depth']['near_m'], None)
+        self.assertAlmostEqual(info['own_blur'], 0.1)
+        # --near and --far are metres, whatever the file meant
+        lens = self.reports(*command, '--f-number', '8', '--focal-length', '50', '--near', '0.5',
+                            '--far', '4')
+        self.assertEqual(lens['blur_from'], 'lens')
+        self.assertAlmostEqual(lens['blur'], 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4), 5)
+        # saved with its depth once more, the blur is the same
+        self.succeeds('depth', 'photo.jpg', '-o', 'again.jpg')
+        again = self.run_it('render', 'again.jpg', '-o', 'out.ppm', '--f-number', '2', '--json')
+        self.assertAlmostEqual(json.loads(again.stdout)['blur'], 4.8, 3)
+        for name in ('photo.jpg', 'again.jpg', 'bars.png', 'out.ppm'):
+            os.remove(name)
 
     def test_portrait_sensor(self):
         """36 mm go with the larger side, whichever that is."""

@@ -147,7 +147,7 @@ class Photos(Case):
 
     def test_phone_files(self):
         for name, source, near, far in (
-                ('gdepth-dahlia.jpg', 'gdepth', 18.8495, 633.323),
+                ('gdepth-dahlia.jpg', 'gdepth', None, None),
                 ('apple-jpeg-cup.jpg', 'apple-mpf', 1 / 4.835938, 1 / 0.229614),
                 ('apple-heic-pug.heic', 'heif', 1 / 4.382812, 1 / 1.498047)):
             if source == 'heif' and 'HEIC' not in self.formats:
@@ -155,21 +155,57 @@ class Photos(Case):
                 continue
             info = self.reports('info', self.path('phone/' + name))
             self.assertEqual(info['depth']['source'], source)
-            self.assertAlmostEqual(info['depth']['near_m'] / near, 1, 4)
-            self.assertAlmostEqual(info['depth']['far_m'] / far, 1, 4)
+            for end, metres in (('near_m', near), ('far_m', far)):
+                if metres is None:  # its distances have no unit
+                    self.assertEqual(info['depth'][end], None)
+                else:
+                    self.assertAlmostEqual(info['depth'][end] / metres, 1, 4)
             self.assertTrue(info['evidence'])
         self.assertTrue(self.reports('info', self.path('phone/gdepth-dahlia.jpg'))
                         ['original_used'])
 
     def test_dahlia(self):
-        """Focus at the flower the phone focused on; f-number by the EXIF lens."""
+        """Focus at the flower the phone focused on."""
         photo = self.path('phone/gdepth-dahlia.jpg')
         report = self.reports('render', photo, '-o', 'out.jpg', '--rays', '8', '--region',
                               '400,1000,64,64', '--blur', '8')
         self.assertAlmostEqual(report['focus'], 0.7, 1)
-        report = self.reports('render', photo, '-o', 'out.jpg', '--rays', '8', '--region',
-                              '400,1000,64,64', '--f-number', '0.5')
-        self.assertGreater(report['blur'], 1)
+
+    def change(self, photo, *more):
+        """Mean change of a photo's codes by a blur, over what is not in focus."""
+        samples = []
+        for blur in (more, ('--blur', '0')):
+            result = self.run_it('render', photo, '-o', 'out.ppm', '--quality', 'preview', *blur)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            samples.append(pictures.read_pnm('out.ppm')[2][::101])
+        return sum(abs(a - b) for a, b in zip(*samples)) / len(samples[0]), result.stderr
+
+    def test_f_number_of_phone_photos(self):
+        """README's own line: plain to see on each, and more than at f/8."""
+        for name, least in (('gdepth-dahlia.jpg', 2), ('apple-jpeg-cup.jpg', 2),
+                            ('apple-heic-pug.heic', 2)):
+            if name.endswith('heic') and 'HEIC' not in self.formats:
+                continue
+            photo = self.path('phone/' + name)
+            wide, stopped = (self.change(photo, '--f-number', n)[0] for n in ('1.4', '8'))
+            self.assertGreater(wide, least, name)
+            self.assertGreater(wide, 1.2 * stopped, name)
+
+    def test_f_number_of_an_iphone_without_metres(self):
+        """The range is taken out of the cup's XMP: the f/2.8 that the phone simulated stands
+        for the default blur."""
+        data = pictures.read_bytes(self.path('phone/apple-jpeg-cup.jpg'))
+        for name in b'FloatMinValue', b'FloatMaxValue':
+            self.assertIn(name, data)
+            data = data.replace(name, b'X' + name[1:])
+        with open('cup.jpg', 'wb') as file:
+            file.write(data)
+        report = self.warns(
+            '--f-number: cup.jpg says no distances in metres; f/2 gives 112.9 pixels of blur, by '
+            'the default of 80.6 at f/2.8; --near and --far give that of a lens', 'render',
+            'cup.jpg', '-o', 'out.jpg', '--rays', '8', '--region', '0,0,8,8', '--f-number', '2')
+        self.assertAlmostEqual(report['blur'], 4032 / 50 * 2.8 / 2, 3)
+        os.remove('cup.jpg')
 
     def test_eight_strokes(self):
         """examples/strokes/street.json: what lies under the strokes, and far from them."""

@@ -63,7 +63,8 @@ struct refocus_photo_info {
     double f_number;        /**< EXIF, of the lens that took the photo */
     double focus_x, focus_y;      /**< GFocus FocalPoint, 0..1 of the upright picture;
                                        -1: none */
-    double focus_distance;        /**< GFocus FocalDistance, unit of the depth range */
+    double focus_distance;        /**< GFocus FocalDistance: metres, or the file's own
+                                       unit where near_m and far_m of the depth are 0 */
     double blur_at_infinity;      /**< GFocus BlurAtInfinity, of the larger picture
                                        side */
     char camera[96];              /**< EXIF make and model, printable ASCII */
@@ -72,6 +73,13 @@ struct refocus_photo_info {
      *  position. */
     char evidence[REFOCUS_INFO_LINES][REFOCUS_INFO_LENGTH];
     int32_t evidence_count;
+    /** Maximum blur radius K of the blur that GFocus names, of the larger picture side:
+     *
+     *      K = B (1/near - 1/far) zf      B = BlurAtInfinity, zf = FocalDistance
+     *
+     *  It needs no unit: a surface at z is blurred over B |z - zf| / z. */
+    double own_blur;
+    double simulated_f_number; /**< Apple's portraits: of the blur that the phone shows */
 };
 
 /** A photo read from a file, upright, with the depth it carries. */
@@ -91,6 +99,8 @@ struct refocus_photo {
  *
  * EXIF orientation is applied to photo and depth alike. Depth comes from GDepth
  * (standard or extended XMP), Apple's MPF disparity, or a HEIC auxiliary depth image.
+ * Distances of GDepth that say no unit are never taken for metres: near_m and far_m stay
+ * 0, and RangeLinear becomes 16-bit disparities.
  *
  * Memory at the most, while reading: the file, 8 times the XMP in it, 9 bytes a pixel
  * of the photo, 9 bytes a sample of the depth, and 128 KiB; and what the decoding

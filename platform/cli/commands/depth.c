@@ -260,6 +260,16 @@ static int write_view(const struct settings *settings, const struct input *input
     return status;
 }
 
+/* Disparity at a point, 0..1 of the upright photo. */
+static double disparity_at(const struct input *input, double x, double y)
+{
+    const int column = (int)fmin(x * input->width, input->width - 1);
+    const int row = (int)fmin(y * input->height, input->height - 1);
+
+    return input->disparity[(size_t)row * (size_t)input->width + (size_t)column] /
+           65535.0;
+}
+
 /* The focus to be saved: that of the options, else that of the photo. */
 static int settle_focus(const struct settings *settings, const struct input *input,
                         struct refocus_depth_write *depth)
@@ -277,6 +287,13 @@ static int settle_focus(const struct settings *settings, const struct input *inp
         }
         depth->focus_distance = info->focus_distance;
         depth->blur_at_infinity = info->blur_at_infinity;
+        if (info->own_blur > 0 && info->focus_x >= 0 &&
+            input->photo->depth.near_m <= 0) {
+            /* No metres: they are not written, and 0 is taken for infinity then. */
+            depth->focus_distance = 0;
+            depth->blur_at_infinity =
+                info->own_blur * disparity_at(input, info->focus_x, info->focus_y);
+        }
         return EXIT_DONE;
     }
     if (x >= photo->width || y >= photo->height)
@@ -285,10 +302,7 @@ static int settle_focus(const struct settings *settings, const struct input *inp
                               input->photo_name, photo->width - 1, photo->height - 1);
     depth->focus_x = (x + 0.5) / photo->width;
     depth->focus_y = (y + 0.5) / photo->height;
-    d = input->disparity[(size_t)(depth->focus_y * input->height) *
-                             (size_t)input->width +
-                         (size_t)(depth->focus_x * input->width)] /
-        65535.0;
+    d = disparity_at(input, depth->focus_x, depth->focus_y);
     if (depth->near_m > 0 && depth->far_m > depth->near_m) {
         const struct refocus_depth_range range = {depth->near_m, depth->far_m};
         const double z = refocus_depth_of_disparity(&range, d);

@@ -108,6 +108,14 @@ static void print_text(const char *file, const struct refocus_photo *photo,
         printf("35 mm terms   %.4g mm\n", info->focal_length_35mm);
     if (info->f_number > 0)
         printf("f-number      f/%.3g\n", info->f_number);
+    if (info->simulated_f_number > 0)
+        printf("simulated     f/%.3g, the blur that the phone shows\n",
+               info->simulated_f_number);
+    if (info->own_blur > 0 && photo->image.plane[0])
+        printf("own blur      %.1f pixels\n",
+               info->own_blur * (photo->image.width > photo->image.height
+                                     ? photo->image.width
+                                     : photo->image.height));
     if (info->focus_x >= 0 && info->focus_y >= 0 && photo->image.plane[0] &&
         (info->focus_x > 0 || info->focus_y > 0))
         printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image.width,
@@ -155,7 +163,8 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
                             json_string(sample_name(photo->depth.sample)));
     }
     return json_pack(
-        "{s:o, s:s, s:o, s:o, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "file",
+        "{s:o, s:s, s:o, s:o, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}",
+        "file",
         report_text_json(file), "container", info->container, "picture",
         photo->image.plane[0] ? size_json(photo->image.width, photo->image.height)
                               : json_null(),
@@ -167,7 +176,8 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
         info->camera[0] ? report_text_json(info->camera) : json_null(),
         "focal_length_mm", positive(info->focal_length_mm), "focal_length_35mm",
         positive(info->focal_length_35mm), "f_number", positive(info->f_number),
-        "focus_point",
+        "simulated_f_number", positive(info->simulated_f_number), "own_blur",
+        positive(info->own_blur), "focus_point",
         focus ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(),
         "depth", depth, "evidence", evidence_json(info));
 }

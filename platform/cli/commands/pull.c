@@ -232,15 +232,22 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys,
 static int print_report(const struct settings *s, const struct shot *shot, int frames)
 {
     const struct refocus_image *photo = &shot->input.photo->image;
+    json_t *json, *blur;
 
     if (!s->shot.engine.json)
         return EXIT_DONE;
-    return report_print_json(
-        json_pack("{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo",
-                  report_text_json(shot->input.photo_name), "output",
-                  report_text_json(s->output), "width", (int)photo->width, "height",
-                  (int)photo->height, "frames", frames, "fps", given(s->fps, 25),
-                  "method", refocus_method_name(shot->engine.params.method)));
+    json = json_pack("{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo",
+                     report_text_json(shot->input.photo_name), "output",
+                     report_text_json(s->output), "width", (int)photo->width, "height",
+                     (int)photo->height, "frames", frames, "fps", given(s->fps, 25),
+                     "method", refocus_method_name(shot->engine.params.method));
+    blur = input_blur_json(&shot->input, &s->shot.lens);
+    if (json && json_object_update(json, blur) != 0) {
+        json_decref(json);
+        json = NULL;
+    }
+    json_decref(blur);
+    return report_print_json(json);
 }
 
 static int run(int argc, char **argv)

@@ -91,12 +91,15 @@ static int print_report(const struct settings *settings, const struct engine *en
                                  (int)out->width, "height", (int)out->height, "depth",
                                  report_depth_json(input->depth_from, &input->report));
         json_t *run = engine_json(engine);
+        json_t *blur = input_blur_json(input, &settings->shot.lens);
 
-        if (json && json_object_update(json, run) != 0) {
+        if (json && (json_object_update(json, run) != 0 ||
+                     json_object_update(json, blur) != 0)) {
             json_decref(json);
             json = NULL;
         }
         json_decref(run);
+        json_decref(blur);
         return report_print_json(json);
     }
     if (settings->shot.engine.repeat > 1) {

@@ -233,7 +233,8 @@ static int make_rows(const struct sheet_settings *settings,
             struct lens_settings one = *lens;
 
             one.f_number = f_numbers[i];
-            status = input_blur(input, &one, blurs + i);
+            /* The renderer was made for the widest of them, of which a warning told. */
+            status = input_blur_and_f_number(input, &one, blurs + i, &f_numbers[i]);
             snprintf(captions[i], sizeof captions[i], "f/%.4g", f_numbers[i]);
         }
         return status;

@@ -386,45 +386,139 @@ static bool choose_lens(const struct input *input, const struct lens_settings *s
     return lens->focal_length_mm > 0;
 }
 
-int input_blur(const struct input *input, const struct lens_settings *settings,
-               double *blur)
+/* K by the settings, and how it came about. */
+struct blur_choice {
+    double radius, asked;   /* pixels: that is taken, and that of the f-number */
+    double f_number;        /* of the radius that is taken; NAN: none */
+    double own, own_number; /* without metres: what stands for which f-number */
+    const char *from;       /* "pixels", "lens", "file" or "default" */
+};
+
+/* That of 50 mm at f/2 on full frame, from 0.87 m to far away. */
+static double default_blur(const struct input *input)
 {
-    const struct refocus_image *image = &input->photo->image;
+    return fmin(larger_side(&input->photo->image) / 50, REFOCUS_MAX_BLUR_RADIUS);
+}
+
+/* f-numbers of files may be anything. */
+static bool is_f_number(double number)
+{
+    return number >= 0.5 && number <= 64;
+}
+
+/* Without metres a lens has no blur. A file's own blur, or the default, stands for the
+ * f-number that the file names, else for f/2 as most phones have it, and others are more
+ * or less of it: K is as 1/N. */
+static void blur_without_metres(const struct input *input, double f_number,
+                                struct blur_choice *choice)
+{
+    static const double usual = 2;
+    const struct refocus_photo_info *info = &input->depth_from->info;
+
+    if (info->own_blur > 0) {
+        choice->from = "file";
+        choice->own = info->own_blur * larger_side(&input->photo->image);
+        choice->own_number = info->f_number;
+    } else {
+        choice->from = "default";
+        choice->own = default_blur(input);
+        choice->own_number = info->simulated_f_number;
+    }
+    if (!is_f_number(choice->own_number))
+        choice->own_number = usual;
+    choice->asked = choice->own * choice->own_number / f_number;
+}
+
+static int choose_blur(const struct input *input, const struct lens_settings *settings,
+                       struct blur_choice *choice)
+{
     const struct refocus_depth_range range = {input->report.near_m,
                                               input->report.far_m};
     struct refocus_lens lens;
 
-    if (given(settings->blur)) {
-        *blur = settings->blur;
-        return EXIT_DONE;
-    }
+    *choice = (struct blur_choice){.f_number = NAN};
     if (!given(settings->f_number)) {
-        /* That of 50 mm at f/1.4 on full frame, from 1.25 m to far away. */
-        *blur = larger_side(image) / 50.0;
-        if (*blur > REFOCUS_MAX_BLUR_RADIUS)
-            *blur = REFOCUS_MAX_BLUR_RADIUS;
+        choice->from = given(settings->blur) ? "pixels" : "default";
+        choice->radius = choice->asked =
+            given(settings->blur) ? settings->blur : default_blur(input);
         return EXIT_DONE;
     }
-    if (!range_is_known(input))
+    if (range_is_known(input)) {
+        choice->from = "lens";
+        if (!choose_lens(input, settings, &lens))
+            return report_failure(
+                EXIT_FAILED, input->photo_name,
+                "--f-number needs a focal length, which it does not say; give "
+                "--focal-length and --sensor-width, or --blur");
+        choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image.width);
+    } else if (given(settings->focal_length)) {
         return report_failure(EXIT_FAILED, input->depth_name,
-                              "--f-number needs distances, which it does not say; give "
-                              "--near and --far in metres, or --blur");
-    if (!choose_lens(input, settings, &lens))
-        return report_failure(EXIT_FAILED, input->photo_name,
-                              "--f-number needs a focal length, which it does not say; "
-                              "give --focal-length and --sensor-width, or --blur");
-    *blur = refocus_max_blur_radius(&lens, &range, image->width);
-    if (!(*blur <= REFOCUS_MAX_BLUR_RADIUS)) {
-        const double least = refocus_f_number_of_blur(&lens, &range, image->width,
-                                                      REFOCUS_MAX_BLUR_RADIUS);
-
-        return report_failure(EXIT_WRONG, "--f-number",
-                              "f/%g blurs by %.0f pixels, %d is the most; give f/%g or "
-                              "more",
-                              lens.f_number, *blur, (int)REFOCUS_MAX_BLUR_RADIUS,
-                              ceil(least * 100 + 1e-6) / 100);
+                              "--focal-length needs distances in metres, which it does "
+                              "not say; give --near and --far, or leave it out");
+    } else {
+        blur_without_metres(input, settings->f_number, choice);
     }
+    choice->radius = fmin(choice->asked, REFOCUS_MAX_BLUR_RADIUS);
+    choice->f_number = choice->asked > choice->radius
+                           ? settings->f_number * choice->asked / choice->radius
+                           : settings->f_number;
     return EXIT_DONE;
+}
+
+/* One line, whether metres are missing, the blur is too large, or both. */
+static void warn_of_blur(const struct input *input, const struct lens_settings *settings,
+                         const struct blur_choice *choice)
+{
+    char limited[96] = "";
+
+    if (choice->asked > choice->radius)
+        snprintf(limited, sizeof limited, ", limited to %d, the most, which f/%.3g has",
+                 (int)REFOCUS_MAX_BLUR_RADIUS, choice->f_number);
+    if (choice->own > 0)
+        report_warning("--f-number",
+                       "%s says no distances in metres; f/%g gives %.1f pixels of blur%s, "
+                       "by the %s of %.1f at f/%g; --near and --far give that of a lens",
+                       input->depth_name, settings->f_number, choice->asked, limited,
+                       strcmp(choice->from, "file") == 0 ? "file's own" : "default",
+                       choice->own, choice->own_number);
+    else if (limited[0])
+        report_warning("--f-number", "f/%g gives %.0f pixels of blur%s",
+                       settings->f_number, choice->asked, limited);
+}
+
+int input_blur(const struct input *input, const struct lens_settings *settings,
+               double *blur)
+{
+    struct blur_choice choice;
+    const int status = choose_blur(input, settings, &choice);
+
+    if (status != EXIT_DONE)
+        return status;
+    warn_of_blur(input, settings, &choice);
+    *blur = choice.radius;
+    return EXIT_DONE;
+}
+
+int input_blur_and_f_number(const struct input *input,
+                            const struct lens_settings *settings, double *blur,
+                            double *f_number)
+{
+    struct blur_choice choice;
+    const int status = choose_blur(input, settings, &choice);
+
+    *blur = choice.radius;
+    *f_number = choice.f_number;
+    return status;
+}
+
+json_t *input_blur_json(const struct input *input, const struct lens_settings *settings)
+{
+    struct blur_choice choice;
+
+    if (choose_blur(input, settings, &choice) != EXIT_DONE)
+        return json_object();
+    return json_pack("{s:s, s:o}", "blur_from", choice.from, "f_number",
+                     report_number_json(choice.f_number));
 }
 
 double input_surface_at(const uint16_t *disparity, int width, int height, int x, int y)
@@ -463,8 +557,9 @@ static int focus_at_distance(const struct input *input, double metres, double *f
 
     if (!range_is_known(input))
         return report_failure(EXIT_FAILED, input->depth_name,
-                              "--focus-distance needs distances, which it does not "
-                              "say; give --near and --far in metres, or --focus");
+                              "--focus-distance needs distances in metres, which it "
+                              "does not say; give --near and --far, or --focus or "
+                              "--focus-at in its place");
     *focus = refocus_disparity_of_depth(&range, metres);
     if (!(*focus >= 0 && *focus <= 1))
         return report_failure(EXIT_WRONG, "--focus-distance",

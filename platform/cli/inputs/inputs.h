@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <jansson.h>
 #include <refocus/refocus.h>
 #include <refocus/platform/file.h>
 #include "line/options.h"
@@ -133,7 +134,9 @@ struct lens_settings {
      .least = 0,                                                                       \
      .above = true,                                                                    \
      .greatest = 1000,                                                                 \
-     .help = "blur of a lens of this f-number; near and far must be known"},           \
+     .help = "blur of a lens of this f-number, at most 127 pixels; where the depth "   \
+             "has no metres, the blur that the file names, or the default, which "     \
+             "stands for the f-number of the file, or f/2, made more or less"},        \
     {.kind = OPTION_NUMBER,                                                            \
      .name = "--focal-length",                                                         \
      .argument = "MM",                                                                 \
@@ -198,9 +201,18 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 int input_convert(struct input *input, const struct depth_settings *settings);
 void input_free(struct input *input);
 
-/* K of the settings. */
+/* K of the settings; a warning says when --f-number could not be taken at its word. */
 int input_blur(const struct input *input, const struct lens_settings *settings,
                double *blur);
+
+/* The same without a warning, and the f-number that has that blur; NAN: none was given. */
+int input_blur_and_f_number(const struct input *input,
+                            const struct lens_settings *settings, double *blur,
+                            double *f_number);
+
+/* How input_blur() came by it, for reports: "blur_from" and "f_number", the one that has
+ * that blur. */
+json_t *input_blur_json(const struct input *input, const struct lens_settings *settings);
 
 /* df of the settings; prepared: the packed disparities of the photo's size. */
 int input_focus(const struct input *input, const struct lens_settings *settings,

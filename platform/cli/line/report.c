@@ -22,19 +22,34 @@ void report_clean(char *clean, size_t size, const char *text)
     clean[i] = '\0';
 }
 
-int report_failure(int exit_code, const char *what, const char *why, ...)
+static void print_line(const char *what, const char *why, va_list list)
 {
     char text[LINE_LENGTH], line[LINE_LENGTH], name[LINE_LENGTH];
-    va_list list;
 
-    va_start(list, why);
     vsnprintf(text, sizeof text, why, list);
-    va_end(list);
     report_clean(line, sizeof line, text);
     report_clean(name, sizeof name, what);
     report_progress_end();
     fprintf(stderr, "refocus: %s: %s\n", name, line);
+}
+
+int report_failure(int exit_code, const char *what, const char *why, ...)
+{
+    va_list list;
+
+    va_start(list, why);
+    print_line(what, why, list);
+    va_end(list);
     return exit_code;
+}
+
+void report_warning(const char *what, const char *why, ...)
+{
+    va_list list;
+
+    va_start(list, why);
+    print_line(what, why, list);
+    va_end(list);
 }
 
 int report_end_output(void)

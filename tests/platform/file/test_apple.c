@@ -118,6 +118,13 @@ static void apple_ranges(void **state)
     assert_near(photo->depth.metres_per_unit, 3.75 / 255);
     refocus_photo_free(&photo);
     apple_with("depth", NULL, REFOCUS_ERR_FORMAT);
+#define APPLE_BLUR "xmlns:blur=\"http://ns.apple.com/depthBlurEffect/1.0/\" "
+    photo = apple_with("disparity", APPLE_BLUR "blur:SimulatedAperture=\"4.5\"", REFOCUS_OK);
+    assert_true(photo->info.simulated_f_number == 4.5);
+    refocus_photo_free(&photo);
+    photo = apple_with("disparity", APPLE_BLUR "blur:SimulatedAperture=\"-wide\"", REFOCUS_OK);
+    assert_true(photo->info.simulated_f_number == 0);
+    refocus_photo_free(&photo);
     apple_with("disparity", "apdi:FloatMinValue=\"4\" apdi:FloatMaxValue=\"4\"",
                REFOCUS_ERR_FORMAT);
     apple_with("disparity", "apdi:IntMinValue=\"9\" apdi:IntMaxValue=\"9\"",

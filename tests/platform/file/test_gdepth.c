@@ -155,8 +155,73 @@ static void gdepth_units_absent_are_told(void **state)
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
     (void)state;
-    assert_true(has_evidence(photo, "without a unit"));
+    assert_true(has_evidence(photo, "without a unit: no metres"));
+    assert_true(photo->depth.near_m == 0 && photo->depth.far_m == 0);
+    assert_true(photo->depth.value_near == 0 && photo->depth.value_far == 255);
     refocus_photo_free(&photo);
+}
+
+/* Distances of no unit and of a strange one: disparities, and no metres. */
+static void gdepth_linear_without_metres(void **state)
+{
+    static const char *const extra[] = {
+        "GDepth:Near=\"2\" GDepth:Far=\"9\"",
+        "GDepth:Near=\"0\" GDepth:Far=\"9\"",
+        "GDepth:Near=\"2\" GDepth:Far=\"9\" GDepth:Units=\"feet\""};
+
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        const int bits = i % 2 ? 16 : 8, max = (1 << bits) - 1;
+        const double near = i / 2 == 1 ? 0 : 2, step = (9 - near) / max;
+        const double least = near > 0 ? near : step;
+        const struct gdepth gdepth = {.format = "RangeLinear",
+                                      .extra = extra[i / 2],
+                                      .depth = make_png(6, 4, 0, bits)};
+        struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
+
+        assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
+        assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U16);
+        assert_true(photo->depth.value_near == 65535 && photo->depth.value_far == 0);
+        assert_true(photo->depth.near_m == 0 && photo->depth.far_m == 0);
+        for (int at = 0; at < 24; at++) {
+            const double z = near + pattern(at % 6, at / 6, 0, max) * step;
+            const double d = (1 / fmax(z, least) - 1.0 / 9) / (1 / least - 1.0 / 9);
+
+            assert_true(fabs(sample_at(&photo->depth, at % 6, at / 6) - 65535 * d) < 0.51);
+        }
+        refocus_photo_free(&photo);
+    }
+}
+
+static double own_blur(const char *extra)
+{
+    const struct gdepth gdepth = {
+        .format = "RangeInverse", .extra = extra, .depth = make_png(6, 4, 0, 8)};
+    struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
+    const double blur = photo->info.own_blur;
+
+    refocus_photo_free(&photo);
+    return blur;
+}
+
+/* K = B (1/near - 1/far) zf, by hand; whatever the unit. Without zf that of the focus
+ * point, and without a range disparity 0 is infinity. */
+static void gdepth_own_blur(void **state)
+{
+    const double d = 1 - pattern(3, 2, 0, 255) / 255.0;
+
+    (void)state;
+#define BLUR  "GFocus:BlurAtInfinity=\"0.01\" "
+#define POINT "GFocus:FocalPointX=\"0.6\" GFocus:FocalPointY=\"0.6\" "
+    assert_near(own_blur(BLUR "GDepth:Near=\"2\" GDepth:Far=\"10\" "
+                              "GFocus:FocalDistance=\"5\""), 0.02);
+    assert_near(own_blur(BLUR "GDepth:Near=\"2\" GDepth:Far=\"10\" GDepth:Units=\"mm\" "
+                              "GFocus:FocalDistance=\"5\""), 0.02);
+    assert_near(own_blur(BLUR POINT "GDepth:Near=\"2\" GDepth:Far=\"10\""),
+                0.01 * 0.4 / (0.1 + 0.4 * d));
+    assert_near(own_blur(BLUR POINT), 0.01 / d);
+    assert_near(own_blur(BLUR), 0);
+    assert_near(own_blur(POINT "GDepth:Near=\"2\" GDepth:Far=\"10\""), 0);
 }
 
 static void gdepth_damaged(void **state)
@@ -280,6 +345,8 @@ int main(void)
         cmocka_unit_test(gdepth_payload_jpeg_without_range),
         cmocka_unit_test(gdepth_payload_in_colour_form),
         cmocka_unit_test(gdepth_units_absent_are_told),
+        cmocka_unit_test(gdepth_linear_without_metres),
+        cmocka_unit_test(gdepth_own_blur),
         cmocka_unit_test(gdepth_damaged),
         cmocka_unit_test(original_replaces_a_blurred_picture),
         cmocka_unit_test(extended_in_any_order),
