@@ -406,6 +406,7 @@ static int run(struct heic *heic)
                                     : status;
     }
     say_orientation(heic);
+    read->info->stored_bits = heif_image_handle_get_luma_bits_per_pixel(heic->primary);
     status = read_exif(heic);
     if (status == REFOCUS_OK) {
         status = read_icc(heic);

@@ -8,6 +8,48 @@ uint32_t rf_raster_sample(const struct rf_raster *raster, size_t index)
                : ((const uint16_t *)(const void *)raster->pixels)[index];
 }
 
+/* Bayer's matrix: each of 0 to 63 once, and near ones far apart. */
+static void fill_thresholds(uint8_t thresholds[64])
+{
+    for (int y = 0; y < 8; y++) {
+        for (int x = 0; x < 8; x++) {
+            int value = 0;
+
+            for (int bit = 0; bit < 3; bit++) {
+                value |= ((x ^ y) >> bit & 1) << (5 - 2 * bit) |
+                         (y >> bit & 1) << (4 - 2 * bit);
+            }
+            thresholds[8 * y + x] = (uint8_t)value;
+        }
+    }
+}
+
+/* More than 8 bits are dithered: a code is rounded up in as many of 8 x 8 pixels as the
+ * value lies above it, so that the mean over them keeps within 1/128 of a code, and
+ * shallow gradients have no steps. Codes that 8 bits have stay what they are, and so
+ * does grey: one threshold is for all channels. Of max 65535, 25957 is 101 everywhere,
+ * 26000 is 101.17, 102 in 11 of 64 pixels. The products fit: 65535 * 255 * 128 < 2^31. */
+static void dither(const struct rf_raster *from, struct rf_raster *to)
+{
+    const uint32_t max = from->max_value;
+    const size_t width = (size_t)from->width, channels = (size_t)from->channels;
+    uint8_t thresholds[64];
+
+    fill_thresholds(thresholds);
+    for (size_t y = 0; y < (size_t)from->height; y++) {
+        for (size_t x = 0; x < width; x++) {
+            const uint32_t threshold = 2u * thresholds[8 * (y & 7) + (x & 7)] + 1;
+
+            for (size_t c = 0; c < 3; c++) {
+                const uint32_t v = rf_raster_sample(from, (y * width + x) * channels +
+                                                              (channels == 3 ? c : 0));
+                to->pixels[3 * (y * width + x) + c] =
+                    (uint8_t)((v * (255u * 128) + threshold * max) / (max * 128));
+            }
+        }
+    }
+}
+
 int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
 {
     struct rf_raster rgb = *raster;
@@ -26,7 +68,10 @@ int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
     if (status != REFOCUS_OK) {
         return status;
     }
-    for (size_t i = 0; i < count; i++) {
+    if (max > 255) {
+        dither(raster, &rgb);
+    }
+    for (size_t i = 0; max <= 255 && i < count; i++) {
         for (int c = 0; c < 3; c++) {
             const size_t from = i * (size_t)channels + (size_t)(channels == 3 ? c : 0);
             const uint32_t v = rf_raster_sample(raster, from);

@@ -194,6 +194,14 @@ static void hand_over(struct rf_read *read, struct rf_photo *photo)
 
 int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
 {
+    if (status == REFOCUS_OK && read->info->stored_bits == 0) {
+        const uint32_t max =
+            read->image.pixels ? read->image.max_value : read->samples.max_value;
+
+        while (max >> read->info->stored_bits) {
+            read->info->stored_bits++;
+        }
+    }
     if (status == REFOCUS_OK && read->image.pixels) {
         status = rf_raster_to_rgb8(read, &read->image);
     }

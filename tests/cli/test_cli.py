@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 import unittest
 
@@ -578,6 +579,38 @@ class Results(Case):
         again = self.run_it('render', 'again.jpg', '-o', 'out.ppm', '--f-number', '2', '--json')
         self.assertAlmostEqual(json.loads(again.stdout)['blur'], 4.8, 3)
         for name in ('photo.jpg', 'again.jpg', 'bars.png', 'out.ppm'):
+            os.remove(name)
+
+    def test_16_bits_are_told_and_dithered(self):
+        """Once, whatever is made of the photo; the mean of a shallow gradient is kept."""
+        def value(x, y):  # rounded to nearest it is 100 or 101 all over
+            return 25700 + 120 + x // 8
+        pictures.png('deep.png', W, H, [struct.pack('>%dH' % (3 * W), *(
+            value(x, y) for x in range(W) for _ in range(3))) for y in range(H)], depth=16)
+        line = 'deep.png: it has 16 bits a channel; 8 are taken, dithered'
+        command = ('deep.png', '--depth', 'depth.pgm', '-o')
+        self.warns(line, 'render', *command, 'out.ppm', '--blur', '0', '--repeat', '3')
+        samples = pictures.read_pnm('out.ppm')[2]
+        for top in range(0, H, 8):
+            for left in range(0, W, 8):
+                mean = sum(samples[3 * (y * W + x)] for y in range(top, top + 8)
+                           for x in range(left, left + 8)) / 64
+                self.assertAlmostEqual(mean, value(left, top) / 257, delta=1 / 64)
+        self.warns(line, 'sheet', *command, 'out.ppm', '--blurs', '1,2')
+        self.warns(line, 'pull', *command, 'p.y4m', '--seconds', '0.1')
+        result = self.run_it('compare', 'deep.png', '--depth', 'depth.pgm', '--reference',
+                             'photo.ppm', '--blur', '1')
+        self.assertEqual((result.returncode, result.stderr), (0, 'refocus: ' + line + '\n'))
+        self.assertEqual(self.reports('info', 'deep.png')['bits'], 16)
+        self.assertEqual(self.reports('info', 'photo.ppm')['bits'], 8)
+        # a depth map of 16 bits is not cut, and nothing is said of it
+        pictures.png('deep-depth.png', W, H, [struct.pack('>%dH' % W, *(
+            40000 + x for x in range(W)))] * H, depth=16, colour=0)
+        self.succeeds('depth', 'deep-depth.png', '-o', 'd.png')
+        rows = pictures.read_png('d.png')[4]
+        self.assertEqual(struct.unpack('>%dH' % W, rows[0]), tuple(40000 + x for x in range(W)))
+        self.succeeds('render', 'photo.ppm', '--depth', 'deep-depth.png', '-o', 'out.ppm')
+        for name in ('deep.png', 'deep-depth.png', 'd.png', 'p.y4m', 'out.ppm'):
             os.remove(name)
 
     def test_portrait_sensor(self):

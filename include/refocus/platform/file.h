@@ -80,6 +80,9 @@ struct refocus_photo_info {
      *  It needs no unit: a surface at z is blurred over B |z - zf| / z. */
     double own_blur;
     double simulated_f_number; /**< Apple's portraits: of the blur that the phone shows */
+    int32_t stored_bits; /**< bits a channel of the stored picture; more than 8 are
+                              dithered to 8, or rounded in HEIC; of a depth file
+                              those of its samples. 0: floats */
 };
 
 /** A photo read from a file, upright, with the depth it carries. */

@@ -92,8 +92,9 @@ static void print_text(const char *file, const struct refocus_photo *photo,
     printf("file          %s\n", clean);
     printf("container     %s\n", info->container);
     if (photo->image.plane[0])
-        printf("picture       %dx%d, upright%s\n", (int)photo->image.width,
-               (int)photo->image.height,
+        printf("picture       %dx%d, upright, %d bits a channel%s\n",
+               (int)photo->image.width, (int)photo->image.height,
+               (int)info->stored_bits,
                info->original_used ? ", the all-in-focus original in the file" : "");
     if (info->stored_width > 0)
         printf("stored        %dx%d, orientation %d\n", (int)info->stored_width,
@@ -163,7 +164,8 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
                             json_string(sample_name(photo->depth.sample)));
     }
     return json_pack(
-        "{s:o, s:s, s:o, s:o, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}",
+        "{s:o, s:s, s:o, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
+        "s:o}",
         "file",
         report_text_json(file), "container", info->container, "picture",
         photo->image.plane[0] ? size_json(photo->image.width, photo->image.height)
@@ -171,7 +173,8 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
         "stored",
         info->stored_width > 0 ? size_json(info->stored_width, info->stored_height)
                                : json_null(),
-        "orientation", info->orientation ? (int)info->orientation : 1, "original_used",
+        "orientation", info->orientation ? (int)info->orientation : 1, "bits", (int)info->stored_bits,
+        "original_used",
         (int)info->original_used, "camera",
         info->camera[0] ? report_text_json(info->camera) : json_null(),
         "focal_length_mm", positive(info->focal_length_mm), "focal_length_35mm",

@@ -90,6 +90,7 @@ static int read_reference(struct refocus_photo **reference, const char *file,
                               (int)(*reference)->image.width,
                               (int)(*reference)->image.height, (int)photo->width,
                               (int)photo->height);
+    input_tell_bits(*reference, file);
     return EXIT_DONE;
 }
 

@@ -273,6 +273,15 @@ static int read_side(struct input *input, const char *file,
     return EXIT_DONE;
 }
 
+void input_tell_bits(const struct refocus_photo *photo, const char *name)
+{
+    if (photo->info.stored_bits > 8)
+        report_warning(name, "it has %d bits a channel; 8 are taken, %s",
+                       (int)photo->info.stored_bits,
+                       strcmp(photo->info.container, "HEIC") == 0 ? "rounded"
+                                                                  : "dithered");
+}
+
 int input_read_photo(struct input *input, const char *photo, const char *instead)
 {
     struct refocus_reason reason = {""};
@@ -288,6 +297,7 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
         return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; "
                                                   "give %s",
                               instead);
+    input_tell_bits(input->photo, photo);
     return EXIT_DONE;
 }
 

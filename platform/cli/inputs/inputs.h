@@ -182,6 +182,9 @@ bool input_focus_is_given(const struct lens_settings *settings);
  * error. What to give instead of a depth map ends the words of that error. */
 int input_read_photo(struct input *input, const char *photo, const char *instead);
 
+/* One line where a photo has more than the 8 bits a channel that are rendered. */
+void input_tell_bits(const struct refocus_photo *photo, const char *name);
+
 /* Read a photo and its depth; ended by input_free(), also after an error. */
 int input_read(struct input *input, const char *photo,
                const struct depth_settings *settings);

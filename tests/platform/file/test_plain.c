@@ -262,6 +262,7 @@ static void png_kinds(void **state)
             read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
 
         assert_string_equal(photo->info.container, "PNG");
+        assert_int_equal(photo->info.stored_bits, bits);
         assert_int_equal(photo->image.width, 7);
         for (int y = 0; y < 5; y++) {
             for (int x = 0; x < 7; x++) {
@@ -269,10 +270,80 @@ static void png_kinds(void **state)
                     const unsigned max = bits == 16 ? 65535 : 255;
                     const unsigned v =
                         pattern(x, y, type & 2 && type != 3 ? c : 0, max);
-                    assert_int_equal(pixel_at(&photo->image, x, y)[c],
-                                     (v * 255 + max / 2) / max);
+                    const int code = pixel_at(&photo->image, x, y)[c];
+
+                    if (bits == 16) { /* dithered: one of the two beside it */
+                        assert_true(fabs(code - v * 255.0 / max) < 1);
+                    } else {
+                        assert_int_equal(code, (v * 255 + max / 2) / max);
+                    }
                 }
             }
+        }
+        refocus_photo_free(&photo);
+    }
+}
+
+enum { DITHER_WIDE = 128, DITHER_HIGH = 64 };
+
+/* 16 bits of a gradient that climbs a code from left to right, and grey on its right. */
+static unsigned shallow(int x, int y, int channel)
+{
+    const int across = x < 96 ? x : 2 * (x - 96);
+
+    return (unsigned)(25700 + 3 * across + (x < 96 ? 31 * channel : 0) + y % 2);
+}
+
+/* Means over 8 x 8 pixels are kept, wherever they lie; white, black and the codes that 8
+ * bits have stay what they are; grey stays grey; and twice is the same. */
+static void more_than_8_bits_are_dithered(void **state)
+{
+    static uint8_t samples[DITHER_WIDE * DITHER_HIGH * 6];
+    struct refocus_photo *photo, *again;
+    int rounded = 0;
+
+    (void)state;
+    for (int i = 0; i < DITHER_WIDE * DITHER_HIGH * 3; i++) {
+        const unsigned v = shallow(i / 3 % DITHER_WIDE, i / 3 / DITHER_WIDE, i % 3);
+
+        samples[2 * i] = (uint8_t)(v >> 8);
+        samples[2 * i + 1] = (uint8_t)v;
+    }
+    photo = read_photo(make_png_raw(DITHER_WIDE, DITHER_HIGH, 2, 16, samples, NULL), REFOCUS_OK);
+    again = read_photo(make_png_raw(DITHER_WIDE, DITHER_HIGH, 2, 16, samples, NULL), REFOCUS_OK);
+    assert_memory_equal(photo->image.plane[0], again->image.plane[0], sizeof samples / 2);
+    refocus_photo_free(&again);
+    for (int top = 0; top <= DITHER_HIGH - 8; top += 3) {
+        for (int left = 0; left <= DITHER_WIDE - 8; left++) {
+            for (int c = 0; c < 3; c++) {
+                double code = 0, wanted = 0, nearest = 0;
+
+                for (int i = 0; i < 64; i++) {
+                    const int x = left + i % 8, y = top + i / 8;
+                    const double v = shallow(x, y, c) / 257.0;
+
+                    code += pixel_at(&photo->image, x, y)[c] / 64.0;
+                    wanted += v / 64.0;
+                    nearest += floor(v + 0.5) / 64.0;
+                    assert_true(fabs(pixel_at(&photo->image, x, y)[c] - v) < 1);
+                }
+                assert_true(fabs(code - wanted) < 0.06);
+                rounded += fabs(nearest - wanted) > 0.4;
+            }
+        }
+    }
+    assert_true(rounded > 100); /* where codes rounded to nearest are far off */
+    for (int x = 96; x < DITHER_WIDE; x++) {
+        const uint8_t *const pixel = pixel_at(&photo->image, x, 5);
+
+        assert_true(pixel[0] == pixel[1] && pixel[1] == pixel[2]);
+    }
+    refocus_photo_free(&photo);
+    for (int code = 0; code < 256; code++) {
+        memset(samples, code, sizeof samples); /* 257 code */
+        photo = read_photo(make_png_raw(9, 9, 0, 16, samples, NULL), REFOCUS_OK);
+        for (int i = 0; i < 9 * 9; i++) {
+            assert_int_equal(pixel_at(&photo->image, i % 9, i / 9)[0], code);
         }
         refocus_photo_free(&photo);
     }
@@ -384,7 +455,7 @@ int main(void)
         cmocka_unit_test(unknown_content),
         cmocka_unit_test(limits_are_kept),
 #ifdef RF_HAVE_PNG
-        cmocka_unit_test(png_kinds),
+        cmocka_unit_test(png_kinds), cmocka_unit_test(more_than_8_bits_are_dithered),
         cmocka_unit_test(png_small_samples),
         cmocka_unit_test(png_depth),
         cmocka_unit_test(png_absurd),
