@@ -151,8 +151,7 @@ static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *e
             height = entry;
         }
     }
-    if (exif->orientation >= 5 && width.tag && height.tag && width.count == 1 &&
-        height.count == 1) {
+    if (exif->orientation >= 5 && width.count == 1 && height.count == 1) {
         /* Exchange the tags, not the values: types may differ. Their order, which TIFF
          * wants ascending, is put right by exchanging the rest of the entries too. */
         uint8_t rest[10];

@@ -157,6 +157,30 @@ static void heic_depth(void **state)
     refocus_photo_free(&photo);
 }
 
+/* EXIF begins so many bytes behind its first four as those say: six, and where there are
+ * none any more. */
+static void heic_exif_lies_within(void **state)
+{
+    static const uint8_t skips[][4] = {
+        {0, 0, 0, 6}, {0, 1, 0, 0}, {0x7f, 0xff, 0xff, 0xff}, {0xff, 0xff, 0xff, 0xff}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof skips / sizeof *skips; i++) {
+        struct bytes file = load("phone/apple-heic-pug.heic");
+        struct refocus_photo *photo;
+        size_t at = 10;
+
+        while (at + 8 < file.size && memcmp(file.data + at, "MM\0*\0\0\0\10", 8) != 0) {
+            at++;
+        }
+        assert_true(at + 8 < file.size);
+        memcpy(file.data + at - 10, skips[i], 4);
+        photo = read_depth(file, NULL, REFOCUS_OK);
+        assert_true(fabs(photo->info.f_number - (i == 0 ? 1.5 : 0)) < 0.01);
+        refocus_photo_free(&photo);
+    }
+}
+
 /* The container's rotation by 90 degrees anticlockwise: photo and depth follow, once.
  */
 static void heic_turned(void **state)
@@ -281,6 +305,7 @@ int main(void)
         cmocka_unit_test(light_field_truth),
 #ifdef RF_HAVE_HEIC
         cmocka_unit_test(heic_depth),
+        cmocka_unit_test(heic_exif_lies_within),
         cmocka_unit_test(heic_turned),
         cmocka_unit_test(heic_depth_without_rotation),
         cmocka_unit_test(heic_cut_and_limited),

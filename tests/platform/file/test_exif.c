@@ -1,0 +1,397 @@
+/* EXIF that means harm. Each block ends where a page begins that may not be touched, so that
+ * a read or a write beyond it ends the test, whatever the compiler; and what a bound refuses
+ * without any such read shows in the facts. Taking away any one bound of exif.c fails here. */
+#include "check.h"
+
+#include "../../kernels/guarded.h"
+#include "internal.h"
+
+enum {
+    ASCII = 2, SHORT = 3, LONG = 4, RATIONAL = 5,
+    MAKE = 0x010f, MODEL = 0x0110, ORIENTATION = 0x0112, SETTINGS = 0x8769,
+    F_NUMBER = 0x829d, FOCAL_LENGTH = 0x920a, WIDTH = 0xa002, HEIGHT = 0xa003,
+    FOCAL_LENGTH_35MM = 0xa405,
+};
+
+static void add(struct bytes *block, uint64_t value, int size)
+{
+    bytes_number(block, value, size, true);
+}
+
+/* A directory behind what is there already. */
+static void directory(struct bytes *block, int count)
+{
+    if (!block->data) {
+        bytes_add(block, "MM\0*", 4);
+        add(block, 8, 4);
+    }
+    add(block, (uint64_t)count, 2);
+}
+
+static void entry(struct bytes *block, int tag, int type, uint32_t count, uint32_t value)
+{
+    add(block, (uint64_t)tag, 2);
+    add(block, (uint64_t)type, 2);
+    add(block, count, 4);
+    add(block, value, 4);
+}
+
+/* The value of a SHORT lies in the first two of the four bytes. */
+static void entry_short(struct bytes *block, int tag, uint32_t value)
+{
+    entry(block, tag, SHORT, 1, value << 16);
+}
+
+/* Main directory of one entry and the camera's settings right behind it. */
+static struct bytes with_settings(int orientation, int count)
+{
+    struct bytes block = {NULL, 0};
+
+    directory(&block, 2);
+    entry_short(&block, ORIENTATION, (uint32_t)orientation);
+    entry(&block, SETTINGS, LONG, 1, 8 + 2 + 2 * 12 + 4);
+    add(&block, 0, 4);
+    directory(&block, count);
+    return block;
+}
+
+/* Parse at the end of a page; the block becomes what parsing made of it. */
+static bool parse(struct bytes *block, struct rf_exif *exif)
+{
+    struct guarded guarded;
+    uint8_t *place;
+    bool good;
+
+    assert_true(guarded_create(&guarded, block->size));
+    place = guarded_place(&guarded, block->size, 1, AT_END, 0);
+    if (block->size > 0) {
+        memcpy(place, block->data, block->size);
+    }
+    good = rf_exif_parse(place, block->size, exif);
+    assert_true(guarded_intact(&guarded));
+    if (block->size > 0) {
+        memcpy(block->data, place, block->size);
+    }
+    guarded_destroy(&guarded);
+    return good;
+}
+
+static struct rf_exif facts(struct bytes block)
+{
+    struct rf_exif exif;
+
+    assert_true(parse(&block, &exif));
+    bytes_free(&block);
+    return exif;
+}
+
+static void header_is_whole(void **state)
+{
+    struct rf_exif exif;
+
+    (void)state;
+    for (size_t size = 0; size < 8; size++) {
+        struct bytes block = bytes_copy("MM\0*\0\0\0\10", 8);
+
+        block.size = size;
+        assert_false(parse(&block, &exif));
+        bytes_free(&block);
+    }
+}
+
+/* The number of entries lies within the block. */
+static void directory_lies_within(void **state)
+{
+    const uint32_t size = 40;
+    struct rf_exif exif;
+
+    (void)state;
+    for (int beyond = -1; beyond <= 16; beyond++) {
+        struct bytes block = {NULL, 0};
+
+        bytes_add(&block, "MM\0*", 4);
+        add(&block, size + (uint32_t)beyond, 4);
+        while (block.size < size) {
+            add(&block, 0, 1);
+        }
+        assert_false(parse(&block, &exif));
+        bytes_free(&block);
+        block = with_settings(1, 0);
+        /* where the settings are said to be */
+        block.data[8 + 2 + 12 + 11] = (uint8_t)(block.size + (size_t)beyond);
+        assert_true(parse(&block, &exif));
+        assert_true(exif.f_number == 0);
+        bytes_free(&block);
+    }
+}
+
+/* More entries are said than there are. */
+static void entries_lie_within(void **state)
+{
+    struct rf_exif exif;
+
+    (void)state;
+    for (size_t rest = 0; rest < 12; rest++) {
+        struct bytes block = {NULL, 0};
+
+        directory(&block, 3);
+        entry_short(&block, ORIENTATION, 6);
+        for (size_t i = 0; i < rest; i++) {
+            add(&block, 0x77, 1);
+        }
+        assert_true(parse(&block, &exif));
+        assert_int_equal(exif.orientation, 6);
+        for (size_t i = 0; i < rest; i++) { /* no link to a thumbnail is behind them */
+            assert_int_equal(block.data[8 + 2 + 12 + i], 0x77);
+        }
+        bytes_free(&block);
+        block = with_settings(1, 3);
+        entry_short(&block, FOCAL_LENGTH_35MM, 28);
+        for (size_t i = 0; i < rest; i++) {
+            add(&block, 0x77, 1);
+        }
+        assert_true(facts(block).focal_length_35mm == 28);
+    }
+}
+
+/* The link to the thumbnail's directory, whole, in part, or not there. */
+static void link_lies_within(void **state)
+{
+    struct rf_exif exif;
+
+    (void)state;
+    for (size_t rest = 0; rest <= 4; rest++) {
+        struct bytes block = {NULL, 0};
+
+        directory(&block, 1);
+        entry_short(&block, ORIENTATION, 3);
+        for (size_t i = 0; i < rest; i++) {
+            add(&block, 0x77, 1);
+        }
+        assert_true(parse(&block, &exif));
+        assert_int_equal(exif.orientation, 3);
+        for (size_t i = 0; i < rest; i++) {
+            assert_int_equal(block.data[8 + 2 + 12 + i], rest == 4 ? 0 : 0x77);
+        }
+        bytes_free(&block);
+    }
+}
+
+/* Values of 8 bytes: inside, cut off by the end of the block, behind it. */
+static void values_lie_within(void **state)
+{
+    const uint32_t place = 8 + 2 + 2 * 12 + 4 + 2 + 12;
+
+    (void)state;
+    for (uint32_t beyond = 0; beyond <= 64; beyond++) {
+        struct bytes block = with_settings(1, 1);
+
+        entry(&block, F_NUMBER, RATIONAL, 1, place + beyond);
+        add(&block, 28, 4);
+        add(&block, 10, 4);
+        assert_true(facts(block).f_number == (beyond == 0 ? 2.8 : 0));
+    }
+}
+
+/* 0x20000000 of 8 bytes are 2^32: none, where sizes have 32 bits. And none has no value. */
+static void counts_are_possible(void **state)
+{
+    static const uint32_t counts[] = {0, 0x20000000, 0x20000001, 0x80000000, 0xffffffff};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        struct bytes block = with_settings(1, 1);
+
+        entry(&block, F_NUMBER, RATIONAL, counts[i], 20);
+        assert_true(facts(block).f_number == 0);
+        block = (struct bytes){NULL, 0};
+        directory(&block, 1);
+        entry(&block, MODEL, ASCII, counts[i], 20);
+        assert_string_equal(facts(block).camera, "");
+    }
+}
+
+/* A text ends with its count, and after what there is room for. */
+static void texts_end(void **state)
+{
+    char text[300];
+    struct rf_exif exif;
+
+    (void)state;
+    memset(text, 'x', sizeof text);
+    for (uint32_t count = 1; count <= sizeof text; count++) {
+        struct bytes block = {NULL, 0};
+
+        directory(&block, 1);
+        entry(&block, MAKE, ASCII, count, count <= 4 ? 0x78787878 : 8 + 2 + 12);
+        if (count > 4) {
+            bytes_add(&block, text, count);
+        }
+        exif = facts(block);
+        assert_int_equal(strlen(exif.camera), count < 47 ? count : 47);
+        block = (struct bytes){NULL, 0};
+        directory(&block, 1);
+        entry(&block, MODEL, ASCII, count, count <= 4 ? 0x78787878 : 8 + 2 + 12);
+        if (count > 4) {
+            bytes_add(&block, text, count);
+        }
+        exif = facts(block);
+        assert_int_equal(strlen(exif.camera), count < 63 ? count : 63);
+    }
+}
+
+/* A value is taken for what its type says: 8 bytes are not read of a number of 2. */
+static void types_are_what_they_say(void **state)
+{
+    (void)state;
+    for (int type = 1; type < RATIONAL; type++) {
+        struct bytes block = with_settings(1, 1);
+
+        entry(&block, F_NUMBER, type, 1, 0x01010101);
+        assert_true(facts(block).f_number == 0);
+        block = with_settings(1, 1);
+        entry(&block, FOCAL_LENGTH, type, 1, 0x01010101);
+        assert_true(facts(block).focal_length_mm == 0);
+        block = with_settings(1, 1);
+        entry(&block, FOCAL_LENGTH_35MM, type, 1, 0x00070007);
+        assert_true(facts(block).focal_length_35mm == (type == SHORT  ? 7
+                                                       : type == LONG ? 0x00070007
+                                                                      : 0));
+        block = (struct bytes){NULL, 0};
+        directory(&block, 1);
+        entry(&block, ORIENTATION, type, 1, 0x00060006);
+        assert_int_equal(facts(block).orientation, type == SHORT ? 6 : 1);
+        block = (struct bytes){NULL, 0};
+        directory(&block, 1);
+        entry(&block, MODEL, type, 1, 0x41424344);
+        assert_int_equal(strlen(facts(block).camera), type == ASCII ? 1 : 0);
+    }
+}
+
+static void orientations_are_1_to_8(void **state)
+{
+    (void)state;
+    for (uint32_t orientation = 0; orientation <= 10; orientation++) {
+        struct bytes block = {NULL, 0};
+
+        directory(&block, 1);
+        entry_short(&block, ORIENTATION, orientation);
+        assert_int_equal(facts(block).orientation,
+                         orientation >= 1 && orientation <= 8 ? orientation : 1);
+    }
+}
+
+/* Whether the sides of a picture on its side are exchanged. */
+static bool exchanges(int orientation, int type, uint32_t count, int second)
+{
+    struct bytes block = with_settings(orientation, 2);
+    struct rf_exif exif;
+    size_t at;
+    bool changed;
+
+    entry(&block, WIDTH, type, count, 640 << 16);
+    at = block.size;
+    entry_short(&block, second, 480);
+    assert_true(parse(&block, &exif));
+    changed = block.data[at + 8] == 640 >> 8;
+    assert_true(changed || block.data[at + 8] == 480 >> 8);
+    assert_int_equal(block.data[0], 'M');
+    assert_int_equal(block.data[3], '*');
+    bytes_free(&block);
+    return changed;
+}
+
+/* Types that TIFF does not have stand in no table, and what has no value is no side. */
+static void sides_are_exchanged(void **state)
+{
+    (void)state;
+    for (int orientation = 1; orientation <= 9; orientation++) {
+        assert_int_equal(exchanges(orientation, SHORT, 1, HEIGHT),
+                         orientation >= 5 && orientation <= 8);
+    }
+    for (int type = 0; type <= 65535; type++) {
+        assert_int_equal(exchanges(6, type, 1, HEIGHT), type > 0 && type < RATIONAL);
+    }
+    assert_false(exchanges(6, SHORT, 0, HEIGHT));
+    assert_false(exchanges(6, SHORT, 2, HEIGHT));
+    assert_false(exchanges(6, SHORT, 1, HEIGHT + 1));
+}
+
+/* Only the other side: nothing to exchange it with. */
+static void one_side_stays(void **state)
+{
+    static const int tags[] = {WIDTH, HEIGHT};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct bytes block = with_settings(6, 1), before;
+        struct rf_exif exif;
+
+        entry_short(&block, tags[i], 480);
+        before = bytes_copy(block.data, block.size);
+        before.data[8 + 2 + 8 + 1] = 1; /* upright now */
+        assert_true(parse(&block, &exif));
+        assert_memory_equal(block.data, before.data, block.size);
+        bytes_free(&before);
+        bytes_free(&block);
+    }
+}
+
+/* Two numbers of a side are none, whichever of the sides has them. */
+static void two_heights_are_none(void **state)
+{
+    struct bytes block = with_settings(6, 2), before;
+    struct rf_exif exif;
+
+    (void)state;
+    entry_short(&block, WIDTH, 640);
+    entry(&block, HEIGHT, SHORT, 2, 480 << 16);
+    before = bytes_copy(block.data, block.size);
+    before.data[8 + 2 + 8 + 1] = 1;
+    assert_true(parse(&block, &exif));
+    assert_memory_equal(block.data, before.data, block.size);
+    bytes_free(&before);
+    bytes_free(&block);
+}
+
+/* ICC.1, 7.2: less than a header is no profile, whatever it says. */
+static void profiles_have_a_header(void **state)
+{
+    (void)state;
+    for (size_t size = 0; size <= 128; size++) {
+        struct refocus_photo_info info = {.evidence_count = 0};
+        struct rf_read read = {.info = &info};
+        struct refocus_blob profile = {malloc(size + !size), size};
+
+        for (size_t i = 0; i < size; i++) {
+            profile.data[i] = (uint8_t)(i >= 16 && i < 20   ? "RGB "[i - 16]
+                                        : i >= 36 && i < 40 ? "acsp"[i - 36]
+                                                            : 0);
+        }
+        assert_int_equal(rf_icc_take(&read, &profile), REFOCUS_OK);
+        assert_true((read.icc.data != NULL) == (size == 128));
+        assert_null(profile.data);
+        free(read.icc.data);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(header_is_whole),
+        cmocka_unit_test(directory_lies_within),
+        cmocka_unit_test(entries_lie_within),
+        cmocka_unit_test(link_lies_within),
+        cmocka_unit_test(values_lie_within),
+        cmocka_unit_test(counts_are_possible),
+        cmocka_unit_test(texts_end),
+        cmocka_unit_test(types_are_what_they_say),
+        cmocka_unit_test(orientations_are_1_to_8),
+        cmocka_unit_test(sides_are_exchanged),
+        cmocka_unit_test(one_side_stays),
+        cmocka_unit_test(two_heights_are_none),
+        cmocka_unit_test(profiles_have_a_header),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
