@@ -330,7 +330,9 @@ static int write_picture(struct refocus_sink *sink, const struct refocus_image *
     if (!rf_pattern_name(name, sizeof name, sequence->pattern, sequence->next))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the name is too long");
     sequence->next++;
-    return refocus_image_write(name, image, NULL, reason);
+    /* The next frame does not wait for the disk. */
+    return refocus_image_write(name, image,
+                               &(struct refocus_write_options){.unsynced = 1}, reason);
 }
 
 static int close_pictures(struct refocus_sink *sink, struct refocus_reason *reason)

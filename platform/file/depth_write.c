@@ -96,7 +96,7 @@ static int encode(const struct refocus_depth_write *depth, int orientation,
                                .channels = 1,
                                .sample = REFOCUS_SAMPLE_U16,
                                .max_value = 65535};
-    struct rf_store store = {NULL, NULL, NULL, 0};
+    struct rf_store store = {NULL, NULL, NULL, 0, false};
     struct rf_rows rows = {.format = REFOCUS_FORMAT_NONE};
     char *bytes = NULL;
     size_t size = 0;

@@ -108,6 +108,7 @@ struct rf_store {
     void *stream; /* FILE * */
     char *temporary, *path;
     int error; /* errno of the first failure, or 0 */
+    bool unsynced; /* renamed without waiting for the disk */
 };
 int rf_store_open(struct rf_store *store, const char *path,
                   struct refocus_reason *reason);

@@ -1,18 +1,65 @@
 /* Files appear whole or not at all: written under a temporary name in the same folder,
- * then renamed, which replaces what was there in one step. */
+ * brought to the disk, then renamed, which replaces what was there in one step. A file
+ * that is replaced passes its owner and mode on; symbolic links stay and are followed. */
 #include "internal.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
-/* open() with O_EXCL rather than mkstemp(): the umask decides the permissions. */
+/* Length of the folder's part of a path, its slash included. */
+static size_t folder_of(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+
+    return slash ? (size_t)(slash + 1 - path) : 0;
+}
+
+/* Links in its folders are followed by the system. */
+char *refocus_file_place(const char *path)
+{
+    enum { MOST = 40 }; /* as Linux; what is longer goes round */
+    const size_t size = path ? strlen(path) + 1 : 0;
+    char *place = path ? malloc(size) : NULL, target[PATH_MAX];
+
+    if (place) {
+        memcpy(place, path, size);
+    }
+
+    for (int i = 0; i < MOST && place; i++) {
+        const ssize_t length = readlink(place, target, sizeof target);
+        const size_t folder = folder_of(place);
+        char *next;
+
+        if (length <= 0 || length == sizeof target) {
+            break;
+        }
+        next = malloc(folder + (size_t)length + 1);
+        if (next) {
+            const size_t kept = target[0] == '/' ? 0 : folder;
+
+            memcpy(next, place, kept);
+            memcpy(next + kept, target, (size_t)length);
+            next[kept + (size_t)length] = '\0';
+        }
+        free(place);
+        place = next;
+    }
+    return place;
+}
+
+/* open() with O_EXCL rather than mkstemp(): the umask decides the permissions of new
+ * files. What replaces another is nobody else's before it has that one's. */
 static int open_temporary(struct rf_store *store, size_t folder)
 {
     const unsigned process = (unsigned)getpid();
+    struct stat old;
+    const mode_t mode = stat(store->path, &old) == 0 ? 0600 : 0666;
 
     for (int attempt = 0; attempt < 100; attempt++) {
         struct timespec now;
@@ -22,7 +69,7 @@ static int open_temporary(struct rf_store *store, size_t folder)
         snprintf(store->temporary + folder, 64, ".refocus-%u-%lx%x.tmp", process,
                  (unsigned long)now.tv_nsec ^ ((unsigned long)(uintptr_t)store << 4),
                  (unsigned)attempt);
-        file = open(store->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        file = open(store->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         if (file >= 0 || errno != EEXIST) {
             return file;
         }
@@ -30,27 +77,77 @@ static int open_temporary(struct rf_store *store, size_t folder)
     return -1;
 }
 
+/* Owner, group and mode of the file that is replaced. Only root may give files away:
+ * others keep the group where they are in it, and else take from the group what
+ * everybody does not have, as it is another one. Where a file system has no owners and
+ * modes there is nothing to keep. */
+static void take_over(int file, const char *path)
+{
+    struct stat old, new;
+    mode_t mode;
+
+    if (stat(path, &old) != 0 || !S_ISREG(old.st_mode) || fstat(file, &new) != 0) {
+        return;
+    }
+    mode = old.st_mode & 0777;
+    if ((new.st_uid != old.st_uid || new.st_gid != old.st_gid) &&
+        fchown(file, old.st_uid, old.st_gid) != 0 && new.st_gid != old.st_gid &&
+        fchown(file, (uid_t)-1, old.st_gid) != 0) {
+        mode &= (mode & 07) << 3 | 0707;
+    }
+    fchmod(file, mode);
+}
+
+/* 0 or errno. What cannot be synced, as a pipe, is not on a disk. */
+static int sync_file(int file)
+{
+    while (fsync(file) != 0) {
+        if (errno != EINTR) {
+            return errno == EINVAL || errno == EROFS || errno == ENOTSUP ? 0 : errno;
+        }
+    }
+    return 0;
+}
+
+/* The new name too is on the disk then. An error comes too late: the file is whole and in
+ * its place, whatever becomes of it. */
+static void sync_folder(char *path)
+{
+    const size_t folder = folder_of(path);
+    const char kept = path[folder];
+    int file;
+
+    path[folder] = '\0';
+    file = open(folder > 0 ? path : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    path[folder] = kept;
+    if (file >= 0) {
+        sync_file(file);
+        close(file);
+    }
+}
+
 int rf_store_open(struct rf_store *store, const char *path,
                   struct refocus_reason *reason)
 {
-    const char *const slash = strrchr(path, '/');
-    const size_t folder = slash ? (size_t)(slash + 1 - path) : 0;
-    const size_t length = strlen(path);
+    size_t folder;
     int file, error;
 
     memset(store, 0, sizeof *store);
-    store->path = malloc(length + 1);
-    store->temporary = malloc(folder + 64);
-    if (!store->path || !store->temporary) {
-        free(store->path);
-        free(store->temporary);
+    store->path = refocus_file_place(path);
+    if (!store->path) {
         return rf_fail_memory(reason);
     }
-    memcpy(store->path, path, length + 1);
-    memcpy(store->temporary, path, folder);
+    folder = folder_of(store->path);
+    store->temporary = malloc(folder + 64);
+    if (!store->temporary) {
+        free(store->path);
+        return rf_fail_memory(reason);
+    }
+    memcpy(store->temporary, store->path, folder);
     file = open_temporary(store, folder);
     error = errno;
     if (file >= 0) {
+        take_over(file, store->path);
         store->stream = fdopen(file, "wb");
         error = errno;
         if (!store->stream) {
@@ -78,18 +175,28 @@ void rf_store_write(struct rf_store *store, const void *bytes, size_t size)
 
 int rf_store_close(struct rf_store *store, int status, struct refocus_reason *reason)
 {
+    const bool good = status == REFOCUS_OK;
+
+    errno = 0;
+    if (good && store->error == 0 && fflush(store->stream) != 0) {
+        store->error = errno ? errno : EIO;
+    }
+    if (good && store->error == 0 && !store->unsynced) {
+        store->error = sync_file(fileno(store->stream));
+    }
     errno = 0;
     if (fclose(store->stream) != 0 && store->error == 0) {
         store->error = errno ? errno : EIO;
     }
-    if (status == REFOCUS_OK && store->error == 0 &&
-        rename(store->temporary, store->path) != 0) {
+    if (good && store->error == 0 && rename(store->temporary, store->path) != 0) {
         store->error = errno;
     }
-    if (status != REFOCUS_OK || store->error != 0) {
+    if (!good || store->error != 0) {
         unlink(store->temporary);
+    } else if (!store->unsynced) {
+        sync_folder(store->path);
     }
-    if (status == REFOCUS_OK && store->error != 0) {
+    if (good && store->error != 0) {
         status = rf_fail_errno(reason, store->error, "cannot write it");
     }
     free(store->temporary);
@@ -116,4 +223,38 @@ int refocus_file_write(const char *path, const void *bytes, size_t size,
     }
     rf_store_write(&store, bytes, size);
     return rf_store_close(&store, REFOCUS_OK, reason);
+}
+
+int refocus_file_move(const char *temporary, const char *path,
+                      struct refocus_reason *reason)
+{
+    struct refocus_reason unused;
+    char *place;
+    int file, error = 0;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!temporary || !path) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name");
+    }
+    place = refocus_file_place(path);
+    if (!place) {
+        return rf_fail_memory(reason);
+    }
+    file = open(temporary, O_RDONLY | O_CLOEXEC);
+    if (file < 0) {
+        error = errno;
+    } else {
+        take_over(file, place);
+        error = sync_file(file);
+        close(file);
+    }
+    if (error == 0 && rename(temporary, place) != 0) {
+        error = errno;
+    }
+    if (error == 0) {
+        sync_folder(place);
+    }
+    free(place);
+    return error ? rf_fail_errno(reason, error, "cannot write it") : REFOCUS_OK;
 }

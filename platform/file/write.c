@@ -57,13 +57,13 @@ static int write_rows(const char *path, enum ending ending, const struct rf_rows
     struct rf_store store;
     int status = check_encoder(ending, reason);
 
-    (void)options; /* unused without JPEG and PNG */
     if (status == REFOCUS_OK) {
         status = rf_store_open(&store, path, reason);
     }
     if (status != REFOCUS_OK) {
         return status;
     }
+    store.unsynced = options && options->unsynced;
     switch (ending) {
     case ENDING_JPEG:
         status = rf_write_jpeg(&store, rows, options, reason);

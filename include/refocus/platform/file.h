@@ -179,13 +179,18 @@ struct refocus_write_options {
     int32_t quality;                /**< JPEG, 1 to 100; 0 = 95 */
     const struct refocus_blob *exif; /**< TIFF block; NULL = none. PPM takes neither */
     const struct refocus_blob *icc;  /**< NULL = none */
+    int32_t unsynced;               /**< 1: does not wait until the file is on the disk,
+                                         for frames of a stream */
 };
 
 /**
  * Write an 8-bit picture; the end of the name says how: .jpg .jpeg .png .ppm.
  *
  * The file is written beside its place under a temporary name and moved there when
- * whole: on an error what was there before is untouched and nothing partial is left.
+ * whole and on the disk: on an error what was there before is untouched and nothing
+ * partial is left, nor after a loss of power. A file that is replaced passes its mode on,
+ * and its owner and group as far as the process may; a symbolic link stays, and the file
+ * that it points at is replaced.
  * Alpha is kept in PNG and dropped elsewhere.
  *
  * @param reason  receives words on an error and, on success, what had to be left out:
@@ -265,13 +270,28 @@ REFOCUS_API int refocus_file_read(const char *path, uint64_t max_bytes,
                                   struct refocus_reason *reason);
 
 /**
- * Write any file, whole or not at all: beside its place, then renamed.
+ * Write any file, whole or not at all: as refocus_image_write().
  *
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY.
  *         Thread-safe.
  */
 REFOCUS_API int refocus_file_write(const char *path, const void *bytes, size_t size,
                                    struct refocus_reason *reason);
+
+/** The file that is written when a path is: where the last of its symbolic links points,
+ *  there or not, else the path itself. free() ends it; NULL without memory. Thread-safe. */
+REFOCUS_API char *refocus_file_place(const char *path);
+
+/**
+ * Move a finished file to its place, in the same file system, as the writers here do with
+ * theirs: on the disk, with mode and owner of what it replaces. The temporary file stays
+ * on an error.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY.
+ *         Thread-safe.
+ */
+REFOCUS_API int refocus_file_move(const char *temporary, const char *path,
+                                  struct refocus_reason *reason);
 
 /** Formats of this build, e.g. "JPEG PNG HEIC PPM PGM PFM". Thread-safe. */
 REFOCUS_API const char *refocus_file_formats(void);

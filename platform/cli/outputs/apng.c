@@ -147,7 +147,8 @@ int apng_write(struct apng *a, const struct refocus_image *image,
                struct refocus_reason *reason)
 {
     struct refocus_blob png = {NULL, 0};
-    int status = refocus_image_write(a->picture, image, NULL, reason);
+    const struct refocus_write_options options = {.unsynced = 1};
+    int status = refocus_image_write(a->picture, image, &options, reason);
 
     if (status == REFOCUS_OK)
         status = refocus_file_read(a->picture, UINT32_MAX, &png, reason);

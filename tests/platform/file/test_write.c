@@ -200,7 +200,7 @@ static void keeps_exif_and_icc(const char *name, size_t icc_size)
     struct bytes exif = make_exif(false, 1), icc = make_icc(icc_size);
     const struct refocus_blob exif_blob = {exif.data, exif.size};
     const struct refocus_blob icc_blob = {icc.data, icc.size};
-    const struct refocus_write_options options = {0, &exif_blob, &icc_blob};
+    const struct refocus_write_options options = {.exif = &exif_blob, .icc = &icc_blob};
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
