@@ -29,7 +29,6 @@ bool view_make_names(struct view_names *names, const char *output, const char *p
 static int save_strokes(const struct view_saving *saving,
                         const struct refocus_strokes *strokes)
 {
-    struct refocus_reason reason = {""};
     char *text;
     size_t size;
     int status = refocus_strokes_save(strokes, &text, &size);
@@ -37,11 +36,9 @@ static int save_strokes(const struct view_saving *saving,
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, saving->names.strokes, "%s",
                               refocus_strerror(status));
-    status = refocus_file_write(saving->names.strokes, text, size, &reason);
+    status = output_write_file(saving->names.strokes, text, size);
     free(text);
-    if (status == REFOCUS_OK)
-        return EXIT_DONE;
-    return report_failure(EXIT_FAILED, saving->names.strokes, "%s", reason.text);
+    return status;
 }
 
 static void count(struct view_saving *saving, int status, const char *name)

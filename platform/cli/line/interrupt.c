@@ -2,27 +2,74 @@
  * signals are blocked everywhere and a thread of their own waits for them. */
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <time.h>
 #include "line/interrupt.h"
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static struct refocus_renderer *watched; /* these three under the lock */
+static struct refocus_renderer *watched; /* these five under the lock */
 static bool came, held;
+static void (*clean_up)(void *);
+static void *clean_up_of;
 static pthread_t thread;
 static bool started;
+static atomic_int ending; /* the signal that is to end the process, or 0 */
 
-/* SIGINT and SIGTERM, but for those that the caller has the process ignore, as nohup
- * and shells do for work in the background. */
+/* Those that end a process, but for those that the caller has it ignore, as nohup and
+ * shells do for work in the background, and those of a debugger or profiler. */
 static void choose_signals(sigset_t *set)
 {
-    static const int numbers[] = {SIGINT, SIGTERM};
+    static const int numbers[] = {SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGALRM,
+                                  SIGUSR1, SIGUSR2,
+#ifdef SIGVTALRM
+                                  SIGVTALRM,
+#endif
+#ifdef SIGPROF
+                                  SIGPROF,
+#endif
+#ifdef SIGPOLL
+                                  SIGPOLL,
+#endif
+#ifdef SIGXCPU
+                                  SIGXCPU,
+#endif
+#ifdef SIGPWR
+                                  SIGPWR,
+#endif
+#ifdef SIGSTKFLT
+                                  SIGSTKFLT,
+#endif
+    };
     struct sigaction action;
 
     sigemptyset(set);
-    for (int i = 0; i < 2; i++)
-        if (sigaction(numbers[i], NULL, &action) == 0 && action.sa_handler != SIG_IGN)
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (sigaction(numbers[i], NULL, &action) == 0 && action.sa_handler == SIG_DFL)
             sigaddset(set, numbers[i]);
+    for (int number = SIGRTMIN; number <= SIGRTMAX; number++)
+        if (sigaction(number, NULL, &action) == 0 && action.sa_handler == SIG_DFL)
+            sigaddset(set, number);
+}
+
+/* A write that cannot go on raises these in its own thread, and fails when they have a
+ * handler: the work then ends as by any error. */
+static void note_signal(int number)
+{
+    atomic_store(&ending, number);
+}
+
+static void note_failed_writes(void)
+{
+    static const int numbers[] = {SIGPIPE, SIGXFSZ};
+    struct sigaction action;
+
+    for (int i = 0; i < 2; i++)
+        if (sigaction(numbers[i], NULL, &action) == 0 && action.sa_handler == SIG_DFL) {
+            action.sa_handler = note_signal;
+            action.sa_flags = SA_RESTART;
+            sigaction(numbers[i], &action, NULL);
+        }
 }
 
 static void cancel(void)
@@ -34,37 +81,52 @@ static void cancel(void)
     pthread_mutex_unlock(&lock);
 }
 
-static void end_process(int number)
+static void die_of(int number)
 {
     sigset_t set;
 
+    signal(number, SIG_DFL);
+    sigemptyset(&set);
+    sigaddset(&set, number);
+    raise(number);
+    pthread_sigmask(SIG_UNBLOCK, &set, NULL);
+}
+
+static void end_process(int number)
+{
     pthread_mutex_lock(&lock);
     if (!held) {
-        signal(number, SIG_DFL);
-        sigemptyset(&set);
-        sigaddset(&set, number);
-        raise(number);
-        pthread_sigmask(SIG_UNBLOCK, &set, NULL);
+        if (clean_up)
+            clean_up(clean_up_of);
+        die_of(number);
     }
     pthread_mutex_unlock(&lock);
 }
 
 static void *wait_for_signals(void *argument)
 {
+    enum { PATIENCE = 200 };
     const struct timespec pause = {0, 10000000};
     sigset_t set;
-    int number;
+    int number, first;
 
     choose_signals(&set);
-    if (sigwait(&set, &number) != 0)
+    if (sigwait(&set, &first) != 0)
         return argument;
+    /* Ctrl-C and SIGTERM end the work, with the status of one that was not done. */
+    if (first != SIGINT && first != SIGTERM)
+        atomic_store(&ending, first);
     /* A cancel has no effect on calls that have not begun: repeat it until the renderer
-     * is given up. A second signal ends the process when nothing is being written. */
-    for (;;) {
+     * is given up. A second signal ends the process when nothing is being written; so
+     * does the first one, of those that are not asked to wait, after two seconds in which
+     * the work has not ended, as it waits for a pipe. */
+    for (int waited = 0;; waited++) {
         cancel();
         number = sigtimedwait(&set, NULL, &pause);
         if (number > 0)
             end_process(number);
+        else if (waited >= PATIENCE && atomic_load(&ending) != 0)
+            end_process(first);
     }
 }
 
@@ -72,6 +134,7 @@ void interrupt_start(void)
 {
     sigset_t set;
 
+    note_failed_writes();
     choose_signals(&set);
     pthread_sigmask(SIG_BLOCK, &set, NULL);
     started = pthread_create(&thread, NULL, wait_for_signals, NULL) == 0;
@@ -81,11 +144,21 @@ void interrupt_start(void)
 
 void interrupt_stop(void)
 {
-    if (!started)
-        return;
-    pthread_cancel(thread); /* waiting for a signal is where that takes effect */
-    pthread_join(thread, NULL);
-    started = false;
+    int number;
+
+    if (started) {
+        pthread_cancel(thread); /* waiting for a signal is where that takes effect */
+        pthread_join(thread, NULL);
+        started = false;
+    }
+    number = atomic_load(&ending);
+    if (number != 0)
+        die_of(number);
+}
+
+bool interrupt_ends(void)
+{
+    return atomic_load(&ending) != 0;
 }
 
 void interrupt_watch(struct refocus_renderer *renderer)
@@ -109,5 +182,13 @@ void interrupt_hold(bool hold)
 {
     pthread_mutex_lock(&lock);
     held = hold;
+    pthread_mutex_unlock(&lock);
+}
+
+void interrupt_clean_up(void (*function)(void *), void *of)
+{
+    pthread_mutex_lock(&lock);
+    clean_up = function;
+    clean_up_of = of;
     pthread_mutex_unlock(&lock);
 }

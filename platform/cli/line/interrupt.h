@@ -1,4 +1,6 @@
-/* Ctrl-C and SIGTERM: the work is ended early and nothing partial stays behind. */
+/* Ctrl-C and the other signals that end a process: the work is ended early and nothing
+ * partial stays behind. After SIGINT and SIGTERM the command returns as after any error;
+ * the others end it in the end. */
 #ifndef RF_CLI_INTERRUPT_H
 #define RF_CLI_INTERRUPT_H
 
@@ -8,6 +10,7 @@
 /* Before any other thread is started. When no thread can be had a signal ends the
  * process as it would without this. */
 void interrupt_start(void);
+/* After all work; does not return where a signal is to end the process. */
 void interrupt_stop(void);
 
 /* The renderer that a signal cancels, or NULL for none any more. */
@@ -16,7 +19,15 @@ void interrupt_watch(struct refocus_renderer *renderer);
 /* Whether a signal has come. */
 bool interrupt_came(void);
 
-/* Around the writing of a file, which a second signal shall not cut short. */
+/* Whether it will end the process: what its reader does not read any more need not be
+ * told. */
+bool interrupt_ends(void);
+
+/* Around the writing of a file, which no signal shall cut short. */
 void interrupt_hold(bool hold);
+
+/* What is done, in another thread, before a signal ends the process at once; not while a
+ * file is held. NULL: nothing. */
+void interrupt_clean_up(void (*function)(void *), void *of);
 
 #endif

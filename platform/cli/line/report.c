@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
+#include "line/interrupt.h"
 #include "line/report.h"
 
 enum { LINE_LENGTH = 1024, BAR_WIDTH = 30 };
@@ -55,7 +56,7 @@ void report_warning(const char *what, const char *why, ...)
 int report_end_output(void)
 {
     if (fflush(stdout) != 0 || ferror(stdout))
-        return report_failure(EXIT_FAILED, "standard output", "%s; make room for it",
+        return interrupt_ends() ? EXIT_FAILED : report_failure(EXIT_FAILED, "standard output", "%s; make room for it",
                               strerror(errno));
     return EXIT_DONE;
 }

@@ -300,7 +300,6 @@ char *settings_text(const struct command *command, const void *settings,
 int settings_save(const struct command *command, const char *file, const void *settings)
 {
     json_t *root = json_pack("{s:i}", "refocus", (int)SETTINGS_VERSION);
-    struct refocus_reason reason = {{0}};
     bool failed = !root;
     char *text = NULL;
     int status = EXIT_DONE, digits = 15;
@@ -318,8 +317,8 @@ int settings_save(const struct command *command, const char *file, const void *s
     if (!text)
         status = report_failure(EXIT_FAILED, file,
                                 "not enough memory, or a file's name is not UTF-8");
-    else if (refocus_file_write(file, text, strlen(text), &reason) != REFOCUS_OK)
-        status = report_failure(EXIT_FAILED, file, "%s", reason.text);
+    else
+        status = output_write_file(file, text, strlen(text));
     free(text);
     json_decref(root);
     return status;

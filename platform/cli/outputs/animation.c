@@ -1,7 +1,7 @@
 #include "outputs/animation.h"
 
-#include <errno.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +9,7 @@
 #include <unistd.h>
 #include <refocus/platform/file.h>
 #include <refocus/platform/sink.h>
+#include "line/interrupt.h"
 #include "outputs/apng.h"
 #include "outputs/encoder.h"
 #include "outputs/outputs.h"
@@ -20,6 +21,7 @@ struct animation {
     enum kind kind;
     char path[PATH_MAX], temporary[PATH_MAX];
     int frames; /* written */
+    long process; /* of the encoder, or -1 */
     struct refocus_sink *sink;
     struct apng *apng;
     struct encoder *encoder;
@@ -91,19 +93,45 @@ int animation_check(const char *path, const char *const *inputs, int input_count
     return output_check(path, endings, inputs, input_count);
 }
 
-/* A name beside the place, with the same ending. */
+/* A name beside the place, where a link points, with the same ending. */
 static void name_temporary(struct animation *a)
 {
-    const char *slash = strrchr(a->path, '/'), *dot = strrchr(a->path, '.');
-    const int folder = slash ? (int)(slash + 1 - a->path) : 0;
+    char *real = refocus_file_place(a->path);
+    const char *place = real && strlen(real) + 64 <= PATH_MAX ? real : a->path;
+    const char *slash = strrchr(place, '/'), *dot = strrchr(a->path, '.');
+    const int folder = slash ? (int)(slash + 1 - place) : 0;
 
     snprintf(a->temporary, sizeof a->temporary, "%.*s.refocus-%ld.tmp%.8s", folder,
-             a->path, (long)getpid(), dot);
+             place, (long)getpid(), dot);
+    free(real);
 }
 
 static int lost(const struct animation *a, const struct refocus_reason *reason)
 {
     return report_failure(EXIT_FAILED, a->path, "%s", reason->text);
+}
+
+static void take_away(const struct animation *a)
+{
+    char name[PATH_MAX];
+
+    if (a->kind != KIND_PICTURES) {
+        unlink(a->temporary);
+        return;
+    }
+    for (int i = 0; i < a->frames; i++)
+        if (frame_name(a, i, name))
+            unlink(name);
+}
+
+/* For a signal that does not wait for animation_close(). */
+static void abandon(void *of)
+{
+    const struct animation *a = of;
+
+    if (a->process > 0)
+        kill((pid_t)a->process, SIGKILL); /* before it makes the file once more */
+    take_away(a);
 }
 
 int animation_open(struct animation **animation, const char *path, int width,
@@ -118,7 +146,10 @@ int animation_open(struct animation **animation, const char *path, int width,
         return report_failure(EXIT_FAILED, path, "not enough memory");
     snprintf(a->path, sizeof a->path, "%s", path);
     a->kind = kind_of(path);
+    a->process = -1;
     name_temporary(a);
+    interrupt_hold(true);
+    interrupt_clean_up(abandon, a);
     if (a->kind == KIND_Y4M) {
         char name[PATH_MAX + 8];
 
@@ -130,7 +161,9 @@ int animation_open(struct animation **animation, const char *path, int width,
         status = apng_open(&a->apng, a->temporary, width, height, fps, frames, &reason);
     } else if (a->kind == KIND_ENCODER) {
         status = encoder_open(&a->encoder, a->temporary, width, height, fps, &reason);
+        a->process = encoder_process(a->encoder);
     }
+    interrupt_hold(false);
     return status == REFOCUS_OK ? EXIT_DONE : lost(a, &reason);
 }
 
@@ -150,8 +183,11 @@ static int write_picture(struct animation *a, const struct refocus_image *image,
 int animation_write(struct animation *a, const struct refocus_image *image)
 {
     struct refocus_reason reason = {{0}};
+    /* Pictures have temporary files of their own; an encoder may make us wait. */
+    const bool hold = a->kind == KIND_PICTURES || a->kind == KIND_APNG;
     int status = REFOCUS_OK;
 
+    interrupt_hold(hold);
     switch (a->kind) {
     case KIND_PICTURES:
         status = write_picture(a, image, &reason);
@@ -168,23 +204,9 @@ int animation_write(struct animation *a, const struct refocus_image *image)
     case KIND_NONE:
         break;
     }
-    if (status != REFOCUS_OK)
-        return lost(a, &reason);
-    a->frames++;
-    return EXIT_DONE;
-}
-
-static void take_away(const struct animation *a)
-{
-    char name[PATH_MAX];
-
-    if (a->kind != KIND_PICTURES) {
-        unlink(a->temporary);
-        return;
-    }
-    for (int i = 0; i < a->frames; i++)
-        if (frame_name(a, i, name))
-            unlink(name);
+    a->frames += status == REFOCUS_OK;
+    interrupt_hold(false);
+    return status == REFOCUS_OK ? EXIT_DONE : lost(a, &reason);
 }
 
 int animation_close(struct animation *a, bool keep)
@@ -200,15 +222,18 @@ int animation_close(struct animation *a, bool keep)
         status = apng_close(a->apng, &reason);
     else if (a->encoder)
         status = encoder_close(a->encoder, keep, &reason);
+    interrupt_hold(true);
+    interrupt_clean_up(NULL, NULL);
     if (status != REFOCUS_OK && keep)
         result = lost(a, &reason);
     if (!keep || status != REFOCUS_OK) {
         take_away(a);
-    } else if (a->kind != KIND_PICTURES && rename(a->temporary, a->path) != 0) {
-        result = report_failure(EXIT_FAILED, a->path, "cannot write it: %s",
-                                strerror(errno));
+    } else if (a->kind != KIND_PICTURES &&
+               refocus_file_move(a->temporary, a->path, &reason) != REFOCUS_OK) {
+        result = lost(a, &reason);
         take_away(a);
     }
+    interrupt_hold(false);
     free(a);
     return result;
 }

@@ -42,7 +42,8 @@ static int failed(struct refocus_reason *reason, const char *what, int error)
     return REFOCUS_ERR_IO;
 }
 
-/* ffmpeg with our end of the pipe closed, and Ctrl-C for us alone. */
+/* ffmpeg with our end of the pipe closed, and Ctrl-C for us alone; signals are blocked in
+ * our threads, and not in it. */
 static int start(struct encoder *e, int read_end, char *const *arguments)
 {
     posix_spawn_file_actions_t files;
@@ -54,7 +55,12 @@ static int start(struct encoder *e, int read_end, char *const *arguments)
     error = posix_spawnattr_init(&attributes);
     if (!error) {
         posix_spawn_file_actions_adddup2(&files, read_end, STDIN_FILENO);
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+        sigset_t none;
+
+        sigemptyset(&none);
+        posix_spawnattr_setsigmask(&attributes, &none);
+        posix_spawnattr_setflags(&attributes,
+                                 POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
         posix_spawnattr_setpgroup(&attributes, 0);
         error = posix_spawnp(&e->process, "ffmpeg", &files, &attributes, arguments,
                              environ);
@@ -137,6 +143,11 @@ int encoder_write(struct encoder *e, const struct refocus_image *image,
         }
     }
     return REFOCUS_OK;
+}
+
+long encoder_process(const struct encoder *e)
+{
+    return e ? (long)e->process : -1;
 }
 
 int encoder_close(struct encoder *e, bool finish, struct refocus_reason *reason)

@@ -17,6 +17,9 @@ int encoder_open(struct encoder **encoder, const char *path, int width, int heig
 int encoder_write(struct encoder *encoder, const struct refocus_image *image,
                   struct refocus_reason *reason);
 
+/* The program's process, or -1. */
+long encoder_process(const struct encoder *encoder);
+
 /* Ends the program, at once unless `finish`, and frees. */
 int encoder_close(struct encoder *encoder, bool finish, struct refocus_reason *reason);
 

@@ -1,5 +1,6 @@
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -25,23 +26,34 @@ static int check_ending(const char *path, const char *const *endings)
                           words);
 }
 
-static int check_folder(const char *path)
+/* path: the file itself, no symbolic link to it; name: what the user calls it. */
+static int check_folder_of(const char *path, const char *name)
 {
     char folder[4096];
     const char *slash = strrchr(path, '/');
     const int length = slash ? (int)(slash - path) : 0;
 
     if (slash && length >= (int)sizeof folder)
-        return report_failure(EXIT_FAILED, path, "the name is too long; give a shorter "
+        return report_failure(EXIT_FAILED, name, "the name is too long; give a shorter "
                                                  "one");
     snprintf(folder, sizeof folder, "%.*s", slash ? (length ? length : 1) : 1,
              slash ? path : ".");
     if (access(folder, W_OK | X_OK) != 0)
-        return report_failure(EXIT_FAILED, path,
+        return report_failure(EXIT_FAILED, name,
                               "the folder %s cannot be written to (%s); give another "
                               "place",
                               folder, strerror(errno));
     return EXIT_DONE;
+}
+
+/* A link is followed to the file that is replaced. */
+static int check_folder(const char *path)
+{
+    char *place = refocus_file_place(path);
+    const int status = check_folder_of(place ? place : path, path);
+
+    free(place);
+    return status;
 }
 
 int output_check(const char *path, const char *const *endings,
@@ -111,5 +123,16 @@ int output_write_gray16(const char *path, const uint16_t *samples, int width,
     interrupt_hold(false);
     if (status == REFOCUS_ERR_CANCELLED)
         return report_failure(EXIT_FAILED, path, "interrupted; nothing was written");
+    return written(status, path, &reason);
+}
+
+int output_write_file(const char *path, const void *bytes, size_t size)
+{
+    struct refocus_reason reason = {""};
+    int status;
+
+    interrupt_hold(true);
+    status = refocus_file_write(path, bytes, size, &reason);
+    interrupt_hold(false);
     return written(status, path, &reason);
 }

@@ -26,6 +26,7 @@ int output_check(const char *path, const char *const *endings,
 
 int output_write_image(const char *path, const struct refocus_image *image,
                        const struct refocus_photo *of);
+int output_write_file(const char *path, const void *bytes, size_t size);
 int output_write_gray16(const char *path, const uint16_t *samples, int width,
                         int height);
 

@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""What saving leaves behind: nothing after any signal that ends the command, and the mode, the
+owner and the links of what is replaced. Usage: test_saving.py REFOCUS [unittest arguments]"""
+import os
+import resource
+import shutil
+import signal
+import stat
+import subprocess
+import time
+import unittest
+
+import pictures
+from case import Case, REFOCUS
+
+ENDING = ['SIGHUP', 'SIGQUIT', 'SIGALRM', 'SIGVTALRM', 'SIGPROF', 'SIGUSR1', 'SIGUSR2', 'SIGXCPU',
+          'SIGPOLL', 'SIGPWR', 'SIGSTKFLT', 'SIGRTMIN', 'SIGRTMAX']
+STUCK = '#!/bin/sh\nfor out; do :; done\n: >"${out#file:}"\necho $$ >process\nexec sleep 600\n'
+
+
+def no_core():
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+class Saving(Case):
+    def listing(self):
+        return sorted(os.listdir('.'))
+
+    def pull(self, name, *more):
+        return ('pull', 'photo.ppm', '--depth', 'depth.pgm', '-o', name, '--threads', '1', *more)
+
+    def start(self, *arguments, **more):
+        return subprocess.Popen([REFOCUS, *arguments], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True,
+                                **{'preexec_fn': no_core, **more})
+
+    def started(self, *arguments, **more):
+        """Once it has begun a file."""
+        before, process = self.listing(), self.start(*arguments, **more)
+        while self.listing() == before and process.poll() is None:
+            time.sleep(0.01)
+        self.assertIsNone(process.poll())
+        return process
+
+    def ended(self, process, number):
+        error = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, -number, error)
+        return error
+
+    def test_signals(self):
+        """Nothing is left, and the process ends by the signal."""
+        before = self.listing()
+        for name in ENDING:
+            number = getattr(signal, name, None)
+            if number is None:
+                continue
+            for out in ('a.y4m', 'f-%03d.png', 'a.apng')[:1 if name != 'SIGHUP' else 3]:
+                process = self.started(*self.pull(out, '--seconds', '3600'))
+                process.send_signal(number)
+                self.assertIn('interrupted; nothing was written', self.ended(process, number))
+                self.assertEqual(self.listing(), before, name)
+
+    def test_first_signal_of_two(self):
+        """Ctrl-C ends with status 1, as ever; a second one, of any kind, at once."""
+        before = self.listing()
+        for name, second in (('a.y4m', signal.SIGINT), ('f-%03d.ppm', signal.SIGHUP),
+                             ('a.apng', signal.SIGTERM)):
+            process = self.started(*self.pull(name, '--seconds', '3600'))
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.002)
+            process.send_signal(second)
+            process.communicate(timeout=60)
+            self.assertIn(process.returncode, (1, -second))
+            self.assertEqual(self.listing(), before, name)
+
+    def test_ignored_signals(self):
+        """As nohup has it."""
+        def ignore():
+            signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+        process = self.started(*self.pull('a.y4m', '--seconds', '4'), preexec_fn=ignore)
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual((process.communicate(timeout=60)[1], process.returncode), ('', 0))
+        os.remove('a.y4m')
+
+    def test_waiting_for_a_photo(self):
+        """Of a pipe that nobody writes to: nothing to cancel."""
+        os.mkfifo('pipe.ppm')
+        process = self.start('render', 'pipe.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm')
+        time.sleep(0.5)
+        process.send_signal(signal.SIGHUP)
+        start = time.monotonic()
+        self.ended(process, signal.SIGHUP)
+        self.assertLess(time.monotonic() - start, 10)
+        os.remove('pipe.ppm')
+
+    def test_waiting_for_an_encoder(self):
+        """That does not read, and has made its file: both go."""
+        before = self.listing()
+        for first, second in ((signal.SIGHUP, None), (signal.SIGINT, signal.SIGINT),
+                              (signal.SIGTERM, signal.SIGQUIT)):
+            os.mkdir('bin')
+            with open('bin/ffmpeg', 'w') as file:
+                file.write(STUCK)
+            os.chmod('bin/ffmpeg', 0o755)
+            process = self.start(*self.pull('a.mp4', '--seconds', '3600'),
+                                 env={**os.environ, 'PATH': 'bin:' + os.environ['PATH']})
+            while not os.path.exists('process'):
+                time.sleep(0.01)
+            time.sleep(0.5)
+            self.assertIsNone(process.poll())
+            with open('process') as file:
+                encoder = int(file.read())
+            process.send_signal(first)
+            if second:
+                time.sleep(0.1)
+                process.send_signal(second)
+            self.ended(process, second or first)
+            for _ in range(500):  # until its new parent has taken it up
+                try:
+                    with open('/proc/%d/stat' % encoder) as file:
+                        if file.read().rsplit(')')[1].split()[0] == 'Z':
+                            break
+                except OSError:
+                    break
+                time.sleep(0.01)
+            else:
+                self.fail('the encoder lives')
+            os.remove('process')
+            shutil.rmtree('bin')
+            self.assertEqual(self.listing(), before)
+
+    def test_files_that_may_not_grow(self):
+        def limit():
+            no_core()
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+
+        before = self.listing()
+        for command in (('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm'),
+                        self.pull('a.y4m'), self.pull('f-%03d.ppm'), self.pull('a.apng'),
+                        ('depth', 'depth.pgm', '-o', 'd.pgm')):
+            error = self.ended(self.start(*command, preexec_fn=limit), signal.SIGXFSZ)
+            self.assertIn('File too large', error)
+            self.assertEqual(self.listing(), before, command)
+
+    def test_reports_that_nobody_reads(self):
+        """Quietly by SIGPIPE; and as a failure where that is ignored."""
+        def ignore():
+            signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+
+        for preexec, expected in ((None, (-signal.SIGPIPE, '')), (ignore, (
+                1, 'refocus: standard output: Broken pipe; make room for it\n'))):
+            end, other = os.pipe()
+            os.close(end)
+            result = subprocess.run([REFOCUS, 'info', 'photo.ppm'], stdout=other, text=True,
+                                    stderr=subprocess.PIPE, preexec_fn=preexec, timeout=60)
+            os.close(other)
+            self.assertEqual((result.returncode, result.stderr), expected)
+
+    COMMANDS = (
+        ('out.ppm', ('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm')),
+        ('out.jpg', ('sheet', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.jpg', '--cell-width',
+                     '24')),
+        ('d.png', ('depth', 'depth.pgm', '-o', 'd.png')),
+        ('s.json', ('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'other.ppm',
+                    '--save-settings', 's.json')),
+        ('a.y4m', ('pull', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'a.y4m', '--seconds', '0.1')),
+        ('a.apng', ('pull', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'a.apng', '--seconds',
+                    '0.1')),
+        ('f-1.ppm', ('pull', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'f-%d.ppm', '--seconds',
+                     '0.1')),
+    )
+
+    def remove_all(self):
+        for name in self.listing():
+            if name not in ('photo.ppm', 'depth.pgm', 'mm.pgm', 'metres.pfm', 'plain.ppm'):
+                os.remove(name)
+
+    def test_mode_and_owner_are_kept(self):
+        root = os.geteuid() == 0
+        for name, command in self.COMMANDS:
+            self.succeeds(*command)
+            fresh = os.stat(name)
+            mask = os.umask(0)
+            os.umask(mask)
+            self.assertEqual(stat.S_IMODE(fresh.st_mode), 0o666 & ~mask, name)
+            os.chmod(name, 0o640)
+            if root:
+                os.chown(name, 4711, 4712)
+            self.succeeds(*command)
+            kept = os.stat(name)
+            self.assertNotEqual(kept.st_ino, fresh.st_ino, name)  # it is another file
+            self.assertEqual(stat.S_IMODE(kept.st_mode), 0o640, name)
+            if root:
+                self.assertEqual((kept.st_uid, kept.st_gid), (4711, 4712), name)
+            self.remove_all()
+
+    def test_links_stay(self):
+        for name, command in self.COMMANDS:
+            os.mkdir('there')
+            for _ in range(2):  # what is not there yet, and what is
+                if not os.path.lexists(name):
+                    os.symlink('there/file', name)
+                self.succeeds(*command)
+                self.assertTrue(os.path.islink(name), name)
+                self.assertGreater(os.path.getsize('there/file'), 20, name)
+                self.assertEqual(os.listdir('there'), ['file'], name)
+            shutil.rmtree('there')
+            self.remove_all()
+
+    @unittest.skipUnless(shutil.which('strace'), 'no strace to count what is synced')
+    def test_files_are_synced(self):
+        """The file, then its name, then its folder."""
+        trace = ['strace', '-f', '-y', '-e', 'trace=fsync,rename,renameat,renameat2', '-o', 'trace']
+        if subprocess.run([*trace, 'true'], stderr=subprocess.DEVNULL).returncode != 0:
+            self.skipTest('strace may not trace')
+        for name, command in self.COMMANDS:
+            result = subprocess.run([*trace, REFOCUS, *command], stderr=subprocess.PIPE, text=True)
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            with open('trace') as file:
+                calls = [line.split(None, 1)[1] for line in file if '(' in line and ' = 0' in line]
+            at = [i for i, call in enumerate(calls) if 'rename' in call and '"%s")' % name in call]
+            self.assertEqual(len(at), 1, (name, calls))
+            temporary = calls[at[0]].split('"')[1]
+            self.assertRegex(calls[at[0] - 1], r'^fsync\(\d+<.*/%s>' % temporary.replace('.', r'\.'))
+            self.assertRegex(calls[at[0] + 1], r'^fsync\(\d+<%s>' % os.path.realpath('.'))
+            self.remove_all()
+
+
+if __name__ == '__main__':
+    unittest.main()
