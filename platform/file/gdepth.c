@@ -107,7 +107,9 @@ static int linear_to_disparity(struct rf_read *read, const struct range *range)
         const double z = fmax(range->near + rf_raster_sample(&read->samples, i) * step, near);
         const double d = (1.0 / z - 1.0 / range->far) / (1.0 / near - 1.0 / range->far);
 
-        ((uint16_t *)(void *)disparity.pixels)[i] = (uint16_t)(d * 65535.0 + 0.5);
+        /* fmax() makes 0 of NaN, where 1 / Near is more than a double holds. */
+        ((uint16_t *)(void *)disparity.pixels)[i] =
+            (uint16_t)(fmin(fmax(d, 0.0), 1.0) * 65535.0 + 0.5);
     }
     rf_raster_free(&read->samples);
     read->samples = disparity;

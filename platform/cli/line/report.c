@@ -55,10 +55,12 @@ void report_warning(const char *what, const char *why, ...)
 
 int report_end_output(void)
 {
-    if (fflush(stdout) != 0 || ferror(stdout))
-        return interrupt_ends() ? EXIT_FAILED : report_failure(EXIT_FAILED, "standard output", "%s; make room for it",
-                              strerror(errno));
-    return EXIT_DONE;
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return EXIT_DONE;
+    if (interrupt_ends())
+        return EXIT_FAILED;
+    return report_failure(EXIT_FAILED, "standard output", "%s; make room for it",
+                          strerror(errno));
 }
 
 bool report_is_watched(void)
