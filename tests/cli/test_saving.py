@@ -78,7 +78,7 @@ class Saving(Case):
         def ignore():
             signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
-        process = self.started(*self.pull('a.y4m', '--seconds', '4'), preexec_fn=ignore)
+        process = self.started(*self.pull('a.y4m', '--seconds', '40'), preexec_fn=ignore)
         process.send_signal(signal.SIGHUP)
         self.assertEqual((process.communicate(timeout=60)[1], process.returncode), ('', 0))
         os.remove('a.y4m')
