@@ -128,8 +128,9 @@ struct refocus_ray {
  * A well-distributed set of @p count rays of equal share, the same on every machine;
  * those behind the focus where the sides differ.
  *
- * @param count  1 to REFOCUS_MAX_RAYS
- * @param rays   receives @p count rays
+ * @param aperture  NULL = a disc
+ * @param count     1 to REFOCUS_MAX_RAYS
+ * @param rays      receives @p count rays
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT. Thread-safe.
  */
 REFOCUS_API int refocus_aperture_rays(const struct refocus_aperture *aperture,
@@ -141,9 +142,11 @@ REFOCUS_API int refocus_aperture_rays(const struct refocus_aperture *aperture,
  * not spread evenly by how much of it there is behind the focus. K = 20 gives the 41x41
  * mask of Yang et al. 2016.
  *
+ * @param aperture  NULL = a disc
  * @param max_blur_radius  K in pixels, > 0, at most 127
  * @param capacity  number of rays that @p rays can hold; 0 only counts
- * @param rays      receives at most @p capacity rays, those of weight 255 first
+ * @param rays      receives at most @p capacity rays, those of weight 255 first; may be NULL
+ *                  when @p capacity is 0
  * @return the number of rays in the set, at most 255 * 255, or a negative status
  */
 REFOCUS_API int refocus_aperture_full_rays(const struct refocus_aperture *aperture,

@@ -45,7 +45,8 @@ enum { REFOCUS_MAX_SIDE = 65535 };
  *
  * Row y of plane i begins at plane[i] + y * stride[i]. A stride may be
  * negative (bottom-up pictures: plane points to the top row) and of any size of
- * at least one row. Packed formats use plane[0] only.
+ * at least one row and at most PTRDIFF_MAX / rows; of a single row of any size up to
+ * that. So is every stride of this library. Packed formats use plane[0] only.
  */
 struct refocus_image {
     uint32_t format; /**< enum refocus_format */
@@ -84,14 +85,17 @@ REFOCUS_API int refocus_format_is_yuv(uint32_t format);
 REFOCUS_API int refocus_format_planes(uint32_t format);
 
 /** Bytes of a row of plane @p plane of a picture of @p width pixels, and the rows of
- *  that plane of one of @p height; 0 for a plane or format that is not. Thread-safe. */
+ *  that plane of one of @p height; 0 for a plane or format that is not, and for a side
+ *  beyond 1 to REFOCUS_MAX_SIDE. Thread-safe. */
 REFOCUS_API ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane,
                                               int32_t width);
 REFOCUS_API int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height);
 
 /**
  * A picture whose planes follow each other in one block of memory, rows without gaps,
- * BT.601 in limited range; refocus_image_bytes() long.
+ * BT.601 in limited range; refocus_image_bytes() long. With NULL all planes are NULL, and
+ * the strides are set. An unknown format or a side out of its range makes what every
+ * function refuses.
  */
 static inline struct refocus_image refocus_image_planar(uint32_t format, void *memory,
                                                         int32_t width, int32_t height)
@@ -103,13 +107,16 @@ static inline struct refocus_image refocus_image_planar(uint32_t format, void *m
     for (plane = 0; plane < refocus_format_planes(format); plane++) {
         image.plane[plane] = at;
         image.stride[plane] = refocus_plane_row_bytes(format, plane, width);
-        at += image.stride[plane] * refocus_plane_rows(format, plane, height);
+        if (!at)
+            continue;
+        at += (size_t)image.stride[plane] *
+              (size_t)refocus_plane_rows(format, plane, height);
     }
     return image;
 }
 
-/** Bytes of a picture's planes, rows without gaps; 0 for an unknown format.
- *  Thread-safe. */
+/** Bytes of a picture's planes, rows without gaps; 0 for an unknown format or a side
+ *  out of its range. Thread-safe. */
 static inline uint64_t refocus_image_bytes(uint32_t format, int32_t width,
                                            int32_t height)
 {

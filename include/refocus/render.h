@@ -493,7 +493,8 @@ REFOCUS_API int refocus_render(struct refocus_renderer *renderer,
 /**
  * End the refocus_prepare() or refocus_render() that is running, if any, early: it
  * returns REFOCUS_ERR_CANCELLED as soon as each thread has done the few pixels that it is at, a few
- * milliseconds at most whatever the picture. Has no effect on later calls. Thread-safe.
+ * milliseconds at most whatever the picture. Has no effect on later calls. With NULL it
+ * does nothing. Thread-safe.
  */
 REFOCUS_API void refocus_cancel(struct refocus_renderer *renderer);
 
@@ -512,7 +513,8 @@ enum refocus_view {
 REFOCUS_API int refocus_get_view(struct refocus_renderer *renderer, uint32_t view,
                                  uint16_t *out, ptrdiff_t stride);
 
-/** Threads and instruction set that a renderer works with. */
+/** Threads and instruction set that a renderer works with, all 0 for a NULL renderer. With a
+ *  NULL @p info refocus_renderer_get_info() does nothing. */
 struct refocus_renderer_info {
     int32_t threads;
     uint32_t cpu;    /**< enum refocus_cpu, never AUTO */

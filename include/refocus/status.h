@@ -8,7 +8,13 @@
 extern "C" {
 #endif
 
-/** Functions that can fail return REFOCUS_OK or one of the negative values. */
+/**
+ * Functions that can fail return REFOCUS_OK or one of the negative values. A NULL, a
+ * size, a stride or a number that a function's description does not allow is
+ * REFOCUS_ERR_ARGUMENT, never a crash. Functions without a status do nothing then, or
+ * return 0, NULL or NAN. What cannot be told is not looked for: memory that is not as
+ * large as it is said to be, a handle that has been destroyed.
+ */
 enum refocus_status {
     REFOCUS_OK = 0,
     REFOCUS_ERR_ARGUMENT = -1,    /**< an argument is out of its documented range */

@@ -53,7 +53,7 @@ REFOCUS_API int refocus_temporal_create(struct refocus_temporal **filter,
 /** End a filter and set the handle to NULL; a NULL handle is fine. */
 REFOCUS_API void refocus_temporal_destroy(struct refocus_temporal **filter);
 
-/** Forget the past: after a cut, or after a gap. */
+/** Forget the past: after a cut, or after a gap. With NULL it does nothing. */
 REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
 
 /**

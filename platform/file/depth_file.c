@@ -92,6 +92,13 @@ int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit)
     if (!map || !unit) {
         return REFOCUS_ERR_ARGUMENT;
     }
+    /* Floats are looked at: the ends of the map are its own. */
+    if (map->samples && map->sample == REFOCUS_SAMPLE_F32 &&
+        (map->width < 1 || map->width > REFOCUS_MAX_SIDE || map->height < 1 ||
+         map->height > REFOCUS_MAX_SIDE ||
+         !rf_good_rows(map->stride, 4 * (int64_t)map->width, map->height))) {
+        return REFOCUS_ERR_ARGUMENT;
+    }
     return rf_depth_unit(map, unit,
                          map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
 }

@@ -283,11 +283,11 @@ static bool good(const struct refocus_depth_write *depth)
     return depth && depth->struct_size == sizeof *depth && depth->disparity &&
            depth->width >= 1 && depth->width <= REFOCUS_MAX_SIDE &&
            depth->height >= 1 && depth->height <= REFOCUS_MAX_SIDE &&
-           depth->stride % 2 == 0 && depth->stride != PTRDIFF_MIN &&
-           (depth->height == 1 ||
-            (depth->stride < 0 ? -depth->stride : depth->stride) >=
-                2 * (ptrdiff_t)depth->width) &&
-           depth->focus_x <= 1 && depth->focus_y <= 1;
+           depth->stride % 2 == 0 &&
+           rf_good_rows(depth->stride, 2 * (int64_t)depth->width, depth->height) &&
+           depth->focus_x <= 1 && depth->focus_y <= 1 && isfinite(depth->near_m) &&
+           !isnan(depth->far_m) && !isnan(depth->focus_distance) &&
+           isfinite(depth->blur_at_infinity);
 }
 
 static int write_all(const char *path, struct rf_bytes file, int orientation,

@@ -69,6 +69,15 @@ size_t rf_sample_bytes(uint32_t sample);
 /* Bytes of one pixel of enum refocus_format; 0 for an unknown one. This library does
  * not link the core for it. */
 int rf_format_bytes(uint32_t format);
+/* Whether rows of so many bytes can lie so far apart, and the place of each is a
+ * ptrdiff_t; rows >= 1. */
+static inline bool rf_good_rows(ptrdiff_t stride, int64_t bytes, int64_t rows)
+{
+    const int64_t most = PTRDIFF_MAX / rows;
+
+    return stride >= -most && stride <= most &&
+           (rows == 1 || stride >= bytes || stride <= -bytes);
+}
 /* Sizes are checked here and nowhere else, in 64 bits and before memory is asked for:
  * sides 1 to REFOCUS_MAX_SIDE, pixels and bytes within the limits. */
 int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height,

@@ -84,8 +84,8 @@ static int write_rows(const char *path, enum ending ending, const struct rf_rows
 static bool fits(int64_t width, int64_t height, ptrdiff_t stride, int64_t pixel_bytes)
 {
     return width >= 1 && width <= REFOCUS_MAX_SIDE && height >= 1 &&
-           height <= REFOCUS_MAX_SIDE && stride != PTRDIFF_MIN &&
-           (height == 1 || (stride < 0 ? -stride : stride) >= width * pixel_bytes);
+           height <= REFOCUS_MAX_SIDE &&
+           rf_good_rows(stride, width * pixel_bytes, height);
 }
 
 int refocus_image_write(const char *path, const struct refocus_image *image,

@@ -2,6 +2,7 @@
 #ifndef RF_OPENCV_GUARD_HPP
 #define RF_OPENCV_GUARD_HPP
 
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -55,12 +56,19 @@ template <class Work> int guarded(refocus_cv_reason *reason, int status, Work wo
     }
 }
 
+/* Whether rows of so many bytes lie so far apart: downwards, as cv::Mat has it, and so that the
+ * place of each is a ptrdiff_t; rows >= 1. */
+inline bool good_rows(ptrdiff_t stride, ptrdiff_t bytes, int rows)
+{
+    return stride >= bytes && stride <= PTRDIFF_MAX / rows;
+}
+
 inline bool good_photo(const refocus_image *image)
 {
     return image && image->format == REFOCUS_FORMAT_RGB8 && image->plane[0] &&
            image->width >= 1 && image->height >= 1 && image->width <= REFOCUS_MAX_SIDE &&
            image->height <= REFOCUS_MAX_SIDE &&
-           (image->height == 1 || image->stride[0] >= 3 * (ptrdiff_t)image->width);
+           good_rows(image->stride[0], 3 * (ptrdiff_t)image->width, image->height);
 }
 
 inline cv::Mat view(const refocus_image *image)

@@ -95,7 +95,8 @@ bool good(const refocus_image *photo, const refocus_disparity *map, const uint16
     return refocus_cv::good_photo(photo) && map && map->samples && map->width >= 1 &&
            map->height >= 1 && map->width <= REFOCUS_MAX_SIDE && map->height <= REFOCUS_MAX_SIDE &&
            (map->bits == 8 || map->bits == 16) &&
-           map->stride >= (ptrdiff_t)map->width * (ptrdiff_t)(map->bits / 8) && out;
+           refocus_cv::good_rows(map->stride, (ptrdiff_t)map->width * (ptrdiff_t)(map->bits / 8),
+                                 map->height) && out;
 }
 
 const char *const names[] = {"bilinear", "joint-bilateral", "guided", "fast-global",

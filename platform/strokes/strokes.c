@@ -318,14 +318,14 @@ int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points,
     if (strokes->count == 0 ||
         !has_points(strokes->strokes[strokes->count - 1].stroke.kind))
         return REFOCUS_ERR_STATE;
+    if (count > REFOCUS_MAX_STROKE_POINTS - strokes->points)
+        return REFOCUS_ERR_SIZE;
     for (int i = 0; i < count; i++)
         if (!in_range(points[2 * i], (float)-0.5,
                       (float)strokes->pyramid.width[0] - (float)0.5) ||
             !in_range(points[2 * i + 1], (float)-0.5,
                       (float)strokes->pyramid.height[0] - (float)0.5))
             return REFOCUS_ERR_ARGUMENT;
-    if (count > REFOCUS_MAX_STROKE_POINTS - strokes->points)
-        return REFOCUS_ERR_SIZE;
     last = &strokes->strokes[strokes->count - 1];
     status = reserve((void **)&last->points, &last->room, last->count + count,
                      2 * sizeof *points);
@@ -470,11 +470,32 @@ static int take_base(struct refocus_strokes *strokes,
     return REFOCUS_OK;
 }
 
+/* Whether rows of so many bytes can lie so far apart, and the place of each is a
+ * ptrdiff_t; rows >= 1. */
+static bool is_stride(ptrdiff_t stride, ptrdiff_t bytes, int32_t rows)
+{
+    const ptrdiff_t most = PTRDIFF_MAX / rows;
+
+    return stride >= -most && stride <= most &&
+           (rows == 1 || stride >= bytes || stride <= -bytes);
+}
+
 static bool is_photo(const struct refocus_image *photo)
 {
     return photo && refocus_format_bytes(photo->format) > 0 && photo->plane[0] &&
            photo->width >= 1 && photo->width <= REFOCUS_MAX_SIDE &&
-           photo->height >= 1 && photo->height <= REFOCUS_MAX_SIDE;
+           photo->height >= 1 && photo->height <= REFOCUS_MAX_SIDE &&
+           is_stride(photo->stride[0],
+                     refocus_plane_row_bytes(photo->format, 0, photo->width),
+                     photo->height);
+}
+
+static bool is_base(const struct refocus_disparity *base, const struct refocus_image *photo)
+{
+    return base->width == photo->width && base->height == photo->height &&
+           base->samples && (base->bits == 8 || base->bits == 16) &&
+           is_stride(base->stride, (ptrdiff_t)base->width * (base->bits / 8),
+                     base->height);
 }
 
 int refocus_strokes_create(struct refocus_strokes **strokes,
@@ -487,9 +508,7 @@ int refocus_strokes_create(struct refocus_strokes **strokes,
     if (!strokes)
         return REFOCUS_ERR_ARGUMENT;
     *strokes = NULL;
-    if (!is_photo(photo) ||
-        (base && (base->width != photo->width || base->height != photo->height ||
-                  !base->samples || (base->bits != 8 && base->bits != 16))))
+    if (!is_photo(photo) || (base && !is_base(base, photo)))
         return REFOCUS_ERR_ARGUMENT;
     if ((uint64_t)photo->width * (uint64_t)photo->height > SIZE_MAX / 16)
         return REFOCUS_ERR_SIZE;
@@ -552,7 +571,8 @@ int refocus_strokes_selection(const struct refocus_strokes *strokes, uint8_t *ma
 {
     const struct layer *const layer = strokes ? last_layer(strokes) : NULL;
 
-    if (!strokes || !mask || width < 1 || height < 1)
+    if (!strokes || !mask || width < 1 || height < 1 ||
+        !is_stride(stride, width, height))
         return REFOCUS_ERR_ARGUMENT;
     for (int y = 0; y < height; y++) {
         const int64_t rows = strokes->pyramid.height[0],

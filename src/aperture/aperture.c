@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "planes/format.h"
+
 const struct refocus_aperture rf_disc = {
     .id = 1, .shape = RF_SHAPE_DISC, .squeeze_x = 1, .squeeze_y = 1};
 
@@ -158,8 +160,7 @@ int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8
         return REFOCUS_ERR_ARGUMENT;
     *aperture = NULL;
     if (!mask || width < 1 || height < 1 || width > REFOCUS_MAX_APERTURE_SIDE ||
-        height > REFOCUS_MAX_APERTURE_SIDE ||
-        (height > 1 && stride < width && stride > -width))
+        height > REFOCUS_MAX_APERTURE_SIDE || !rf_good_stride(stride, width, height))
         return REFOCUS_ERR_ARGUMENT;
     status = create(aperture, RF_SHAPE_MASK);
     if (status)

@@ -7,6 +7,7 @@
 #include <refocus/image.h>
 #include "depth/fill.h"
 #include "depth/speckle.h"
+#include "planes/format.h"
 
 enum {
     KNOWN_FLAGS = REFOCUS_DEPTH_ZERO_IS_UNKNOWN | REFOCUS_DEPTH_MAX_IS_UNKNOWN |
@@ -50,24 +51,18 @@ static bool is_depth_or_unknown(double metres)
     return metres == 0 || (metres > 0 && 1 / metres < INFINITY);
 }
 
-static bool is_stride(ptrdiff_t stride, int64_t row, int height)
-{
-    const int64_t bytes = stride < 0 ? -(int64_t)stride : stride;
-    return height == 1 || bytes >= row;
-}
-
 static int check(const struct refocus_depth_map *map, const uint16_t *disparity,
                  ptrdiff_t stride)
 {
-    if (!map || !map->samples || !disparity || map->width < 1 || map->height < 1 ||
-        map->width > REFOCUS_MAX_SIDE || map->height > REFOCUS_MAX_SIDE)
+    if (!map || !map->samples || !disparity || ((uintptr_t)disparity & 1) ||
+        map->width < 1 || map->height < 1 || map->width > REFOCUS_MAX_SIDE ||
+        map->height > REFOCUS_MAX_SIDE)
         return REFOCUS_ERR_ARGUMENT;
 
     const int bytes = sample_bytes(map->sample);
-    if (bytes == 0 || (map->flags & ~(uint32_t)KNOWN_FLAGS) != 0 ||
-        map->stride == PTRDIFF_MIN || stride == PTRDIFF_MIN || stride % 2 != 0 ||
-        !is_stride(map->stride, (int64_t)map->width * bytes, map->height) ||
-        !is_stride(stride, (int64_t)map->width * 2, map->height))
+    if (bytes == 0 || (map->flags & ~(uint32_t)KNOWN_FLAGS) != 0 || stride % 2 != 0 ||
+        !rf_good_stride(map->stride, (ptrdiff_t)map->width * bytes, map->height) ||
+        !rf_good_stride(stride, (ptrdiff_t)map->width * 2, map->height))
         return REFOCUS_ERR_ARGUMENT;
 
     if (!is_depth_or_unknown(map->near_m) || !is_depth_or_unknown(map->far_m) ||
@@ -336,8 +331,8 @@ static bool good_repair(const struct refocus_repair_params *params,
 {
     return params && params->struct_size == sizeof *params && params->speckle >= 0 &&
            params->speckle <= REFOCUS_MAX_SPECKLE &&
-           (!params->confidence || is_stride(params->confidence_stride, map->width,
-                                             map->height));
+           (!params->confidence || rf_good_stride(params->confidence_stride,
+                                                  map->width, map->height));
 }
 
 int refocus_depth_repair(const struct refocus_depth_map *map,

@@ -95,9 +95,12 @@ void refocus_temporal_destroy(struct refocus_temporal **filter)
 
 void refocus_temporal_reset(struct refocus_temporal *f)
 {
-    const size_t blocks = (size_t)((f->width + RF_BLOCK - 1) / RF_BLOCK) *
-                          (size_t)((f->height + RF_BLOCK - 1) / RF_BLOCK);
+    size_t blocks;
 
+    if (!f)
+        return;
+    blocks = (size_t)((f->width + RF_BLOCK - 1) / RF_BLOCK) *
+             (size_t)((f->height + RF_BLOCK - 1) / RF_BLOCK);
     f->begun = false;
     memset(f->motion, 0, blocks * sizeof *f->motion);
 }

@@ -42,7 +42,8 @@ int refocus_format_planes(uint32_t format)
 
 ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane, int32_t width)
 {
-    if (plane < 0 || plane >= refocus_format_planes(format) || width < 1)
+    if (plane < 0 || plane >= refocus_format_planes(format) || width < 1 ||
+        width > REFOCUS_MAX_SIDE)
         return 0;
     if (refocus_format_bytes(format))
         return (ptrdiff_t)width * refocus_format_bytes(format);
@@ -53,7 +54,8 @@ ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane, int32_t width)
 
 int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height)
 {
-    if (plane < 0 || plane >= refocus_format_planes(format) || height < 1)
+    if (plane < 0 || plane >= refocus_format_planes(format) || height < 1 ||
+        height > REFOCUS_MAX_SIDE)
         return 0;
     if (refocus_format_is_yuv(format) && layouts[format].plane[plane].down)
         return height / 2 + height % 2;

@@ -3,6 +3,7 @@
 #define RF_FORMAT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include <refocus/image.h>
@@ -25,10 +26,14 @@ static inline struct rf_order rf_order_of(uint32_t format)
     }
 }
 
-/* Whether rows of `bytes` bytes, `rows` of them, can lie `stride` apart. */
+/* Whether rows of `bytes` bytes, `rows` of them, can lie `stride` apart: without overlap, and so
+ * that the place of each row is a ptrdiff_t. No -stride here, which PTRDIFF_MIN has not. */
 static inline bool rf_good_stride(ptrdiff_t stride, ptrdiff_t bytes, int rows)
 {
-    return rows == 1 || stride >= bytes || stride <= -bytes;
+    const ptrdiff_t most = PTRDIFF_MAX / rows;
+
+    return stride >= -most && stride <= most &&
+           (rows == 1 || stride >= bytes || stride <= -bytes);
 }
 
 /* Whether a picture is of a known format of R, G, B, a possible size and has pixels. */

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "renderer/layout.h"
 
@@ -130,6 +131,11 @@ void refocus_cancel(struct refocus_renderer *renderer)
 void refocus_renderer_get_info(const struct refocus_renderer *renderer,
                                struct refocus_renderer_info *info)
 {
+    if (!info)
+        return;
+    memset(info, 0, sizeof *info);
+    if (!renderer)
+        return;
     info->threads = renderer->pool.threads;
     info->cpu = renderer->cpu;
     info->memory = renderer->memory;

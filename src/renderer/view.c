@@ -64,7 +64,7 @@ int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out,
 {
     const struct rf_photo *photo;
 
-    if (!r || !out || view > REFOCUS_VIEW_BLUR || stride % 2)
+    if (!r || !out || ((uintptr_t)out & 1) || view > REFOCUS_VIEW_BLUR || stride % 2)
         return REFOCUS_ERR_ARGUMENT;
     if (!r->prepared || (view == REFOCUS_VIEW_BLUR && !r->blurred))
         return REFOCUS_ERR_STATE;

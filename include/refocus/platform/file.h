@@ -114,9 +114,9 @@ struct refocus_photo {
  *                refocus_photo_free()
  * @param limits  NULL for the defaults
  * @param reason  receives words on an error; may be NULL
- * @return REFOCUS_OK, REFOCUS_ERR_IO, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE,
- *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. Depth that is damaged is an
- *         error, not a photo without depth. Thread-safe.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_FORMAT,
+ *         REFOCUS_ERR_SIZE, REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. Depth that is
+ *         damaged is an error, not a photo without depth. Thread-safe.
  */
 REFOCUS_API int refocus_photo_read(struct refocus_photo **photo, const char *path,
                                    const struct refocus_read_limits *limits,

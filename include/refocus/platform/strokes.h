@@ -145,12 +145,12 @@ REFOCUS_API int refocus_strokes_extend(struct refocus_strokes *strokes,
 REFOCUS_API int refocus_strokes_undo(struct refocus_strokes *strokes,
                                      struct refocus_changed *changed);
 
-/** Strokes that there are. */
+/** Strokes that there are; 0 for NULL. */
 REFOCUS_API int refocus_strokes_count(const struct refocus_strokes *strokes);
 
 /**
  * A stroke and its points, x and y of each. They are the painting's, until it is
- * changed.
+ * changed. Each of @p stroke, @p points and @p count may be NULL.
  *
  * @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT
  */
@@ -158,7 +158,8 @@ REFOCUS_API int refocus_strokes_get(const struct refocus_strokes *strokes, int i
                                     struct refocus_stroke *stroke, const float **points,
                                     int *count);
 
-/** The disparities, packed, of the photo's size; the painting's, and changed by it. */
+/** The disparities, packed, of the photo's size; the painting's, and changed by it. NULL
+ *  for NULL. */
 REFOCUS_API const uint16_t *
 refocus_strokes_disparity(const struct refocus_strokes *strokes);
 
@@ -166,7 +167,7 @@ refocus_strokes_disparity(const struct refocus_strokes *strokes);
  * What the last layer covers, 255 or 0.
  *
  * @param mask    a picture of any size of the whole photo, each pixel as at its centre
- * @param stride  bytes from a row to the next
+ * @param stride  bytes from a row to the next; may be negative
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT
  */
 REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes,
@@ -188,9 +189,10 @@ REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes,
  * kind but all and fill, "reach" may go with object and more. Other keys are errors.
  *
  * @param reason  receives words on an error; may be NULL
- * @return REFOCUS_OK, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE (it is of a picture of
- *         another size, or has too many strokes or points, or more than 64 MiB),
- *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. On an error nothing has changed.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE (it is
+ *         of a picture of another size, or has too many strokes or points, or more than
+ *         64 MiB), REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. On an error nothing has
+ *         changed.
  */
 REFOCUS_API int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
                                      size_t size,
@@ -200,7 +202,7 @@ REFOCUS_API int refocus_strokes_load(struct refocus_strokes *strokes, const void
  * The strokes as such a file, in memory of malloc() that the caller frees. Numbers are
  * written so that they are read as the same again.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED
  */
 REFOCUS_API int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
                                      size_t *size);

@@ -1,0 +1,245 @@
+/* Depth maps: reading, repair, upsampling, and the filter over video. */
+#include "misuse.h"
+
+static uint16_t out[W * H];
+
+static struct refocus_depth_map depth_map(void)
+{
+    static uint8_t samples[W * H];
+    struct refocus_depth_map map;
+
+    for (size_t i = 0; i < sizeof samples; i++)
+        samples[i] = (uint8_t)(1 + i % 200);
+    memset(&map, 0, sizeof map);
+    map.samples = samples;
+    map.width = W;
+    map.height = H;
+    map.stride = W;
+    map.sample = REFOCUS_SAMPLE_U8;
+    map.meaning = REFOCUS_DEPTH_DISPARITY;
+    map.value_near = 255;
+    return map;
+}
+
+static void use_out_stride(ptrdiff_t stride)
+{
+    const struct refocus_repair_params repair = refocus_repair_params_default();
+    const struct refocus_depth_map map = depth_map();
+
+    REFUSED(refocus_depth_to_disparity, &map, out, stride, NULL);
+    REFUSED(refocus_depth_repair, &map, &repair, out, stride, NULL);
+}
+
+static void use_confidence_stride(ptrdiff_t stride)
+{
+    struct refocus_repair_params repair = refocus_repair_params_default();
+    struct refocus_upsample_params upsample = refocus_upsample_params_default();
+    const struct refocus_depth_map map = depth_map();
+    const struct refocus_disparity disparity = misuse_map();
+    const struct refocus_image photo = misuse_photo();
+    static uint8_t confidence[W * H];
+
+    repair.confidence = confidence;
+    repair.confidence_stride = stride;
+    REFUSED(refocus_depth_repair, &map, &repair, out, 2 * W, NULL);
+    upsample.confidence = confidence;
+    upsample.confidence_stride = stride;
+    REFUSED(refocus_upsample, &photo, &disparity, &upsample, out, 2 * W);
+}
+
+static void bad_depth_maps(void)
+{
+    const struct misuse bad[] = {
+        BAD(refocus_depth_map, samples, NULL), BAD(refocus_depth_map, width, 0),
+        BAD(refocus_depth_map, width, -1), BAD(refocus_depth_map, width, INT32_MIN),
+        BAD(refocus_depth_map, width, INT32_MAX), BAD(refocus_depth_map, height, 0),
+        BAD(refocus_depth_map, height, INT32_MIN), BAD(refocus_depth_map, height, INT32_MAX),
+        BAD(refocus_depth_map, stride, 0), BAD(refocus_depth_map, stride, 1 - W),
+        BAD(refocus_depth_map, stride, PTRDIFF_MIN), BAD(refocus_depth_map, stride, PTRDIFF_MAX),
+        BAD(refocus_depth_map, stride, PTRDIFF_MIN + 1),
+        BAD(refocus_depth_map, stride, PTRDIFF_MAX / H + 1),
+        BAD(refocus_depth_map, sample, 0), BAD(refocus_depth_map, sample, UINT32_MAX),
+        BAD(refocus_depth_map, meaning, 0), BAD(refocus_depth_map, meaning, UINT32_MAX),
+        BAD(refocus_depth_map, flags, UINT32_MAX),
+        BAD(refocus_depth_map, value_near, (double)NAN),
+        BAD(refocus_depth_map, value_far, (double)-INFINITY),
+        BAD(refocus_depth_map, near_m, -1), BAD(refocus_depth_map, near_m, (double)NAN),
+        BAD(refocus_depth_map, far_m, (double)NAN)};
+    const struct refocus_repair_params repair = refocus_repair_params_default();
+
+    REFUSED(refocus_depth_to_disparity, NULL, out, 2 * W, NULL);
+    REFUSED(refocus_depth_repair, NULL, &repair, out, 2 * W, NULL);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_depth_map map = depth_map();
+
+        misuse_spoil(&map, &bad[i]);
+        REFUSED(refocus_depth_to_disparity, &map, out, 2 * W, NULL);
+        REFUSED(refocus_depth_repair, &map, &repair, out, 2 * W, NULL);
+    }
+    misuse_spoil(NULL, NULL);
+}
+
+static void repairing(void)
+{
+    const struct misuse bad[] = {BAD(refocus_repair_params, struct_size, 0),
+                                 BAD(refocus_repair_params, speckle, -1),
+                                 BAD(refocus_repair_params, speckle, INT32_MIN),
+                                 BAD(refocus_repair_params, speckle, INT32_MAX)};
+    const struct refocus_repair_params good = TAKES_NOTHING(refocus_repair_params_default);
+    uint16_t *const odd = (uint16_t *)(void *)((uint8_t *)out + 1);
+    const struct refocus_depth_map map = depth_map();
+
+    bad_depth_maps();
+    misuse_strides(use_out_stride, 2 * W);
+    misuse_strides(use_confidence_stride, W);
+    REFUSED(refocus_depth_to_disparity, &map, NULL, 2 * W, NULL);
+    REFUSED(refocus_depth_to_disparity, &map, odd, 2 * W, NULL);
+    REFUSED(refocus_depth_to_disparity, &map, out, 2 * W + 1, NULL);
+    REFUSED(refocus_depth_repair, &map, &good, NULL, 2 * W, NULL);
+    REFUSED(refocus_depth_repair, &map, NULL, out, 2 * W, NULL);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_repair_params repair = refocus_repair_params_default();
+
+        misuse_spoil(&repair, &bad[i]);
+        REFUSED(refocus_depth_repair, &map, &repair, out, 2 * W, NULL);
+    }
+    misuse_spoil(NULL, NULL);
+}
+
+static void use_photo(const struct refocus_image *photo)
+{
+    const struct refocus_upsample_params upsample = refocus_upsample_params_default();
+    const struct refocus_snap_params snap = refocus_snap_params_default(2);
+    const struct refocus_disparity map = misuse_map();
+
+    REFUSED(refocus_upsample, photo, &map, &upsample, out, 2 * W);
+    REFUSED(refocus_depth_snap, photo, &map, &snap, out, 2 * W);
+}
+
+static void use_map(const struct refocus_disparity *map)
+{
+    const struct refocus_upsample_params upsample = refocus_upsample_params_default();
+    const struct refocus_snap_params snap = refocus_snap_params_default(2);
+    const struct refocus_image photo = misuse_photo();
+
+    REFUSED(refocus_upsample, &photo, map, &upsample, out, 2 * W);
+    REFUSED(refocus_depth_snap, &photo, map, &snap, out, 2 * W);
+}
+
+static void use_stride(ptrdiff_t stride)
+{
+    const struct refocus_upsample_params upsample = refocus_upsample_params_default();
+    const struct refocus_snap_params snap = refocus_snap_params_default(2);
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+
+    REFUSED(refocus_upsample, &photo, &map, &upsample, out, stride);
+    REFUSED(refocus_depth_snap, &photo, &map, &snap, out, stride);
+}
+
+static void upsampling(void)
+{
+    const struct misuse bad_upsample[] = {BAD(refocus_upsample_params, struct_size, 0),
+                                          BAD(refocus_upsample_params, threads, -1),
+                                          BAD(refocus_upsample_params, threads, INT32_MAX),
+                                          BAD(refocus_upsample_params, cpu, UINT32_MAX)};
+    const struct misuse bad_snap[] = {BAD(refocus_snap_params, struct_size, 0),
+                                      BAD(refocus_snap_params, reach, 0),
+                                      BAD(refocus_snap_params, reach, INT32_MIN),
+                                      BAD(refocus_snap_params, reach, INT32_MAX),
+                                      BAD(refocus_snap_params, threads, INT32_MIN),
+                                      BAD(refocus_snap_params, cpu, UINT32_MAX)};
+    const struct refocus_upsample_params upsample = TAKES_NOTHING(refocus_upsample_params_default);
+    const struct refocus_snap_params snap = RETURNS(refocus_snap_params_default, 2);
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+
+    misuse_images(use_photo);
+    misuse_maps(use_map);
+    misuse_strides(use_stride, 2 * W);
+    REFUSED(refocus_upsample, &photo, &map, NULL, out, 2 * W);
+    REFUSED(refocus_upsample, &photo, &map, &upsample, NULL, 2 * W);
+    REFUSED(refocus_depth_snap, &photo, &map, NULL, out, 2 * W);
+    REFUSED(refocus_depth_snap, &photo, &map, &snap, NULL, 2 * W);
+    for (size_t i = 0; i < COUNT(bad_upsample); i++) {
+        struct refocus_upsample_params params = upsample;
+
+        misuse_spoil(&params, &bad_upsample[i]);
+        REFUSED(refocus_upsample, &photo, &map, &params, out, 2 * W);
+    }
+    for (size_t i = 0; i < COUNT(bad_snap); i++) {
+        struct refocus_snap_params params = snap;
+
+        misuse_spoil(&params, &bad_snap[i]);
+        REFUSED(refocus_depth_snap, &photo, &map, &params, out, 2 * W);
+    }
+    misuse_spoil(NULL, NULL);
+}
+
+static struct refocus_temporal *filter;
+
+static void filter_photo(const struct refocus_image *photo)
+{
+    const struct refocus_disparity map = misuse_map();
+
+    if (photo) /* there may be none */
+        REFUSED(refocus_temporal_run, filter, photo, &map, out, 2 * W);
+}
+
+static void filter_map(const struct refocus_disparity *map)
+{
+    REFUSED(refocus_temporal_run, filter, NULL, map, out, 2 * W);
+}
+
+static void filter_stride(ptrdiff_t stride)
+{
+    const struct refocus_disparity map = misuse_map();
+
+    REFUSED(refocus_temporal_run, filter, NULL, &map, out, stride);
+}
+
+static void filtering(void)
+{
+    const struct misuse bad[] = {
+        BAD(refocus_temporal_params, struct_size, 0), BAD(refocus_temporal_params, width, 0),
+        BAD(refocus_temporal_params, width, INT32_MIN),
+        BAD(refocus_temporal_params, height, INT32_MAX),
+        BAD(refocus_temporal_params, height, -1), BAD(refocus_temporal_params, strength, NAN),
+        BAD(refocus_temporal_params, strength, 1), BAD(refocus_temporal_params, noise, -1)};
+    const struct refocus_temporal_params good = RETURNS(refocus_temporal_params_default, W, H);
+    const struct refocus_disparity map = misuse_map();
+
+    REFUSED(refocus_temporal_create, NULL, &good);
+    REFUSED(refocus_temporal_create, &filter, NULL);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_temporal_params params = good;
+
+        misuse_spoil(&params, &bad[i]);
+        REFUSED(refocus_temporal_create, &filter, &params);
+        assert_null(filter);
+    }
+    misuse_spoil(NULL, NULL);
+    RETURNS(refocus_temporal_reset, NULL);
+    RETURNS(refocus_temporal_destroy, NULL);
+    RETURNS(refocus_temporal_destroy, &filter);
+    REFUSED(refocus_temporal_run, NULL, NULL, &map, out, 2 * W);
+    ANSWERS(REFOCUS_OK, refocus_temporal_create, &filter, &good);
+    misuse_images(filter_photo);
+    misuse_maps(filter_map);
+    misuse_strides(filter_stride, 2 * W);
+    REFUSED(refocus_temporal_run, filter, NULL, &map, NULL, 2 * W);
+    REFUSED(refocus_temporal_run, filter, NULL, &map, out, 2 * W + 1);
+    refocus_temporal_destroy(&filter);
+}
+
+void misuse_depth(void **state)
+{
+    (void)state;
+    memset(out, 0x5a, sizeof out);
+    repairing();
+    upsampling();
+    filtering();
+    for (size_t i = 0; i < COUNT(out); i++)
+        assert_int_equal(out[i], 0x5a5a);
+    misuse_done();
+}

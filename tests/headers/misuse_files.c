@@ -1,0 +1,169 @@
+/* Files. Nothing that is refused leaves one behind. */
+#include "misuse.h"
+
+#include <unistd.h>
+
+#include <refocus/platform/file.h>
+
+#define NAME "misuse-of-files.ppm"
+#define MAP_NAME "misuse-of-files.pgm"
+
+static void write_image(const struct refocus_image *image)
+{
+    REFUSED(refocus_image_write, NAME, image, NULL, NULL);
+}
+
+static void write_gray(ptrdiff_t stride)
+{
+    static const uint16_t samples[W * H];
+
+    REFUSED(refocus_gray16_write, MAP_NAME, samples, W, H, stride, NULL);
+}
+
+static void reading(void)
+{
+    static const uint8_t bytes[4] = {'P', '6', ' ', '1'};
+    const struct refocus_read_limits tiny = {1, 1};
+    struct refocus_photo *photo = NULL;
+    struct refocus_blob blob;
+    struct refocus_reason reason;
+
+    REFUSED(refocus_photo_read, NULL, NAME, NULL, NULL);
+    REFUSED(refocus_photo_read, &photo, NULL, NULL, &reason);
+    REFUSED(refocus_photo_read_second, NULL, NAME, NULL, NULL);
+    REFUSED(refocus_photo_read_second, &photo, NULL, NULL, NULL);
+    REFUSED(refocus_photo_read_memory, NULL, bytes, sizeof bytes, NULL, NULL);
+    REFUSED(refocus_photo_read_memory, &photo, NULL, 4, NULL, NULL);
+    REFUSED(refocus_photo_read_memory, &photo, NULL, SIZE_MAX, NULL, NULL);
+    ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, NULL, 0, NULL, NULL);
+    ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, bytes, sizeof bytes, NULL,
+            NULL);
+    ANSWERS(REFOCUS_ERR_IO, refocus_photo_read, &photo, "", NULL, NULL);
+    ANSWERS(REFOCUS_ERR_SIZE, refocus_photo_read, &photo, "/proc/self/maps", &tiny, NULL);
+    assert_null(photo);
+    RETURNS(refocus_photo_free, NULL);
+    RETURNS(refocus_photo_free, &photo);
+
+    REFUSED(refocus_depth_read, NULL, MAP_NAME, NULL, 0, 0, NULL, NULL);
+    REFUSED(refocus_depth_read, &photo, NULL, NULL, 0, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, NULL, bytes, sizeof bytes, NULL, 0, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, &photo, NULL, 4, NULL, 0, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, &photo, bytes, 4, "", 0, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, &photo, bytes, 4, "/m", 0, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, &photo, bytes, 4, NULL, -1, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, &photo, bytes, 4, NULL, (double)NAN, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, &photo, bytes, 4, NULL, (double)INFINITY, 0, NULL, NULL);
+    REFUSED(refocus_depth_read_memory, &photo, bytes, 4, NULL, 2, 1, NULL, NULL);
+    assert_null(photo);
+
+    REFUSED(refocus_file_read, NULL, 10, &blob, NULL);
+    REFUSED(refocus_file_read, NAME, 10, NULL, NULL);
+    ANSWERS(REFOCUS_ERR_SIZE, refocus_file_read, "/proc/self/maps", 0, &blob, NULL);
+    assert_non_null(TAKES_NOTHING(refocus_file_formats));
+}
+
+static void units(void)
+{
+    const struct misuse bad[] = {
+        BAD(refocus_depth_map, width, 0), BAD(refocus_depth_map, width, INT32_MAX),
+        BAD(refocus_depth_map, height, INT32_MIN), BAD(refocus_depth_map, height, INT32_MAX),
+        BAD(refocus_depth_map, stride, 0), BAD(refocus_depth_map, stride, PTRDIFF_MIN),
+        BAD(refocus_depth_map, stride, PTRDIFF_MAX)};
+    static const float samples[W * H];
+    struct refocus_depth_map map;
+
+    memset(&map, 0, sizeof map);
+    REFUSED(refocus_depth_set_unit, NULL, "mm");
+    REFUSED(refocus_depth_set_unit, &map, NULL);
+    REFUSED(refocus_depth_set_unit, &map, "");
+    REFUSED(refocus_depth_set_unit, &map, "-1/m");
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        map.samples = samples;
+        map.width = W;
+        map.height = H;
+        map.stride = 4 * W;
+        map.sample = REFOCUS_SAMPLE_F32;
+        misuse_spoil(&map, &bad[i]);
+        REFUSED(refocus_depth_set_unit, &map, "inverse");
+    }
+    misuse_spoil(NULL, NULL);
+}
+
+static void writing(void)
+{
+    static const int sides[] = {0, -1, INT32_MIN, INT32_MAX, REFOCUS_MAX_SIDE + 1};
+    static const uint16_t samples[W * H];
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_blob nothing = {NULL, 100};
+    const struct refocus_write_options bad[] = {{-1, NULL, NULL}, {101, NULL, NULL},
+                                                {INT32_MIN, NULL, NULL}};
+    const struct refocus_write_options empty = {0, &nothing, &nothing};
+    const int has_jpeg = strstr(refocus_file_formats(), "JPEG") != NULL;
+
+    misuse_images(write_image);
+    misuse_strides(write_gray, 2 * W);
+    REFUSED(refocus_image_write, NULL, &photo, NULL, NULL);
+    for (size_t i = 0; i < COUNT(bad); i++)
+        REFUSED(refocus_image_write, NAME, &photo, &bad[i], NULL);
+    ANSWERS(has_jpeg ? REFOCUS_OK : REFOCUS_ERR_UNSUPPORTED, refocus_image_write,
+            "misuse-of-files.jpg", &photo, &empty, NULL);
+    remove("misuse-of-files.jpg");
+    ANSWERS(REFOCUS_ERR_UNSUPPORTED, refocus_image_write, "", &photo, NULL, NULL);
+    for (size_t i = 0; i < COUNT(sides); i++) {
+        REFUSED(refocus_gray16_write, MAP_NAME, samples, sides[i], H, 2 * W, NULL);
+        REFUSED(refocus_gray16_write, MAP_NAME, samples, W, sides[i], 2 * W, NULL);
+    }
+    REFUSED(refocus_gray16_write, NULL, samples, W, H, 2 * W, NULL);
+    REFUSED(refocus_gray16_write, MAP_NAME, NULL, W, H, 2 * W, NULL);
+    REFUSED(refocus_gray16_write, MAP_NAME, samples, W, H, 2 * W + 1, NULL);
+    REFUSED(refocus_file_write, NULL, samples, 4, NULL);
+    REFUSED(refocus_file_write, NAME, NULL, 4, NULL);
+    ANSWERS(REFOCUS_ERR_IO, refocus_file_write, "", samples, 4, NULL);
+}
+
+static void saving_depth(void)
+{
+    const struct misuse bad[] = {
+        BAD(refocus_depth_write, struct_size, 0), BAD(refocus_depth_write, width, 0),
+        BAD(refocus_depth_write, width, INT32_MAX), BAD(refocus_depth_write, height, INT32_MIN),
+        BAD(refocus_depth_write, height, REFOCUS_MAX_SIDE + 1),
+        BAD(refocus_depth_write, disparity, NULL), BAD(refocus_depth_write, stride, 0),
+        BAD(refocus_depth_write, stride, 2 * W + 1),
+        BAD(refocus_depth_write, stride, PTRDIFF_MIN),
+        BAD(refocus_depth_write, stride, PTRDIFF_MAX - 1),
+        BAD(refocus_depth_write, focus_x, (double)NAN), BAD(refocus_depth_write, focus_y, 2),
+        BAD(refocus_depth_write, near_m, (double)NAN),
+        BAD(refocus_depth_write, near_m, (double)INFINITY),
+        BAD(refocus_depth_write, far_m, (double)NAN),
+        BAD(refocus_depth_write, focus_distance, (double)NAN),
+        BAD(refocus_depth_write, blur_at_infinity, (double)INFINITY)};
+    static const uint16_t samples[W * H];
+    struct refocus_depth_write good = TAKES_NOTHING(refocus_depth_write_default);
+
+    good.width = W;
+    good.height = H;
+    good.disparity = samples;
+    good.stride = 2 * W;
+    REFUSED(refocus_photo_write_depth, NULL, NAME, &good, NULL);
+    REFUSED(refocus_photo_write_depth, NAME, NULL, &good, NULL);
+    REFUSED(refocus_photo_write_depth, NAME, NAME, NULL, NULL);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_depth_write depth = good;
+
+        misuse_spoil(&depth, &bad[i]);
+        REFUSED(refocus_photo_write_depth, NAME, NAME, &depth, NULL);
+    }
+    misuse_spoil(NULL, NULL);
+}
+
+void misuse_files(void **state)
+{
+    (void)state;
+    reading();
+    units();
+    writing();
+    saving_depth();
+    assert_int_not_equal(access(NAME, F_OK), 0);
+    assert_int_not_equal(access(MAP_NAME, F_OK), 0);
+    misuse_done();
+}

@@ -1,0 +1,180 @@
+/* The renderer. tests/render/test_arguments.c has the ranges of all its parameters. */
+#include "misuse.h"
+
+static struct refocus_renderer *renderer;
+
+static void prepare_photo(const struct refocus_image *photo)
+{
+    const struct refocus_disparity map = misuse_map();
+
+    REFUSED(refocus_prepare, renderer, photo, &map);
+}
+
+static void prepare_map(const struct refocus_disparity *map)
+{
+    const struct refocus_image photo = misuse_photo();
+
+    REFUSED(refocus_prepare, renderer, &photo, map);
+}
+
+static void render_out(const struct refocus_image *out)
+{
+    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+
+    REFUSED(refocus_render, renderer, &params, out);
+}
+
+static void render_map(const struct refocus_disparity *map)
+{
+    const struct refocus_image out = misuse_photo();
+
+    for (int i = 0; map && i < 3; i++) {
+        struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+
+        *(i == 0 ? &params.field_map : i == 1 ? &params.focus_map : &params.sharp_map) = map;
+        REFUSED(refocus_render, renderer, &params, &out);
+    }
+}
+
+static void view_stride(ptrdiff_t stride)
+{
+    static uint16_t view[W * H];
+
+    REFUSED(refocus_get_view, renderer, REFOCUS_VIEW_DISPARITY, view, stride);
+}
+
+/* Pictures of Y, U and V: each plane counts. */
+static void bad_planes(void)
+{
+    const struct misuse bad[] = {
+        BAD(refocus_image, plane[0], NULL), BAD(refocus_image, plane[1], NULL),
+        BAD(refocus_image, plane[2], NULL), BAD(refocus_image, stride[0], PTRDIFF_MIN),
+        BAD(refocus_image, stride[1], PTRDIFF_MIN), BAD(refocus_image, stride[2], PTRDIFF_MIN),
+        BAD(refocus_image, stride[0], PTRDIFF_MAX), BAD(refocus_image, stride[1], PTRDIFF_MAX),
+        BAD(refocus_image, stride[2], PTRDIFF_MAX), BAD(refocus_image, stride[1], 0),
+        BAD(refocus_image, matrix, UINT32_MAX), BAD(refocus_image, range, UINT32_MAX),
+        BAD(refocus_image, width, INT32_MAX), BAD(refocus_image, height, INT32_MIN)};
+    static uint8_t memory[2 * W * H];
+
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_image image =
+            refocus_image_planar(REFOCUS_FORMAT_I420, memory, W, H);
+
+        misuse_spoil(&image, &bad[i]);
+        prepare_photo(&image);
+    }
+    misuse_spoil(NULL, NULL);
+}
+
+static void creating(void)
+{
+    const struct misuse bad[] = {
+        BAD(refocus_renderer_params, struct_size, 0),
+        BAD(refocus_renderer_params, max_width, 0),
+        BAD(refocus_renderer_params, max_width, INT32_MIN),
+        BAD(refocus_renderer_params, max_height, -1),
+        BAD(refocus_renderer_params, max_height, INT32_MAX),
+        BAD(refocus_renderer_params, max_blur_radius, NAN),
+        BAD(refocus_renderer_params, max_blur_radius, -INFINITY),
+        BAD(refocus_renderer_params, threads, INT32_MIN),
+        BAD(refocus_renderer_params, threads, INT32_MAX),
+        BAD(refocus_renderer_params, cpu, UINT32_MAX),
+        BAD(refocus_renderer_params, methods, UINT32_MAX)};
+    const struct refocus_renderer_params good =
+        RETURNS(refocus_renderer_params_default, W, H, 5);
+    struct refocus_renderer_params most = refocus_renderer_params_default(
+        REFOCUS_MAX_SIDE, REFOCUS_MAX_SIDE, REFOCUS_MAX_BLUR_RADIUS);
+
+    GIVES(0, refocus_renderer_memory, NULL);
+    REFUSED(refocus_renderer_create, NULL, &good);
+    REFUSED(refocus_renderer_create, &renderer, NULL);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_renderer_params params = good;
+
+        misuse_spoil(&params, &bad[i]);
+        GIVES(0, refocus_renderer_memory, &params);
+        REFUSED(refocus_renderer_create, &renderer, &params);
+        assert_null(renderer);
+    }
+    misuse_spoil(NULL, NULL);
+    most.methods = REFOCUS_METHODS_ALL;
+    most.max_memory = 1;
+    ANSWERS(REFOCUS_ERR_SIZE, refocus_renderer_create, &renderer, &most);
+}
+
+static void without_renderer(void)
+{
+    const struct refocus_render_params params = RETURNS(refocus_render_params_default, 0.5f, 5);
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+    struct refocus_renderer_info info;
+    uint16_t view[W * H];
+
+    REFUSED(refocus_prepare, NULL, &photo, &map);
+    REFUSED(refocus_render, NULL, &params, &photo);
+    REFUSED(refocus_get_view, NULL, REFOCUS_VIEW_DISPARITY, view, 2 * W);
+    RETURNS(refocus_cancel, NULL);
+    memset(&info, 0x5a, sizeof info);
+    RETURNS(refocus_renderer_get_info, NULL, &info);
+    assert_int_equal(info.threads, 0);
+    assert_int_equal(info.cpu, 0);
+    assert_int_equal(info.memory, 0);
+    RETURNS(refocus_renderer_get_info, NULL, NULL);
+    RETURNS(refocus_renderer_destroy, NULL);
+    renderer = NULL;
+    RETURNS(refocus_renderer_destroy, &renderer);
+}
+
+/* A single row is one whatever its stride, but for what has no opposite. */
+static void one_row(void)
+{
+    struct refocus_image photo = misuse_photo();
+    struct refocus_disparity map = misuse_map();
+    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+
+    photo.height = map.height = 1;
+    photo.stride[0] = PTRDIFF_MIN;
+    REFUSED(refocus_prepare, renderer, &photo, &map);
+    photo.stride[0] = PTRDIFF_MAX;
+    map.stride = PTRDIFF_MAX - 1;
+    ANSWERS(REFOCUS_OK, refocus_prepare, renderer, &photo, &map);
+    ANSWERS(REFOCUS_OK, refocus_render, renderer, &params, &photo);
+    map.stride = -PTRDIFF_MAX + 1;
+    photo.stride[0] = -PTRDIFF_MAX;
+    ANSWERS(REFOCUS_OK, refocus_prepare, renderer, &photo, &map);
+    ANSWERS(REFOCUS_OK, refocus_render, renderer, &params, &photo);
+}
+
+void misuse_render(void **state)
+{
+    struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 5);
+    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+    uint16_t view[W * H + 1];
+
+    (void)state;
+    creating();
+    without_renderer();
+    limits.threads = 1;
+    ANSWERS(REFOCUS_OK, refocus_renderer_create, &renderer, &limits);
+    RETURNS(refocus_renderer_get_info, renderer, NULL);
+    ANSWERS(REFOCUS_ERR_STATE, refocus_render, renderer, &params, &photo);
+    ANSWERS(REFOCUS_ERR_STATE, refocus_get_view, renderer, REFOCUS_VIEW_DISPARITY, view, 2 * W);
+    misuse_images(prepare_photo);
+    misuse_maps(prepare_map);
+    bad_planes();
+    one_row();
+    ANSWERS(REFOCUS_OK, refocus_prepare, renderer, &photo, &map);
+    misuse_images(render_out);
+    misuse_maps(render_map);
+    REFUSED(refocus_render, renderer, NULL, &photo);
+    misuse_strides(view_stride, 2 * W);
+    REFUSED(refocus_get_view, renderer, UINT32_MAX, view, 2 * W);
+    REFUSED(refocus_get_view, renderer, REFOCUS_VIEW_DISPARITY, NULL, 2 * W);
+    REFUSED(refocus_get_view, renderer, REFOCUS_VIEW_DISPARITY,
+            (uint16_t *)(void *)((uint8_t *)view + 1), 2 * W);
+    ANSWERS(REFOCUS_ERR_STATE, refocus_get_view, renderer, REFOCUS_VIEW_BLUR, view, 2 * W);
+    refocus_renderer_destroy(&renderer);
+    misuse_done();
+}
