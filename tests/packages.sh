@@ -1,5 +1,11 @@
 # Sourced by scripts: installs Debian packages that are missing.
 
+# What builds the library and a program that uses it; and what the README's commands use.
+core_packages=(meson ninja-build gcc libc6-dev)
+feature_packages=(pkg-config g++ libpng-dev libturbojpeg0-dev libexpat1-dev libheif-dev
+    libjansson-dev libsdl2-dev libcamera-dev libopencv-core-dev libopencv-imgproc-dev
+    libopencv-calib3d-dev libopencv-dnn-dev)
+
 have_package() {
     # A program that came another way will do: meson, ninja, gcc, clang, ...
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ||

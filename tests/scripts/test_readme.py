@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""usage: test_readme.py REFOCUS  -- each refocus command that README.md shows, as it stands there.
+
+REFOCUS is of a build with everything in it, as examples/quickstart.sh makes it. Pictures of the
+names that the page uses are made in a folder of the test's own. A command succeeds, or lacks a
+device that this machine does not have, and says so in one line; it never lacks a part of the
+build."""
+import json
+import os
+import random
+import re
+import shlex
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+REFOCUS = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else 'refocus'
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../..')
+sys.path.insert(0, os.path.join(ROOT, 'tests/cli'))
+import pictures  # noqa: E402
+
+# What may be missing on the machine, by what the command asks for: another camera is another
+# reason, but the line begins with its name.
+DEVICES = ((' v4l2:', r'^refocus: v4l2:/dev/video\d: .*$'),
+           (' libcamera:', r'^refocus: libcamera:0: .*$'),
+           (' --out window', r'^refocus: window: .* display .*$'),
+           (' view ', r'^refocus: .*: no display can be opened: .*$'))
+# Where the display is missing for sure: a window would wait for somebody.
+NO_DISPLAY = dict(os.environ, SDL_VIDEODRIVER='none')
+
+
+def code_lines(page):
+    """Lines of the page's indented blocks, those that end in a backslash joined, no comments."""
+    block = re.sub(r'\\\n +', '', '\n'.join(line[4:] for line in page.splitlines()
+                                             if line.startswith('    ')))
+    return [re.sub(r' +# .*', '', line) for line in block.splitlines()]
+
+
+def commands():
+    with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
+        lines = code_lines(file.read())
+    return [line for line in lines if re.match(r'(build/platform/cli/)?refocus ', line)]
+
+
+def texture(width, height, shift=0):
+    """A P6 picture of noise in blocks, moved to the left by `shift` in its lower half."""
+    noise = random.Random(5)
+    wide = [[noise.randrange(256) for _ in range(width // 4 + 20)] for _ in range(height // 4 + 1)]
+    rows = bytearray()
+    for y in range(height):
+        row = wide[y // 4]
+        d = shift if y >= height // 2 else shift // 2
+        for x in range(width):
+            rows += bytes((row[(x + d) // 4],)) * 3
+    return b'P6\n%d %d\n255\n' % (width, height) + bytes(rows)
+
+
+def add_lens(jpeg):
+    """EXIF of a phone's lens: 4.25 mm, like 26 mm on 36 x 24 mm."""
+    pack = struct.pack
+    tiff = (b'II*\0' + pack('<I', 8) +
+            pack('<HHHIII', 1, 0x8769, 4, 1, 26, 0) +
+            pack('<HHHIIHHIHHI', 2, 0x920a, 5, 1, 56, 0xa405, 3, 1, 26, 0, 0) +
+            pack('<II', 425, 100))
+    app1 = b'Exif\0\0' + tiff
+    return jpeg[:2] + b'\xff\xe1' + pack('>H', len(app1) + 2) + app1 + jpeg[2:]
+
+
+class Readme(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix='refocus-readme-')
+        os.chdir(cls.folder)
+        os.symlink(os.path.join(ROOT, 'examples'), 'examples')
+        pictures.pgm('depth.pgm', 48, 32, lambda x, y: 255 if x >= 24 else 51)
+        for name, width, height, shift in (('photo', 640, 480, 0), ('street', 2000, 1333, 0),
+                                           ('left', 320, 240, 0), ('right', 320, 240, 24)):
+            with open(name + '.ppm', 'wb') as file:
+                file.write(texture(width, height, shift))
+            cls.make('render', name + '.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
+                     name + '.jpg')
+        cls.make('depth', 'photo.jpg', '--depth', 'depth.pgm', '--full', '--near', '1', '--far',
+                 '9', '-o', 'with-depth.jpg')
+        with open('photo.jpg', 'wb') as file:
+            file.write(add_lens(pictures.read_bytes('with-depth.jpg')))
+        with open('photo-strokes.json', 'w', encoding='utf-8') as file:
+            json.dump({'refocus-strokes': 1, 'width': 640, 'height': 480,
+                       'strokes': [{'kind': 'all', 'disparity': 0.2}]}, file)
+        with open('model.onnx', 'wb') as file:
+            file.write(b'no network')
+
+    @classmethod
+    def tearDownClass(cls):
+        os.chdir('/')
+        shutil.rmtree(cls.folder)
+
+    @staticmethod
+    def run_it(*arguments):
+        return subprocess.run([REFOCUS, *arguments], stdin=subprocess.DEVNULL, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120,
+                              env=NO_DISPLAY)
+
+    @classmethod
+    def make(cls, *arguments):
+        result = cls.run_it(*arguments)
+        if result.returncode:
+            raise AssertionError('%s: %s' % (arguments, result.stderr))
+
+    def test_commands(self):
+        shown = commands()
+        self.assertGreater(len(shown), 8)
+        for command in shown:
+            with self.subTest(command):
+                result = self.run_it(*shlex.split(command)[1:])
+                self.assertNotIn('this build', result.stderr)
+                lines = [line for asks, line in DEVICES if asks in command]
+                if result.returncode == 0 or not lines:
+                    self.assertEqual((result.returncode, result.stderr), (0, ''))
+                else:
+                    self.assertEqual(result.returncode, 1)
+                    self.assertRegex(result.stderr, '|'.join(lines))
+                    self.assertEqual(result.stderr.count('\n'), 1)
+
+    def test_names_each_source_of_depth(self):
+        shown = '\n'.join(commands())
+        for pattern in (r'live .*--camera v4l2:', r'live .*--camera libcamera:',
+                        r'--depth estimate:\S+\.onnx', r'depth \S+ \S+\.jpg -o', r'--strokes ',
+                        r'refocus view '):
+            self.assertRegex(shown, pattern)
+
+    def test_parts_of_the_build(self):
+        """What the page speaks of and its commands reach only with the right file or device."""
+        with open('photo.heic', 'wb') as file:
+            file.write(b'\0\0\0\x18ftypheic\0\0\0\0mif1heic' + bytes(100))
+        for line, arguments in (
+                ('^refocus: photo.heic: ', ('render', 'photo.heic', '-o', 'out.jpg')),
+                ('^refocus: model.onnx: OpenCV finds no depth network ',
+                 ('depth', 'photo.jpg', '--estimate', 'model.onnx', '--preset', 'midas-small',
+                  '-o', 'out.png')),
+                ('^refocus: window: .* display ',
+                 ('live', '--camera', 'replay::size 64x48;frames 1', '--depth', 'depth.pgm',
+                  '--out', 'window'))):
+            with self.subTest(arguments):
+                result = self.run_it(*arguments)
+                self.assertNotIn('this build', result.stderr)
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assertRegex(result.stderr, line)
+
+
+if __name__ == '__main__':
+    unittest.main()
