@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""usage: test_run.py  -- which builds tests/run.sh and .ci/run make, and how they end. Programs that
+write down what they are asked stand in for the compilers and meson."""
+import json
+import os
+import re
+import unittest
+
+import stubs
+
+EVERYTHING = ('meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-dev clang '
+              'libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-dnn-dev '
+              'libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev '
+              'libcamera-dev libsdl2-dev xvfb xdotool libclang-rt-dev')
+
+
+def result(word):
+    return json.dumps({'name': 'suite / name', 'result': word, 'stdout': 'it says why'})
+
+
+class Run(stubs.Case):
+    def start(self, script, *arguments, results='OK', **more):
+        builds = os.path.join(self.folder, 'builds')
+        status, words, asked = self.run_script(
+            script, *arguments, installed=EVERYTHING, REFOCUS_BUILDS=builds,
+            STUB_RESULTS='\n'.join(result(word) for word in results.split()), **more)
+        asked = [line.replace(builds + '/', '') for line in asked]
+        return status, words.splitlines(), asked
+
+    def builds(self, asked):
+        """The folders that meson was to set up, each once."""
+        found = []
+        for line in asked:
+            words = [word for word in line.split()[2:] if not word.startswith('-')]
+            if line.startswith('meson setup ') and words[0] not in found:
+                found.append(words[0])
+        return found
+
+    def test_one_build(self):
+        status, words, asked = self.start('tests/run.sh')
+        self.assertEqual((status, words[-1]), (0, '1 passed, 0 failed, 0 skipped'), words)
+        self.assertEqual(self.builds(asked), ['gcc'])
+        self.assertEqual(sum(line.startswith('meson test ') for line in asked), 1)
+
+    def test_failures(self):
+        status, words, asked = self.start('tests/run.sh', results='OK FAIL TIMEOUT SKIP')
+        self.assertEqual((status, words[-1]), (1, '1 passed, 2 failed, 1 skipped'))
+        status, words, asked = self.start('tests/run.sh', STUB_SETUP_FAILS='setup')
+        self.assertEqual((status, words[-1]), (1, '0 passed, 1 failed, 0 skipped'))
+
+    def test_every_build(self):
+        """All of them, by continuous integration, whose last line and status count."""
+        status, words, asked = self.start('.ci/run', STUB_SETUP_FAILS='setup')
+        self.assertEqual(status, 1)
+        self.assertRegex(words[-1], r'^0 passed, \d+ failed, \d+ skipped$')
+        self.assertLessEqual({'gcc', 'clang', 'minimal', 'bare', 'asan', 'tsan', 'fuzz',
+                              'quickstart', 'quickstart--core'}, set(self.builds(asked)))
+        self.assertNotIn('contrib', self.builds(asked))
+
+    def test_command_line(self):
+        for arguments, expected in ((('--help',), 0), (('--quick',), 2), (('--full', 'x'), 2)):
+            status, words, asked = self.start('tests/run.sh', *arguments)
+            self.assertEqual(status, expected, arguments)
+            self.assertTrue(words[0].startswith('usage: tests/run.sh '))
+            self.assertTrue(any(re.match('  --full ', line) for line in words))
+            self.assertEqual(asked, [])
+
+
+if __name__ == '__main__':
+    unittest.main()
