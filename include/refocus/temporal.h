@@ -71,8 +71,8 @@ REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
  * refocus_depth_to_disparity() the near_m and far_m (value_near and value_far) that it
  * reported for the first one. Integer arithmetic: the same bytes on every processor.
  *
- * @param photo   the photo of this frame, any packed format and size; NULL = by depth
- *                alone
+ * @param photo   the photo of this frame, of any format and size, whose brightness is
+ *                compared: of Y, U and V the codes of Y as they are; NULL = by depth alone
  * @param map     width x height samples
  * @param out     receives width x height samples of 16 bits; may be the map's own
  *                memory

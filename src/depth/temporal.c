@@ -115,10 +115,20 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Brightness of the photo around a sample, (c0 + 2 c1 + c2) / 4: of 3 x 3 pixels a third of a
- * sample apart, which calms noise and does not alias. */
-static uint8_t guide_at(const struct refocus_image *photo, int x, int y, int dx, int dy, int bytes)
+/* Bytes from one brightness in plane 0 to the next: of Y, or of a pixel of R, G and B. */
+static int step_of(uint32_t format)
 {
+    if (!refocus_format_is_yuv(format))
+        return refocus_format_bytes(format);
+    return format == REFOCUS_FORMAT_YUYV ? 2 : 1;
+}
+
+/* Brightness of the photo around a sample, Y or (c0 + 2 c1 + c2) / 4: of 3 x 3 pixels a third of
+ * a sample apart, which calms noise and does not alias. */
+static uint8_t guide_at(const struct refocus_image *photo, int x, int y, int dx, int dy)
+{
+    const bool luma = refocus_format_is_yuv(photo->format);
+    const ptrdiff_t step = step_of(photo->format);
     int sum = 0;
 
     for (int j = -1; j <= 1; j++) {
@@ -126,9 +136,9 @@ static uint8_t guide_at(const struct refocus_image *photo, int x, int y, int dx,
                              clamp(y + j * dy, photo->height - 1) * photo->stride[0];
 
         for (int i = -1; i <= 1; i++) {
-            const uint8_t *p = row + (ptrdiff_t)clamp(x + i * dx, photo->width - 1) * bytes;
+            const uint8_t *p = row + clamp(x + i * dx, photo->width - 1) * step;
 
-            sum += p[0] + 2 * p[1] + p[2];
+            sum += luma ? 4 * p[0] : p[0] + 2 * p[1] + p[2];
         }
     }
     return (uint8_t)(sum / 36);
@@ -137,7 +147,6 @@ static uint8_t guide_at(const struct refocus_image *photo, int x, int y, int dx,
 static void load(struct refocus_temporal *f, const struct refocus_image *photo,
                  const struct refocus_disparity *map)
 {
-    const int bytes = photo ? refocus_format_bytes(photo->format) : 0;
     const int dx = photo ? photo->width / (3 * f->width) : 0;
     const int dy = photo ? photo->height / (3 * f->height) : 0;
 
@@ -152,8 +161,7 @@ static void load(struct refocus_temporal *f, const struct refocus_image *photo,
             f->now.disparity[row + (size_t)x] = d;
             f->now.guide[row + (size_t)x] =
                 photo ? guide_at(photo, place(x, f->width, photo->width),
-                                 place(y, f->height, photo->height), dx ? dx : 1, dy ? dy : 1,
-                                 bytes)
+                                 place(y, f->height, photo->height), dx ? dx : 1, dy ? dy : 1)
                       : (uint8_t)(d >> 8);
         }
     }
@@ -227,7 +235,7 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
 {
     size_t samples;
 
-    if (!f || (photo && !rf_good_image(photo)) || !rf_good_map(map) || map->width != f->width ||
+    if (!f || (photo && !rf_good_picture(photo)) || !rf_good_map(map) || map->width != f->width ||
         map->height != f->height || !out || ((uintptr_t)out & 1) || (stride & 1) ||
         !rf_good_stride(stride, 2 * (ptrdiff_t)f->width, f->height))
         return REFOCUS_ERR_ARGUMENT;

@@ -148,6 +148,12 @@ class Live(unittest.TestCase):
             outs.append(content('out.rgb'))
         self.assertEqual(outs[0], outs[1])
         self.assertEqual(len(outs[0]), len(outs[2]))
+        for form in 'NV12', 'NV21', 'YUV420', 'YUYV', 'UYVY':  # Y is the guide then
+            r = self.report('--camera', 'replay::format %s;size 64x48;frames 12' % form, '--depth',
+                            DEPTH, '--fast', '--frames-policy', 'every', '--steady', '0.9')
+            self.assertEqual((r['frames_out'], r['rendered_in']),
+                             (12, 'YUYV' if form == 'UYVY' else form))
+            self.assertIsNotNone(r['stages_ms']['steady'])
         self.fails(2, '--steady', '--camera', 'replay:', '--depth', DEPTH, '--steady', '0.99')
 
     def test_live_is_what_render_makes(self):

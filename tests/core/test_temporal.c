@@ -201,6 +201,41 @@ static void any_layout(void **state)
     }
 }
 
+/* Of Y, U and V the brightness is the guide: where it is that of the grey photo, the maps are
+ * the same, whatever U and V are. */
+static void any_photo(void **state)
+{
+    static const uint32_t formats[] = {REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_NV21,
+                                       REFOCUS_FORMAT_I420, REFOCUS_FORMAT_YUYV};
+    static uint8_t memory[3 * W * SCALE * H * SCALE];
+    const int width = W * SCALE, height = H * SCALE;
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const int step = formats[k] == REFOCUS_FORMAT_YUYV ? 2 : 1;
+        struct refocus_image photo = refocus_image_planar(formats[k], memory, width, height);
+        const struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
+        struct refocus_temporal *filter = make(), *grey = make();
+        static uint16_t out[W * H];
+
+        for (int t = 0; t < 6; t++) {
+            draw(20 + 3 * t);
+            for (size_t i = 0; i < sizeof memory; i++)
+                memory[i] = (uint8_t)noise(127);
+            for (int i = 0; i < width * height; i++)
+                photo.plane[0][i / width * photo.stride[0] + i % width * step] = v.rgb[3 * i];
+            run(grey, true);
+            assert_int_equal(refocus_temporal_run(filter, &photo, &map, out, 2 * W), REFOCUS_OK);
+            assert_memory_equal(out, v.out, sizeof out);
+        }
+        photo.plane[1] = NULL;
+        assert_int_equal(refocus_temporal_run(filter, &photo, &map, out, 2 * W),
+                         step == 2 ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
+        refocus_temporal_destroy(&filter);
+        refocus_temporal_destroy(&grey);
+    }
+}
+
 static void bad_arguments(void **state)
 {
     struct refocus_temporal_params params = refocus_temporal_params_default(W, H), bad[8];
@@ -241,7 +276,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(calms),      cmocka_unit_test(leaves_no_ghosts),
         cmocka_unit_test(can_be_off), cmocka_unit_test(waits_for_a_second_look),
-        cmocka_unit_test(any_layout), cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(any_layout), cmocka_unit_test(any_photo),
+        cmocka_unit_test(bad_arguments),
     };
 
     return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);

@@ -154,10 +154,10 @@ struct live_steady {
     struct live_times times;
 };
 
-/* The map, filtered when it has not been yet; NULL when there is no memory. */
-const struct live_depth_map *live_steady_run(struct live_steady *steady, double strength,
-                                             const struct live_depth_map *map,
-                                             const struct refocus_image *photo);
+/* Puts the filtered map in place of a map, filtering it when it has not been yet. Returns what
+ * refocus_temporal_create() and refocus_temporal_run() do. */
+int live_steady_run(struct live_steady *steady, double strength,
+                    const struct live_depth_map **map, const struct refocus_image *photo);
 void live_steady_end(struct live_steady *steady);
 
 /* The whole ------------------------------------------------------------------------------- */

@@ -136,10 +136,9 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     if (!map)
         return true;
     if (live->settings->steady > 0) {
-        map = live_steady_run(&live->steady, live->settings->steady, map,
-                              &picture->image);
-        if (!map) {
-            live_fail(live, EXIT_FAILED, "--steady", "not enough memory");
+        status = live_steady_run(&live->steady, live->settings->steady, &map, &picture->image);
+        if (status != REFOCUS_OK) {
+            live_fail(live, EXIT_FAILED, "--steady", refocus_strerror(status));
             return false;
         }
     }
