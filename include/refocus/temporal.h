@@ -57,6 +57,22 @@ REFOCUS_API void refocus_temporal_destroy(struct refocus_temporal **filter);
 REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
 
 /**
+ * Say that disparities have another scale from the next map on, because z0 or z1 have
+ * moved: what was d is now
+ *
+ *     scale d + offset,    scale = (1/z0 - 1/z1) / (1/z0' - 1/z1')
+ *                          offset = (1/z1 - 1/z1') / (1/z0' - 1/z1')
+ *
+ * with the new range primed; what falls out of 0 to 1 is clamped.
+ *
+ * @param scale   above 0
+ * @param offset  finite
+ * @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT with the filter as it was
+ */
+REFOCUS_API int refocus_temporal_rescale(struct refocus_temporal *filter, double scale,
+                                         double offset);
+
+/**
  * Filter the next map. Blocks of 8 x 8 samples are followed from the last frame, by the
  * photo where there is one; with p the filtered disparity of the last frame at the
  * place that a sample d came from, and n the frames that it has been seen in,
@@ -69,7 +85,7 @@ REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
  *
  * The scale of disparities has to be the same for all frames: give
  * refocus_depth_to_disparity() the near_m and far_m (value_near and value_far) that it
- * reported for the first one. Integer arithmetic: the same bytes on every processor.
+ * reported for the first one, or say how it changes by refocus_temporal_rescale(). Integer arithmetic: the same bytes on every processor.
  *
  * @param photo   the photo of this frame, of any format and size, whose brightness is
  *                compared: of Y, U and V the codes of Y as they are; NULL = by depth alone

@@ -105,6 +105,29 @@ void refocus_temporal_reset(struct refocus_temporal *f)
     memset(f->motion, 0, blocks * sizeof *f->motion);
 }
 
+static uint16_t rescale(uint16_t d, double scale, double offset)
+{
+    const double value = scale * d + offset * 65535 + 0.5;
+
+    return (uint16_t)(value > 0 ? value < 65535 ? value : 65535 : 0);
+}
+
+int refocus_temporal_rescale(struct refocus_temporal *f, double scale, double offset)
+{
+    size_t samples;
+
+    if (!f || !(scale > 0) || !isfinite(scale) || !isfinite(offset))
+        return REFOCUS_ERR_ARGUMENT;
+    samples = f->begun ? (size_t)f->width * (size_t)f->height : 0;
+    for (size_t i = 0; i < samples; i++) {
+        f->last.disparity[i] = rescale(f->last.disparity[i], scale, offset);
+        f->before[i] = rescale(f->before[i], scale, offset);
+        if (!f->guided) /* then depth is its own guide */
+            f->last.guide[i] = (uint8_t)(f->before[i] >> 8);
+    }
+    return REFOCUS_OK;
+}
+
 static int place(int i, int samples, int size)
 {
     return (int)((2 * (int64_t)i + 1) * size / (2 * (int64_t)samples));

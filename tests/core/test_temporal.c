@@ -236,6 +236,44 @@ static void any_photo(void **state)
     }
 }
 
+/* A range that widens to twice what it was, after four frames: a filter that is told of it gives
+ * the maps of one that has seen the new scale alone, to a code; one that is not told forgets. */
+static void follows_the_range(void **state)
+{
+    (void)state;
+    for (int with_photo = 0; with_photo < 2; with_photo++) {
+        struct refocus_temporal *told = make(), *narrow = make();
+        uint16_t after[W * H];
+        double calm;
+
+        for (int t = 0; t < 8; t++) {
+            v.seed = (uint32_t)t;
+            draw(30);
+            for (int i = 0; i < W * H; i++)
+                v.map[i] = (uint16_t)(v.map[i] / 2 + 10000); /* as of the wider range */
+            run(narrow, with_photo);
+            memcpy(after, v.out, sizeof after);
+            for (int i = 0; i < W * H && t < 4; i++)
+                v.map[i] = (uint16_t)((v.map[i] - 10000) * 2);
+            if (t == 4)
+                assert_int_equal(refocus_temporal_rescale(told, 0.5, 10000 / 65535.0),
+                                 REFOCUS_OK);
+            run(told, with_photo);
+        }
+        calm = 0;
+        for (int i = 0; i < W * H; i++)
+            calm += abs(v.out[i] - after[i]);
+        assert_true(calm / (W * H) < 40); /* the noise of a map is 225 */
+        assert_int_equal(refocus_temporal_rescale(told, 1e9, 0), REFOCUS_OK); /* clamps */
+        assert_int_equal(refocus_temporal_rescale(told, 0, 0), REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_temporal_rescale(told, 1.0 / 0.0, 0), REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_temporal_rescale(told, 1, 0.0 / 0.0), REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_temporal_rescale(NULL, 1, 0), REFOCUS_ERR_ARGUMENT);
+        refocus_temporal_destroy(&told);
+        refocus_temporal_destroy(&narrow);
+    }
+}
+
 static void bad_arguments(void **state)
 {
     struct refocus_temporal_params params = refocus_temporal_params_default(W, H), bad[8];
@@ -277,7 +315,7 @@ int main(void)
         cmocka_unit_test(calms),      cmocka_unit_test(leaves_no_ghosts),
         cmocka_unit_test(can_be_off), cmocka_unit_test(waits_for_a_second_look),
         cmocka_unit_test(any_layout), cmocka_unit_test(any_photo),
-        cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(follows_the_range), cmocka_unit_test(bad_arguments),
     };
 
     return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);
