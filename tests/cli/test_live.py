@@ -195,6 +195,27 @@ class Live(unittest.TestCase):
         self.assertGreater(r['frames_out'], 0)
         self.check_sum(r)
 
+    def test_a_time_that_is_far_off_costs_one_frame(self):
+        policies = ['--fast', '--frames-policy', 'every'], ['--frames-policy', 'every'], []
+        for ms in 100000, -100000:
+            fault = ';at 15 timestamp %d' % ms
+            for more in policies:
+                r = self.report('--camera', 'replay::size 64x48;fps 60;frames 60' + fault,
+                                '--depth', DEPTH.replace('30', '60'), *more)
+                self.check_sum(r)
+                if more:  # at the camera's pace a slow machine may lose some
+                    self.assertEqual((r['frames_out'], r['paired']), (59, 59), more)
+                self.assertEqual(r['colour']['damaged'], 1)
+            # One of the depth: a single frame is without its own.
+            r = self.report('--camera', 'replay::size 64x48;frames 60', '--depth', DEPTH + fault,
+                            *policies[0])
+            self.assertEqual((r['frames_out'], r['paired'], r['depth']['damaged']), (60, 59, 1))
+        # All from there on: the camera's clock was set, and its frames go on.
+        r = self.report('--camera', 'replay::size 64x48;frames 60;' +
+                        ';'.join('at %d timestamp 100000' % n for n in range(15, 60)), '--depth',
+                        DEPTH, *policies[0])
+        self.assertEqual((r['frames_out'], r['colour']['damaged']), (59, 1))
+
     def test_depth_may_be_late_vanish_and_end(self):
         depth = ('replay::format Y16;size 32x24;fps 30;frames 40;at 10 vanish 400;'
                  'at 20 late 80')

@@ -7,6 +7,13 @@
 
 enum { WAIT_MS = 200, RETRY_MS = 50 };
 
+/* When a frame was taken, by its camera. */
+struct moment {
+    bool known;
+    int64_t ns;
+    uint32_t sequence;
+};
+
 /* A camera and what happens to its frames. */
 struct lane {
     struct live *live;
@@ -20,6 +27,9 @@ struct lane {
     uint16_t *samples, *registered; /* of depth */
     size_t capacity;
     int64_t last_ns;
+    int64_t period_ns;        /* between two frames */
+    struct moment sure, seen; /* the last frame of a sound time, and the last of all */
+    bool doubted;             /* that one */
     bool newest_wins;
     int64_t late_ns; /* only over frames that are older than this */
     bool done; /* nothing else will come */
@@ -46,8 +56,11 @@ static bool recover(struct lane *lane, struct refocus_reason *reason)
     while (!live_is_over(lane->live)) {
         struct refocus_reason why = {""};
 
-        if (refocus_source_restart(lane->source, NULL, &why) == REFOCUS_OK)
+        if (refocus_source_restart(lane->source, NULL, &why) == REFOCUS_OK) {
+            lane->sure.known = lane->seen.known = false; /* a clock may begin anew */
+            lane->last_ns = INT64_MIN;
             return true;
+        }
         if ((double)ms_since(since) > lane->live->settings->patience * 1e3) {
             if (why.text[0])
                 *reason = why;
@@ -67,6 +80,39 @@ static void note_recovery(struct lane *lane, int64_t fault_ns)
         lane->stage->worst_recovery_ms = ms;
 }
 
+static const double doubt_ns = 1e9;
+
+/* Whether a frame's time is what its number lets expect after a frame before it. */
+static bool continues(const struct lane *lane, const struct moment *before,
+                      const struct refocus_frame *frame)
+{
+    const int32_t steps = (int32_t)(frame->sequence - before->sequence);
+    const double expected = (double)before->ns + steps * (double)lane->period_ns;
+
+    return before->known && fabs((double)frame->timestamp_ns - expected) <= doubt_ns;
+}
+
+/*
+ * Drivers do give single frames a time that is minutes off. Such a frame would go with the wrong
+ * depth, and one that lies ahead would be waited for. A time is sound when it is about now, where
+ * it is of our clock, or goes with the last sound one, or with the frame just before, sound or
+ * not: then the camera's clock was set. Two in a row are not doubted, unless they lie ahead.
+ */
+static bool has_sound_time(struct lane *lane, const struct refocus_frame *frame, int64_t now_ns)
+{
+    const bool ours = frame->flags & REFOCUS_FRAME_MONOTONIC;
+    const double age = (double)now_ns - (double)frame->timestamp_ns;
+    const bool sound = (ours && fabs(age) <= doubt_ns) || continues(lane, &lane->sure, frame) ||
+                       continues(lane, &lane->seen, frame) ||
+                       (!(ours && age < -doubt_ns) && (!lane->seen.known || lane->doubted));
+
+    lane->doubted = !sound;
+    lane->seen = (struct moment){true, frame->timestamp_ns, frame->sequence};
+    if (sound)
+        lane->sure = lane->seen;
+    return sound;
+}
+
 /* One frame that came; an exit code. */
 static int handle(struct lane *lane, const struct refocus_frame *frame)
 {
@@ -75,13 +121,16 @@ static int handle(struct lane *lane, const struct refocus_frame *frame)
     const int64_t begin = live_now_ns();
     int status = EXIT_DONE;
 
-    stage->reordered += stage->frames > 0 && frame->timestamp_ns < lane->last_ns;
-    lane->last_ns = frame->timestamp_ns;
     stage->frames++;
-    if (frame->flags & REFOCUS_FRAME_CORRUPT)
+    if (frame->flags & REFOCUS_FRAME_CORRUPT) {
         stage->corrupt++;
-    else
+    } else if (!has_sound_time(lane, frame, begin)) {
+        stage->damaged++;
+    } else {
+        stage->reordered += lane->last_ns > frame->timestamp_ns;
+        lane->last_ns = frame->timestamp_ns;
         status = lane->deliver(lane, frame, begin, &reason);
+    }
     if (status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_NO_DEPTH) {
         stage->damaged++; /* a picture cut short: the next one may be whole */
         return EXIT_DONE;
@@ -218,6 +267,11 @@ static int deliver_colour(struct lane *lane, const struct refocus_frame *frame, 
     return REFOCUS_OK;
 }
 
+static int64_t period_of(const struct refocus_source_mode *mode)
+{
+    return (int64_t)(1e9 / (mode->fps > 0 ? mode->fps : 30));
+}
+
 void *live_capture_thread(void *argument)
 {
     struct live *live = argument;
@@ -225,6 +279,8 @@ void *live_capture_thread(void *argument)
                         .source = live->camera,
                         .name = live->settings->camera,
                         .stage = &live->capture,
+                        .last_ns = INT64_MIN,
+                        .period_ns = period_of(&live->mode),
                         .newest_wins = live->settings->policy == POLICY_NEWEST &&
                                        !live->settings->fast,
                         .deliver = deliver_colour};
@@ -355,6 +411,8 @@ void *live_depth_thread(void *argument)
                         .source = live->depth_camera,
                         .name = live->settings->depth.file,
                         .stage = &live->depth,
+                        .last_ns = INT64_MIN,
+                        .period_ns = period_of(&live->depth_mode),
                         .newest_wins = live->settings->policy == POLICY_NEWEST &&
                                        !live->settings->fast,
                         .deliver = deliver_depth};

@@ -126,8 +126,7 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths,
     until.tv_nsec = (long)(wait_ns % 1000000000);
     pthread_mutex_lock(&depths->lock);
     depths->pinned = -1;
-    if (timestamp_ns - half_ns > depths->needed_ns)
-        depths->needed_ns = timestamp_ns - half_ns;
+    depths->needed_ns = timestamp_ns - half_ns; /* also back, when a clock was set */
     pthread_cond_broadcast(&depths->changed);
     for (;;) {
         map = nearest(depths, timestamp_ns, &newest);
