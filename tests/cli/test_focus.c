@@ -1,5 +1,5 @@
-/* Focus pulls of `refocus live`, against a clock of our own: smooth, and without a jump
- * also when one begins before the other has ended. */
+/* Focus pulls of `refocus live`, by the times of frames: smooth, and without a jump also when one
+ * begins before the other has ended. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,11 +10,7 @@
 #include "live/live.h"
 
 static int64_t now;
-
-int64_t live_now_ns(void)
-{
-    return now;
-}
+static struct live_range range; /* of the frames: not known */
 
 static void begin(struct live_focus *focus, double disparity)
 {
@@ -27,11 +23,15 @@ static void begin(struct live_focus *focus, double disparity)
     focus->blur_most = 16;
 }
 
+/* The focus in a frame of now; where a point is asked for, 0.25 is there. */
 static double look(struct live_focus *focus)
 {
-    double disparity, blur;
+    double disparity, blur, point[2];
 
-    live_focus_get(focus, now, &disparity, &blur);
+    live_focus_frame(focus, now, (double)NAN, &range);
+    while (live_focus_point(focus, point))
+        live_focus_found(focus, point, 0.25);
+    live_focus_get(focus, &disparity, &blur);
     return disparity;
 }
 
@@ -87,7 +87,9 @@ static void one_takes_over_from_another(void **state)
 
     (void)state;
     begin(&focus, 0);
+    look(&focus);
     command(&focus, "pull 1 2");
+    look(&focus);
     now += 900000000;
     at = look(&focus);
     assert_true(at > 0.3 && at < 0.5);
@@ -102,19 +104,104 @@ static void one_takes_over_from_another(void **state)
 static void points_are_asked_for_once(void **state)
 {
     struct live_focus focus;
-    double point[2], seconds;
+    double point[2];
 
     (void)state;
     begin(&focus, 0.5);
-    assert_false(live_focus_point(&focus, point, &seconds));
+    assert_false(live_focus_point(&focus, point));
+    look(&focus);
     command(&focus, "pull-at 12,34 1");
-    assert_true(live_focus_point(&focus, point, &seconds));
-    assert_true(point[0] == 12 && point[1] == 34 && seconds == 1);
-    assert_false(live_focus_point(&focus, point, &seconds));
-    live_focus_pull(&focus, 1, seconds);
+    assert_true(live_focus_point(&focus, point));
+    assert_true(point[0] == 12 && point[1] == 34);
+    live_focus_found(&focus, (double[2]){1, 2}, 0.7); /* of another command */
+    assert_true(live_focus_point(&focus, point));
+    live_focus_found(&focus, point, 1);
+    assert_false(live_focus_point(&focus, point));
     watch(&focus, 1, 1000);
-    live_focus_pull(&focus, (double)NAN, 0); /* nothing is there */
+    command(&focus, "focus-at 1,2");
+    assert_true(live_focus_point(&focus, point));
+    live_focus_found(&focus, point, (double)NAN); /* nothing is there */
     assert_true(look(&focus) == 0);
+    pthread_mutex_destroy(&focus.lock);
+}
+
+/* What comes before the first frame holds from it on, and a pull begins there. */
+static void commands_before_the_first_frame_are_kept(void **state)
+{
+    struct live_focus focus;
+
+    (void)state;
+    begin(&focus, (double)NAN); /* the centre, where 0.25 is */
+    assert_true(look(&focus) == 0.25);
+    begin(&focus, (double)NAN);
+    command(&focus, "focus 0.8");
+    assert_true(look(&focus) == 0.8);
+    now += 1000000000;
+    assert_true(look(&focus) == 0.8);
+    begin(&focus, (double)NAN);
+    command(&focus, "pull 0.75 2"); /* from the centre */
+    now += 3000000000;
+    assert_true(look(&focus) == 0.25);
+    watch(&focus, 0.75, 2000);
+    begin(&focus, 0.5);
+    command(&focus, "focus-at 3,4");
+    command(&focus, "pull 1 1");
+    command(&focus, "pull 0.75 1");
+    assert_true(look(&focus) == 0.25);
+    watch(&focus, 0.75, 1000);
+    pthread_mutex_destroy(&focus.lock);
+}
+
+/* A point is a distance from then on, and so is where a pull is taken over; a disparity is none. */
+static void distances_stay_while_the_range_moves(void **state)
+{
+    struct live_focus focus;
+    double at;
+
+    (void)state;
+    range = (struct live_range){0.5, 0.25};
+    begin(&focus, (double)NAN);
+    assert_true(look(&focus) == 0.25); /* 0.3125 dioptres */
+    range.near = 1;
+    assert_true(fabs(look(&focus) - 0.0625 / 0.75) < 1e-12);
+    command(&focus, "focus 0.5");
+    assert_true(look(&focus) == 0.5);
+    command(&focus, "pull 1 1");
+    look(&focus);
+    now += 500000000;
+    at = look(&focus) * 0.75 + 0.25;
+    command(&focus, "pull-at 1,1 1"); /* 0.6875 dioptres in the next frame */
+    range.near = 2;
+    assert_true(fabs(look(&focus) * 1.75 + 0.25 - at) < 1e-12);
+    now += 2000000000;
+    assert_true(look(&focus) == 0.25);
+    range.near = 1;
+    assert_true(fabs(look(&focus) * 0.75 + 0.25 - 0.6875) < 1e-12);
+    range = (struct live_range){0, 0};
+    pthread_mutex_destroy(&focus.lock);
+}
+
+static void the_camera_s_lens_is_followed(void **state)
+{
+    struct live_focus focus;
+    double disparity, blur;
+
+    (void)state;
+    range = (struct live_range){1, 0.2};
+    begin(&focus, (double)NAN);
+    for (int i = 0; i < 3; i++) {
+        live_focus_frame(&focus, now += 1000000, i == 1 ? 0.6 : 0.4, &range);
+        live_focus_get(&focus, &disparity, &blur);
+        assert_true(fabs(disparity - (i == 1 ? 0.5 : 0.25)) < 1e-12);
+    }
+    live_focus_frame(&focus, now, 7, &range); /* nearer than all there is */
+    live_focus_get(&focus, &disparity, &blur);
+    assert_true(disparity == 1);
+    command(&focus, "focus 0.1");
+    live_focus_frame(&focus, now, 0.4, &range);
+    live_focus_get(&focus, &disparity, &blur);
+    assert_true(disparity == 0.1);
+    range = (struct live_range){0, 0};
     pthread_mutex_destroy(&focus.lock);
 }
 
@@ -123,22 +210,24 @@ static void points_lie_in_the_picture(void **state)
     static const char *const outside[] = {"focus-at 64,3", "pull-at 3,48 1", "focus-at -1,0",
                                           "focus-at 0,-0.5"};
     struct live_focus focus;
-    double point[2], seconds;
+    double point[2];
 
     (void)state;
     begin(&focus, 0.5);
     command(&focus, "focus-at 9999,9"); /* no picture yet: its edge serves */
-    assert_true(live_focus_point(&focus, point, &seconds));
+    assert_true(live_focus_point(&focus, point));
+    look(&focus);
     live_focus_size(&focus, 64, 48);
     command(&focus, "focus-at 63,47");
-    assert_true(live_focus_point(&focus, point, &seconds));
+    assert_true(live_focus_point(&focus, point));
+    look(&focus);
     for (int i = 0; i < 4; i++) {
         char why[200] = "";
         bool quit = false;
 
         assert_false(live_focus_command(&focus, outside[i], &quit, why, sizeof why));
         assert_non_null(strstr(why, "64x48"));
-        assert_false(live_focus_point(&focus, point, &seconds));
+        assert_false(live_focus_point(&focus, point));
     }
     pthread_mutex_destroy(&focus.lock);
 }
@@ -148,6 +237,9 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(pulls_are_smooth),
                                        cmocka_unit_test(one_takes_over_from_another),
                                        cmocka_unit_test(points_are_asked_for_once),
+                                       cmocka_unit_test(commands_before_the_first_frame_are_kept),
+                                       cmocka_unit_test(distances_stay_while_the_range_moves),
+                                       cmocka_unit_test(the_camera_s_lens_is_followed),
                                        cmocka_unit_test(points_lie_in_the_picture)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -316,6 +316,27 @@ class Live(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(len(done.stderr.decode().splitlines()), 3)
 
+    def test_commands_before_the_first_frame_are_kept(self):
+        frame = 64 * 48 * 3
+        args = ['--camera', 'replay::size 64x48;frames 20;at 0 late 700', '--depth', DEPTH,
+                '--fast', '--frames-policy', 'every', '--out', 'raw:out.rgb']
+
+        def run(*more, stdin=b''):
+            self.report(*args, *more, stdin=stdin)
+            return content('out.rgb')
+        centre, far, near = run(), run('--focus', '0.1'), run('--focus', '0.9')
+        self.assertNotEqual(centre, far)
+        self.assertEqual(run(stdin=b'focus 0.1\n'), far)
+        self.assertEqual(run('--focus', '0.9', stdin=b'focus 0.1\n'), far)
+        self.assertEqual(run('--focus', '0.9', stdin=b'blur 1\nblur 3\n'), near)
+        # A pull begins at the first frame, with what was in focus without it.
+        for more, begin in ([], centre), (['--focus', '0.9'], near):
+            data = run(*more, stdin=b'pull 0.1 0.3\n')
+            self.assertEqual(data[:frame], begin[:frame])
+            self.assertEqual(data[-frame:], far[-frame:])
+            self.assertNotIn(data[5 * frame:6 * frame], (begin[5 * frame:6 * frame],
+                                                         far[5 * frame:6 * frame]))
+
     def test_commands_by_a_socket(self):
         run = subprocess.Popen([REFOCUS, 'live', *SMALL, '--json', '--camera',
                                 'replay::size 64x48;fps 60', '--depth', DEPTH, '--no-commands',

@@ -490,7 +490,7 @@ static int run(int argc, char **argv)
         return report_failure(EXIT_FAILED, "live", "not enough memory");
     live->settings = &settings;
     live->engine = &engine;
-    live->lens_dioptres = NAN;
+    live->lens_dioptres = live->focus_disparity = live->blur = NAN;
     live->command_fd = -1;
     live->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     pthread_mutex_init(&live->lock, NULL);

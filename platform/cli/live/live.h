@@ -125,26 +125,47 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
 
 /* live_focus.c: focus and blur as they are asked for -------------------------------------- */
 
+/* What disparities mean, in 1/m: 1 is near, 0 is far. Both 0: not known. */
+struct live_range {
+    double near, far;
+};
+
+/* Something to focus on. A point is looked up in the next frame, and is a distance from then on,
+ * or a disparity where distances are not known. */
+struct live_target {
+    bool known;        /* else the point is to be looked up */
+    bool dioptres;     /* value is 1/m, else a disparity */
+    bool follows_lens; /* where the camera's own lens is, if it says so */
+    double value, point[2]; /* the point NAN: the centre */
+};
+
 struct live_focus {
     pthread_mutex_t lock;
-    double from, to, blur, blur_most;
+    struct live_target from, to; /* a pull from one to the other */
     int64_t begin_ns, duration_ns;
-    bool at_given, follow_lens;
-    double at[2], at_seconds;
+    bool begun; /* at begin_ns; else it begins with the next frame */
+    int64_t now_ns;
+    struct live_range range; /* both of the present frame */
+    double blur, blur_most;
     int width, height; /* of the pictures; 0: none has come */
 };
 
 void live_focus_init(struct live_focus *focus, const struct live_settings *settings);
-/* A line of commands; false: it is not understood, and why. *quit is set by "quit". */
+/* A line of commands, which holds from the next frame on; false: it is not understood, and why.
+ * *quit is set by "quit". */
 bool live_focus_command(struct live_focus *focus, const char *line, bool *quit, char *why,
                         size_t size);
-/* What holds at a moment. */
-void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity, double *blur);
-/* Whether a point is asked for whose disparity live_focus_pull() shall get: once. */
-bool live_focus_point(struct live_focus *focus, double point[2], double *seconds);
+/* A frame, and when it was taken: by that, and not by when it is worked on, pulls go on. The
+ * lens of its camera, or NAN, and what its disparities mean. */
+void live_focus_frame(struct live_focus *focus, int64_t now_ns, double lens_dioptres,
+                      const struct live_range *range);
+/* Whether there is a point to look up in that frame, for live_focus_found(). */
+bool live_focus_point(struct live_focus *focus, double point[2]);
+void live_focus_found(struct live_focus *focus, const double point[2], double disparity);
+/* What holds for that frame. */
+void live_focus_get(struct live_focus *focus, double *disparity, double *blur);
 /* The size of the pictures, beyond which points are refused. */
 void live_focus_size(struct live_focus *focus, int width, int height);
-void live_focus_pull(struct live_focus *focus, double disparity, double seconds);
 
 /* live_steady.c: depth that does not flicker ---------------------------------------------- */
 
@@ -203,7 +224,10 @@ struct live {
     uint32_t yuv_formats;     /* bit f: pictures of enum refocus_format f stay as they are */
     uint32_t rendered_format; /* enum refocus_format; of the thread that captures */
     int64_t first_out_ns, last_out_ns;
-    double lens_dioptres;
+    /* To the thread that renders, of the last frame: */
+    double lens_dioptres, focus_disparity, blur;
+    int64_t clock_ns, last_frame_ns; /* the clock is that of the frames, from 0 on */
+    uint64_t frames_rendered;
 };
 
 int64_t live_now_ns(void);

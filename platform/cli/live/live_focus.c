@@ -5,58 +5,141 @@
 
 void live_focus_init(struct live_focus *focus, const struct live_settings *settings)
 {
+    const struct lens_settings *lens = &settings->lens;
+
     memset(focus, 0, sizeof *focus);
     pthread_mutex_init(&focus->lock, NULL);
-    focus->from = focus->to = isnan(settings->lens.focus) ? 0.5 : settings->lens.focus;
-    focus->at_given = isnan(settings->lens.focus);
-    focus->follow_lens =
-        isnan(settings->lens.focus) && isnan(settings->lens.focus_at[0]);
-    focus->at[0] = settings->lens.focus_at[0]; /* NAN: the centre */
-    focus->at[1] = settings->lens.focus_at[1];
+    focus->to.known = !isnan(lens->focus);
+    focus->to.follows_lens = isnan(lens->focus) && isnan(lens->focus_at[0]);
+    focus->to.value = lens->focus;
+    focus->to.point[0] = lens->focus_at[0]; /* NAN: the centre */
+    focus->to.point[1] = lens->focus_at[1];
+    focus->from = focus->to;
 }
 
-/* Eased, so that a pull neither starts nor ends with a jerk. */
-static double focus_at_time(const struct live_focus *focus, int64_t now_ns)
+static bool is_known(const struct live_range *range)
 {
-    const double t = focus->duration_ns > 0 ? (double)(now_ns - focus->begin_ns) /
+    return range->near > range->far;
+}
+
+static double clamp(double disparity)
+{
+    return disparity > 0 ? fmin(disparity, 1) : 0; /* NAN: 0 */
+}
+
+static double disparity_of(const struct live_focus *focus, const struct live_target *target)
+{
+    const struct live_range *range = &focus->range;
+
+    if (!target->known)
+        return 0.5;
+    if (!target->dioptres)
+        return target->value;
+    return is_known(range) ? (target->value - range->far) / (range->near - range->far) : 0.5;
+}
+
+/* How far the pull is, 0 to 1: eased, so that it neither starts nor ends with a jerk. */
+static double progress(const struct live_focus *focus)
+{
+    const double t = focus->duration_ns > 0 ? (double)(focus->now_ns - focus->begin_ns) /
                                                   (double)focus->duration_ns
                                             : 1;
 
-    if (t >= 1)
-        return focus->to;
-    return t <= 0 ? focus->from
-                  : focus->from + (focus->to - focus->from) * t * t * (3 - 2 * t);
+    if (!focus->begun && focus->duration_ns > 0)
+        return 0;
+    return t >= 1 ? 1 : t <= 0 ? 0 : t * t * (3 - 2 * t);
 }
 
-static void pull(struct live_focus *focus, double disparity, double seconds)
+static double present(const struct live_focus *focus)
 {
-    const int64_t now = live_now_ns();
+    const double from = disparity_of(focus, &focus->from), to = disparity_of(focus, &focus->to);
 
-    focus->from = focus_at_time(focus, now);
-    focus->to = disparity > 0 ? fmin(disparity, 1) : 0;
-    focus->begin_ns = now;
+    return clamp(from + (to - from) * progress(focus));
+}
+
+/* The focus where it stands between two targets. */
+static struct live_target standing(const struct live_focus *focus)
+{
+    const struct live_range *range = &focus->range;
+    struct live_target target = {.known = true, .value = present(focus)};
+
+    target.dioptres = is_known(range);
+    if (target.dioptres)
+        target.value = range->far + target.value * (range->near - range->far);
+    return target;
+}
+
+static void pull(struct live_focus *focus, const struct live_target *to, double seconds)
+{
+    const double part = progress(focus);
+
+    if (part >= 1)
+        focus->from = focus->to;
+    else if (part > 0)
+        focus->from = standing(focus);
+    focus->to = *to;
     focus->duration_ns = (int64_t)(seconds * 1e9);
+    focus->begun = false;
 }
 
-void live_focus_pull(struct live_focus *focus, double disparity, double seconds)
+static void follow_lens(struct live_target *target, double dioptres)
+{
+    if (target->follows_lens) {
+        target->known = target->dioptres = true;
+        target->value = dioptres;
+    }
+}
+
+void live_focus_frame(struct live_focus *focus, int64_t now_ns, double lens_dioptres,
+                      const struct live_range *range)
 {
     pthread_mutex_lock(&focus->lock);
-    pull(focus, disparity, seconds);
+    focus->now_ns = now_ns;
+    focus->range = *range;
+    if (!focus->begun)
+        focus->begin_ns = now_ns;
+    focus->begun = true;
+    if (isfinite(lens_dioptres) && is_known(range)) {
+        follow_lens(&focus->from, lens_dioptres);
+        follow_lens(&focus->to, lens_dioptres);
+    }
     pthread_mutex_unlock(&focus->lock);
 }
 
-bool live_focus_point(struct live_focus *focus, double point[2], double *seconds)
+bool live_focus_point(struct live_focus *focus, double point[2])
 {
-    bool given;
+    const struct live_target *target;
+    bool wanted;
 
     pthread_mutex_lock(&focus->lock);
-    given = focus->at_given;
-    focus->at_given = false;
-    point[0] = focus->at[0];
-    point[1] = focus->at[1];
-    *seconds = focus->at_seconds;
+    target = focus->from.known ? &focus->to : &focus->from;
+    wanted = !target->known;
+    memcpy(point, target->point, sizeof target->point);
     pthread_mutex_unlock(&focus->lock);
-    return given;
+    return wanted;
+}
+
+static bool same_point(const double a[2], const double b[2])
+{
+    return (a[0] == b[0] && a[1] == b[1]) || (isnan(a[0]) && isnan(b[0]));
+}
+
+void live_focus_found(struct live_focus *focus, const double point[2], double disparity)
+{
+    struct live_target *const target[] = {&focus->from, &focus->to};
+
+    pthread_mutex_lock(&focus->lock);
+    for (int i = 0; i < 2; i++) { /* another may be asked for since */
+        if (target[i]->known || !same_point(target[i]->point, point))
+            continue;
+        target[i]->known = true;
+        target[i]->dioptres = is_known(&focus->range);
+        target[i]->value = clamp(disparity);
+        if (target[i]->dioptres)
+            target[i]->value = focus->range.far +
+                               target[i]->value * (focus->range.near - focus->range.far);
+    }
+    pthread_mutex_unlock(&focus->lock);
 }
 
 void live_focus_size(struct live_focus *focus, int width, int height)
@@ -67,11 +150,10 @@ void live_focus_size(struct live_focus *focus, int width, int height)
     pthread_mutex_unlock(&focus->lock);
 }
 
-void live_focus_get(struct live_focus *focus, int64_t now_ns, double *disparity,
-                    double *blur)
+void live_focus_get(struct live_focus *focus, double *disparity, double *blur)
 {
     pthread_mutex_lock(&focus->lock);
-    *disparity = focus_at_time(focus, now_ns);
+    *disparity = present(focus);
     *blur = focus->blur;
     pthread_mutex_unlock(&focus->lock);
 }
@@ -110,6 +192,7 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest,
 {
     const bool point = strcmp(word, "focus-at") == 0 || strcmp(word, "pull-at") == 0;
     double values[2] = {0, 0}, seconds = strncmp(word, "pull", 4) == 0 ? 1 : 0;
+    struct live_target target = {.known = !point};
 
     if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 &&
         strcmp(word, "pull") != 0 && !point) {
@@ -134,17 +217,15 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest,
                  focus->width, focus->height);
         return false;
     } else if (point) {
-        focus->at_given = true;
-        focus->follow_lens = false;
-        focus->at[0] = values[0];
-        focus->at[1] = values[1];
-        focus->at_seconds = seconds;
+        target.point[0] = values[0];
+        target.point[1] = values[1];
+        pull(focus, &target, seconds);
     } else if (!(values[0] >= 0 && values[0] <= 1)) {
         snprintf(why, size, "%g is out of 0 (farthest) to 1 (nearest)", values[0]);
         return false;
     } else {
-        focus->follow_lens = false;
-        pull(focus, values[0], seconds);
+        target.value = values[0];
+        pull(focus, &target, seconds);
     }
     return true;
 }

@@ -31,48 +31,51 @@ static bool fit_renderer(struct live *live, int width, int height)
     return true;
 }
 
-/* The point that is asked for, by the disparities that are prepared. */
-static void find_focus(struct live *live, int width, int height)
+/* The points that are asked for, by the disparities that are prepared. */
+static void find_points(struct live *live, int width, int height)
 {
-    uint16_t *disparity;
-    double point[2], seconds;
-    int x, y;
+    uint16_t *disparity = NULL;
+    double point[2];
 
     live_focus_size(&live->focus, width, height);
-    if (!live_focus_point(&live->focus, point, &seconds))
-        return;
-    x = isnan(point[0]) ? width / 2 : (int)fmin(fmax(point[0], 0), width - 1);
-    y = isnan(point[1]) ? height / 2 : (int)fmin(fmax(point[1], 0), height - 1);
-    disparity = malloc((size_t)width * (size_t)height * 2);
-    if (disparity && refocus_get_view(live->engine->renderer, REFOCUS_VIEW_DISPARITY,
-                                      disparity, (ptrdiff_t)width * 2) == REFOCUS_OK)
-        live_focus_pull(&live->focus, input_surface_at(disparity, width, height, x, y),
-                        seconds);
+    while (live_focus_point(&live->focus, point)) {
+        const double x = isnan(point[0]) ? width / 2 : fmin(fmax(point[0], 0), width - 1);
+        const double y = isnan(point[1]) ? height / 2 : fmin(fmax(point[1], 0), height - 1);
+
+        if (!disparity)
+            disparity = malloc((size_t)width * (size_t)height * 2);
+        if (!disparity || refocus_get_view(live->engine->renderer, REFOCUS_VIEW_DISPARITY,
+                                           disparity, (ptrdiff_t)width * 2) != REFOCUS_OK)
+            break;
+        live_focus_found(&live->focus, point,
+                         input_surface_at(disparity, width, height, (int)x, (int)y));
+    }
     free(disparity);
 }
 
-/* Where the camera's own lens is in focus, when nobody says otherwise. */
-static void follow_lens(struct live *live, float dioptres)
+/* Time goes on with the frames, so that the same ones make the same pull however long they take;
+ * it stands still when one lies before the last. */
+static void advance(struct live *live, const struct live_picture *picture)
 {
-    double near_m, far_m;
+    const int64_t step = picture->timestamp_ns - live->last_frame_ns;
+
+    if (live->frames_rendered++ > 0 && step > 0)
+        live->clock_ns += step;
+    live->last_frame_ns = picture->timestamp_ns;
+}
+
+static void find_focus(struct live *live, const struct live_picture *picture)
+{
+    struct live_range range = {0, 0};
 
     pthread_mutex_lock(&live->depths.lock);
-    near_m = live->range.near_m;
-    far_m = live->range.far_m;
+    if (live->range.near_m > 0 && live->range.far_m > live->range.near_m)
+        range = (struct live_range){1 / live->range.near_m, 1 / live->range.far_m};
     pthread_mutex_unlock(&live->depths.lock);
-    live->lens_dioptres = dioptres;
-    if (!isfinite(dioptres) || !(near_m > 0 && far_m > near_m))
-        return;
-    pthread_mutex_lock(&live->focus.lock);
-    if (live->focus.follow_lens) {
-        const double far = 1 / far_m;
-        const double d = ((double)dioptres - far) / (1 / near_m - far);
-
-        live->focus.at_given = false;
-        live->focus.from = live->focus.to = d < 0 ? 0 : d > 1 ? 1 : d;
-        live->focus.duration_ns = 0;
-    }
-    pthread_mutex_unlock(&live->focus.lock);
+    live->lens_dioptres = (double)picture->lens_dioptres;
+    live_focus_frame(&live->focus, live->clock_ns, live->lens_dioptres, &range);
+    find_points(live, picture->image.width, picture->image.height);
+    live_focus_get(&live->focus, &live->focus_disparity, &live->blur);
 }
 
 static int refocus(struct live *live, const struct live_picture *picture,
@@ -82,19 +85,16 @@ static int refocus(struct live *live, const struct live_picture *picture,
     const struct refocus_disparity disparity = refocus_disparity16(
         map->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
     int64_t begin = live_now_ns(), prepared;
-    double focus, blur;
     int status = refocus_prepare(live->engine->renderer, &picture->image, &disparity);
 
     if (status != REFOCUS_OK)
         return status;
     prepared = live_now_ns();
     live_times_add(&live->prepare.times, (double)(prepared - begin) / 1e6);
-    follow_lens(live, picture->lens_dioptres);
-    find_focus(live, picture->image.width, picture->image.height);
+    find_focus(live, picture);
     begin = live_now_ns();
-    live_focus_get(&live->focus, begin, &focus, &blur);
-    params.focus_disparity = (float)focus;
-    params.max_blur_radius = (float)blur;
+    params.focus_disparity = (float)live->focus_disparity;
+    params.max_blur_radius = (float)live->blur;
     status = refocus_render(live->engine->renderer, &params, out);
     live_times_add(&live->render.times, (double)(live_now_ns() - begin) / 1e6);
     return status;
@@ -133,6 +133,7 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     bool memory;
     int status;
 
+    advance(live, picture);
     if (!map)
         return true;
     if (live->settings->steady > 0) {

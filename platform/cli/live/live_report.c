@@ -86,6 +86,9 @@ int live_report(struct live *live)
                             json_integer((json_int_t)live->output.recoveries));
         json_object_set_new(json, "lens_dioptres",
                             report_number_json(live->lens_dioptres));
+        /* Of the last frame, as render says it. */
+        json_object_set_new(json, "focus", report_number_json(live->focus_disparity));
+        json_object_set_new(json, "blur", report_number_json(live->blur));
         json_object_set_new(json, "stages_ms",
                             json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
                                       live_times_json(&live->capture.times), "depth",
