@@ -177,6 +177,54 @@ class Live(unittest.TestCase):
         self.assertLessEqual(r['frames_in'] + r['camera_dropped'], 1000)
         self.check_sum(r)
 
+    def test_from_files_to_files_every_frame_by_its_own_time(self):
+        frame = 64 * 48 * 3
+        self.report('--camera', 'replay::format YUV420;size 64x48;fps 20;frames 40', '--depth',
+                    DEPTH, '--fast', '--frames-policy', 'every', '--blur', '0', '--out',
+                    'y4m:in.y4m')
+        with open('depth.raw', 'wb') as depth:  # something near goes by, at 15 maps a second
+            for t in range(30):
+                depth.write(b''.join(struct.pack('<H', 900 + 10 * t if t < x < t + 9 else
+                                                 3000 + 20 * x)
+                                     for y in range(24) for x in range(32)))
+        with open('script', 'wb') as script:
+            script.write(b'focus 0.2\npull 0.9 1\n')
+        args = ['--camera', 'y4m:in.y4m', '--depth', 'raw:depth.raw,Z16,32x24,15', '--blur', '6',
+                '--out', 'raw:out.rgb']
+
+        def run(*more, stdin=b''):
+            r = self.report(*args, *more, stdin=stdin)
+            self.assertEqual((r['frames_in'], r['frames_out'], r['dropped']), (40, 40, 0))
+            return content('out.rgb')
+        plain = run('--fast', '--focus', '0.55')
+        self.assertEqual(len(plain), 40 * frame)
+        self.assertEqual(run('--focus', '0.55'), plain)
+        pulls = []
+        for more in [], ['--threads', '1'], ['--rays', '4', '--steady', '0']:
+            with open('script', 'rb') as script:
+                done = subprocess.run([REFOCUS, 'live', *SMALL, *args, *more], stdin=script,
+                                      stderr=subprocess.DEVNULL, timeout=60 * SLOW)
+            self.assertEqual(done.returncode, 0)
+            pulls.append(content('out.rgb'))
+        self.assertEqual(pulls, pulls[:1] * 3)
+        # Half a second on, by the times of the frames, the pull is half way.
+        self.assertEqual(pulls[0][10 * frame:11 * frame], plain[10 * frame:11 * frame])
+        self.assertNotEqual(pulls[0][:10 * frame], plain[:10 * frame])
+        self.assertEqual(pulls[0][20 * frame:], run('--focus', '0.9')[20 * frame:])
+        # Where the frames come from standard input and go to standard output it is the same.
+        done = live('--camera', 'y4m:-', *args[2:-1], 'raw:-', '--focus', '0.55',
+                    stdin=content('in.y4m'))
+        self.assertEqual((done.returncode, done.stdout), (0, plain), done.stderr)
+        for more, frames in (['--frames', '7'], 7), (['--duration', '0.5'], 10):
+            self.report(*args, *more)
+            self.assertEqual(len(content('out.rgb')), frames * frame)
+        # What is asked for goes before: as a camera would, or without an end.
+        r = self.report(*args, '--frames-policy', 'newest', '--fast', '--rays', '64')
+        self.assertLessEqual(r['frames_out'], 40)
+        self.check_sum(r)
+        r = self.report(*args, '--loop', '--frames', '90')
+        self.assertEqual(r['frames_out'], 90)
+
     def test_faults_are_recovered_from(self):
         script = ('replay::size 64x48;fps 50;frames 100;at 10 fail;at 20 vanish 300;at 30 corrupt;'
                   'at 35 drop 3;at 40 timestamp -200;at 50 queue-error;at 60 stride 99;at 70 late 30')

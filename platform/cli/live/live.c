@@ -144,7 +144,8 @@ static const struct option options[] = {
      .offset = offsetof(struct live_settings, policy),
      .choice = policy_name,
      .summary = policy_summary,
-     .help = "what becomes of frames that cannot be kept up with; default newest"},
+     .help = "what becomes of frames that cannot be kept up with; default newest, and every "
+             "from files (file:, y4m:, raw:) to files"},
     {.kind = OPTION_INTEGER,
      .name = "--frames",
      .argument = "N",
@@ -159,7 +160,7 @@ static const struct option options[] = {
      .least = 0,
      .above = true,
      .greatest = 1e9,
-     .help = "end after so many seconds"},
+     .help = "end after so many seconds; from files to files those of the frames"},
     {.kind = OPTION_NUMBER,
      .name = "--patience",
      .argument = "S",
@@ -170,7 +171,7 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG,
      .name = "--fast",
      .offset = offsetof(struct live_settings, fast),
-     .help = "files and scripts: as fast as they can be read"},
+     .help = "files and scripts: as fast as they can be read; always so from files to files"},
     {.kind = OPTION_FLAG,
      .name = "--loop",
      .offset = offsetof(struct live_settings, loop),
@@ -182,7 +183,7 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG,
      .name = "--no-commands",
      .offset = offsetof(struct live_settings, no_commands),
-     .help = "leave standard input alone"},
+     .help = "leave standard input alone; always so where frames are read from it"},
     {.kind = OPTION_TEXT,
      .name = "--socket",
      .argument = "FILE",
@@ -266,29 +267,70 @@ static int list(const struct live_settings *settings)
     return report_end_output();
 }
 
-static bool is_source(const char *name)
+static bool is_of_kind(const char *name, const char *kind)
 {
-    static const char *const kinds[] = {"v4l2:", "libcamera:", "file:", "y4m:", "raw:",
-                                        "replay:"};
+    return strncmp(name, kind, strlen(kind)) == 0;
+}
 
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (strncmp(name, kinds[i], strlen(kinds[i])) == 0)
+/* One of the kinds in a list that ends with NULL. */
+static bool is_of(const char *name, const char *const *kind)
+{
+    for (; *kind; kind++)
+        if (is_of_kind(name, *kind))
             return true;
     return false;
 }
 
-static bool is_of_kind(const char *name, const char *kind)
+static bool is_source(const char *name)
 {
-    return strncmp(name, kind, strlen(kind)) == 0;
+    return is_of(name, (const char *const[]){"v4l2:", "libcamera:", "file:", "y4m:", "raw:",
+                                             "replay:", NULL});
+}
+
+static bool is_camera(const char *name)
+{
+    return is_of(name, (const char *const[]){"v4l2:", "libcamera:", NULL});
+}
+
+/* A picture stays for ever, and so does what begins again. */
+static bool has_end(const struct live_settings *settings)
+{
+    const bool still =
+        is_of_kind(settings->camera, "file:") && !strchr(settings->camera, '%');
+
+    return settings->frames > 0 || settings->duration > 0 || !(still || settings->loop);
+}
+
+/*
+ * From files to files no frame is left out, and where there is an end nothing waits for the clock:
+ * the same files and commands make the same frames. A photo that stays, as if it were a camera,
+ * keeps its pace.
+ */
+static void choose_pace(struct live_settings *settings)
+{
+    const bool files =
+        is_of(settings->camera, (const char *const[]){"file:", "y4m:", "raw:", NULL}) &&
+        (is_of(settings->out, (const char *const[]){"y4m:", "raw:", NULL}) ||
+         (strchr(settings->out, '%') && !is_of_kind(settings->out, "v4l2:")));
+
+    if (settings->policy == POLICY_DEFAULT)
+        settings->policy = files ? POLICY_EVERY : POLICY_NEWEST;
+    settings->offline = files && settings->policy == POLICY_EVERY && has_end(settings) &&
+                        !is_camera(settings->depth.file);
+    settings->fast |= settings->offline;
+}
+
+/* Frames from standard input leave no room for commands there. */
+static bool is_standard_input(const char *name)
+{
+    return strcmp(name, "y4m:-") == 0 || is_of_kind(name, "raw:-,");
 }
 
 /* Options of one kind of source, where neither source is of it. */
 static int check_sources(const struct live_settings *settings)
 {
     const char *const camera = settings->camera, *const depth = settings->depth.file;
-    const bool files = !(is_of_kind(camera, "v4l2:") || is_of_kind(camera, "libcamera:")) ||
-                       (is_source(depth) && !is_of_kind(depth, "v4l2:") &&
-                        !is_of_kind(depth, "libcamera:"));
+    const bool files = !is_camera(camera) || (is_source(depth) && !is_camera(depth));
 
     if (!files && (settings->fast || settings->loop))
         return report_failure(EXIT_WRONG, settings->fast ? "--fast" : "--loop",
@@ -331,6 +373,9 @@ static int check(struct live_settings *settings)
     if (settings->blur_most < settings->lens.blur)
         return report_failure(EXIT_WRONG, "--blur-most", "it is less than --blur %g",
                               settings->lens.blur);
+    choose_pace(settings);
+    settings->no_commands |=
+        is_standard_input(settings->camera) || is_standard_input(settings->depth.file);
     if (settings->engine.json && strcmp(settings->out + strcspn(settings->out, ":"), ":-") == 0)
         return report_failure(EXIT_WRONG, "--json",
                               "standard output is taken by --out; give a file there");
@@ -406,13 +451,14 @@ static uint32_t find_yuv_formats(struct live *live)
 static void run_threads(struct live *live)
 {
     enum { CAPTURE, DEPTH, ESTIMATE, OUTPUT, COMMANDS, THREADS };
+    const struct live_settings *settings = live->settings;
     static void *(*const main_of[])(void *) = {
         [CAPTURE] = live_capture_thread, [DEPTH] = live_depth_thread,
         [ESTIMATE] = live_estimate_thread, [OUTPUT] = live_output_thread,
         [COMMANDS] = live_command_thread};
     const bool wanted[THREADS] = {
         [CAPTURE] = true, [DEPTH] = live->depth_camera, [ESTIMATE] = live->estimator,
-        [OUTPUT] = true, [COMMANDS] = !live->settings->no_commands || live->command_fd >= 0};
+        [OUTPUT] = true, [COMMANDS] = !settings->no_commands || live->command_fd >= 0};
     pthread_t thread[THREADS];
     bool running[THREADS] = {false};
 
@@ -425,6 +471,9 @@ static void run_threads(struct live *live)
         }
         running[i] = true;
     }
+    while (settings->offline && running[COMMANDS] &&
+           sem_wait(&live->first_commands) != 0 && !live_is_over(live))
+        continue;
     live_render(live);
     /* What is rendered already is still written, unless something failed. */
     if (running[OUTPUT])
@@ -471,6 +520,7 @@ static int run(int argc, char **argv)
                                      .fps = NAN,
                                      .blur_most = NAN,
                                      .patience = 10,
+                                     .policy = POLICY_DEFAULT,
                                      .out = "null"};
     struct engine engine;
     struct live *live;
@@ -494,6 +544,7 @@ static int run(int argc, char **argv)
     live->command_fd = -1;
     live->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     pthread_mutex_init(&live->lock, NULL);
+    sem_init(&live->first_commands, 0, 0);
     live_queue_init(&live->captured, settings.policy);
     live_queue_init(&live->rendered, settings.policy);
     live_queue_init(&live->to_estimate, settings.policy);
@@ -511,6 +562,7 @@ static int run(int argc, char **argv)
     live_depths_free(&live->depths);
     pthread_mutex_destroy(&live->focus.lock);
     pthread_mutex_destroy(&live->lock);
+    sem_destroy(&live->first_commands);
     if (live->wake_fd >= 0)
         close(live->wake_fd);
     free(live);

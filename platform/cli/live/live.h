@@ -4,6 +4,7 @@
 #define RF_CLI_LIVE_H
 
 #include <pthread.h>
+#include <semaphore.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,9 +30,10 @@ struct live_settings {
     double size[2], fps, frames, duration, patience, blur_most, steady;
     int format, policy;
     bool fast, loop, no_commands, list, dmabuf;
+    bool offline; /* from files to files: nothing goes by the clock on the wall */
 };
 
-enum { POLICY_NEWEST, POLICY_EVERY };
+enum { POLICY_DEFAULT = -1, POLICY_NEWEST, POLICY_EVERY };
 
 /* live_queue.c: pictures on their way from one thread to the next -------------------------- */
 
@@ -117,8 +119,9 @@ struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, i
 void live_depths_put(struct live_depths *depths, struct live_depth_map *map,
                      int64_t timestamp_ns, bool still);
 /*
- * The map within half a frame of a moment, or the newest one and *paired = false when none
- * comes in time; NULL when there is none at all. Used until the next call.
+ * The map within half a frame of a moment, else *paired = false and the newest one, or, when every
+ * frame counts, the one nearest in time, which does not hang on how far depth is ahead; NULL when
+ * there is none at all. Used until the next call.
  */
 const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
                                               int64_t half_ns, bool *paired);
@@ -208,6 +211,7 @@ struct live {
     atomic_bool quit;
     int wake_fd; /* eventfd: readable when it is over; for the thread of the commands */
     int command_fd; /* listens on the socket of the commands, or -1 */
+    sem_t first_commands; /* offline: those that stand on standard input have been read */
     bool socket_is_ours;
     pthread_mutex_t lock;
     int exit_code; /* under the lock, with what and why of the first failure */

@@ -68,6 +68,23 @@ static bool hear(struct client *client)
     return got > 0;
 }
 
+enum { FIRST_MS = 250, FIRST_READS = 4096 };
+
+/* What stands on standard input from the beginning: a file whole, and of a pipe what whoever
+ * fills it has written, for which it is given a moment. Of a terminal nothing. */
+static void hear_first(struct client *client)
+{
+    struct pollfd fd = {.fd = client->fd, .events = POLLIN};
+
+    if (client->fd < 0 || isatty(client->fd))
+        return;
+    for (int i = 0; i < FIRST_READS && poll(&fd, 1, i == 0 ? FIRST_MS : 0) > 0; i++)
+        if (!hear(client)) {
+            client->fd = -1;
+            break;
+        }
+}
+
 /* A connection becomes a client, where there is room for one. */
 static void welcome(struct live *live, struct client *clients)
 {
@@ -94,6 +111,9 @@ void *live_command_thread(void *argument)
         clients[i] = (struct client){.live = live, .fd = -1};
     if (!live->settings->no_commands)
         clients[0].fd = STDIN_FILENO;
+    if (live->settings->offline)
+        hear_first(&clients[0]);
+    sem_post(&live->first_commands);
     while (!live_is_over(live) && (clients[0].fd >= 0 || live->command_fd >= 0)) {
         struct pollfd fds[MOST_FDS] = {
             [WAKE] = {.fd = live->wake_fd, .events = POLLIN},

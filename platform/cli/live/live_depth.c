@@ -35,16 +35,32 @@ void live_depths_end(struct live_depths *depths)
     pthread_mutex_unlock(&depths->lock);
 }
 
+/* The last map from before the present frame, or NULL. */
+static const struct live_depth_map *last_before(const struct live_depths *depths)
+{
+    const struct live_depth_map *found = NULL;
+
+    for (int i = 0; i < LIVE_DEPTHS; i++) {
+        const struct live_depth_map *map = &depths->map[i];
+
+        if (map->number > 0 && map->timestamp_ns < depths->needed_ns &&
+            (!found || map->timestamp_ns > found->timestamp_ns))
+            found = map;
+    }
+    return found;
+}
+
 /* The oldest map that may be overwritten, or NULL. When every frame counts, only those
- * from before the present frame may. */
+ * from before the present frame may, but the last of them: it may be the nearest. */
 static struct live_depth_map *oldest(struct live_depths *depths)
 {
+    const struct live_depth_map *const last = depths->every ? last_before(depths) : NULL;
     struct live_depth_map *found = NULL;
 
     for (int i = 0; i < LIVE_DEPTHS; i++) {
         struct live_depth_map *map = &depths->map[i];
 
-        if (i == depths->pinned)
+        if (i == depths->pinned || map == last)
             continue;
         if (map->number > 0 && depths->every && map->timestamp_ns >= depths->needed_ns)
             continue;
@@ -89,7 +105,14 @@ void live_depths_put(struct live_depths *depths, struct live_depth_map *map,
     pthread_mutex_unlock(&depths->lock);
 }
 
-/* The map nearest in time, and the newest. */
+static bool is_nearer(int64_t a, int64_t b, int64_t time)
+{
+    const int64_t far_a = llabs(a - time), far_b = llabs(b - time);
+
+    return far_a < far_b || (far_a == far_b && a < b);
+}
+
+/* The map nearest in time, the earlier of two, and the newest. */
 static const struct live_depth_map *nearest(const struct live_depths *depths,
                                             int64_t time,
                                             const struct live_depth_map **newest)
@@ -102,8 +125,7 @@ static const struct live_depth_map *nearest(const struct live_depths *depths,
 
         if (map->number == 0)
             continue;
-        if (!found ||
-            llabs(map->timestamp_ns - time) < llabs(found->timestamp_ns - time))
+        if (!found || is_nearer(map->timestamp_ns, found->timestamp_ns, time))
             found = map;
         if (!*newest || map->number > (*newest)->number)
             *newest = map;
@@ -140,7 +162,7 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths,
                     ? pthread_cond_wait(&depths->changed, &depths->lock)
                     : pthread_cond_timedwait(&depths->changed, &depths->lock, &until);
     }
-    if (!*paired)
+    if (!*paired && !depths->every)
         map = newest;
     depths->pinned = map ? (int)(map - depths->map) : -1;
     pthread_mutex_unlock(&depths->lock);

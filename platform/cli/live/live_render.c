@@ -133,7 +133,6 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     bool memory;
     int status;
 
-    advance(live, picture);
     if (!map)
         return true;
     if (live->settings->steady > 0) {
@@ -173,6 +172,7 @@ void live_render(struct live *live)
 {
     const int64_t begin = live_now_ns();
     const double duration = live->settings->duration;
+    const bool offline = live->settings->offline;
     int size[2] = {0, 0};
     bool ended = false;
 
@@ -181,10 +181,14 @@ void live_render(struct live *live)
         bool go_on = true;
 
         if (picture) {
-            go_on = process(live, picture, size);
+            advance(live, picture);
+            if (offline && duration > 0 && (double)live->clock_ns / 1e9 >= duration)
+                go_on = false;
+            else
+                go_on = process(live, picture, size);
             live_queue_return(&live->captured, picture);
         }
-        if (duration > 0 && (double)(live_now_ns() - begin) / 1e9 >= duration)
+        if (!offline && duration > 0 && (double)(live_now_ns() - begin) / 1e9 >= duration)
             go_on = false;
         if (!go_on || interrupt_came())
             break;
