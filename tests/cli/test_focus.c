@@ -26,9 +26,10 @@ static void begin(struct live_focus *focus, double disparity)
 /* The focus in a frame of now; where a point is asked for, 0.25 is there. */
 static double look(struct live_focus *focus)
 {
+    struct live_range of_frame = range;
     double disparity, blur, point[2];
 
-    live_focus_frame(focus, now, (double)NAN, &range);
+    live_focus_frame(focus, now, (double)NAN, &of_frame);
     while (live_focus_point(focus, point))
         live_focus_found(focus, point, 0.25);
     live_focus_get(focus, &disparity, &blur);

@@ -225,6 +225,48 @@ class Live(unittest.TestCase):
         r = self.report(*args, '--loop', '--frames', '90')
         self.assertEqual(r['frames_out'], 90)
 
+    def test_the_range_follows_who_walks_in(self):
+        # A wall from 3 m on the left to 3.6; from half a second on somebody at 1 m before it.
+        width, frames = 128, 75
+        frame = width * 48 * 3
+        with open('photo.raw', 'wb') as photo:
+            photo.write(bytes((x * 37 + y * 91 + x * y * 13) % 199 for y in range(48)
+                              for x in range(width) for _ in range(3)) * frames)
+        with open('depth.raw', 'wb') as depth:
+            for t in range(frames):
+                depth.write(b''.join(struct.pack('<H', 1000 if t >= 15 and 48 <= x < 56 and y > 4
+                                                 else 3000 + 10 * x)
+                                     for y in range(24) for x in range(64)))
+        args = ['--camera', 'raw:photo.raw,RGB24,128x48,30', '--depth',
+                'raw:depth.raw,Z16,64x24,30', '--focus-at', '2,24', '--blur', '4', '--blur-most',
+                '40', '--highlights', 'off', '--out', 'raw:out.rgb']
+        sharp = content('photo.raw')[:frame]
+
+        def apart(a, b, x0, x1):
+            """Mean difference of two pictures between two columns."""
+            return sum(abs(a[(y * width + x) * 3] - b[(y * width + x) * 3]) for y in range(12, 48)
+                       for x in range(x0, x1)) / 36 / (x1 - x0)
+        for more in [], ['--steady', '0.8']:
+            r = self.report(*args, *more)
+            data = content('out.rgb')
+            self.assertEqual(len(data), frames * frame)
+            pictures = [data[i:i + frame] for i in range(0, len(data), frame)]
+            # The wall at 3 m is in focus, and stays so; the person is not.
+            for picture in pictures:
+                self.assertLess(apart(picture, sharp, 0, 4), 1)
+            self.assertGreater(apart(pictures[-1], sharp, 98, 110), 20)
+            self.assertAlmostEqual(r['near_m'], 1, delta=0.03)
+            self.assertAlmostEqual(r['far_m'], 3.63, delta=0.1)
+            self.assertAlmostEqual(r['focus'], (1 / 3.02 - 1 / 3.63) / (1 - 1 / 3.63), delta=0.01)
+            # Nothing moves while nothing comes, and what stands still is blurred as before.
+            self.assertEqual(pictures[:15], pictures[:1] * 15)
+            steps = [apart(a, b, 24, 50) for a, b in zip(pictures, pictures[1:])]
+            self.assertGreater(apart(pictures[0], sharp, 24, 50), 20)
+            self.assertLess(max(steps), 2)
+        # What is given stays.
+        r = self.report(*args, '--near', '0.5', '--far', 'inf')
+        self.assertEqual((r['near_m'], r['far_m'], r['blur']), (0.5, 'infinity', 4))
+
     def test_faults_are_recovered_from(self):
         script = ('replay::size 64x48;fps 50;frames 100;at 10 fail;at 20 vanish 300;at 30 corrupt;'
                   'at 35 drop 3;at 40 timestamp -200;at 50 queue-error;at 60 stride 99;at 70 late 30')

@@ -106,22 +106,26 @@ static const struct option options[] = {
      .least = -INFINITY,
      .greatest = INFINITY,
      .count = 2,
-     .help = "focus on the surface at that pixel of the first frame; without any --focus...: "
-             "where the camera's lens is, if it says so, else the centre"},
+     .help = "focus on the surface at that pixel of the first frame, and stay at its distance; "
+             "without any --focus...: where the camera's lens is, if it says so, else the "
+             "centre"},
     {.kind = OPTION_NUMBER,
      .name = "--blur",
      .argument = "K",
      .offset = offsetof(struct live_settings, lens.blur),
      .least = 0,
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
-     .help = "blur radius in pixels at the greatest distance from the focus, default 20"},
+     .help = "blur radius in pixels of what lies farthest from the focus, default 20; when the "
+             "range of distances moves, the lens stays, and goes back to K within some ten "
+             "seconds"},
     {.kind = OPTION_NUMBER,
      .name = "--blur-most",
      .argument = "K",
      .offset = offsetof(struct live_settings, blur_most),
      .least = 0,
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
-     .help = "the most that the command 'blur' may ask for, default twice --blur"},
+     .help = "the most that the command 'blur' may ask for, and a range that widens; default "
+             "twice --blur"},
     {.kind = OPTION_HEADING, .help = "Rendering"},
     METHOD_OPTION(struct live_settings, engine),
     METHOD_OPTIONS(struct live_settings, engine),

@@ -92,10 +92,21 @@ json_t *live_times_json(const struct live_times *times);
 
 enum { LIVE_DEPTHS = 16 };
 
+/* What disparities mean, in 1/m: 1 is near, 0 is far. Both 0: not known. */
+struct live_range {
+    double near, far;
+};
+
+static inline bool live_range_is_known(const struct live_range *range)
+{
+    return range->near > range->far;
+}
+
 struct live_depth_map {
     uint16_t *disparity; /* packed */
     size_t capacity;
     int width, height;
+    struct live_range range;
     int64_t timestamp_ns;
     uint64_t number; /* 0: empty */
 };
@@ -126,12 +137,38 @@ void live_depths_put(struct live_depths *depths, struct live_depth_map *map,
 const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
                                               int64_t half_ns, bool *paired);
 
-/* live_focus.c: focus and blur as they are asked for -------------------------------------- */
+/* live_range.c: a range that follows what is seen ------------------------------------------ */
 
-/* What disparities mean, in 1/m: 1 is near, 0 is far. Both 0: not known. */
-struct live_range {
-    double near, far;
+struct live_range_end {
+    bool moves;
+    double unused_s; /* so long it could have been nearer to the other */
 };
+
+struct live_ranger {
+    struct live_range range;
+    bool near_given, far_given;  /* those stay */
+    struct live_range past[3];   /* what the last maps showed */
+    uint64_t maps;
+    struct live_range_end near_end, far_end;
+    int64_t last_ns;
+    uint32_t *counts; /* of each code; when it is first needed */
+};
+
+/* Metres that are given; 0: those that are seen. */
+void live_range_begin(struct live_ranger *ranger, double near_m, double far_m);
+void live_range_end(struct live_ranger *ranger);
+/* The nearest and the farthest surface of a map of packed 16-bit distances, where 0 is unknown;
+ * false: it shows none, or there is no memory. */
+bool live_range_measure(struct live_ranger *ranger, const struct refocus_depth_map *map,
+                        struct live_range *seen);
+/* ranger->range, for a map taken then that shows this. The first one sets it. */
+void live_range_follow(struct live_ranger *ranger, const struct live_range *seen,
+                       int64_t now_ns);
+/* Puts a map of a wider range in place of a map, in memory that `wide` owns. */
+int live_range_widen(struct live_depth_map *wide, const struct live_depth_map **map,
+                     const struct live_range *range);
+
+/* live_focus.c: focus and blur as they are asked for -------------------------------------- */
 
 /* Something to focus on. A point is looked up in the next frame, and is a distance from then on,
  * or a disparity where distances are not known. */
@@ -150,6 +187,7 @@ struct live_focus {
     int64_t now_ns;
     struct live_range range; /* both of the present frame */
     double blur, blur_most;
+    double stretch; /* of blur, by ranges that have moved: 1 when none has for long */
     int width, height; /* of the pictures; 0: none has come */
 };
 
@@ -159,9 +197,10 @@ void live_focus_init(struct live_focus *focus, const struct live_settings *setti
 bool live_focus_command(struct live_focus *focus, const char *line, bool *quit, char *why,
                         size_t size);
 /* A frame, and when it was taken: by that, and not by when it is worked on, pulls go on. The
- * lens of its camera, or NAN, and what its disparities mean. */
+ * lens of its camera, or NAN, and what its disparities mean, which becomes as wide as it must be
+ * to hold what is in focus. */
 void live_focus_frame(struct live_focus *focus, int64_t now_ns, double lens_dioptres,
-                      const struct live_range *range);
+                      struct live_range *range);
 /* Whether there is a point to look up in that frame, for live_focus_found(). */
 bool live_focus_point(struct live_focus *focus, double point[2]);
 void live_focus_found(struct live_focus *focus, const double point[2], double disparity);
@@ -205,8 +244,8 @@ struct live {
     int64_t offered, key; /* of the thread that captures */
     struct live_depths depths;
     struct live_focus focus;
-    struct refocus_depth_report range; /* under depths.lock */
-    bool range_known; /* to the thread of depth */
+    struct live_ranger ranger; /* to the thread of depth */
+    struct live_depth_map wide; /* to the thread that renders */
 
     atomic_bool quit;
     int wake_fd; /* eventfd: readable when it is over; for the thread of the commands */
@@ -230,6 +269,7 @@ struct live {
     int64_t first_out_ns, last_out_ns;
     /* To the thread that renders, of the last frame: */
     double lens_dioptres, focus_disparity, blur;
+    struct live_range range;
     int64_t clock_ns, last_frame_ns; /* the clock is that of the frames, from 0 on */
     uint64_t frames_rendered;
 };

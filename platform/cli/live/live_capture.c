@@ -315,12 +315,11 @@ static bool reserve(struct lane *lane, const struct refocus_frame *frame)
 }
 
 /* What the samples mean: the option, else millimetres for depth cameras and disparities for
- * pictures. The range that the first frame shows is kept, so that nothing flickers. */
+ * pictures. */
 static int describe(struct lane *lane, const struct refocus_frame *frame,
                     struct refocus_depth_map *map, struct refocus_reason *reason)
 {
-    struct live *live = lane->live;
-    const struct depth_settings *settings = &live->settings->depth;
+    const struct depth_settings *settings = &lane->live->settings->depth;
     const bool picture = frame->format == REFOCUS_FRAME_GREY ||
                          strncmp(lane->name, "file:", 5) == 0;
     const char *unit = settings->unit ? settings->unit : picture ? "disparity" : "mm";
@@ -337,10 +336,6 @@ static int describe(struct lane *lane, const struct refocus_frame *frame,
     }
     map->near_m = isnan(settings->near_m) ? 0 : settings->near_m;
     map->far_m = isnan(settings->far_m) ? 0 : settings->far_m;
-    if (map->meaning == REFOCUS_DEPTH_DISTANCE && live->range_known) {
-        map->near_m = live->range.near_m;
-        map->far_m = live->range.far_m;
-    }
     return REFOCUS_OK;
 }
 
@@ -366,12 +361,37 @@ static int register_map(struct lane *lane, struct refocus_depth_map *map,
     return REFOCUS_OK;
 }
 
+static struct live_range range_of(double near_m, double far_m)
+{
+    return near_m > 0 && far_m > near_m ? (struct live_range){1 / near_m, 1 / far_m}
+                                        : (struct live_range){0, 0};
+}
+
+/* What disparity 1 and 0 stand for in this map: distances follow the scene, but for what is
+ * given. */
+static struct live_range follow_range(struct live *live, struct refocus_depth_map *map,
+                                      int64_t timestamp_ns)
+{
+    struct live_ranger *ranger = &live->ranger;
+    struct live_range seen;
+
+    if (map->meaning != REFOCUS_DEPTH_DISTANCE || (ranger->near_given && ranger->far_given))
+        return range_of(map->near_m, map->far_m);
+    if (live_range_measure(ranger, map, &seen))
+        live_range_follow(ranger, &seen, timestamp_ns);
+    if (ranger->maps > 0) {
+        map->near_m = 1 / ranger->range.near;
+        map->far_m = 1 / ranger->range.far; /* INFINITY of 0 */
+    }
+    return ranger->maps > 0 ? ranger->range : (struct live_range){0, 0};
+}
+
 static int deliver_depth(struct lane *lane, const struct refocus_frame *frame, int64_t now_ns,
                          struct refocus_reason *reason)
 {
     struct live *live = lane->live;
-    struct refocus_depth_report report;
     struct refocus_depth_map map;
+    struct live_range range;
     struct live_depth_map *to;
     int status = reserve(lane, frame) ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
     double ms;
@@ -384,20 +404,16 @@ static int deliver_depth(struct lane *lane, const struct refocus_frame *frame, i
         status = register_map(lane, &map, reason);
     if (status != REFOCUS_OK)
         return status;
+    range = follow_range(live, &map, frame->timestamp_ns);
     ms = (double)(live_now_ns() - now_ns) / 1e6;
     to = live_depths_fill(&live->depths, map.width, map.height);
     if (!to)
         return live_is_over(live) ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
     now_ns = live_now_ns();
-    status = refocus_depth_to_disparity(&map, to->disparity, (ptrdiff_t)map.width * 2, &report);
+    status = refocus_depth_to_disparity(&map, to->disparity, (ptrdiff_t)map.width * 2, NULL);
     if (status != REFOCUS_OK)
         return status;
-    if (!live->range_known) {
-        pthread_mutex_lock(&live->depths.lock);
-        live->range = report;
-        pthread_mutex_unlock(&live->depths.lock);
-        live->range_known = report.near_m > 0 && report.far_m > report.near_m;
-    }
+    to->range = range;
     live_times_add(&lane->stage->times, ms + (double)(live_now_ns() - now_ns) / 1e6);
     lane->done = frame->flags & REFOCUS_FRAME_STILL;
     live_depths_put(&live->depths, to, frame->timestamp_ns, lane->done);
@@ -416,8 +432,11 @@ void *live_depth_thread(void *argument)
                         .newest_wins = live->settings->policy == POLICY_NEWEST &&
                                        !live->settings->fast,
                         .deliver = deliver_depth};
+    const struct depth_settings *depth = &live->settings->depth;
     const double fps = live->mode.fps > 0 ? live->mode.fps : 30;
 
+    live_range_begin(&live->ranger, isnan(depth->near_m) ? 0 : depth->near_m,
+                     isnan(depth->far_m) ? 0 : depth->far_m);
     /* As long as a picture waits for its depth: else a slow machine would be behind for ever. */
     lane.late_ns = (int64_t)(1.5e9 / fps);
 
@@ -428,6 +447,7 @@ void *live_depth_thread(void *argument)
     refocus_converter_destroy(&lane.converter);
     free(lane.samples);
     free(lane.registered);
+    live_range_end(&live->ranger);
     live_depths_end(&live->depths);
     return NULL;
 }
@@ -445,9 +465,8 @@ int live_read_fixed_depth(struct live *live)
         to = live_depths_fill(&live->depths, width, height);
         if (to) {
             memcpy(to->disparity, input.disparity, (size_t)width * (size_t)height * 2);
+            to->range = range_of(input.report.near_m, input.report.far_m);
             live_depths_put(&live->depths, to, 0, true);
-            live->range = input.report;
-            live->range_known = input.report.near_m > 0;
         } else {
             status = report_failure(EXIT_FAILED, live->settings->depth.file,
                                     "not enough memory");

@@ -180,6 +180,7 @@ static int estimate_one(struct live *live, const struct live_picture *picture,
     }
     if (to) {
         to_disparity(live->estimator, &estimate, to->disparity);
+        to->range = (struct live_range){0, 0};
         live_times_add(&live->depth.times, ms);
         live->depth.frames++;
         live_depths_put(&live->depths, to, picture->key, false);

@@ -15,11 +15,7 @@ void live_focus_init(struct live_focus *focus, const struct live_settings *setti
     focus->to.point[0] = lens->focus_at[0]; /* NAN: the centre */
     focus->to.point[1] = lens->focus_at[1];
     focus->from = focus->to;
-}
-
-static bool is_known(const struct live_range *range)
-{
-    return range->near > range->far;
+    focus->stretch = 1;
 }
 
 static double clamp(double disparity)
@@ -35,7 +31,9 @@ static double disparity_of(const struct live_focus *focus, const struct live_tar
         return 0.5;
     if (!target->dioptres)
         return target->value;
-    return is_known(range) ? (target->value - range->far) / (range->near - range->far) : 0.5;
+    if (!live_range_is_known(range))
+        return 0.5;
+    return (target->value - range->far) / (range->near - range->far);
 }
 
 /* How far the pull is, 0 to 1: eased, so that it neither starts nor ends with a jerk. */
@@ -63,7 +61,7 @@ static struct live_target standing(const struct live_focus *focus)
     const struct live_range *range = &focus->range;
     struct live_target target = {.known = true, .value = present(focus)};
 
-    target.dioptres = is_known(range);
+    target.dioptres = live_range_is_known(range);
     if (target.dioptres)
         target.value = range->far + target.value * (range->near - range->far);
     return target;
@@ -90,19 +88,51 @@ static void follow_lens(struct live_target *target, double dioptres)
     }
 }
 
+/* What is in focus need not be in the scene; at both ends of a pull. */
+static void include(struct live_range *range, const struct live_target *target)
+{
+    if (!target->known || !target->dioptres || !live_range_is_known(range))
+        return;
+    range->near = fmax(range->near, target->value);
+    range->far = fmin(range->far, fmax(target->value, 0));
+}
+
+/*
+ * K is the blur of what lies farthest from the focus, and it is for a lens, whose blur goes with
+ * differences of 1/z. When the range moves the lens stays: K is stretched as the range is, so that
+ * what was there is blurred as before, up to blur_most. Then the lens goes back to K, so slowly
+ * that nobody sees it.
+ */
+static void stretch(struct live_focus *focus, const struct live_range *range, double seconds)
+{
+    static const double back_s = 10;
+    const struct live_range *was = &focus->range;
+
+    if (live_range_is_known(range) && live_range_is_known(was))
+        focus->stretch *= (range->near - range->far) / (was->near - was->far);
+    else
+        focus->stretch = 1;
+    focus->stretch = pow(focus->stretch, exp(-seconds / back_s));
+}
+
 void live_focus_frame(struct live_focus *focus, int64_t now_ns, double lens_dioptres,
-                      const struct live_range *range)
+                      struct live_range *range)
 {
     pthread_mutex_lock(&focus->lock);
+    if (isfinite(lens_dioptres) && live_range_is_known(range)) {
+        follow_lens(&focus->from, lens_dioptres);
+        follow_lens(&focus->to, lens_dioptres);
+    }
+    include(range, &focus->from);
+    include(range, &focus->to);
+    stretch(focus, range, (double)(now_ns - focus->now_ns) / 1e9);
     focus->now_ns = now_ns;
     focus->range = *range;
     if (!focus->begun)
         focus->begin_ns = now_ns;
     focus->begun = true;
-    if (isfinite(lens_dioptres) && is_known(range)) {
-        follow_lens(&focus->from, lens_dioptres);
-        follow_lens(&focus->to, lens_dioptres);
-    }
+    if (progress(focus) >= 1)
+        focus->from = focus->to;
     pthread_mutex_unlock(&focus->lock);
 }
 
@@ -133,7 +163,7 @@ void live_focus_found(struct live_focus *focus, const double point[2], double di
         if (target[i]->known || !same_point(target[i]->point, point))
             continue;
         target[i]->known = true;
-        target[i]->dioptres = is_known(&focus->range);
+        target[i]->dioptres = live_range_is_known(&focus->range);
         target[i]->value = clamp(disparity);
         if (target[i]->dioptres)
             target[i]->value = focus->range.far +
@@ -154,7 +184,7 @@ void live_focus_get(struct live_focus *focus, double *disparity, double *blur)
 {
     pthread_mutex_lock(&focus->lock);
     *disparity = present(focus);
-    *blur = focus->blur;
+    *blur = fmin(focus->blur * focus->stretch, focus->blur_most);
     pthread_mutex_unlock(&focus->lock);
 }
 
@@ -212,6 +242,7 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest,
             return false;
         }
         focus->blur = values[0];
+        focus->stretch = 1;
     } else if (point && !is_inside(focus, values)) {
         snprintf(why, size, "%g,%g is outside of pictures of %dx%d", values[0], values[1],
                  focus->width, focus->height);

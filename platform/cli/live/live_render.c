@@ -64,34 +64,28 @@ static void advance(struct live *live, const struct live_picture *picture)
     live->last_frame_ns = picture->timestamp_ns;
 }
 
-static void find_focus(struct live *live, const struct live_picture *picture)
-{
-    struct live_range range = {0, 0};
-
-    pthread_mutex_lock(&live->depths.lock);
-    if (live->range.near_m > 0 && live->range.far_m > live->range.near_m)
-        range = (struct live_range){1 / live->range.near_m, 1 / live->range.far_m};
-    pthread_mutex_unlock(&live->depths.lock);
-    live->lens_dioptres = (double)picture->lens_dioptres;
-    live_focus_frame(&live->focus, live->clock_ns, live->lens_dioptres, &range);
-    find_points(live, picture->image.width, picture->image.height);
-    live_focus_get(&live->focus, &live->focus_disparity, &live->blur);
-}
-
 static int refocus(struct live *live, const struct live_picture *picture,
                    const struct live_depth_map *map, const struct refocus_image *out)
 {
     struct refocus_render_params params = live->engine->params;
-    const struct refocus_disparity disparity = refocus_disparity16(
-        map->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
-    int64_t begin = live_now_ns(), prepared;
-    int status = refocus_prepare(live->engine->renderer, &picture->image, &disparity);
+    struct refocus_disparity disparity;
+    int64_t begin = live_now_ns();
+    int status;
 
+    live->lens_dioptres = (double)picture->lens_dioptres;
+    live->range = map->range;
+    live_focus_frame(&live->focus, live->clock_ns, live->lens_dioptres, &live->range);
+    status = live_range_widen(&live->wide, &map, &live->range);
     if (status != REFOCUS_OK)
         return status;
-    prepared = live_now_ns();
-    live_times_add(&live->prepare.times, (double)(prepared - begin) / 1e6);
-    find_focus(live, picture);
+    disparity = refocus_disparity16(map->disparity, map->width, map->height,
+                                    (ptrdiff_t)map->width * 2);
+    status = refocus_prepare(live->engine->renderer, &picture->image, &disparity);
+    if (status != REFOCUS_OK)
+        return status;
+    live_times_add(&live->prepare.times, (double)(live_now_ns() - begin) / 1e6);
+    find_points(live, picture->image.width, picture->image.height);
+    live_focus_get(&live->focus, &live->focus_disparity, &live->blur);
     begin = live_now_ns();
     params.focus_disparity = (float)live->focus_disparity;
     params.max_blur_radius = (float)live->blur;
@@ -195,5 +189,6 @@ void live_render(struct live *live)
     }
     interrupt_watch(NULL);
     live_steady_end(&live->steady);
+    free(live->wide.disparity);
     live_queue_close(&live->rendered);
 }

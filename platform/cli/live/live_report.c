@@ -37,6 +37,12 @@ static double outside_rendering(const struct live *live)
     return inside + outside > 0 ? outside / (inside + outside) : 0;
 }
 
+/* 0: not known. */
+static double metres(const struct live_range *range, bool near)
+{
+    return live_range_is_known(range) ? 1 / (near ? range->near : range->far) : 0;
+}
+
 int live_report(struct live *live)
 {
     const struct live_settings *settings = live->settings;
@@ -89,6 +95,8 @@ int live_report(struct live *live)
         /* Of the last frame, as render says it. */
         json_object_set_new(json, "focus", report_number_json(live->focus_disparity));
         json_object_set_new(json, "blur", report_number_json(live->blur));
+        json_object_set_new(json, "near_m", report_metres_json(metres(&live->range, true)));
+        json_object_set_new(json, "far_m", report_metres_json(metres(&live->range, false)));
         json_object_set_new(json, "stages_ms",
                             json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
                                       live_times_json(&live->capture.times), "depth",

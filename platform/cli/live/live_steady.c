@@ -22,6 +22,20 @@ static int fit(struct live_steady *steady, double strength, const struct live_de
     return steady->map.disparity ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
 }
 
+/* The past on the scale of a map, where its range has moved. */
+static int follow_range(struct live_steady *steady, const struct live_range *range)
+{
+    const struct live_range was = steady->map.range;
+    const double span = range->near - range->far;
+
+    steady->map.range = *range;
+    if (!live_range_is_known(&was) || !live_range_is_known(range) ||
+        (was.near == range->near && was.far == range->far))
+        return REFOCUS_OK;
+    return refocus_temporal_rescale(steady->filter, (was.near - was.far) / span,
+                                    (was.far - range->far) / span);
+}
+
 int live_steady_run(struct live_steady *steady, double strength,
                     const struct live_depth_map **map, const struct refocus_image *photo)
 {
@@ -34,7 +48,10 @@ int live_steady_run(struct live_steady *steady, double strength,
 
     if (status == REFOCUS_OK && steady->map.number != from->number) {
         /* Else one map for several frames. */
-        status = refocus_temporal_run(steady->filter, photo, &in, steady->map.disparity, stride);
+        status = follow_range(steady, &from->range);
+        if (status == REFOCUS_OK)
+            status =
+                refocus_temporal_run(steady->filter, photo, &in, steady->map.disparity, stride);
         steady->map.number = from->number;
         steady->map.timestamp_ns = from->timestamp_ns;
         live_times_add(&steady->times, (double)(live_now_ns() - begin) / 1e6);

@@ -9,7 +9,7 @@
 static void check(struct live_focus *focus)
 {
     static int64_t now;
-    const struct live_range range = {now / 100000000 % 3, 1};
+    struct live_range range = {now / 100000000 % 3, 1};
     double disparity, blur, point[2];
 
     live_focus_frame(focus, now += 100000000, (double)NAN, &range);
