@@ -90,6 +90,8 @@ int rf_format_planes(uint32_t format);
 /* Bytes of a row and number of rows of a plane. */
 int64_t rf_plane_row(uint32_t format, int plane, int width);
 int rf_plane_rows(uint32_t format, int plane, int height);
+/* Whether so many rows of so many bytes can lie so far apart in memory, in either direction. */
+bool rf_stride_fits(ptrdiff_t stride, int64_t row, int rows);
 /* Stride of plane > 0 that goes with the stride of plane 0. */
 int64_t rf_plane_stride(uint32_t format, int plane, int64_t stride);
 /* Bytes of a frame whose planes follow each other; 0 when a side is out of its

@@ -158,13 +158,15 @@ static int check(const struct refocus_frame *frame, struct refocus_reason *reaso
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the frame has no size or "
                                                              "format");
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
-        const ptrdiff_t stride =
-            frame->stride[i] < 0 ? -frame->stride[i] : frame->stride[i];
+        const int64_t row = rf_plane_row(frame->format, i, frame->width);
 
-        if (!frame->plane[i] || stride < rf_plane_row(frame->format, i, frame->width))
+        if (!frame->plane[i] ||
+            !rf_stride_fits(frame->stride[i], row,
+                            rf_plane_rows(frame->format, i, frame->height)))
             return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                    "plane %d of the frame: its stride of %lld bytes is "
-                                   "less than a row", i, (long long)frame->stride[i]);
+                                   "less than a row, or more than memory",
+                                   i, (long long)frame->stride[i]);
     }
     return REFOCUS_OK;
 }
@@ -250,8 +252,7 @@ int refocus_convert_rgb8(struct refocus_converter *converter,
     if (!converter || !frame || !out || !out->plane[0] ||
         out->format != REFOCUS_FORMAT_RGB8 || out->width != frame->width ||
         out->height != frame->height ||
-        (out->stride[0] < 0 ? -out->stride[0] : out->stride[0]) <
-            (ptrdiff_t)out->width * 3)
+        !rf_stride_fits(out->stride[0], (int64_t)out->width * 3, out->height))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "the picture to convert into must be RGB8 of the "
                                "frame's size");
@@ -298,11 +299,10 @@ static bool fits(const struct refocus_frame *frame, const struct refocus_image *
         out->width != frame->width || out->height != frame->height)
         return false;
     for (int i = 0; i < rf_format_planes(rf_frame_format_of(out->format)); i++) {
-        const ptrdiff_t row =
-            (ptrdiff_t)rf_plane_row(rf_frame_format_of(out->format), i, out->width);
+        const uint32_t format = rf_frame_format_of(out->format);
 
-        if (!out->plane[i] ||
-            (out->stride[i] < 0 ? -out->stride[i] : out->stride[i]) < row)
+        if (!out->plane[i] || !rf_stride_fits(out->stride[i], rf_plane_row(format, i, out->width),
+                                              rf_plane_rows(format, i, out->height)))
             return false;
     }
     return true;

@@ -62,6 +62,13 @@ int rf_plane_rows(uint32_t format, int plane, int height)
     return plane == 0 ? height : (height + 1) / 2;
 }
 
+bool rf_stride_fits(ptrdiff_t stride, int64_t row, int rows)
+{
+    const ptrdiff_t most = PTRDIFF_MAX / (rows > 0 ? rows : 1);
+
+    return (stride >= row && stride <= most) || (stride <= -row && stride >= -most);
+}
+
 int64_t rf_plane_stride(uint32_t format, int plane, int64_t stride)
 {
     if (plane == 0)

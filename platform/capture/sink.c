@@ -5,6 +5,8 @@
 #include "pictures.h"
 #include "sink.h"
 
+static const double most_fps = 10000; /* as of sources */
+
 static const struct rf_sink_ops *const kinds[] = {
 #ifdef RF_HAVE_V4L2
     &rf_sink_v4l2,
@@ -163,7 +165,7 @@ int refocus_sink_start_image(struct refocus_sink *sink,
     sink->format = like->format;
     sink->matrix = like->matrix;
     sink->range = like->range;
-    sink->fps = fps > 0 ? fps : 30;
+    sink->fps = !(fps > 0) ? 30 : fps < most_fps ? fps : most_fps;
     status = sink->ops->start(sink, like->width, like->height, sink->fps, reason);
     sink->started = status == REFOCUS_OK;
     return status;
@@ -178,6 +180,21 @@ int refocus_sink_start(struct refocus_sink *sink, int width, int height, double 
     return refocus_sink_start_image(sink, &like, fps, reason);
 }
 
+/* Whether all rows of a picture of the sink's format and size can be there. */
+static bool is_whole(const struct refocus_image *image)
+{
+    const uint32_t format = image->format == REFOCUS_FORMAT_RGB8
+                                ? (uint32_t)REFOCUS_FRAME_RGB24
+                                : rf_frame_format_of(image->format);
+
+    for (int i = 0; i < rf_format_planes(format); i++)
+        if (!image->plane[i] ||
+            !rf_stride_fits(image->stride[i], rf_plane_row(format, i, image->width),
+                            rf_plane_rows(format, i, image->height)))
+            return false;
+    return true;
+}
+
 int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *image,
                        struct refocus_reason *reason)
 {
@@ -187,8 +204,8 @@ int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *im
     reason->text[0] = '\0';
     if (!sink || !sink->started)
         return rf_capture_fail(reason, REFOCUS_ERR_STATE, "the sink is not started");
-    if (!image || !image->plane[0] || image->format != sink->format ||
-        image->width != sink->width || image->height != sink->height)
+    if (!image || image->format != sink->format || image->width != sink->width ||
+        image->height != sink->height || !is_whole(image))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "give a picture of the size and format that were "
                                "announced");

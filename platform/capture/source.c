@@ -285,6 +285,9 @@ int refocus_source_set_control(struct refocus_source *source, const char *name,
     reason->text[0] = '\0';
     if (!source || !name)
         return REFOCUS_ERR_ARGUMENT;
+    if (!(value >= -(double)INT32_MAX && value <= (double)INT32_MAX))
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%.60s: %g is no value of a control",
+                               name, value);
     if (!source->ops->set_control)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "sources of the kind '%s' have no controls",
@@ -295,13 +298,19 @@ int refocus_source_set_control(struct refocus_source *source, const char *name,
 void refocus_source_get_counters(const struct refocus_source *source,
                                  struct refocus_source_counters *counters)
 {
-    *counters = source->counters;
+    if (!counters)
+        return;
+    memset(counters, 0, sizeof *counters);
+    if (source)
+        *counters = source->counters;
 }
 
 int refocus_source_list(refocus_source_found *found, void *user)
 {
     int total = 0;
 
+    if (!found)
+        return REFOCUS_ERR_ARGUMENT;
     for (int i = 0; i <= BACKENDS; i++) {
         const struct rf_source_ops *ops = i < BACKENDS ? backends[i] : rf_libcamera();
         const int n = ops && ops->list ? ops->list(found, user) : 0;

@@ -52,7 +52,8 @@ REFOCUS_API int refocus_sink_open(struct refocus_sink **sink, const char *name,
 /**
  * Say what will come: before the first frame, and whenever the size changes.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_UNSUPPORTED (a stream of one size has begun, or the
+ * @param fps  frames a second, of which 10000 at most count; 0 = 30
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (a stream of one size has begun, or the
  *         device has no such size), and as refocus_sink_open()
  */
 REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int height,
@@ -78,11 +79,12 @@ REFOCUS_API int refocus_sink_start_image(struct refocus_sink *sink,
  * Write a frame of the size and format that was announced.
  *
  * @param image  RGB8, or as refocus_sink_start_image() was told; not kept
- * @return REFOCUS_OK, REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader closed the pipe,
- *         the device is unplugged), REFOCUS_ERR_TIMEOUT (the device took none for a
- *         second: the frame is dropped), REFOCUS_ERR_END (the user closed the window,
- *         or pressed Escape or q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never raises
- *         SIGPIPE.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (another size or format, a plane that is
+ *         NULL, a stride below a row), REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader
+ *         closed the pipe, the device is unplugged), REFOCUS_ERR_TIMEOUT (the device took
+ *         none for a second: the frame is dropped), REFOCUS_ERR_END (the user closed the
+ *         window, or pressed Escape or q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never
+ *         raises SIGPIPE.
  */
 REFOCUS_API int refocus_sink_write(struct refocus_sink *sink,
                                    const struct refocus_image *image,

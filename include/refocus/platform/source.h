@@ -214,13 +214,15 @@ REFOCUS_API void refocus_source_interrupt(struct refocus_source *source);
  * Set a control by name: for V4L2 the driver's names in lower case with underscores
  * ("brightness", "focus_absolute"), for libcamera its own ("LensPosition").
  *
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (no such control), REFOCUS_ERR_UNSUPPORTED
- *         (the source has none), REFOCUS_ERR_GONE, REFOCUS_ERR_IO
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (no such control; NAN, or no value of 32
+ *         bits), REFOCUS_ERR_UNSUPPORTED (the source has none), REFOCUS_ERR_GONE,
+ *         REFOCUS_ERR_IO
  */
 REFOCUS_API int refocus_source_set_control(struct refocus_source *source,
                                            const char *name, double value,
                                            struct refocus_reason *reason);
 
+/** What has been counted; zeros of a NULL source. @param counters  NULL is fine */
 REFOCUS_API void refocus_source_get_counters(const struct refocus_source *source,
                                              struct refocus_source_counters *counters);
 
@@ -228,7 +230,8 @@ REFOCUS_API void refocus_source_get_counters(const struct refocus_source *source
 typedef void refocus_source_found(void *user, const char *name,
                                   const char *description);
 
-/** List the cameras of this machine. @return their number or a negative status */
+/** List the cameras of this machine. @return their number or a negative status:
+ *  REFOCUS_ERR_ARGUMENT when @p found is NULL */
 REFOCUS_API int refocus_source_list(refocus_source_found *found, void *user);
 
 /** What this build has, e.g. "v4l2 libcamera file y4m raw replay". Thread-safe. */

@@ -1,0 +1,249 @@
+/* What no caller should give: NULL, strides that memory has no room for. Each function of the
+ * capture headers answers with a status, or does nothing, and writes nowhere. */
+#include "check.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <refocus/platform/convert.h>
+#include <refocus/platform/sink.h>
+
+enum { W = 16, H = 12 };
+static uint8_t memory[W * H * 4];
+static const ptrdiff_t no_strides[] = {0,           1,           -1,
+                                       W - 1,       -(W - 1),    PTRDIFF_MIN,
+                                       PTRDIFF_MAX, PTRDIFF_MIN + 1, PTRDIFF_MIN / 2};
+enum { NO_STRIDES = sizeof no_strides / sizeof *no_strides };
+
+/* Enough for the rows of U and V of 4:2:0 in planes, which have half as many. */
+static bool is_half(ptrdiff_t stride)
+{
+    return stride == W - 1 || stride == 1 - W;
+}
+
+static void sources_of_nothing(void **state)
+{
+    struct refocus_source_counters counters, zeros;
+    struct refocus_source *source = NULL;
+    struct refocus_source_mode mode;
+    const struct refocus_frame *frame;
+
+    (void)state;
+    memset(&counters, 7, sizeof counters);
+    memset(&zeros, 0, sizeof zeros);
+    refocus_source_get_counters(NULL, &counters);
+    assert_memory_equal(&counters, &zeros, sizeof zeros);
+    refocus_source_get_counters(NULL, NULL);
+    assert_status(refocus_source_open(NULL, "replay:", NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_open(&source, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_get_mode(NULL, 0, &mode), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_start(NULL, NULL, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_restart(NULL, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_wait(NULL, 0, &frame, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_set_control(NULL, "focus", 1, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_list(NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    refocus_source_close(NULL);
+    refocus_source_close(&source);
+    refocus_source_stop(NULL);
+    refocus_source_interrupt(NULL);
+    refocus_source_release(NULL, NULL);
+    assert_null(refocus_frame_format_name(UINT32_MAX));
+
+    source = started("replay::size 16x12;frames 2", REFOCUS_SOURCE_FAST);
+    refocus_source_get_counters(source, NULL);
+    assert_status(refocus_source_get_mode(source, 0, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_get_mode(source, -1, &mode), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_wait(source, 0, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_set_control(source, NULL, 1, NULL), REFOCUS_ERR_ARGUMENT);
+    for (int i = 0; i < 3; i++)
+        assert_status(refocus_source_set_control(source, "focus",
+                                                 (double[]){(double)NAN, 1e300, -INFINITY}[i],
+                                                 NULL),
+                      REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_wait(source, -1, &frame, NULL), REFOCUS_OK);
+    refocus_source_release(source, NULL);
+    refocus_source_release(source, frame);
+    refocus_source_release(source, frame); /* once is enough */
+    refocus_source_get_counters(source, &counters);
+    assert_true(counters.frames == 1 && counters.released == 1);
+    refocus_source_close(&source);
+}
+
+static void sinks_of_nothing(void **state)
+{
+    static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_NV12,
+                                       REFOCUS_FORMAT_NV21, REFOCUS_FORMAT_I420,
+                                       REFOCUS_FORMAT_YUYV};
+    struct refocus_sink *sink = NULL;
+    struct refocus_image image = refocus_image_planar(REFOCUS_FORMAT_RGB8, memory, W, H);
+
+    (void)state;
+    assert_status(refocus_sink_open(NULL, "null", NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_open(&sink, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_start(NULL, W, H, 30, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_start_image(NULL, &image, 30, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_write(NULL, &image, NULL), REFOCUS_ERR_STATE);
+    assert_status(refocus_sink_close(NULL, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_sink_takes(NULL, REFOCUS_FORMAT_RGB8), 0);
+    for (int f = 0; f < 5; f++) {
+        assert_status(refocus_sink_open(&sink, "raw:misuse.raw,own", NULL), REFOCUS_OK);
+        assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_STATE);
+        assert_status(refocus_sink_start_image(sink, NULL, 30, NULL), REFOCUS_ERR_ARGUMENT);
+        image = refocus_image_planar(formats[f], memory, W, H);
+        assert_status(refocus_sink_start_image(sink, &image, (double)INFINITY, NULL),
+                      REFOCUS_OK);
+        assert_status(refocus_sink_write(sink, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+        for (int p = 0; p < refocus_format_planes(formats[f]); p++) {
+            struct refocus_image bad = image;
+
+            bad.plane[p] = NULL;
+            assert_status(refocus_sink_write(sink, &bad, NULL), REFOCUS_ERR_ARGUMENT);
+            bad.plane[p] = image.plane[p];
+            for (int i = 0; i < NO_STRIDES; i++) {
+                if (formats[f] == REFOCUS_FORMAT_I420 && p > 0 && is_half(no_strides[i]))
+                    continue;
+                bad.stride[p] = no_strides[i];
+                assert_status(refocus_sink_write(sink, &bad, NULL), REFOCUS_ERR_ARGUMENT);
+            }
+        }
+        assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_OK);
+        assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    }
+    remove("misuse.raw");
+}
+
+/* A frame in the memory here, of any format but JPEG. */
+static struct refocus_frame frame_of(uint32_t format)
+{
+    struct refocus_frame frame;
+    const int row = format == REFOCUS_FRAME_RGB24 || format == REFOCUS_FRAME_BGR24   ? 3 * W
+                    : format == REFOCUS_FRAME_RGBX || format == REFOCUS_FRAME_BGRX   ? 4 * W
+                    : format == REFOCUS_FRAME_YUYV || format == REFOCUS_FRAME_UYVY ||
+                              format == REFOCUS_FRAME_Y16 || format == REFOCUS_FRAME_Z16
+                        ? 2 * W
+                        : W;
+
+    memset(&frame, 0, sizeof frame);
+    frame.format = format;
+    frame.width = W;
+    frame.height = H;
+    for (int i = 0; i < 3; i++) {
+        frame.plane[i] = memory;
+        frame.stride[i] = row;
+    }
+    return frame;
+}
+
+static int planes_of(uint32_t format)
+{
+    return format == REFOCUS_FRAME_YUV420                                        ? 3
+           : format == REFOCUS_FRAME_NV12 || format == REFOCUS_FRAME_NV21 ? 2
+                                                                               : 1;
+}
+
+/* All that converts, of this frame and into this memory. */
+static void convert(struct refocus_converter *converter, const struct refocus_frame *frame,
+                    struct refocus_image *rgb, struct refocus_image *copy, uint16_t *samples,
+                    bool good)
+{
+    const bool grey = frame->format >= REFOCUS_FRAME_GREY;
+
+    assert_status(refocus_convert_rgb8(converter, frame, rgb, NULL),
+                  good ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
+    if (refocus_frame_image_format(frame->format))
+        assert_status(refocus_convert_copy(converter, frame, copy, NULL),
+                      good ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
+    if (grey)
+        assert_status(refocus_convert_samples(converter, frame, samples, NULL),
+                      good ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
+}
+
+static void converters_of_nothing(void **state)
+{
+    static uint8_t to[W * H * 4];
+    static uint16_t samples[W * H];
+    struct refocus_image rgb = refocus_image_planar(REFOCUS_FORMAT_RGB8, to, W, H);
+    struct refocus_converter *converter = NULL;
+    struct refocus_frame frame = frame_of(REFOCUS_FRAME_NV12);
+
+    (void)state;
+    assert_status(refocus_converter_create(NULL), REFOCUS_ERR_ARGUMENT);
+    refocus_converter_destroy(NULL);
+    refocus_converter_destroy(&converter);
+    convert(NULL, &frame, &rgb, &rgb, samples, false);
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    assert_status(refocus_convert_rgb8(converter, NULL, &rgb, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_convert_copy(converter, NULL, &rgb, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_convert_samples(converter, NULL, samples, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_frame_image_format(UINT32_MAX), REFOCUS_FORMAT_NONE);
+    for (uint32_t format = 1; format < REFOCUS_FRAME_FORMAT_COUNT; format++) {
+        const uint32_t own = refocus_frame_image_format(format);
+        struct refocus_image copy =
+            refocus_image_planar(own ? own : (uint32_t)REFOCUS_FORMAT_RGB8, to, W, H);
+
+        if (format == REFOCUS_FRAME_MJPEG)
+            continue;
+        frame = frame_of(format);
+        convert(converter, &frame, &rgb, &copy, samples, true);
+        for (int p = 0; p < planes_of(format); p++) {
+            struct refocus_frame bad = frame;
+
+            bad.plane[p] = NULL;
+            convert(converter, &bad, &rgb, &copy, samples, false);
+            bad.plane[p] = memory;
+            for (int i = 0; i < NO_STRIDES; i++) {
+                if (format == REFOCUS_FRAME_YUV420 && p > 0 && is_half(no_strides[i]))
+                    continue;
+                bad.stride[p] = no_strides[i];
+                convert(converter, &bad, &rgb, &copy, samples, false);
+            }
+        }
+        assert_status(refocus_convert_rgb8(converter, &frame, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+        if (own)
+            assert_status(refocus_convert_copy(converter, &frame, NULL, NULL),
+                          REFOCUS_ERR_ARGUMENT);
+        if (format >= REFOCUS_FRAME_GREY)
+            assert_status(refocus_convert_samples(converter, &frame, NULL, NULL),
+                          REFOCUS_ERR_ARGUMENT);
+        for (int i = 0; i < NO_STRIDES; i++) {
+            struct refocus_image bad = rgb;
+
+            bad.stride[0] = no_strides[i];
+            assert_status(refocus_convert_rgb8(converter, &frame, &bad, NULL),
+                          REFOCUS_ERR_ARGUMENT);
+            bad = copy;
+            bad.stride[refocus_format_planes(copy.format) - 1] = no_strides[i];
+            if (own && !(own == REFOCUS_FORMAT_I420 && is_half(no_strides[i])))
+                assert_status(refocus_convert_copy(converter, &frame, &bad, NULL),
+                              REFOCUS_ERR_ARGUMENT);
+        }
+    }
+    refocus_converter_destroy(&converter);
+}
+
+static void registering_nothing(void **state)
+{
+    static uint16_t samples[W * H], out[W * H];
+    const struct refocus_pinhole pinhole = {W, H, 16, 16, 8, 6};
+    const struct refocus_calibration same = {
+        pinhole, pinhole, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+
+    (void)state;
+    assert_status(refocus_register_depth(NULL, samples, 1, out), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_register_depth(&same, NULL, 1, out), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_register_depth(&same, samples, 1, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_register_depth(&same, samples, (double)NAN, out), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_register_depth(&same, samples, 1, out), REFOCUS_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sources_of_nothing),
+        cmocka_unit_test(sinks_of_nothing),
+        cmocka_unit_test(converters_of_nothing),
+        cmocka_unit_test(registering_nothing),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
