@@ -579,7 +579,8 @@ const struct command live_command = {
     .summary = "camera in, refocused frames out",
     .notes = "While it runs, standard input (and --socket) takes a command a line: focus D, focus-at X,Y, "
              "pull D SECONDS, pull-at X,Y SECONDS (smooth), blur K, quit. Depth is paired with "
-             "colour by time within half a frame; without a pair the newest depth serves. "
+             "colour by time within half a frame; without a pair the newest depth serves, or, "
+             "with --frames-policy every, the nearest in time. "
              "After a fault the camera is opened again; platform/README.md lists faults and "
              "outcomes. Ctrl-C ends it with status 0.",
     .options = options,
