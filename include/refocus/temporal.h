@@ -85,7 +85,8 @@ REFOCUS_API int refocus_temporal_rescale(struct refocus_temporal *filter, double
  *
  * The scale of disparities has to be the same for all frames: give
  * refocus_depth_to_disparity() the near_m and far_m (value_near and value_far) that it
- * reported for the first one, or say how it changes by refocus_temporal_rescale(). Integer arithmetic: the same bytes on every processor.
+ * reported for the first one, or say how it changes by refocus_temporal_rescale(). Integer
+ * arithmetic: the same bytes on every processor.
  *
  * @param photo   the photo of this frame, of any format and size, whose brightness is
  *                compared: of Y, U and V the codes of Y as they are; NULL = by depth alone

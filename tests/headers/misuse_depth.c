@@ -206,6 +206,7 @@ static void filtering(void)
         BAD(refocus_temporal_params, height, INT32_MAX),
         BAD(refocus_temporal_params, height, -1), BAD(refocus_temporal_params, strength, NAN),
         BAD(refocus_temporal_params, strength, 1), BAD(refocus_temporal_params, noise, -1)};
+    static const double scales[] = {0, -1, NAN, INFINITY};
     const struct refocus_temporal_params good = RETURNS(refocus_temporal_params_default, W, H);
     const struct refocus_disparity map = misuse_map();
 
@@ -227,6 +228,11 @@ static void filtering(void)
     misuse_images(filter_photo);
     misuse_maps(filter_map);
     misuse_strides(filter_stride, 2 * W);
+    REFUSED(refocus_temporal_rescale, NULL, 1, 0);
+    for (size_t i = 0; i < COUNT(scales); i++)
+        REFUSED(refocus_temporal_rescale, filter, scales[i], 0);
+    REFUSED(refocus_temporal_rescale, filter, 1, (double)NAN);
+    REFUSED(refocus_temporal_rescale, filter, 1, -(double)INFINITY);
     REFUSED(refocus_temporal_run, filter, NULL, &map, NULL, 2 * W);
     REFUSED(refocus_temporal_run, filter, NULL, &map, out, 2 * W + 1);
     refocus_temporal_destroy(&filter);

@@ -95,9 +95,9 @@ static void writing(void)
     static const uint16_t samples[W * H];
     const struct refocus_image photo = misuse_photo();
     const struct refocus_blob nothing = {NULL, 100};
-    const struct refocus_write_options bad[] = {{-1, NULL, NULL}, {101, NULL, NULL},
-                                                {INT32_MIN, NULL, NULL}};
-    const struct refocus_write_options empty = {0, &nothing, &nothing};
+    const struct refocus_write_options bad[] = {
+        {.quality = -1}, {.quality = 101}, {.quality = INT32_MIN}};
+    const struct refocus_write_options empty = {.exif = &nothing, .icc = &nothing};
     const int has_jpeg = strstr(refocus_file_formats(), "JPEG") != NULL;
 
     misuse_images(write_image);
@@ -119,6 +119,10 @@ static void writing(void)
     REFUSED(refocus_file_write, NULL, samples, 4, NULL);
     REFUSED(refocus_file_write, NAME, NULL, 4, NULL);
     ANSWERS(REFOCUS_ERR_IO, refocus_file_write, "", samples, 4, NULL);
+    REFUSED(refocus_file_move, NULL, NAME, NULL);
+    REFUSED(refocus_file_move, NAME, NULL, NULL);
+    ANSWERS(REFOCUS_ERR_IO, refocus_file_move, "", "", NULL);
+    GIVES_NULL(refocus_file_place, NULL);
 }
 
 static void saving_depth(void)
