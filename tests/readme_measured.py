@@ -12,7 +12,7 @@ SOURCE = Path(__file__).resolve().parents[1]
 ROWS = [
     ("input", None, "the untouched photo"),
     ("standard", ("quality", "standard"), "`sweep`, quality `standard`: the default"),
-    ("standard-off", None, "the same with `--highlights off`, as the rows below"),
+    ("standard-off", None, "the same with `--highlights off`: no light added, as in the methods below"),
     ("standard", ("sweep", "--rays 64 --cpu c"), "the default in plain C"),
     ("best", ("quality", "best"), "`sweep`, quality `best`"),
     ("search-T1-full", ("search", "--rays full --iterations 1", None),
