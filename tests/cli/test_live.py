@@ -286,24 +286,24 @@ class Live(unittest.TestCase):
         self.check_sum(r)
 
     def test_a_time_that_is_far_off_costs_one_frame(self):
-        policies = ['--fast', '--frames-policy', 'every'], ['--frames-policy', 'every'], []
+        fast = ['--fast', '--frames-policy', 'every']
         for ms in 100000, -100000:
             fault = ';at 15 timestamp %d' % ms
-            for more in policies:
-                r = self.report('--camera', 'replay::size 64x48;fps 60;frames 60' + fault,
-                                '--depth', DEPTH.replace('30', '60'), *more)
+            for fps, more in (30, fast), (10, ['--frames-policy', 'every']), (10, []):
+                r = self.report('--camera', 'replay::size 64x48;fps %d;frames 20%s' % (fps, fault),
+                                '--depth', DEPTH.replace('30', str(fps)), *more)
                 self.check_sum(r)
-                if more:  # at the camera's pace a slow machine may lose some
-                    self.assertEqual((r['frames_out'], r['paired']), (59, 59), more)
+                if more:  # the newest of a camera: a slow machine may leave out some
+                    self.assertEqual((r['frames_out'], r['paired']), (19, 19), more)
                 self.assertEqual(r['colour']['damaged'], 1)
             # One of the depth: a single frame is without its own.
             r = self.report('--camera', 'replay::size 64x48;frames 60', '--depth', DEPTH + fault,
-                            *policies[0])
+                            *fast)
             self.assertEqual((r['frames_out'], r['paired'], r['depth']['damaged']), (60, 59, 1))
         # All from there on: the camera's clock was set, and its frames go on.
         r = self.report('--camera', 'replay::size 64x48;frames 60;' +
                         ';'.join('at %d timestamp 100000' % n for n in range(15, 60)), '--depth',
-                        DEPTH, *policies[0])
+                        DEPTH, *fast)
         self.assertEqual((r['frames_out'], r['colour']['damaged']), (59, 1))
 
     def test_depth_may_be_late_vanish_and_end(self):
