@@ -10,7 +10,7 @@ enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
 enum {
     HALF = 128, /* Q7.8 pixels, as all of these */
     OVERLAP = 32,        /* of a slab with each of those beside it */
-    SHARP = HALF + 2 * OVERLAP, /* less is met by the slab of what is sharp */
+    CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
     WIDE = 16 * 256,     /* where slabs begin to be wider than a pixel */
     MOST_SPREAD = 60416, /* of blurs, so that no slab of up to 20 is met modulo 2^16 */
 };
@@ -245,11 +245,12 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
  * where rays lie farther apart than what is off by half of that.
  *
  * The blurs below half a pixel are a slab of their own with offset 0, so that these pixels stay as
- * they are. No other slab may take them, as its rays would bring what is beside them. Yet a ray
- * must not pass between the two slabs where a surface crosses half a pixel of blur: so the sharp
- * one takes what is up to 2 OVERLAP beyond, as far as any two others overlap. With OVERLAP = 1/8
- * pixel that closes surfaces of slope up to 1/4: of two neighbours of blur 0.45 and 0.60 pixels a
- * ray at offset 0 meets the second one in the sharp slab, where it missed both before. */
+ * they are. No slab before it may take them, as its rays would bring what is beside them. Yet no ray
+ * may pass between two slabs where a surface crosses half a pixel of blur. So the sharp one takes
+ * what is nearer by up to CLOSED, which the slabs before it have left; and the one after it takes
+ * what is sharp, by as much, for rays of pixels that are blurred. With 1/4 pixel that closes surfaces
+ * of slope up to 1/4: a ray of a pixel of blur 0.60 looks at its neighbour, of blur 0.45, and meets
+ * it, where it missed it before, and at offset 0 itself. */
 static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
                   struct rf_tile_plan *plan)
 {
@@ -264,8 +265,7 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
         int end = bin + pixel, last = bin, low, high, centre, overlap;
 
         if (bin >= scale.focus && bin < focus_end) {
-            add_slab(plan, scale,
-                     (struct rf_slab){-SHARP, 2 * SHARP - 1, 0});
+            add_slab(plan, scale, (struct rf_slab){-HALF - CLOSED, 2 * HALF + CLOSED - 1, 0});
             plan->least = 0;
             bin = focus_end;
             continue;
@@ -299,7 +299,7 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
         if (centre < 0 && high >= -HALF)
             high = -HALF - 1;
         if (centre > 0 && low < HALF)
-            low = HALF;
+            low = HALF - CLOSED;
         add_slab(plan, scale,
                  (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
         bin = last + 1;

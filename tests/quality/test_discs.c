@@ -59,7 +59,8 @@ static void view_free(struct view *view)
     free(view->out);
 }
 
-/* As --quality best renders. */
+/* As --quality best renders, with the light that lamps of the night scene have lost: their rims,
+ * where one channel alone is clipped, get none of it. */
 static void render(struct view *view, const struct refocus_aperture *aperture)
 {
     struct refocus_renderer_params limits =
@@ -74,7 +75,7 @@ static void render(struct view *view, const struct refocus_aperture *aperture)
     struct refocus_renderer *renderer;
 
     params.rays = 128;
-    params.highlight_gain = 9.5f;
+    params.highlight_gain = 10;
     params.aperture = aperture;
     if (refocus_renderer_create(&renderer, &limits) ||
         refocus_prepare(renderer, &photo, &disparity) ||
@@ -142,9 +143,10 @@ struct lamp {
     int pixels;
 };
 
+/* In two channels at least: where one alone is clipped no light is given back. */
 static bool is_clipped(const uint8_t *p)
 {
-    return p[0] == 255 || p[1] == 255 || p[2] == 255;
+    return (p[0] == 255) + (p[1] == 255) + (p[2] == 255) >= 2;
 }
 
 /* Clipped pixels that touch, all of them marked as seen. */

@@ -135,7 +135,7 @@ static struct plan cover(const struct bins *bins, double width)
         }
         if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel) {
             plan.slab[plan.slabs++] = (struct slab){
-                -0.5 - 2 * overlap, nextafter(0.5 + 2 * overlap, 0), 0, 0, 0};
+                -0.5 - 2 * overlap, nextafter(0.5, 0), 0, 0, 0};
             bin = FOCUS_BIN + pixel;
             continue;
         }
@@ -156,7 +156,7 @@ static struct plan cover(const struct bins *bins, double width)
         if (slab.centre < 0 && slab.high >= -0.5)
             slab.high = nextafter(-0.5, -1);
         if (slab.centre > 0 && slab.low < 0.5)
-            slab.low = 0.5;
+            slab.low = 0.5 - 2 * overlap;
         plan.slab[plan.slabs++] = slab;
         bin = last + 1;
     }
