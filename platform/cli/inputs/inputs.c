@@ -399,7 +399,7 @@ static bool choose_lens(const struct input *input, const struct lens_settings *s
 /* K by the settings, and how it came about. */
 struct blur_choice {
     double radius, asked;   /* pixels: that is taken, and that of the f-number */
-    double f_number;        /* of the radius that is taken; NAN: none */
+    double f_number;        /* the one that gives `radius`; NAN: none does */
     double own, own_number; /* without metres: what stands for which f-number */
     const char *from;       /* "pixels", "lens", "file" or "default" */
 };

@@ -146,12 +146,12 @@ struct live_range_end {
 
 struct live_ranger {
     struct live_range range;
-    bool near_given, far_given;  /* those stay */
-    struct live_range past[3];   /* what the last maps showed */
+    bool near_given, far_given;  /* by the command line: that end does not move */
+    struct live_range past[3];   /* ranges that the last maps showed */
     uint64_t maps;
     struct live_range_end near_end, far_end;
     int64_t last_ns;
-    uint32_t *counts; /* of each code; when it is first needed */
+    uint32_t *counts; /* a histogram of codes, allocated with the first map */
 };
 
 /* Metres that are given; 0: those that are seen. */
@@ -173,7 +173,7 @@ int live_range_widen(struct live_depth_map *wide, const struct live_depth_map **
 /* Something to focus on. A point is looked up in the next frame, and is a distance from then on,
  * or a disparity where distances are not known. */
 struct live_target {
-    bool known;        /* else the point is to be looked up */
+    bool known;        /* false: the disparity at the point has not been read yet */
     bool dioptres;     /* value is 1/m, else a disparity */
     bool follows_lens; /* where the camera's own lens is, if it says so */
     double value, point[2]; /* the point NAN: the centre */
@@ -187,7 +187,8 @@ struct live_focus {
     int64_t now_ns;
     struct live_range range; /* both of the present frame */
     double blur, blur_most;
-    double stretch; /* of blur, by ranges that have moved: 1 when none has for long */
+    double stretch; /* K as a multiple of --blur, after the range has moved; 1 once it has stood
+                       still for long */
     int width, height; /* of the pictures; 0: none has come */
 };
 
