@@ -13,7 +13,7 @@ enum {
     MOST_STEP = CODES / 64,  /* 6 bits */
     PIXELS_A_CODE = 64,      /* fewer: a small picture of a fine map */
     LOOKED_AT = 1 << 17,     /* pixels, about: the others hardly have more codes */
-    ROWS = 16,               /* that are worked on together */
+    ROWS = 16,               /* a work item of a thread */
     PASSES = 3,
 };
 

@@ -10,7 +10,7 @@ struct job {
     struct refocus_renderer *r;
     const struct refocus_image *photo;
     const struct refocus_disparity *map;
-    uint16_t *disparity; /* of the map's first pixel */
+    uint16_t *disparity; /* the plane, where the map's first pixel goes */
     const struct refocus_image *guide;
 };
 

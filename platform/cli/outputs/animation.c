@@ -21,7 +21,7 @@ struct animation {
     enum kind kind;
     char path[PATH_MAX], temporary[PATH_MAX];
     int frames; /* written */
-    long process; /* of the encoder, or -1 */
+    long process; /* process number of the encoder, or -1 */
     struct refocus_sink *sink;
     struct apng *apng;
     struct encoder *encoder;
