@@ -29,7 +29,7 @@ struct lane {
     int64_t last_ns;
     int64_t period_ns;        /* between two frames */
     struct moment sure, seen; /* the last frame of a sound time, and the last of all */
-    bool doubted;             /* that one */
+    bool doubted;             /* the last frame's time was not believed */
     bool newest_wins;
     int64_t late_ns; /* only over frames that are older than this */
     bool done; /* nothing else will come */
