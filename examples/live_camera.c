@@ -96,11 +96,11 @@ int main(int argc, char **argv)
     uint8_t *pixels = malloc((size_t)mode.width * (size_t)mode.height * 6);
     if (!pixels)
         check(REFOCUS_ERR_MEMORY);
-    const struct refocus_image photo = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, pixels, mode.width, mode.height, mode.width * 3);
-    const struct refocus_image result =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels + (size_t)mode.width * 3 * (size_t)mode.height,
-                             mode.width, mode.height, mode.width * 3);
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, mode.width, mode.height, mode.width * 3);
+    const struct refocus_image result = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, pixels + (size_t)mode.width * 3 * (size_t)mode.height, mode.width,
+        mode.height, mode.width * 3);
     const struct refocus_renderer_params make =
         refocus_renderer_params_default(mode.width, mode.height, BLUR);
     const struct refocus_render_params render = refocus_render_params_default(0.8f, BLUR);

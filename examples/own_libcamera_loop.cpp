@@ -70,7 +70,8 @@ int main(int argc, char **argv)
             return 1;
         const auto disparity = refocus_disparity16(samples.data(), width, height, width * 2);
         const auto params = refocus_render_params_default(1, 10);
-        const auto result = refocus_image_packed(REFOCUS_FORMAT_RGB8, out.data(), width, height, width * 3);
+        const auto result =
+            refocus_image_packed(REFOCUS_FORMAT_RGB8, out.data(), width, height, width * 3);
 
         camera->requestCompleted.connect(completed);
         camera->start();

@@ -60,7 +60,8 @@ int main(int argc, char **argv)
         const char *name;
         float focus;
     } views[] = {{"focus_far", 0}, {"focus_middle", 0.5f}, {"focus_near", 1}};
-    const float blur = 16; /* pixels: K, the blur radius of the nearest when the farthest is sharp */
+    const float blur =
+        16; /* pixels: K, the blur radius of the nearest when the farthest is sharp */
     const struct refocus_image in =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, photo, WIDTH, HEIGHT, sizeof photo[0]);
     const struct refocus_image out =

@@ -95,7 +95,8 @@ static void tap_each(void)
 
 int main(void)
 {
-    const struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 12);
+    const struct refocus_renderer_params limits =
+        refocus_renderer_params_default(WIDTH, HEIGHT, 12);
     const struct refocus_image in =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, photo, WIDTH, HEIGHT, sizeof photo[0]);
     const struct refocus_disparity depth = {8, WIDTH, HEIGHT, disparity, sizeof disparity[0]};
@@ -104,8 +105,8 @@ int main(void)
     int status;
 
     draw();
-    if ((status = refocus_renderer_create(&renderer, &limits)) != REFOCUS_OK
-        || (status = refocus_prepare(renderer, &in, &depth)) != REFOCUS_OK) {
+    if ((status = refocus_renderer_create(&renderer, &limits)) != REFOCUS_OK ||
+        (status = refocus_prepare(renderer, &in, &depth)) != REFOCUS_OK) {
         fprintf(stderr, "region_and_cancel: %s\n", refocus_strerror(status));
     } else if (pthread_create(&thread, NULL, render_taps, NULL) == 0) {
         tap_each();

@@ -38,8 +38,8 @@ REFOCUS_API int refocus_aperture_create_disc(struct refocus_aperture **aperture)
  * @param rotation_deg angle of one corner, counter-clockwise from the right as the
  *                     mask is seen; any finite number
  */
-REFOCUS_API int refocus_aperture_create_polygon(struct refocus_aperture **aperture,
-                                                int blades, double rotation_deg);
+REFOCUS_API int refocus_aperture_create_polygon(struct refocus_aperture **aperture, int blades,
+                                                double rotation_deg);
 
 /**
  * Any shape: a greyscale picture, 255 = open, 0 = closed. The larger side of the
@@ -75,22 +75,22 @@ enum refocus_figure {
  * a disc that fades out. Lenses do the one before and the other behind the focus.
  */
 struct refocus_aperture_params {
-    uint32_t struct_size;  /**< sizeof(struct refocus_aperture_params) */
-    int32_t blades;        /**< 3 to 16; 0 = round */
-    double rotation_deg;   /**< angle of one corner, counter-clockwise from the right,
-                                as seen; of the whole figure; -3600 to 3600; not of
-                                masks */
-    double curvature;      /**< 0 straight blades, to 1 */
-    double opening;        /**< 0 = no barrel, else above it to 1 */
-    double squeeze;        /**< width / height of what is drawn, 0.5 to 2; below 1 as of
-                                an anamorphic lens */
-    double hole;           /**< radius of a stop in the middle, 0 to 0.9: rings */
-    double edge_behind;    /**< e of what is behind the focus, -1 to 1 */
-    double edge_before;    /**< e of what is before it, -1 to 1; only `sweep` tells them
-                                apart */
-    uint32_t figure;       /**< enum refocus_figure */
+    uint32_t struct_size;            /**< sizeof(struct refocus_aperture_params) */
+    int32_t blades;                  /**< 3 to 16; 0 = round */
+    double rotation_deg;             /**< angle of one corner, counter-clockwise from the right,
+                                          as seen; of the whole figure; -3600 to 3600; not of
+                                          masks */
+    double curvature;                /**< 0 straight blades, to 1 */
+    double opening;                  /**< 0 = no barrel, else above it to 1 */
+    double squeeze;                  /**< width / height of what is drawn, 0.5 to 2; below 1 as of
+                                          an anamorphic lens */
+    double hole;                     /**< radius of a stop in the middle, 0 to 0.9: rings */
+    double edge_behind;              /**< e of what is behind the focus, -1 to 1 */
+    double edge_before;              /**< e of what is before it, -1 to 1; only `sweep` tells them
+                                          apart */
+    uint32_t figure;                 /**< enum refocus_figure */
     int32_t mask_width, mask_height; /**< as of refocus_aperture_create_mask() */
-    const uint8_t *mask;   /**< NULL = none; in place of blades and figure */
+    const uint8_t *mask;             /**< NULL = none; in place of blades and figure */
     ptrdiff_t mask_stride;
 };
 
@@ -133,8 +133,8 @@ struct refocus_ray {
  * @param rays      receives @p count rays
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT. Thread-safe.
  */
-REFOCUS_API int refocus_aperture_rays(const struct refocus_aperture *aperture,
-                                      int count, struct refocus_ray *rays);
+REFOCUS_API int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
+                                      struct refocus_ray *rays);
 
 /**
  * Every pixel of the aperture mask at blur radius K: pixel (x, y) is the ray

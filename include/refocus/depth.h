@@ -91,22 +91,21 @@ struct refocus_depth_report {
  *
  * Thread-safe.
  */
-REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map,
-                                           uint16_t *disparity, ptrdiff_t stride,
-                                           struct refocus_depth_report *report);
+REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map, uint16_t *disparity,
+                                           ptrdiff_t stride, struct refocus_depth_report *report);
 
 /** Largest patch that can be taken for a speck, in samples. */
 enum { REFOCUS_MAX_SPECKLE = 255 };
 
 /** What refocus_depth_repair() does. Start from refocus_repair_params_default(). */
 struct refocus_repair_params {
-    uint32_t struct_size; /**< sizeof(struct refocus_repair_params) */
-    int32_t speckle;      /**< patches of fewer samples are filled like holes, 0 to
-                               REFOCUS_MAX_SPECKLE; 0 and 1 = none. A patch is what
-                               touches, across corners too, in steps of 1/24 of the
-                               range */
-    uint8_t *confidence;  /**< receives a byte a sample: 255 = as measured, 0 = filled;
-                               may be NULL. For refocus_upsample() */
+    uint32_t struct_size;        /**< sizeof(struct refocus_repair_params) */
+    int32_t speckle;             /**< patches of fewer samples are filled like holes, 0 to
+                                      REFOCUS_MAX_SPECKLE; 0 and 1 = none. A patch is what
+                                      touches, across corners too, in steps of 1/24 of the
+                                      range */
+    uint8_t *confidence;         /**< receives a byte a sample: 255 = as measured, 0 = filled;
+                                      may be NULL. For refocus_upsample() */
     ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
 };
 
@@ -132,14 +131,14 @@ REFOCUS_API int refocus_depth_repair(const struct refocus_depth_map *map,
 
 /** How to upsample. Start from refocus_upsample_params_default(). */
 struct refocus_upsample_params {
-    uint32_t struct_size;      /**< sizeof(struct refocus_upsample_params) */
-    int32_t threads;           /**< 1 to 64; 0 = one for each processor */
-    uint32_t cpu;              /**< enum refocus_cpu of render.h; 0 = the best there
-                                    is */
-    uint32_t reserved;         /**< 0 */
-    const uint8_t *confidence; /**< a byte for each sample of the map, 255 = sure, 0 = a
-                                    guess that counts where there is nothing else; NULL
-                                    = all sure */
+    uint32_t struct_size;        /**< sizeof(struct refocus_upsample_params) */
+    int32_t threads;             /**< 1 to 64; 0 = one for each processor */
+    uint32_t cpu;                /**< enum refocus_cpu of render.h; 0 = the best there
+                                      is */
+    uint32_t reserved;           /**< 0 */
+    const uint8_t *confidence;   /**< a byte for each sample of the map, 255 = sure, 0 = a
+                                      guess that counts where there is nothing else; NULL
+                                      = all sure */
     ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
 };
 
@@ -177,8 +176,8 @@ static inline struct refocus_upsample_params refocus_upsample_params_default(voi
  */
 REFOCUS_API int refocus_upsample(const struct refocus_image *photo,
                                  const struct refocus_disparity *map,
-                                 const struct refocus_upsample_params *params,
-                                 uint16_t *out, ptrdiff_t stride);
+                                 const struct refocus_upsample_params *params, uint16_t *out,
+                                 ptrdiff_t stride);
 
 /** Farthest that an edge is looked for, in pixels. */
 enum { REFOCUS_MAX_SNAP = 16 };
@@ -217,8 +216,8 @@ static inline struct refocus_snap_params refocus_snap_params_default(int32_t rea
  */
 REFOCUS_API int refocus_depth_snap(const struct refocus_image *photo,
                                    const struct refocus_disparity *map,
-                                   const struct refocus_snap_params *params,
-                                   uint16_t *out, ptrdiff_t stride);
+                                   const struct refocus_snap_params *params, uint16_t *out,
+                                   ptrdiff_t stride);
 
 #ifdef __cplusplus
 }

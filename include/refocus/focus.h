@@ -31,24 +31,24 @@ enum { REFOCUS_MAX_TAP_RADIUS = 256 };
  * @param focus   receives df, 0 to 1
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (also for a pixel outside of the map)
  */
-REFOCUS_API int refocus_focus_at_point(const struct refocus_disparity *map, int x,
-                                       int y, int radius, float *focus);
+REFOCUS_API int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y,
+                                       int radius, float *focus);
 
 /**
  * The same of a rectangle.
  *
  * @param x, y, width, height  a part of the map, at least a pixel
  */
-REFOCUS_API int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x,
-                                           int y, int width, int height, float *focus);
+REFOCUS_API int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y,
+                                           int width, int height, float *focus);
 
 /** A plane of focus: the disparity in focus is an affine function of the place in the
  *  photo, because 1/z of a plane is. See struct refocus_render_params. */
 struct refocus_focus_plane {
-    float x, y;         /**< place at which focus_disparity holds, 0 to 1 of width and
-                             height */
+    float x, y;            /**< place at which focus_disparity holds, 0 to 1 of width and
+                                height */
     float focus_disparity; /**< there, 0 to 1 */
-    float across, down; /**< what it grows by over the width and over the height */
+    float across, down;    /**< what it grows by over the width and over the height */
 };
 
 /** A point of a photo: place, 0 to 1 of width and height, and disparity, 0 to 1. */
@@ -63,9 +63,8 @@ struct refocus_focus_point {
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (a value out of its range, the points on one
  *         line, or a plane that grows by more than REFOCUS_MAX_TILT)
  */
-REFOCUS_API int
-refocus_focus_plane_of_points(struct refocus_focus_plane *plane,
-                              const struct refocus_focus_point point[3]);
+REFOCUS_API int refocus_focus_plane_of_points(struct refocus_focus_plane *plane,
+                                              const struct refocus_focus_point point[3]);
 
 /**
  * The plane of focus that contains a line of equal disparity and rises from it at an
@@ -82,8 +81,8 @@ refocus_focus_plane_of_points(struct refocus_focus_plane *plane,
  */
 REFOCUS_API int refocus_focus_plane_of_line(struct refocus_focus_plane *plane,
                                             const struct refocus_focus_point *from,
-                                            const struct refocus_focus_point *to,
-                                            double aspect, double angle_deg);
+                                            const struct refocus_focus_point *to, double aspect,
+                                            double angle_deg);
 
 #ifdef __cplusplus
 }

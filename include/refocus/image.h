@@ -59,9 +59,8 @@ struct refocus_image {
 };
 
 /** A packed picture; see struct refocus_image for the arguments. */
-static inline struct refocus_image refocus_image_packed(uint32_t format, void *pixels,
-                                                        int32_t width, int32_t height,
-                                                        ptrdiff_t stride)
+static inline struct refocus_image
+refocus_image_packed(uint32_t format, void *pixels, int32_t width, int32_t height, ptrdiff_t stride)
 {
     struct refocus_image image;
 
@@ -87,8 +86,7 @@ REFOCUS_API int refocus_format_planes(uint32_t format);
 /** Bytes of a row of plane @p plane of a picture of @p width pixels, and the rows of
  *  that plane of one of @p height; 0 for a plane or format that is not, and for a side
  *  beyond 1 to REFOCUS_MAX_SIDE. Thread-safe. */
-REFOCUS_API ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane,
-                                              int32_t width);
+REFOCUS_API ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane, int32_t width);
 REFOCUS_API int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height);
 
 /**
@@ -109,16 +107,14 @@ static inline struct refocus_image refocus_image_planar(uint32_t format, void *m
         image.stride[plane] = refocus_plane_row_bytes(format, plane, width);
         if (!at)
             continue;
-        at += (size_t)image.stride[plane] *
-              (size_t)refocus_plane_rows(format, plane, height);
+        at += (size_t)image.stride[plane] * (size_t)refocus_plane_rows(format, plane, height);
     }
     return image;
 }
 
 /** Bytes of a picture's planes, rows without gaps; 0 for an unknown format or a side
  *  out of its range. Thread-safe. */
-static inline uint64_t refocus_image_bytes(uint32_t format, int32_t width,
-                                           int32_t height)
+static inline uint64_t refocus_image_bytes(uint32_t format, int32_t width, int32_t height)
 {
     uint64_t bytes = 0;
     int plane;
@@ -144,10 +140,8 @@ struct refocus_disparity {
 };
 
 /** A map of 16-bit disparities; see struct refocus_disparity. */
-static inline struct refocus_disparity refocus_disparity16(const uint16_t *samples,
-                                                           int32_t width,
-                                                           int32_t height,
-                                                           ptrdiff_t stride)
+static inline struct refocus_disparity refocus_disparity16(const uint16_t *samples, int32_t width,
+                                                           int32_t height, ptrdiff_t stride)
 {
     struct refocus_disparity map;
 

@@ -57,8 +57,7 @@ REFOCUS_API double refocus_max_blur_radius(const struct refocus_lens *lens,
  *  inverse. */
 REFOCUS_API double refocus_f_number_of_blur(const struct refocus_lens *lens,
                                             const struct refocus_depth_range *range,
-                                            double picture_width_px,
-                                            double max_blur_radius_px);
+                                            double picture_width_px, double max_blur_radius_px);
 
 /** Blur radius in pixels: r = K |d - df|. Yang et al. 2016, eq. 4. */
 REFOCUS_API double refocus_blur_radius(double max_blur_radius_px, double disparity,
@@ -72,8 +71,8 @@ REFOCUS_API double refocus_blur_radius(double max_blur_radius_px, double dispari
  *
  * Potmesil & Chakravarty 1981, eq. 8; depths are distances from the lens.
  */
-REFOCUS_API double refocus_circle_of_confusion_m(const struct refocus_lens *lens,
-                                                 double focus_m, double depth_m);
+REFOCUS_API double refocus_circle_of_confusion_m(const struct refocus_lens *lens, double focus_m,
+                                                 double depth_m);
 
 /** Depths that still look sharp. */
 struct refocus_depth_of_field {

@@ -72,38 +72,37 @@ enum refocus_cpu {
 
 /** What a renderer can do at most. Start from refocus_renderer_params_default(). */
 struct refocus_renderer_params {
-    uint32_t struct_size;    /**< sizeof(struct refocus_renderer_params) */
-    int32_t max_width;       /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
-    int32_t max_height;      /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
-    float max_blur_radius;   /**< largest K, 0 to REFOCUS_MAX_BLUR_RADIUS */
-    int32_t threads;         /**< 1 to 64; 0 = one for each processor. With `parallel`: the most
-                                  that work at once */
-    uint32_t cpu;            /**< enum refocus_cpu */
-    uint64_t max_memory;     /**< bytes; creation fails above; 0 = no limit */
+    uint32_t struct_size;  /**< sizeof(struct refocus_renderer_params) */
+    int32_t max_width;     /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
+    int32_t max_height;    /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
+    float max_blur_radius; /**< largest K, 0 to REFOCUS_MAX_BLUR_RADIUS */
+    int32_t threads;       /**< 1 to 64; 0 = one for each processor. With `parallel`: the most
+                                that work at once */
+    uint32_t cpu;          /**< enum refocus_cpu */
+    uint64_t max_memory;   /**< bytes; creation fails above; 0 = no limit */
     struct refocus_allocator allocator; /**< all NULL: malloc and free */
     struct refocus_log log;             /**< message NULL: silent */
-    uint32_t methods;        /**< what may be rendered beside the methods that need no memory
-                                  of their own (sweep, search, raytrace, jittered, blur):
-                                  REFOCUS_METHOD_BIT() of each, or-ed */
-    uint32_t reserved;       /**< 0 */
-    struct refocus_parallel parallel;   /**< parallel_for NULL: threads of its own */
-    uint32_t previews;       /**< 1: refocus_prepare() also makes the photo at 1/2, 1/4 and 1/8 of
-                                  its size, for `reduce` of struct refocus_render_params */
-    uint32_t in_place;       /**< 1: strip mode, for little memory. The photo and its disparities,
-                                  which are of its size, are not copied: they stay as they are and
-                                  where they are until the next refocus_prepare() or the
-                                  renderer's end. Rendering goes through them twice, block by
-                                  block, and takes longer; the bytes are the same, but that
-                                  tilts and fields whose K is more than half of max_blur_radius
-                                  may change single pixels by a code. For sweep, search,
-                                  raytrace, jittered and blur; not with `previews` */
-    uint32_t thin;           /**< 1: with memory for `thin` of struct refocus_render_params, which
-                                  other renderers, and strip mode, take as 0 */
+    uint32_t methods;  /**< what may be rendered beside the methods that need no memory
+                            of their own (sweep, search, raytrace, jittered, blur):
+                            REFOCUS_METHOD_BIT() of each, or-ed */
+    uint32_t reserved; /**< 0 */
+    struct refocus_parallel parallel; /**< parallel_for NULL: threads of its own */
+    uint32_t previews; /**< 1: refocus_prepare() also makes the photo at 1/2, 1/4 and 1/8 of
+                            its size, for `reduce` of struct refocus_render_params */
+    uint32_t in_place; /**< 1: strip mode, for little memory. The photo and its disparities,
+                            which are of its size, are not copied: they stay as they are and
+                            where they are until the next refocus_prepare() or the
+                            renderer's end. Rendering goes through them twice, block by
+                            block, and takes longer; the bytes are the same, but that
+                            tilts and fields whose K is more than half of max_blur_radius
+                            may change single pixels by a code. For sweep, search,
+                            raytrace, jittered and blur; not with `previews` */
+    uint32_t thin;     /**< 1: with memory for `thin` of struct refocus_render_params, which
+                            other renderers, and strip mode, take as 0 */
 };
 
 static inline struct refocus_renderer_params
-refocus_renderer_params_default(int32_t max_width, int32_t max_height,
-                                float max_blur_radius)
+refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max_blur_radius)
 {
     struct refocus_renderer_params params;
 
@@ -132,8 +131,8 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height,
  *
  * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.
  *
- * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.4 bytes a pixel for large pictures, and
- * 4 / 3 of that with previews.
+ * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.4 bytes a pixel for large pictures,
+ * and 4 / 3 of that with previews.
  *
  * Strip mode, params->in_place, takes no more than
  *
@@ -180,22 +179,22 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
 
 /** The methods; refocus_method_name() has their names on the command line. */
 enum refocus_method {
-    REFOCUS_METHOD_SWEEP = 0,    /**< two layers, front-most hit, by a sweep over disparities */
-    REFOCUS_METHOD_SEARCH = 1,   /**< Yang et al. 2016: randomized intersection search */
-    REFOCUS_METHOD_RAYTRACE = 2, /**< Yang et al. 2016: every pixel along every ray; slow */
-    REFOCUS_METHOD_JITTERED = 3, /**< Yang et al. 2016: the same for one ray of a cell */
-    REFOCUS_METHOD_LIGHTFIELD = 4, /**< Yang et al. 2016, compared: views warped, summed */
-    REFOCUS_METHOD_BLUR = 5,     /**< Yang et al. 2016, compared: image-space filter */
-    REFOCUS_METHOD_SCATTER = 6,  /**< Potmesil & Chakravarty 1981: samples spread */
-    REFOCUS_METHOD_FOVEATED = 7, /**< Mulder & van Liere 2000: exact where one looks */
+    REFOCUS_METHOD_SWEEP = 0,        /**< two layers, front-most hit, by a sweep over disparities */
+    REFOCUS_METHOD_SEARCH = 1,       /**< Yang et al. 2016: randomized intersection search */
+    REFOCUS_METHOD_RAYTRACE = 2,     /**< Yang et al. 2016: every pixel along every ray; slow */
+    REFOCUS_METHOD_JITTERED = 3,     /**< Yang et al. 2016: the same for one ray of a cell */
+    REFOCUS_METHOD_LIGHTFIELD = 4,   /**< Yang et al. 2016, compared: views warped, summed */
+    REFOCUS_METHOD_BLUR = 5,         /**< Yang et al. 2016, compared: image-space filter */
+    REFOCUS_METHOD_SCATTER = 6,      /**< Potmesil & Chakravarty 1981: samples spread */
+    REFOCUS_METHOD_FOVEATED = 7,     /**< Mulder & van Liere 2000: exact where one looks */
     REFOCUS_METHOD_INTERPOLATED = 8, /**< NVIDIA 2004: between blurred pictures */
-    REFOCUS_METHOD_DIFFUSION = 9, /**< Kosloff & Barsky 2007: heat through a blur field */
+    REFOCUS_METHOD_DIFFUSION = 9,    /**< Kosloff & Barsky 2007: heat through a blur field */
 };
 enum { REFOCUS_METHOD_COUNT = 10 };
 
 /** A method in struct refocus_renderer_params, and all of them. */
 #define REFOCUS_METHOD_BIT(method) (UINT32_C(1) << (method))
-#define REFOCUS_METHODS_ALL (REFOCUS_METHOD_BIT(REFOCUS_METHOD_COUNT) - 1)
+#define REFOCUS_METHODS_ALL        (REFOCUS_METHOD_BIT(REFOCUS_METHOD_COUNT) - 1)
 
 /** Name of a method, NULL for an unknown one. Thread-safe. */
 REFOCUS_API const char *refocus_method_name(uint32_t method);
@@ -260,26 +259,26 @@ enum refocus_solver {
 
 /** How to refocus. Start from refocus_render_params_default(). */
 struct refocus_render_params {
-    uint32_t struct_size;   /**< sizeof(struct refocus_render_params) */
-    uint32_t method;        /**< enum refocus_method */
-    float focus_disparity;  /**< df: the disparity in focus, 0 to 1 */
-    float max_blur_radius;  /**< K in pixels, 0 to the renderer's max_blur_radius */
-    int32_t rays;           /**< ray samples at the largest blur, 1 to REFOCUS_MAX_RAYS, or
-                                 REFOCUS_RAYS_FULL */
-    uint32_t blend;         /**< enum refocus_blend */
-    float sigma;            /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
-                                 eq. 5: >= 1; INFINITY = plain average */
-    float highlight_gain;   /**< sweep: light given back to small clipped lamps, 1 (none) to 16
-                                 times white, 2^stops, where they are blurred by s; none where
-                                 one channel of R, G, B alone is clipped. Of a disc or an
-                                 iris, and with sigma from 1e6 on, drawn over the area of the
-                                 opening times s^2; else rays meet it */
-    int32_t iterations;     /**< T of the randomized search, 1 to 64; the paper's is 1 */
-    uint8_t mirror;         /**< search: 1 = where the ray is hidden take the mirrored pixel */
-    uint8_t background;     /**< search: 1 = where the ray is hidden take the background layer */
-    uint8_t prefilter;      /**< sweep: 1 = smooth the input between rays that lie far apart,
-                                 and the result where all that is seen is blurred */
-    uint8_t reserved;       /**< 0 */
+    uint32_t struct_size;  /**< sizeof(struct refocus_render_params) */
+    uint32_t method;       /**< enum refocus_method */
+    float focus_disparity; /**< df: the disparity in focus, 0 to 1 */
+    float max_blur_radius; /**< K in pixels, 0 to the renderer's max_blur_radius */
+    int32_t rays;          /**< ray samples at the largest blur, 1 to REFOCUS_MAX_RAYS, or
+                                REFOCUS_RAYS_FULL */
+    uint32_t blend;        /**< enum refocus_blend */
+    float sigma;           /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
+                                eq. 5: >= 1; INFINITY = plain average */
+    float highlight_gain;  /**< sweep: light given back to small clipped lamps, 1 (none) to 16
+                                times white, 2^stops, where they are blurred by s; none where
+                                one channel of R, G, B alone is clipped. Of a disc or an
+                                iris, and with sigma from 1e6 on, drawn over the area of the
+                                opening times s^2; else rays meet it */
+    int32_t iterations;    /**< T of the randomized search, 1 to 64; the paper's is 1 */
+    uint8_t mirror;        /**< search: 1 = where the ray is hidden take the mirrored pixel */
+    uint8_t background;    /**< search: 1 = where the ray is hidden take the background layer */
+    uint8_t prefilter;     /**< sweep: 1 = smooth the input between rays that lie far apart,
+                                and the result where all that is seen is blurred */
+    uint8_t reserved;      /**< 0 */
     const struct refocus_aperture *aperture; /**< NULL = a disc, the only one that scatter,
                                  foveated, interpolated and diffusion know */
     int32_t region_x, region_y;              /**< the part of the picture to render: its */
@@ -287,35 +286,35 @@ struct refocus_render_params {
 
     /* What follows is of single methods; the others ignore it, but not its range. */
 
-    int32_t cell;           /**< jittered: a, the side of a cell in mask pixels, 1 to 16 */
-    uint32_t seed;          /**< jittered: which pixel of each cell; grain: which grain; any
-                                 number */
+    int32_t cell;  /**< jittered: a, the side of a cell in mask pixels, 1 to 16 */
+    uint32_t seed; /**< jittered: which pixel of each cell; grain: which grain; any
+                        number */
 
-    uint32_t spread;        /**< scatter: enum refocus_spread */
-    float airy_radius;      /**< scatter, Lommel: first dark ring of a point in focus, 0.25 to
-                                 16 pixels; in eq. 13 v = 3.8317 rho / airy_radius at rho pixels
-                                 from the middle and u = 3.8317 r / airy_radius */
-    float depth_ratio;      /**< scatter: z1 / z0, 1 to 1000, for the 1 / z^2 of eq. 20; 1 = all
-                                 samples count the same */
-    int32_t star_spikes;    /**< scatter, sweep: of a star filter, 0 = none, else 2 to 16; sweep
-                                 gives them to small clipped lamps */
-    float star_length;      /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS */
-    float star_angle;       /**< degrees of the first spike, counter-clockwise from the right */
-    float star_strength;    /**< share of the light that goes to the spikes, 0 to 1; sweep adds
-                                 it */
+    uint32_t spread;     /**< scatter: enum refocus_spread */
+    float airy_radius;   /**< scatter, Lommel: first dark ring of a point in focus, 0.25 to
+                              16 pixels; in eq. 13 v = 3.8317 rho / airy_radius at rho pixels
+                              from the middle and u = 3.8317 r / airy_radius */
+    float depth_ratio;   /**< scatter: z1 / z0, 1 to 1000, for the 1 / z^2 of eq. 20; 1 = all
+                              samples count the same */
+    int32_t star_spikes; /**< scatter, sweep: of a star filter, 0 = none, else 2 to 16; sweep
+                              gives them to small clipped lamps */
+    float star_length;   /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS */
+    float star_angle;    /**< degrees of the first spike, counter-clockwise from the right */
+    float star_strength; /**< share of the light that goes to the spikes, 0 to 1; sweep adds
+                              it */
 
-    float sharp_radius;     /**< interpolated: c0, blur radius up to which blurriness is 0;
-                                 0.5 to 16 pixels */
-    float middle_ratio;     /**< interpolated: r1, blurriness is 1/2 at r1 c0; 0 = (1 + r2) / 2,
-                                 else above 1 and below r2 */
-    float last_ratio;       /**< interpolated: r2, blurriness is 1 from r2 c0 on; 0 = at the
-                                 largest blur of any disparity, else above 1, to 1000 */
+    float sharp_radius; /**< interpolated: c0, blur radius up to which blurriness is 0;
+                             0.5 to 16 pixels */
+    float middle_ratio; /**< interpolated: r1, blurriness is 1/2 at r1 c0; 0 = (1 + r2) / 2,
+                             else above 1 and below r2 */
+    float last_ratio;   /**< interpolated: r2, blurriness is 1 from r2 c0 on; 0 = at the
+                             largest blur of any disparity, else above 1, to 1000 */
 
     float attention_x, attention_y; /**< foveated: centre of attention, 0 to 1 of width, height */
-    float attention_angle;  /**< foveated: across the volume of attention, 0 to 170 degrees */
-    float picture_angle;    /**< foveated: that the picture's width is seen at, 1 to 170 degrees */
-    float attention_depth;  /**< foveated: how far the volume reaches before and behind the
-                                 focus, in disparity, 0 to 1 */
+    float attention_angle; /**< foveated: across the volume of attention, 0 to 170 degrees */
+    float picture_angle;   /**< foveated: that the picture's width is seen at, 1 to 170 degrees */
+    float attention_depth; /**< foveated: how far the volume reaches before and behind the
+                                focus, in disparity, 0 to 1 */
 
     uint32_t field;         /**< sweep, search, blur, diffusion: enum refocus_field */
     float field_x, field_y; /**< centre, 0 to 1 of width and height */
@@ -344,73 +343,73 @@ struct refocus_render_params {
      * and |s| is multiplied by 1 - sharp_map. With a field other than that of the lens only the
      * last two and the clamps of d apply. The defaults change nothing.
      */
-    float tilt_x, tilt_y;       /**< place at which df is in focus, 0 to 1; default 0.5 */
+    float tilt_x, tilt_y;         /**< place at which df is in focus, 0 to 1; default 0.5 */
     float tilt_across, tilt_down; /**< growth of the disparity in focus from the left to the
                                  right and from the top to the bottom, up to REFOCUS_MAX_TILT
                                  either way: a tilted plane of focus, see focus.h */
-    float depth_share;          /**< 0 to 1: how much depth counts. Below 1 with a tilt: depth is
-                                 compressed along a line, Yang et al. 2016, fig. 13(a); 0 = only
-                                 the place counts, as in pictures of miniatures */
-    float focus_half_width;     /**< of the band about df: 0 to 1 */
-    float focus_transition;     /**< 0 to 1; see struct refocus_band */
-    int32_t bands;              /**< in focus beside it, 0 to REFOCUS_MAX_BANDS - 1 */
+    float depth_share;            /**< 0 to 1: how much depth counts. Below 1 with a tilt: depth is
+                                   compressed along a line, Yang et al. 2016, fig. 13(a); 0 = only
+                                   the place counts, as in pictures of miniatures */
+    float focus_half_width;       /**< of the band about df: 0 to 1 */
+    float focus_transition;       /**< 0 to 1; see struct refocus_band */
+    int32_t bands;                /**< in focus beside it, 0 to REFOCUS_MAX_BANDS - 1 */
     struct refocus_band band[REFOCUS_MAX_BANDS - 1];
     const struct refocus_disparity *focus_map; /**< NULL, or df of each place in place of
                                  focus_disparity: any size, read between its samples */
     const struct refocus_disparity *sharp_map; /**< NULL, or what stays sharp whatever its depth:
                                  1 wholly, 0 not at all; any size */
-    float least_disparity;      /**< what is farther counts as this far, 0 to 1; default 0 */
-    float most_disparity;       /**< what is nearer counts as this near, from least_disparity to 1;
-                                 default 1 */
-    float blur_limit;           /**< no blur is larger: 0 to REFOCUS_MAX_BLUR_RADIUS pixels, the
-                                 default */
+    float least_disparity; /**< what is farther counts as this far, 0 to 1; default 0 */
+    float most_disparity;  /**< what is nearer counts as this near, from least_disparity to 1;
+                            default 1 */
+    float blur_limit;      /**< no blur is larger: 0 to REFOCUS_MAX_BLUR_RADIUS pixels, the
+                            default */
 
     /* The look of the blur beyond the aperture's: of sweep, the others refuse it; also an
      * aperture that differs before and behind the focus, which needs a number of rays. */
-    float cat_eye;              /**< 0 to 0.9: how much of its width the opening has lost in the
-                                 corners, where it is the part common to two circles, one pushed
-                                 out and one pushed in; it grows with the square of the distance
-                                 from the middle of the picture. Of blades and figures that part
-                                 is taken, and a ring or an edge follows its rim; what is drawn
-                                 on a mask is squeezed into it. 0 = nothing, the default */
-    float fringe;               /**< -0.5 to 0.5: longitudinal colour: by how much the blur of red
-                                 and blue behind the focus, and of green before it, is smaller
-                                 than the other; below 0 the other way round. Takes twice the
-                                 time. 0 = none, the default */
-    float grain;                /**< 0 to 4, any method: how much of the noise that a blur
-                                 averages away is put back. It is measured where this lens
-                                 leaves the photo sharp (anywhere, when it does so nowhere), by
-                                 brightness, and laid over the blurred parts as luma noise by
-                                 `seed`. 0 = none, the default; 1 = as much as there was */
+    float cat_eye; /**< 0 to 0.9: how much of its width the opening has lost in the
+                    corners, where it is the part common to two circles, one pushed
+                    out and one pushed in; it grows with the square of the distance
+                    from the middle of the picture. Of blades and figures that part
+                    is taken, and a ring or an edge follows its rim; what is drawn
+                    on a mask is squeezed into it. 0 = nothing, the default */
+    float fringe;  /**< -0.5 to 0.5: longitudinal colour: by how much the blur of red
+                    and blue behind the focus, and of green before it, is smaller
+                    than the other; below 0 the other way round. Takes twice the
+                    time. 0 = none, the default */
+    float grain;   /**< 0 to 4, any method: how much of the noise that a blur
+                    averages away is put back. It is measured where this lens
+                    leaves the photo sharp (anywhere, when it does so nowhere), by
+                    brightness, and laid over the blurred parts as luma noise by
+                    `seed`. 0 = none, the default; 1 = as much as there was */
 
-    int32_t reduce;         /**< 1, or with a renderer for previews 2, 4 or 8: the picture at that
-                                 part of its size, rounded up. The photo is reduced by halves, in
-                                 linear light, pixels of other surfaces left out. The region, if
-                                 any, and `out` are in reduced pixels, all other lengths in
-                                 those of the photo: the result is that of the reduced photo
-                                 with K / reduce */
+    int32_t reduce; /**< 1, or with a renderer for previews 2, 4 or 8: the picture at that
+                         part of its size, rounded up. The photo is reduced by halves, in
+                         linear light, pixels of other surfaces left out. The region, if
+                         any, and `out` are in reduced pixels, all other lengths in
+                         those of the photo: the result is that of the reduced photo
+                         with K / reduce */
 
-    uint32_t thin;          /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels
-                                 wide are drawn as the veil that they become, and so are their
-                                 shares of the pixels at their edges, where they are blurred so
-                                 much before the focus that rays lie 1.8 pixels apart (8.1
-                                 pixels at 64 rays; the same of a full mask), 8 pixels at the
-                                 least, first some of them and all from 5/4 of that on, with
-                                 nothing thick as near around them. Rays, which meet them here
-                                 and miss them there, would show streaks. Not with
-                                 openings of fine structure (masks, figures, rings), cat's
-                                 eyes, fringes. And where they are in focus, before what is
-                                 blurred by some two pixels, their shares of the pixels at
-                                 their edges stay sharp, else those would be blurred with what
-                                 is behind and the edges be in steps. They are looked for in
-                                 the first render of a photo, which takes some frames' time;
-                                 not in photos of Y, U and V. 0 = no, the default */
+    uint32_t thin; /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels
+                        wide are drawn as the veil that they become, and so are their
+                        shares of the pixels at their edges, where they are blurred so
+                        much before the focus that rays lie 1.8 pixels apart (8.1
+                        pixels at 64 rays; the same of a full mask), 8 pixels at the
+                        least, first some of them and all from 5/4 of that on, with
+                        nothing thick as near around them. Rays, which meet them here
+                        and miss them there, would show streaks. Not with
+                        openings of fine structure (masks, figures, rings), cat's
+                        eyes, fringes. And where they are in focus, before what is
+                        blurred by some two pixels, their shares of the pixels at
+                        their edges stay sharp, else those would be blurred with what
+                        is behind and the edges be in steps. They are looked for in
+                        the first render of a photo, which takes some frames' time;
+                        not in photos of Y, U and V. 0 = no, the default */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole
  *  picture. */
-static inline struct refocus_render_params
-refocus_render_params_default(float focus_disparity, float max_blur_radius)
+static inline struct refocus_render_params refocus_render_params_default(float focus_disparity,
+                                                                         float max_blur_radius)
 {
     struct refocus_render_params params;
 
@@ -456,9 +455,9 @@ refocus_render_params_default(float focus_disparity, float max_blur_radius)
  * the photo has none).
  *
  * What the last call made is kept as long as it holds: another aperture shape or region
- * costs only the rays; other rays, highlights or sigma, what depends on them; another focus or K, all
- * but the light of the photo. A region costs what lies in it and around it. None of this changes
- * a byte.
+ * costs only the rays; other rays, highlights or sigma, what depends on them; another focus or K,
+ * all but the light of the photo. A region costs what lies in it and around it. None of this
+ * changes a byte.
  *
  * A photo of Y, U and V is rendered in Y, U and V, chroma at its own resolution, by the sweep
  * alone. Averaged are the luminance L of each pixel and, for each sample of chroma, the light
@@ -510,8 +509,8 @@ enum refocus_view {
  * @param stride  bytes from a row of @p out to the next; even
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE
  */
-REFOCUS_API int refocus_get_view(struct refocus_renderer *renderer, uint32_t view,
-                                 uint16_t *out, ptrdiff_t stride);
+REFOCUS_API int refocus_get_view(struct refocus_renderer *renderer, uint32_t view, uint16_t *out,
+                                 ptrdiff_t stride);
 
 /** Threads and instruction set that a renderer works with, all 0 for a NULL renderer. With a
  *  NULL @p info refocus_renderer_get_info() does nothing. */

@@ -27,8 +27,8 @@ struct refocus_temporal_params {
                                the range of disparities, 0 to 0.25 */
 };
 
-static inline struct refocus_temporal_params
-refocus_temporal_params_default(int32_t width, int32_t height)
+static inline struct refocus_temporal_params refocus_temporal_params_default(int32_t width,
+                                                                             int32_t height)
 {
     struct refocus_temporal_params params;
 

@@ -21,7 +21,7 @@ struct refocus_source {
     struct refocus_source_config config;
     struct refocus_source_counters counters;
     bool streaming;
-    int wake_fd; /* eventfd: readable after an interrupt */
+    int wake_fd;  /* eventfd: readable after an interrupt */
     uint64_t out; /* bit n: buffer n is the caller's */
     bool sequence_known;
     uint32_t sequence; /* of the frame before */
@@ -31,15 +31,13 @@ struct refocus_source {
  * state of a failed open is freed by the backend itself. */
 struct rf_source_ops {
     const char *scheme; /* before the colon */
-    int (*open)(struct refocus_source *source, const char *rest,
-                struct refocus_reason *reason);
-    int (*get_mode)(struct refocus_source *source, int index,
-                    struct refocus_source_mode *mode);
+    int (*open)(struct refocus_source *source, const char *rest, struct refocus_reason *reason);
+    int (*get_mode)(struct refocus_source *source, int index, struct refocus_source_mode *mode);
     /* By source->config; fills the mode. */
     int (*start)(struct refocus_source *source, struct refocus_source_mode *mode,
                  struct refocus_reason *reason);
-    int (*wait)(struct refocus_source *source, int64_t deadline_ns,
-                struct refocus_frame **frame, struct refocus_reason *reason);
+    int (*wait)(struct refocus_source *source, int64_t deadline_ns, struct refocus_frame **frame,
+                struct refocus_reason *reason);
     void (*release)(struct refocus_source *source, struct refocus_frame *frame);
     void (*stop)(struct refocus_source *source); /* only while it streams */
     /* Stopped: close the device and open it again. */
@@ -50,8 +48,8 @@ struct rf_source_ops {
     int (*list)(refocus_source_found *found, void *user); /* or NULL */
 };
 
-extern const struct rf_source_ops rf_source_file, rf_source_y4m, rf_source_raw,
-    rf_source_replay, rf_source_v4l2, rf_source_libcamera;
+extern const struct rf_source_ops rf_source_file, rf_source_y4m, rf_source_raw, rf_source_replay,
+    rf_source_v4l2, rf_source_libcamera;
 
 /* clock.c -------------------------------------------------------------------------- */
 
@@ -62,8 +60,8 @@ int64_t rf_now_ns(void);
  * REFOCUS_OK, REFOCUS_ERR_TIMEOUT or REFOCUS_ERR_CANCELLED; *revents is what poll()
  * says.
  */
-int rf_source_poll(const struct refocus_source *source, int fd, short events,
-                   int64_t deadline_ns, short *revents);
+int rf_source_poll(const struct refocus_source *source, int fd, short events, int64_t deadline_ns,
+                   short *revents);
 
 /* Pacing of files and scripts: frame n is due at a moment. */
 struct rf_pace {
@@ -98,8 +96,7 @@ int64_t rf_plane_stride(uint32_t format, int plane, int64_t stride);
  * range. */
 uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height);
 /* Point a frame's planes into such memory. */
-void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory,
-                      int64_t stride);
+void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_t stride);
 /* By name, not minding case; REFOCUS_FRAME_ANY for none. */
 uint32_t rf_format_by_name(const char *name);
 /* Zero the frame and put "not known" where that is not 0. */

@@ -16,8 +16,8 @@ int64_t rf_now_ns(void)
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-int rf_source_poll(const struct refocus_source *source, int fd, short events,
-                   int64_t deadline_ns, short *revents)
+int rf_source_poll(const struct refocus_source *source, int fd, short events, int64_t deadline_ns,
+                   short *revents)
 {
     struct pollfd fds[2] = {{.fd = source->wake_fd, .events = POLLIN},
                             {.fd = fd, .events = events}};
@@ -86,8 +86,7 @@ int rf_capture_fail_errno(struct refocus_reason *reason, int error, const char *
     case ENXIO:
     case ENODEV:
         return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "%s: it is not there; plug it in or give another name",
-                               what);
+                               "%s: it is not there; plug it in or give another name", what);
     case EBUSY:
         return rf_capture_fail(reason, REFOCUS_ERR_BUSY,
                                "%s: used by another program; end that one first", what);
@@ -95,7 +94,8 @@ int rf_capture_fail_errno(struct refocus_reason *reason, int error, const char *
     case EPERM:
         return rf_capture_fail(reason, REFOCUS_ERR_PERMISSION,
                                "%s: access is refused; for a camera become a member of "
-                               "the group 'video'", what);
+                               "the group 'video'",
+                               what);
     case ENOMEM:
         return rf_capture_fail_memory(reason);
     case EPIPE:

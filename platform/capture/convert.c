@@ -19,7 +19,7 @@ struct coefficients {
 struct refocus_converter {
     uint8_t *row[3]; /* copies of the rows of each plane */
     size_t size[3];
-    void *jpeg;      /* tjhandle */
+    void *jpeg; /* tjhandle */
 };
 
 /* Kr and Kb of the standards; limited range spans 219 and 224 codes. */
@@ -55,10 +55,9 @@ static void put_pixel(uint8_t *rgb, int luma, int red, int green, int blue)
 }
 
 /* A row of Y and one of U and V, which lie step apart; two pixels share a U and a V. */
-static void convert_yuv_row(uint8_t *restrict rgb, const uint8_t *restrict y,
-                            int y_step, const uint8_t *restrict u,
-                            const uint8_t *restrict v, int uv_step, int width,
-                            const struct coefficients *coefficients)
+static void convert_yuv_row(uint8_t *restrict rgb, const uint8_t *restrict y, int y_step,
+                            const uint8_t *restrict u, const uint8_t *restrict v, int uv_step,
+                            int width, const struct coefficients *coefficients)
 {
     const struct coefficients c = *coefficients;
     const int half = (1 << (SHIFT - 1)) - c.cy * c.y0;
@@ -69,13 +68,12 @@ static void convert_yuv_row(uint8_t *restrict rgb, const uint8_t *restrict y,
 
         put_pixel(rgb + 3 * x, c.cy * y[x * y_step] + half, red, green, blue);
         if (x + 1 < width)
-            put_pixel(rgb + 3 * x + 3, c.cy * y[(x + 1) * y_step] + half, red, green,
-                      blue);
+            put_pixel(rgb + 3 * x + 3, c.cy * y[(x + 1) * y_step] + half, red, green, blue);
     }
 }
 
-static void convert_rgb_row(uint8_t *restrict rgb, const uint8_t *restrict from,
-                            int bytes, bool blue_first, int width)
+static void convert_rgb_row(uint8_t *restrict rgb, const uint8_t *restrict from, int bytes,
+                            bool blue_first, int width)
 {
     const int red = blue_first ? 2 : 0;
 
@@ -86,8 +84,8 @@ static void convert_rgb_row(uint8_t *restrict rgb, const uint8_t *restrict from,
     }
 }
 
-static void convert_grey_row(uint8_t *restrict rgb, const uint8_t *restrict from,
-                             int step, int width)
+static void convert_grey_row(uint8_t *restrict rgb, const uint8_t *restrict from, int step,
+                             int width)
 {
     for (int x = 0; x < width; x++)
         rgb[3 * x] = rgb[3 * x + 1] = rgb[3 * x + 2] = from[x * step];
@@ -155,14 +153,14 @@ static int check(const struct refocus_frame *frame, struct refocus_reason *reaso
 {
     if (rf_format_planes(frame->format) == 0 || frame->width < 1 || frame->height < 1 ||
         frame->width > REFOCUS_MAX_SIDE || frame->height > REFOCUS_MAX_SIDE)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the frame has no size or "
-                                                             "format");
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "the frame has no size or "
+                               "format");
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
         const int64_t row = rf_plane_row(frame->format, i, frame->width);
 
         if (!frame->plane[i] ||
-            !rf_stride_fits(frame->stride[i], row,
-                            rf_plane_rows(frame->format, i, frame->height)))
+            !rf_stride_fits(frame->stride[i], row, rf_plane_rows(frame->format, i, frame->height)))
             return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                    "plane %d of the frame: its stride of %lld bytes is "
                                    "less than a row, or more than memory",
@@ -172,8 +170,7 @@ static int check(const struct refocus_frame *frame, struct refocus_reason *reaso
 }
 
 /* Room for a row of each plane. */
-static int reserve_rows(struct refocus_converter *converter,
-                        const struct refocus_frame *frame,
+static int reserve_rows(struct refocus_converter *converter, const struct refocus_frame *frame,
                         struct refocus_reason *reason)
 {
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
@@ -190,16 +187,15 @@ static int reserve_rows(struct refocus_converter *converter,
     return REFOCUS_OK;
 }
 
-static void copy_row(struct refocus_converter *converter,
-                     const struct refocus_frame *frame, int plane, int y)
+static void copy_row(struct refocus_converter *converter, const struct refocus_frame *frame,
+                     int plane, int y)
 {
     memcpy(converter->row[plane], frame->plane[plane] + y * frame->stride[plane],
            (size_t)rf_plane_row(frame->format, plane, frame->width));
 }
 
 #ifdef RF_HAVE_JPEG
-static int convert_jpeg(struct refocus_converter *converter,
-                        const struct refocus_frame *frame,
+static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
                         const struct refocus_image *out, struct refocus_reason *reason)
 {
     int width, height, subsampling, space;
@@ -208,26 +204,26 @@ static int convert_jpeg(struct refocus_converter *converter,
         converter->jpeg = tjInitDecompress();
     if (!converter->jpeg)
         return rf_capture_fail_memory(reason);
-    if (tjDecompressHeader3(converter->jpeg, frame->plane[0],
-                            (unsigned long)frame->bytes, &width, &height, &subsampling,
-                            &space) != 0 ||
+    if (tjDecompressHeader3(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes, &width,
+                            &height, &subsampling, &space) != 0 ||
         width != out->width || height != out->height)
         return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
                                "the JPEG of the frame is damaged or of another size");
     if (out->stride[0] < 0 || out->stride[0] > 1 << 30)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "this stride is not "
-                                                             "possible");
-    if (tjDecompress2(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes,
-                      out->plane[0], width, (int)out->stride[0], height, TJPF_RGB,
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "this stride is not "
+                               "possible");
+    if (tjDecompress2(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes, out->plane[0],
+                      width, (int)out->stride[0], height, TJPF_RGB,
                       TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "the JPEG of the frame: "
-                                                           "%.180s",
+        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
+                               "the JPEG of the frame: "
+                               "%.180s",
                                tjGetErrorStr2(converter->jpeg));
     return REFOCUS_OK;
 }
 #else
-static int convert_jpeg(struct refocus_converter *converter,
-                        const struct refocus_frame *frame,
+static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
                         const struct refocus_image *out, struct refocus_reason *reason)
 {
     (void)converter;
@@ -239,8 +235,7 @@ static int convert_jpeg(struct refocus_converter *converter,
 }
 #endif
 
-int refocus_convert_rgb8(struct refocus_converter *converter,
-                         const struct refocus_frame *frame,
+int refocus_convert_rgb8(struct refocus_converter *converter, const struct refocus_frame *frame,
                          const struct refocus_image *out, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
@@ -249,9 +244,8 @@ int refocus_convert_rgb8(struct refocus_converter *converter,
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if (!converter || !frame || !out || !out->plane[0] ||
-        out->format != REFOCUS_FORMAT_RGB8 || out->width != frame->width ||
-        out->height != frame->height ||
+    if (!converter || !frame || !out || !out->plane[0] || out->format != REFOCUS_FORMAT_RGB8 ||
+        out->width != frame->width || out->height != frame->height ||
         !rf_stride_fits(out->stride[0], (int64_t)out->width * 3, out->height))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "the picture to convert into must be RGB8 of the "
@@ -269,8 +263,8 @@ int refocus_convert_rgb8(struct refocus_converter *converter,
         for (int i = 1; i < rf_format_planes(frame->format); i++)
             if (y % 2 == 0)
                 copy_row(converter, frame, i, y / 2);
-        convert_row(out->plane[0] + y * out->stride[0], converter->row, frame->format,
-                    frame->width, &c);
+        convert_row(out->plane[0] + y * out->stride[0], converter->row, frame->format, frame->width,
+                    &c);
     }
     return REFOCUS_OK;
 }
@@ -308,9 +302,8 @@ static bool fits(const struct refocus_frame *frame, const struct refocus_image *
     return true;
 }
 
-int refocus_convert_copy(struct refocus_converter *converter,
-                         const struct refocus_frame *frame, struct refocus_image *out,
-                         struct refocus_reason *reason)
+int refocus_convert_copy(struct refocus_converter *converter, const struct refocus_frame *frame,
+                         struct refocus_image *out, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     int status;
@@ -331,13 +324,12 @@ int refocus_convert_copy(struct refocus_converter *converter,
     if (status != REFOCUS_OK)
         return status;
     out->matrix = frame->matrix;
-    out->range = frame->flags & REFOCUS_FRAME_FULL_RANGE ? REFOCUS_RANGE_FULL
-                                                         : REFOCUS_RANGE_LIMITED;
+    out->range =
+        frame->flags & REFOCUS_FRAME_FULL_RANGE ? REFOCUS_RANGE_FULL : REFOCUS_RANGE_LIMITED;
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
         const size_t bytes = (size_t)rf_plane_row(frame->format, i, frame->width);
 
-        for (int y = 0;
-             y < rf_plane_rows(rf_frame_format_of(out->format), i, out->height); y++) {
+        for (int y = 0; y < rf_plane_rows(rf_frame_format_of(out->format), i, out->height); y++) {
             uint8_t *row = out->plane[i] + y * out->stride[i];
 
             if (frame->format == REFOCUS_FRAME_UYVY) {
@@ -352,9 +344,8 @@ int refocus_convert_copy(struct refocus_converter *converter,
     return REFOCUS_OK;
 }
 
-int refocus_convert_samples(struct refocus_converter *converter,
-                            const struct refocus_frame *frame, uint16_t *samples,
-                            struct refocus_reason *reason)
+int refocus_convert_samples(struct refocus_converter *converter, const struct refocus_frame *frame,
+                            uint16_t *samples, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     int status;

@@ -9,20 +9,13 @@ static const struct {
     int planes;
     int bits; /* of a pixel in plane 0 */
 } formats[REFOCUS_FRAME_FORMAT_COUNT] = {
-    [REFOCUS_FRAME_ANY] = {NULL, 0, 0},
-    [REFOCUS_FRAME_YUYV] = {"YUYV", 1, 16},
-    [REFOCUS_FRAME_UYVY] = {"UYVY", 1, 16},
-    [REFOCUS_FRAME_NV12] = {"NV12", 2, 8},
-    [REFOCUS_FRAME_NV21] = {"NV21", 2, 8},
-    [REFOCUS_FRAME_YUV420] = {"YUV420", 3, 8},
-    [REFOCUS_FRAME_RGB24] = {"RGB24", 1, 24},
-    [REFOCUS_FRAME_BGR24] = {"BGR24", 1, 24},
-    [REFOCUS_FRAME_RGBX] = {"RGBX", 1, 32},
-    [REFOCUS_FRAME_BGRX] = {"BGRX", 1, 32},
-    [REFOCUS_FRAME_MJPEG] = {"MJPEG", 1, 0},
-    [REFOCUS_FRAME_GREY] = {"GREY", 1, 8},
-    [REFOCUS_FRAME_Y16] = {"Y16", 1, 16},
-    [REFOCUS_FRAME_Z16] = {"Z16", 1, 16},
+    [REFOCUS_FRAME_ANY] = {NULL, 0, 0},       [REFOCUS_FRAME_YUYV] = {"YUYV", 1, 16},
+    [REFOCUS_FRAME_UYVY] = {"UYVY", 1, 16},   [REFOCUS_FRAME_NV12] = {"NV12", 2, 8},
+    [REFOCUS_FRAME_NV21] = {"NV21", 2, 8},    [REFOCUS_FRAME_YUV420] = {"YUV420", 3, 8},
+    [REFOCUS_FRAME_RGB24] = {"RGB24", 1, 24}, [REFOCUS_FRAME_BGR24] = {"BGR24", 1, 24},
+    [REFOCUS_FRAME_RGBX] = {"RGBX", 1, 32},   [REFOCUS_FRAME_BGRX] = {"BGRX", 1, 32},
+    [REFOCUS_FRAME_MJPEG] = {"MJPEG", 1, 0},  [REFOCUS_FRAME_GREY] = {"GREY", 1, 8},
+    [REFOCUS_FRAME_Y16] = {"Y16", 1, 16},     [REFOCUS_FRAME_Z16] = {"Z16", 1, 16},
 };
 
 const char *refocus_frame_format_name(uint32_t format)
@@ -80,9 +73,8 @@ uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height)
 {
     uint64_t bytes = 0;
 
-    if (width < 1 || height < 1 || width > REFOCUS_MAX_SIDE ||
-        height > REFOCUS_MAX_SIDE || stride < rf_plane_row(format, 0, width) ||
-        stride > (int64_t)1 << 24)
+    if (width < 1 || height < 1 || width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE ||
+        stride < rf_plane_row(format, 0, width) || stride > (int64_t)1 << 24)
         return 0;
     for (int i = 0; i < rf_format_planes(format); i++)
         bytes += (uint64_t)rf_plane_stride(format, i, stride) *
@@ -90,8 +82,7 @@ uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height)
     return bytes;
 }
 
-void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory,
-                      int64_t stride)
+void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_t stride)
 {
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
         frame->plane[i] = memory;

@@ -13,14 +13,12 @@
 static const int here;
 
 /* What a symbol of the module in that file is, or NULL. */
-static const void *try(const char *folder, int length, const char *name,
-                       const char *symbol)
+static const void *try(const char *folder, int length, const char *name, const char *symbol)
 {
     char path[4096];
     void *module;
 
-    if (snprintf(path, sizeof path, "%.*s%s.so", length, folder, name) >=
-        (int)sizeof path)
+    if (snprintf(path, sizeof path, "%.*s%s.so", length, folder, name) >= (int)sizeof path)
         return NULL;
     module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     return module ? dlsym(module, symbol) : NULL;
@@ -50,8 +48,8 @@ static const struct rf_source_ops *libcamera;
 
 static void load_libcamera(void)
 {
-    libcamera = load("refocus/refocus-libcamera", "../libcamera/refocus-libcamera",
-                     "rf_source_libcamera");
+    libcamera =
+        load("refocus/refocus-libcamera", "../libcamera/refocus-libcamera", "rf_source_libcamera");
 }
 
 const struct rf_source_ops *rf_libcamera(void)

@@ -44,9 +44,9 @@ bool rf_pattern_name(char *name, size_t size, const char *pattern, int n)
     rest = conversion(percent, &width, &zeros);
     if (!rest)
         return false;
-    length = zeros ? snprintf(name, size, "%.*s%0*d%s", (int)(percent - pattern),
-                              pattern, width, n, rest)
-                   : snprintf(name, size, "%.*s%*d%s", (int)(percent - pattern),
-                              pattern, width, n, rest);
+    length =
+        zeros
+            ? snprintf(name, size, "%.*s%0*d%s", (int)(percent - pattern), pattern, width, n, rest)
+            : snprintf(name, size, "%.*s%*d%s", (int)(percent - pattern), pattern, width, n, rest);
     return length > 0 && (size_t)length < size;
 }

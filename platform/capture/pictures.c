@@ -10,7 +10,7 @@ struct pictures {
     char *pattern;
     bool many;
     int first, next; /* numbers of files */
-    int64_t frame;           /* since the start */
+    int64_t frame;   /* since the start */
     struct rf_pace pace;
     struct rf_ring ring; /* without memory: photos own it */
     struct refocus_photo *photo[RF_MOST_BUFFERS];
@@ -38,8 +38,7 @@ static int open_pictures(struct refocus_source *source, const char *rest,
     }
     pictures->many = many == 1;
     for (; pictures->first < 2; pictures->first++)
-        if (rf_pattern_name(name, sizeof name, rest, pictures->first) &&
-            access(name, R_OK) == 0)
+        if (rf_pattern_name(name, sizeof name, rest, pictures->first) && access(name, R_OK) == 0)
             break;
     if (pictures->first == 2) {
         free(pictures->pattern);
@@ -51,8 +50,7 @@ static int open_pictures(struct refocus_source *source, const char *rest,
     return REFOCUS_OK;
 }
 
-static int get_mode(struct refocus_source *source, int index,
-                    struct refocus_source_mode *mode)
+static int get_mode(struct refocus_source *source, int index, struct refocus_source_mode *mode)
 {
     (void)source;
     if (index > 0)
@@ -86,8 +84,8 @@ static int show(struct refocus_frame *frame, const struct refocus_photo *photo,
     if (photo->depth.sample == REFOCUS_SAMPLE_F32)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "depth of floats is not streamed; give 8 or 16 bits");
-    frame->format = photo->depth.sample == REFOCUS_SAMPLE_U8 ? REFOCUS_FRAME_GREY
-                                                             : REFOCUS_FRAME_Y16;
+    frame->format =
+        photo->depth.sample == REFOCUS_SAMPLE_U8 ? REFOCUS_FRAME_GREY : REFOCUS_FRAME_Y16;
     frame->width = photo->depth.width;
     frame->height = photo->depth.height;
     frame->plane[0] = photo->depth.samples;
@@ -129,18 +127,17 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
 }
 
 /* Read the picture that comes next into a buffer. */
-static int read_next(struct refocus_source *source, int buffer,
-                     struct refocus_reason *reason)
+static int read_next(struct refocus_source *source, int buffer, struct refocus_reason *reason)
 {
     struct pictures *pictures = source->state;
     char name[PATH_MAX];
 
     rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
     if (access(name, F_OK) != 0) {
-        if (!(source->config.flags & REFOCUS_SOURCE_LOOP) ||
-            pictures->next == pictures->first)
-            return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more "
-                                                            "pictures");
+        if (!(source->config.flags & REFOCUS_SOURCE_LOOP) || pictures->next == pictures->first)
+            return rf_capture_fail(reason, REFOCUS_ERR_END,
+                                   "there are no more "
+                                   "pictures");
         pictures->next = pictures->first;
         rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
     }
@@ -157,21 +154,20 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     int buffer, status;
 
     if (!pictures->pace.fast && due > rf_now_ns()) {
-        status =
-            rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
+        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
         if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
             return status;
     }
     buffer = rf_ring_take(&pictures->ring);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; "
-                                                          "release one");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
+                               "every buffer is out; "
+                               "release one");
     frame = &pictures->ring.frame[buffer];
     rf_frame_clear(frame);
     status = pictures->many ? read_next(source, buffer, reason) : REFOCUS_OK;
     if (status == REFOCUS_OK)
-        status = show(frame, pictures->many ? pictures->photo[buffer] : pictures->still,
-                      reason);
+        status = show(frame, pictures->many ? pictures->photo[buffer] : pictures->still, reason);
     if (status != REFOCUS_OK) {
         rf_ring_give(&pictures->ring, (uint32_t)buffer);
         return status;
@@ -183,8 +179,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
         frame->flags |= REFOCUS_FRAME_STILL;
     if (!pictures->pace.fast)
         frame->flags |= REFOCUS_FRAME_MONOTONIC;
-    if (pictures->width && (pictures->width != frame->width ||
-                            pictures->height != frame->height))
+    if (pictures->width && (pictures->width != frame->width || pictures->height != frame->height))
         frame->flags |= REFOCUS_FRAME_CHANGED;
     pictures->width = frame->width;
     pictures->height = frame->height;

@@ -38,13 +38,11 @@ static void splat(const struct refocus_calibration *c, double x, double y, doubl
     top = fmin(low[1] / low[2], high[1] / high[2]) * colour->fy + colour->cy;
     bottom = fmax(low[1] / low[2], high[1] / high[2]) * colour->fy + colour->cy;
     units = (low[2] + high[2]) / 2 / metres_per_unit + 0.5;
-    if (!(left > -1e6 && right < 1e6 && top > -1e6 && bottom < 1e6 && units >= 1 &&
-          units < 65536))
+    if (!(left > -1e6 && right < 1e6 && top > -1e6 && bottom < 1e6 && units >= 1 && units < 65536))
         return;
 
     /* Pixels whose centre lies in [left, right) and [top, bottom), at least one. */
-    int x0 = (int)ceil(left), x1 = (int)ceil(right), y0 = (int)ceil(top),
-        y1 = (int)ceil(bottom);
+    int x0 = (int)ceil(left), x1 = (int)ceil(right), y0 = (int)ceil(top), y1 = (int)ceil(bottom);
     if (x1 == x0)
         x1 = (x0 = (int)floor((left + right) / 2 + 0.5)) + 1;
     if (y1 == y0)
@@ -58,24 +56,19 @@ static void splat(const struct refocus_calibration *c, double x, double y, doubl
         }
 }
 
-int refocus_register_depth(const struct refocus_calibration *calibration,
-                           const uint16_t *samples, double metres_per_unit,
-                           uint16_t *out)
+int refocus_register_depth(const struct refocus_calibration *calibration, const uint16_t *samples,
+                           double metres_per_unit, uint16_t *out)
 {
-    if (!calibration || !samples || !out || !(metres_per_unit > 0) ||
-        !isfinite(metres_per_unit) || !is_sound(&calibration->depth) ||
-        !is_sound(&calibration->colour))
+    if (!calibration || !samples || !out || !(metres_per_unit > 0) || !isfinite(metres_per_unit) ||
+        !is_sound(&calibration->depth) || !is_sound(&calibration->colour))
         return REFOCUS_ERR_ARGUMENT;
     for (int i = 0; i < 9; i++)
-        if (!isfinite(calibration->rotation[i]) ||
-            !isfinite(calibration->translation_m[i % 3]))
+        if (!isfinite(calibration->rotation[i]) || !isfinite(calibration->translation_m[i % 3]))
             return REFOCUS_ERR_ARGUMENT;
-    memset(out, 0,
-           (size_t)calibration->colour.width * (size_t)calibration->colour.height * 2);
+    memset(out, 0, (size_t)calibration->colour.width * (size_t)calibration->colour.height * 2);
     for (int y = 0; y < calibration->depth.height; y++)
         for (int x = 0; x < calibration->depth.width; x++, samples++)
             if (*samples)
-                splat(calibration, x, y, *samples * metres_per_unit, metres_per_unit,
-                      out);
+                splat(calibration, x, y, *samples * metres_per_unit, metres_per_unit, out);
     return REFOCUS_OK;
 }

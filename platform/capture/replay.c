@@ -58,8 +58,7 @@ static int draw_scene(struct replay *replay, struct refocus_reason *reason)
     if (!replay->scene)
         return rf_capture_fail_memory(reason);
     replay->scene_bytes = (size_t)bytes;
-    rf_scene_draw(replay->scene, replay->format, replay->stride, replay->width,
-                  replay->height);
+    rf_scene_draw(replay->scene, replay->format, replay->stride, replay->width, replay->height);
     return REFOCUS_OK;
 }
 
@@ -130,8 +129,7 @@ static int open_replay(struct refocus_source *source, const char *rest,
     return status;
 }
 
-static int get_mode(struct refocus_source *source, int index,
-                    struct refocus_source_mode *mode)
+static int get_mode(struct refocus_source *source, int index, struct refocus_source_mode *mode)
 {
     const struct replay *replay = source->state;
 
@@ -151,12 +149,14 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     const double fps = source->config.fps > 0 ? source->config.fps : replay->script.fps;
 
     if (replay->gone)
-        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by "
-                                                         "script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE,
+                               "the device is gone (by "
+                               "script)");
     if (replay->script.start_errors > 0) {
         replay->script.start_errors--;
-        return rf_capture_fail(reason, REFOCUS_ERR_IO, "the stream cannot start (by "
-                                                       "script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_IO,
+                               "the stream cannot start (by "
+                               "script)");
     }
     if (replay->inner) {
         struct refocus_source_config config = source->config;
@@ -195,8 +195,8 @@ static struct rf_event random_event(const struct replay *replay, int64_t frame)
     if ((double)(h & 0xffff) >= replay->script.random_percent * 655.36)
         return event;
     event.fault = (enum rf_fault)(RF_FAULT_DROP + (h >> 16) % 8);
-    event.value = event.fault == RF_FAULT_TIMESTAMP ? -(int64_t)(h >> 20 & 63)
-                                                    : 1 + (int64_t)(h >> 20 & 1);
+    event.value =
+        event.fault == RF_FAULT_TIMESTAMP ? -(int64_t)(h >> 20 & 63) : 1 + (int64_t)(h >> 20 & 1);
     return event;
 }
 
@@ -217,8 +217,7 @@ static int apply_to_stream(struct replay *replay, const struct rf_event *event,
     case RF_FAULT_STRIDE:
         replay->stride = event->value;
         replay->changed = true;
-        return replay->inner || replay->script.jpeg ? REFOCUS_OK
-                                                    : draw_scene(replay, reason);
+        return replay->inner || replay->script.jpeg ? REFOCUS_OK : draw_scene(replay, reason);
     case RF_FAULT_FORMAT:
         if (replay->inner || replay->script.jpeg)
             break;
@@ -252,8 +251,7 @@ static void apply_to_frame(struct fate *fate, const struct rf_event *event)
 
 /* The events of the frame to come; streams' events of frames that are passed over
  * count. */
-static int decide(struct replay *replay, struct fate *fate,
-                  struct refocus_reason *reason)
+static int decide(struct replay *replay, struct fate *fate, struct refocus_reason *reason)
 {
     const struct rf_event chance = random_event(replay, replay->next);
     int status = apply_to_stream(replay, &chance, reason);
@@ -355,13 +353,12 @@ static int64_t due_at(const struct replay *replay, int64_t frame)
 
 /* A camera fills the buffers that it has; what comes then is dropped, but for the last
  * frame. */
-static int pass_over(struct replay *replay, struct fate *fate,
-                     struct refocus_reason *reason)
+static int pass_over(struct replay *replay, struct fate *fate, struct refocus_reason *reason)
 {
     int status = decide(replay, fate, reason);
 
-    while (status == REFOCUS_OK && !replay->pace.fast && !replay->failed &&
-           !replay->gone && !is_over(replay, replay->next + 1) &&
+    while (status == REFOCUS_OK && !replay->pace.fast && !replay->failed && !replay->gone &&
+           !is_over(replay, replay->next + 1) &&
            due_at(replay, replay->next + replay->ring.count) < rf_now_ns()) {
         replay->next++;
         status = decide(replay, fate, reason);
@@ -377,8 +374,7 @@ static int pass_over(struct replay *replay, struct fate *fate,
     return status;
 }
 
-static int sleep_until(const struct refocus_source *source, int64_t due,
-                       int64_t deadline_ns)
+static int sleep_until(const struct refocus_source *source, int64_t due, int64_t deadline_ns)
 {
     int status;
 
@@ -417,8 +413,9 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
         return status;
     buffer = rf_ring_take(&replay->ring);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; "
-                                                          "release one");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
+                               "every buffer is out; "
+                               "release one");
     frame = &replay->ring.frame[buffer];
     rf_frame_clear(frame);
     status = pass_over(replay, &fate, reason);
@@ -433,8 +430,8 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
         status = check_stream(replay, reason); /* the last ones may not come */
     }
     if (status == REFOCUS_OK && fate.late_ms > 0)
-        status = rf_source_poll(source, -1, 0, rf_now_ns() + fate.late_ms * 1000000,
-                                NULL) == REFOCUS_ERR_CANCELLED
+        status = rf_source_poll(source, -1, 0, rf_now_ns() + fate.late_ms * 1000000, NULL) ==
+                         REFOCUS_ERR_CANCELLED
                      ? REFOCUS_ERR_CANCELLED
                      : REFOCUS_OK;
     if (status == REFOCUS_OK)
@@ -487,8 +484,9 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
     struct replay *replay = source->state;
 
     if (replay->gone && rf_now_ns() < replay->gone_until_ns)
-        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by "
-                                                         "script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE,
+                               "the device is gone (by "
+                               "script)");
     replay->gone = false;
     return REFOCUS_OK;
 }

@@ -45,13 +45,11 @@ struct rf_script {
 
 /* Fill a script from a text of lines, or of parts with semicolons. On an error the
  * reason names the line; rf_script_free() in any case. */
-int rf_script_parse(struct rf_script *script, char *text,
-                    struct refocus_reason *reason);
+int rf_script_parse(struct rf_script *script, char *text, struct refocus_reason *reason);
 void rf_script_free(struct rf_script *script);
 
 /* replay_scene.c: draw discs before a wall, or how far they are for GREY, Y16 and Z16
  * (mm), into such a frame. */
-void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width,
-                   int height);
+void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width, int height);
 
 #endif

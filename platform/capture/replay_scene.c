@@ -87,8 +87,7 @@ static void draw_packed(uint8_t *row, uint32_t format, int x, struct sample s)
     }
 }
 
-void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width,
-                   int height)
+void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width, int height)
 {
     struct refocus_frame frame;
     uint8_t *plane[3] = {memory, memory, memory};

@@ -9,16 +9,11 @@ static const struct {
     enum rf_fault fault;
     bool needs_value;
 } faults[] = {
-    {"drop", RF_FAULT_DROP, false},
-    {"corrupt", RF_FAULT_CORRUPT, false},
-    {"late", RF_FAULT_LATE, true},
-    {"timestamp", RF_FAULT_TIMESTAMP, true},
-    {"stall", RF_FAULT_STALL, true},
-    {"fail", RF_FAULT_FAIL, false},
-    {"vanish", RF_FAULT_VANISH, true},
-    {"queue-error", RF_FAULT_QUEUE_ERROR, false},
-    {"stride", RF_FAULT_STRIDE, true},
-    {"format", RF_FAULT_FORMAT, false},
+    {"drop", RF_FAULT_DROP, false},     {"corrupt", RF_FAULT_CORRUPT, false},
+    {"late", RF_FAULT_LATE, true},      {"timestamp", RF_FAULT_TIMESTAMP, true},
+    {"stall", RF_FAULT_STALL, true},    {"fail", RF_FAULT_FAIL, false},
+    {"vanish", RF_FAULT_VANISH, true},  {"queue-error", RF_FAULT_QUEUE_ERROR, false},
+    {"stride", RF_FAULT_STRIDE, true},  {"format", RF_FAULT_FORMAT, false},
     {"memory", RF_FAULT_MEMORY, false},
 };
 
@@ -63,12 +58,10 @@ static bool parse_event(struct rf_script *script, const char *word[4])
                 return false;
             snprintf(name, sizeof name, "%.*s", (int)(size - word[3]), word[3]);
             event->format = rf_format_by_name(name);
-            if (event->format == REFOCUS_FRAME_ANY ||
-                event->format == REFOCUS_FRAME_MJPEG ||
+            if (event->format == REFOCUS_FRAME_ANY || event->format == REFOCUS_FRAME_MJPEG ||
                 !parse_size(size + 1, &event->width, &event->height))
                 return false;
-        } else if (word[3] ? !parse_number(word[3], -1e9, 1e9, &value)
-                           : faults[i].needs_value) {
+        } else if (word[3] ? !parse_number(word[3], -1e9, 1e9, &value) : faults[i].needs_value) {
             return false;
         }
         event->value = (int64_t)value;
@@ -93,16 +86,14 @@ static bool parse_line(struct rf_script *script, const char *word[4])
     if (strcmp(key, "at") == 0)
         return parse_event(script, word);
     if (strcmp(key, "from") == 0) /* scripts within scripts might never end */
-        return word[1] && strncmp(word[1], "replay:", 7) != 0 &&
-               set_text(&script->from, word[1]);
+        return word[1] && strncmp(word[1], "replay:", 7) != 0 && set_text(&script->from, word[1]);
     if (strcmp(key, "jpeg") == 0) {
         script->format = REFOCUS_FRAME_MJPEG;
         return set_text(&script->jpeg, word[1]);
     }
     if (strcmp(key, "format") == 0) {
         script->format = rf_format_by_name(word[1] ? word[1] : "");
-        return script->format != REFOCUS_FRAME_ANY &&
-               script->format != REFOCUS_FRAME_MJPEG;
+        return script->format != REFOCUS_FRAME_ANY && script->format != REFOCUS_FRAME_MJPEG;
     }
     if (strcmp(key, "size") == 0)
         return parse_size(word[1], &script->width, &script->height);
@@ -159,10 +150,8 @@ int rf_script_parse(struct rf_script *script, char *text, struct refocus_reason 
     if (script->stride == 0)
         script->stride = rf_plane_row(script->format, 0, script->width);
     if (script->format != REFOCUS_FRAME_MJPEG &&
-        rf_frame_bytes(script->format, script->stride, script->width, script->height) ==
-            0)
-        return rf_capture_fail(reason, REFOCUS_ERR_SIZE,
-                               "the script's stride is less than a row");
+        rf_frame_bytes(script->format, script->stride, script->width, script->height) == 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_SIZE, "the script's stride is less than a row");
     return REFOCUS_OK;
 }
 

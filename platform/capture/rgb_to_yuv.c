@@ -5,20 +5,17 @@
 /* BT.601 limited range in 1/65536: 219 Kr, 219 Kg, 219 Kb and so on, of 255. */
 static uint8_t luma(const uint8_t *p)
 {
-    return (uint8_t)((16829 * p[0] + 33039 * p[1] + 6416 * p[2] + (16 << 16) + 32768) >>
-                     16);
+    return (uint8_t)((16829 * p[0] + 33039 * p[1] + 6416 * p[2] + (16 << 16) + 32768) >> 16);
 }
 
 static uint8_t chroma_u(int r, int g, int b, int shift)
 {
-    return (uint8_t)((-9714 * r - 19070 * g + 28784 * b + (257 << (15 + shift))) >>
-                     (16 + shift));
+    return (uint8_t)((-9714 * r - 19070 * g + 28784 * b + (257 << (15 + shift))) >> (16 + shift));
 }
 
 static uint8_t chroma_v(int r, int g, int b, int shift)
 {
-    return (uint8_t)((28784 * r - 24103 * g - 4681 * b + (257 << (15 + shift))) >>
-                     (16 + shift));
+    return (uint8_t)((28784 * r - 24103 * g - 4681 * b + (257 << (15 + shift))) >> (16 + shift));
 }
 
 static uint8_t *plane_row(const struct refocus_frame *frame, int plane, int y)
@@ -26,8 +23,8 @@ static uint8_t *plane_row(const struct refocus_frame *frame, int plane, int y)
     return (uint8_t *)(uintptr_t)frame->plane[plane] + y * frame->stride[plane];
 }
 
-static void encode_packed_422(const struct refocus_image *image,
-                              const struct refocus_frame *frame, int y)
+static void encode_packed_422(const struct refocus_image *image, const struct refocus_frame *frame,
+                              int y)
 {
     const int first = frame->format == REFOCUS_FRAME_UYVY; /* where Y begins */
     const uint8_t *rgb = image->plane[0] + y * image->stride[0];
@@ -45,8 +42,7 @@ static void encode_packed_422(const struct refocus_image *image,
 }
 
 /* Two rows of Y and one of U and V. */
-static void encode_420(const struct refocus_image *image,
-                       const struct refocus_frame *frame, int y)
+static void encode_420(const struct refocus_image *image, const struct refocus_frame *frame, int y)
 {
     const uint8_t *top = image->plane[0] + y * image->stride[0];
     const uint8_t *low = y + 1 < image->height ? top + image->stride[0] : top;
@@ -55,8 +51,7 @@ static void encode_420(const struct refocus_image *image,
     const int step = planar ? 1 : 2;
     uint8_t *out[2] = {plane_row(frame, 0, y), plane_row(frame, 0, y + (low != top))};
     uint8_t *u = plane_row(frame, 1, y / 2) + swapped;
-    uint8_t *v =
-        planar ? plane_row(frame, 2, y / 2) : plane_row(frame, 1, y / 2) + !swapped;
+    uint8_t *v = planar ? plane_row(frame, 2, y / 2) : plane_row(frame, 1, y / 2) + !swapped;
 
     for (int x = 0; x < image->width; x++) {
         out[0][x] = luma(top + 3 * x);
@@ -73,11 +68,9 @@ static void encode_420(const struct refocus_image *image,
     }
 }
 
-static void encode_rgb(const struct refocus_image *image,
-                       const struct refocus_frame *frame, int y)
+static void encode_rgb(const struct refocus_image *image, const struct refocus_frame *frame, int y)
 {
-    const bool blue = frame->format == REFOCUS_FRAME_BGR24 ||
-                      frame->format == REFOCUS_FRAME_BGRX;
+    const bool blue = frame->format == REFOCUS_FRAME_BGR24 || frame->format == REFOCUS_FRAME_BGRX;
     const int bytes = frame->format >= REFOCUS_FRAME_RGBX ? 4 : 3;
     const uint8_t *rgb = image->plane[0] + y * image->stride[0];
     uint8_t *out = plane_row(frame, 0, y);

@@ -2,8 +2,8 @@
 #include <string.h>
 #include "sink.h"
 
-void rf_samples_of(struct rf_samples samples[3], uint32_t format,
-                   const uint8_t *const plane[3], const ptrdiff_t stride[3])
+void rf_samples_of(struct rf_samples samples[3], uint32_t format, const uint8_t *const plane[3],
+                   const ptrdiff_t stride[3])
 {
     const bool packed = format == REFOCUS_FRAME_YUYV || format == REFOCUS_FRAME_UYVY;
     const bool planar = format == REFOCUS_FRAME_YUV420;
@@ -27,8 +27,7 @@ void rf_samples_of(struct rf_samples samples[3], uint32_t format,
     }
 }
 
-static void copy_row(uint8_t *to, int to_step, const uint8_t *from, int from_step,
-                     int n)
+static void copy_row(uint8_t *to, int to_step, const uint8_t *from, int from_step, int n)
 {
     if (to_step == 1 && from_step == 1) {
         memcpy(to, from, (size_t)n);
@@ -39,15 +38,14 @@ static void copy_row(uint8_t *to, int to_step, const uint8_t *from, int from_ste
 }
 
 /* The mean of two rows, half up. */
-static void mix_rows(uint8_t *to, int to_step, const uint8_t *a, const uint8_t *b,
-                     int step, int n)
+static void mix_rows(uint8_t *to, int to_step, const uint8_t *a, const uint8_t *b, int step, int n)
 {
     for (int x = 0; x < n; x++)
         to[x * to_step] = (uint8_t)((a[x * step] + b[x * step] + 1) / 2);
 }
 
-static void copy_luma(const struct rf_samples *to, const struct rf_samples *from,
-                      int width, int height)
+static void copy_luma(const struct rf_samples *to, const struct rf_samples *from, int width,
+                      int height)
 {
     for (int y = 0; y < height; y++) {
         uint8_t *row = to->first + y * to->stride;
@@ -59,13 +57,12 @@ static void copy_luma(const struct rf_samples *to, const struct rf_samples *from
     }
 }
 
-static void copy_chroma(const struct rf_samples *to, int to_rows,
-                        const struct rf_samples *from, int from_rows, int n)
+static void copy_chroma(const struct rf_samples *to, int to_rows, const struct rf_samples *from,
+                        int from_rows, int n)
 {
     for (int y = 0; y < to_rows; y++) {
         const int first = to_rows < from_rows ? 2 * y : to_rows > from_rows ? y / 2 : y;
-        const int second =
-            to_rows < from_rows && first + 1 < from_rows ? first + 1 : first;
+        const int second = to_rows < from_rows && first + 1 < from_rows ? first + 1 : first;
         uint8_t *row = to->first + y * to->stride;
         const uint8_t *in = from->first + first * from->stride;
 
@@ -76,9 +73,8 @@ static void copy_chroma(const struct rf_samples *to, int to_rows,
     }
 }
 
-void rf_copy_samples(const struct rf_samples to[3], int to_rows,
-                     const struct rf_samples from[3], int from_rows, int width,
-                     int height)
+void rf_copy_samples(const struct rf_samples to[3], int to_rows, const struct rf_samples from[3],
+                     int from_rows, int width, int height)
 {
     copy_luma(&to[0], &from[0], width, height);
     for (int i = 1; i < 3; i++)
@@ -92,14 +88,13 @@ static bool is_packed(uint32_t format)
 
 bool rf_has_samples(uint32_t format)
 {
-    return is_packed(format) || format == REFOCUS_FRAME_NV12 ||
-           format == REFOCUS_FRAME_NV21 || format == REFOCUS_FRAME_YUV420;
+    return is_packed(format) || format == REFOCUS_FRAME_NV12 || format == REFOCUS_FRAME_NV21 ||
+           format == REFOCUS_FRAME_YUV420;
 }
 
 bool rf_same_samples(uint32_t format, uint32_t other)
 {
-    return rf_has_samples(format) && rf_has_samples(other) &&
-           is_packed(format) == is_packed(other);
+    return rf_has_samples(format) && rf_has_samples(other) && is_packed(format) == is_packed(other);
 }
 
 int rf_rows_of_chroma(uint32_t format, int height)
@@ -107,8 +102,7 @@ int rf_rows_of_chroma(uint32_t format, int height)
     return is_packed(format) ? height : (height + 1) / 2;
 }
 
-static void copy_planes(const struct refocus_image *image,
-                        const struct refocus_frame *frame)
+static void copy_planes(const struct refocus_image *image, const struct refocus_frame *frame)
 {
     for (int i = 0; i < rf_format_planes(frame->format); i++)
         for (int y = 0; y < rf_plane_rows(frame->format, i, image->height); y++)

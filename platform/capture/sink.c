@@ -11,11 +11,11 @@ static const struct rf_sink_ops *const kinds[] = {
 #ifdef RF_HAVE_V4L2
     &rf_sink_v4l2,
 #endif
-    &rf_sink_y4m, &rf_sink_raw,
+    &rf_sink_y4m,
+    &rf_sink_raw,
 };
 
-static int open_null(struct refocus_sink *sink, const char *rest,
-                     struct refocus_reason *reason)
+static int open_null(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
 {
     (void)sink;
     (void)rest;
@@ -103,8 +103,7 @@ static const struct rf_sink_ops *find(const char *name, const char **rest,
     return NULL;
 }
 
-int refocus_sink_open(struct refocus_sink **result, const char *name,
-                      struct refocus_reason *reason)
+int refocus_sink_open(struct refocus_sink **result, const char *name, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     struct refocus_sink *sink;
@@ -121,8 +120,7 @@ int refocus_sink_open(struct refocus_sink **result, const char *name,
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "no name");
     ops = find(name, &rest, reason);
     if (!ops)
-        return strstr(reason->text, "this build") ? REFOCUS_ERR_UNSUPPORTED
-                                                  : REFOCUS_ERR_ARGUMENT;
+        return strstr(reason->text, "this build") ? REFOCUS_ERR_UNSUPPORTED : REFOCUS_ERR_ARGUMENT;
     sink = calloc(1, sizeof *sink);
     if (!sink)
         return rf_capture_fail_memory(reason);
@@ -140,21 +138,19 @@ int refocus_sink_takes(struct refocus_sink *sink, uint32_t format)
     if (!sink)
         return 0;
     return format == REFOCUS_FORMAT_RGB8 ||
-           (rf_frame_format_of(format) && sink->ops->takes &&
-            sink->ops->takes(sink, format));
+           (rf_frame_format_of(format) && sink->ops->takes && sink->ops->takes(sink, format));
 }
 
-int refocus_sink_start_image(struct refocus_sink *sink,
-                             const struct refocus_image *like, double fps,
-                             struct refocus_reason *reason)
+int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_image *like,
+                             double fps, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if (!sink || !like || like->width < 1 || like->height < 1 ||
-        like->width > REFOCUS_MAX_SIDE || like->height > REFOCUS_MAX_SIDE)
+    if (!sink || !like || like->width < 1 || like->height < 1 || like->width > REFOCUS_MAX_SIDE ||
+        like->height > REFOCUS_MAX_SIDE)
         return REFOCUS_ERR_ARGUMENT;
     sink->started = false;
     if (!refocus_sink_takes(sink, like->format))

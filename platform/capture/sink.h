@@ -19,8 +19,7 @@ struct refocus_sink {
 
 struct rf_sink_ops {
     const char *scheme; /* before the colon, or NULL for a pattern of pictures */
-    int (*open)(struct refocus_sink *sink, const char *rest,
-                struct refocus_reason *reason);
+    int (*open)(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason);
     /* Formats of Y, U and V; NULL: none. */
     bool (*takes)(const struct refocus_sink *sink, uint32_t format);
     /* sink->format and so on are set. */
@@ -31,8 +30,8 @@ struct rf_sink_ops {
     int (*close)(struct refocus_sink *sink, struct refocus_reason *reason);
 };
 
-extern const struct rf_sink_ops rf_sink_null, rf_sink_y4m, rf_sink_raw,
-    rf_sink_pictures, rf_sink_v4l2;
+extern const struct rf_sink_ops rf_sink_null, rf_sink_y4m, rf_sink_raw, rf_sink_pictures,
+    rf_sink_v4l2;
 
 /* rgb_to_yuv.c: an RGB8 picture as a frame of BT.601, limited range, each chroma sample
  * the mean of its pixels; or as packed RGB. The frame's planes are written to. */
@@ -48,13 +47,12 @@ struct rf_samples {
     int step;         /* bytes to the next of the row, */
     ptrdiff_t stride; /* to the next row */
 };
-void rf_samples_of(struct rf_samples samples[3], uint32_t format,
-                   const uint8_t *const plane[3], const ptrdiff_t stride[3]);
+void rf_samples_of(struct rf_samples samples[3], uint32_t format, const uint8_t *const plane[3],
+                   const ptrdiff_t stride[3]);
 /* Codes of Y as they are, and those of U and V, of which there are so many rows: where
  * one has twice as many, rows are repeated, or become the mean of two, half up. */
-void rf_copy_samples(const struct rf_samples to[3], int to_rows,
-                     const struct rf_samples from[3], int from_rows, int width,
-                     int height);
+void rf_copy_samples(const struct rf_samples to[3], int to_rows, const struct rf_samples from[3],
+                     int from_rows, int width, int height);
 /* Whether a frame format is of such samples; whether two hold as many: both 4:2:0 or
  * 4:2:2. */
 bool rf_has_samples(uint32_t format);

@@ -87,12 +87,11 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
     if (!stream->own)
         stream->layout = rf_format_by_name(comma + 1);
     if (!stream->own && !rf_can_encode(stream->layout))
-        return rf_capture_fail(
-            reason, REFOCUS_ERR_ARGUMENT,
-            "'%.40s' is no format of raw frames that can be written; "
-            "give own, NV12, NV21, YUV420, YUYV, UYVY, RGB24, BGR24, "
-            "RGBX or BGRX",
-            comma + 1);
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "'%.40s' is no format of raw frames that can be written; "
+                               "give own, NV12, NV21, YUV420, YUYV, UYVY, RGB24, BGR24, "
+                               "RGBX or BGRX",
+                               comma + 1);
     *comma = '\0';
     return REFOCUS_OK;
 }
@@ -102,12 +101,10 @@ static int open_file(struct stream *stream, struct refocus_reason *reason)
     if (!*stream->path)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "give the name of a file behind the colon, or '-'");
-    stream->fd =
-        strcmp(stream->path, "-") == 0
-            ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
-            : open(stream->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    return stream->fd < 0 ? rf_capture_fail_errno(reason, errno, stream->path)
-                          : REFOCUS_OK;
+    stream->fd = strcmp(stream->path, "-") == 0
+                     ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
+                     : open(stream->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    return stream->fd < 0 ? rf_capture_fail_errno(reason, errno, stream->path) : REFOCUS_OK;
 }
 
 static int open_stream(struct refocus_sink *sink, const char *rest, bool y4m,
@@ -135,14 +132,12 @@ static int open_stream(struct refocus_sink *sink, const char *rest, bool y4m,
     return REFOCUS_OK;
 }
 
-static int open_y4m(struct refocus_sink *sink, const char *rest,
-                    struct refocus_reason *reason)
+static int open_y4m(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
 {
     return open_stream(sink, rest, true, reason);
 }
 
-static int open_raw(struct refocus_sink *sink, const char *rest,
-                    struct refocus_reason *reason)
+static int open_raw(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
 {
     return open_stream(sink, rest, false, reason);
 }
@@ -154,8 +149,7 @@ static bool is_422(uint32_t format)
 
 static uint32_t range_of(const struct refocus_sink *sink)
 {
-    return sink->format == REFOCUS_FORMAT_RGB8 ? (uint32_t)REFOCUS_RANGE_LIMITED
-                                               : sink->range;
+    return sink->format == REFOCUS_FORMAT_RGB8 ? (uint32_t)REFOCUS_RANGE_LIMITED : sink->range;
 }
 
 static bool y4m_takes(const struct refocus_sink *sink, uint32_t format)
@@ -196,8 +190,8 @@ static bool lay_out(struct stream *stream, uint32_t layout, int width, int heigh
     frame->format = layout;
     frame->width = width;
     frame->height = height;
-    stream->bytes = (size_t)rf_frame_bytes(
-        frame->format, rf_plane_row(frame->format, 0, width), width, height);
+    stream->bytes =
+        (size_t)rf_frame_bytes(frame->format, rf_plane_row(frame->format, 0, width), width, height);
     if (stream->tall)
         stream->bytes = ((size_t)width + 2 * half) * (size_t)height;
     stream->memory = malloc(stream->bytes);
@@ -226,8 +220,8 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "%.120s: a stream of %dx%d has begun, and %dx%d came, "
                                "or other colours; begin another",
-                               stream->path, stream->frame.width, stream->frame.height,
-                               width, height);
+                               stream->path, stream->frame.width, stream->frame.height, width,
+                               height);
     }
     stream->tall = tall;
     stream->range = range_of(sink);
@@ -237,9 +231,8 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
     stream->begun = true;
     if (!stream->y4m)
         return REFOCUS_OK;
-    snprintf(header, sizeof header,
-             "YUV4MPEG2 W%d H%d F%d:1000 Ip A1:1 C%s XCOLORRANGE=%s\n", width, height,
-             (int)(fps * 1000 + 0.5), stream->tall ? "422" : "420jpeg",
+    snprintf(header, sizeof header, "YUV4MPEG2 W%d H%d F%d:1000 Ip A1:1 C%s XCOLORRANGE=%s\n",
+             width, height, (int)(fps * 1000 + 0.5), stream->tall ? "422" : "420jpeg",
              stream->range == REFOCUS_RANGE_FULL ? "FULL" : "LIMITED");
     return write_all(stream, header, strlen(header), reason);
 }
@@ -254,9 +247,8 @@ static int write_stream(struct refocus_sink *sink, const struct refocus_image *i
         rf_encode(image, &stream->frame);
     else
         rf_rearrange(image, &stream->frame,
-                     stream->tall
-                         ? image->height
-                         : rf_rows_of_chroma(stream->frame.format, image->height));
+                     stream->tall ? image->height
+                                  : rf_rows_of_chroma(stream->frame.format, image->height));
     if (stream->y4m)
         status = write_all(stream, "FRAME\n", 6, reason);
     if (status == REFOCUS_OK)
@@ -295,8 +287,7 @@ struct sequence {
     int next;
 };
 
-static int open_pictures(struct refocus_sink *sink, const char *rest,
-                         struct refocus_reason *reason)
+static int open_pictures(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
 {
     struct sequence *sequence = calloc(1, sizeof *sequence);
 
@@ -331,8 +322,7 @@ static int write_picture(struct refocus_sink *sink, const struct refocus_image *
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the name is too long");
     sequence->next++;
     /* The next frame does not wait for the disk. */
-    return refocus_image_write(name, image,
-                               &(struct refocus_write_options){.unsynced = 1}, reason);
+    return refocus_image_write(name, image, &(struct refocus_write_options){.unsynced = 1}, reason);
 }
 
 static int close_pictures(struct refocus_sink *sink, struct refocus_reason *reason)

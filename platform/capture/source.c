@@ -51,8 +51,7 @@ static int unknown(const char *name, struct refocus_reason *reason)
     static const char *const known[] = {"v4l2", "libcamera"};
 
     for (int i = 0; i < 2; i++)
-        if (strncmp(name, known[i], strlen(known[i])) == 0 &&
-            name[strlen(known[i])] == ':')
+        if (strncmp(name, known[i], strlen(known[i])) == 0 && name[strlen(known[i])] == ':')
             return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                    "this build has no %s, or its module is gone; there "
                                    "are %s",
@@ -88,7 +87,7 @@ int refocus_source_open(struct refocus_source **result, const char *name,
     source->config = refocus_source_config_default();
     source->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     source->name = strdup(name);
-    status = !source->name ? rf_capture_fail_memory(reason)
+    status = !source->name         ? rf_capture_fail_memory(reason)
              : source->wake_fd < 0 ? rf_capture_fail_errno(reason, errno, name)
                                    : ops->open(source, rest, reason);
     if (status != REFOCUS_OK) {
@@ -127,13 +126,10 @@ int refocus_source_get_mode(struct refocus_source *source, int index,
 
 static bool config_is_sound(const struct refocus_source_config *config)
 {
-    return config->struct_size == sizeof *config &&
-           config->format < REFOCUS_FRAME_FORMAT_COUNT && config->width >= 0 &&
-           config->width <= REFOCUS_MAX_SIDE && config->height >= 0 &&
-           config->height <= REFOCUS_MAX_SIDE && config->fps >= 0 &&
-           config->fps <= 10000 &&
-           (config->buffers == 0 ||
-            (config->buffers >= 2 && config->buffers <= RF_MOST_BUFFERS)) &&
+    return config->struct_size == sizeof *config && config->format < REFOCUS_FRAME_FORMAT_COUNT &&
+           config->width >= 0 && config->width <= REFOCUS_MAX_SIDE && config->height >= 0 &&
+           config->height <= REFOCUS_MAX_SIDE && config->fps >= 0 && config->fps <= 10000 &&
+           (config->buffers == 0 || (config->buffers >= 2 && config->buffers <= RF_MOST_BUFFERS)) &&
            config->flags < 16;
 }
 
@@ -152,10 +148,8 @@ static int begin(struct refocus_source *source, struct refocus_source_mode *mode
     return status;
 }
 
-int refocus_source_start(struct refocus_source *source,
-                         const struct refocus_source_config *config,
-                         struct refocus_source_mode *mode,
-                         struct refocus_reason *reason)
+int refocus_source_start(struct refocus_source *source, const struct refocus_source_config *config,
+                         struct refocus_source_mode *mode, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     uint64_t ignored;
@@ -166,8 +160,9 @@ int refocus_source_start(struct refocus_source *source,
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "what is wanted of the source is out of its range");
     if (source->streaming)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it streams already; stop it "
-                                                          "first");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
+                               "it streams already; stop it "
+                               "first");
     source->config = config ? *config : refocus_source_config_default();
     if (source->config.buffers == 0)
         source->config.buffers = 4;
@@ -191,8 +186,7 @@ static void count(struct refocus_source *source, const struct refocus_frame *fra
 }
 
 int refocus_source_wait(struct refocus_source *source, int timeout_ms,
-                        const struct refocus_frame **result,
-                        struct refocus_reason *reason)
+                        const struct refocus_frame **result, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
     struct refocus_frame *frame = NULL;
@@ -204,17 +198,16 @@ int refocus_source_wait(struct refocus_source *source, int timeout_ms,
         return REFOCUS_ERR_ARGUMENT;
     *result = NULL;
     if (!source->streaming)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it does not stream; start "
-                                                          "it");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
+                               "it does not stream; start "
+                               "it");
     status = rf_source_poll(source, -1, 0, 0, NULL);
     if (status == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, status, "interrupted");
     status = source->ops->wait(
-        source, rf_now_ns() + (int64_t)(timeout_ms > 0 ? timeout_ms : 0) * 1000000,
-        &frame, reason);
+        source, rf_now_ns() + (int64_t)(timeout_ms > 0 ? timeout_ms : 0) * 1000000, &frame, reason);
     if (status == REFOCUS_ERR_TIMEOUT)
-        return rf_capture_fail(reason, status, "no frame came within %d ms",
-                               timeout_ms);
+        return rf_capture_fail(reason, status, "no frame came within %d ms", timeout_ms);
     if (status == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, status, "interrupted");
     if (status != REFOCUS_OK)
@@ -225,8 +218,7 @@ int refocus_source_wait(struct refocus_source *source, int timeout_ms,
     return REFOCUS_OK;
 }
 
-void refocus_source_release(struct refocus_source *source,
-                            const struct refocus_frame *frame)
+void refocus_source_release(struct refocus_source *source, const struct refocus_frame *frame)
 {
     if (!source || !frame || !source->streaming || frame->buffer >= RF_MOST_BUFFERS ||
         !(source->out >> frame->buffer & 1))
@@ -246,8 +238,7 @@ void refocus_source_stop(struct refocus_source *source)
     source->streaming = false;
 }
 
-int refocus_source_restart(struct refocus_source *source,
-                           struct refocus_source_mode *mode,
+int refocus_source_restart(struct refocus_source *source, struct refocus_source_mode *mode,
                            struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
@@ -276,8 +267,8 @@ void refocus_source_interrupt(struct refocus_source *source)
         return;
 }
 
-int refocus_source_set_control(struct refocus_source *source, const char *name,
-                               double value, struct refocus_reason *reason)
+int refocus_source_set_control(struct refocus_source *source, const char *name, double value,
+                               struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
 
@@ -290,8 +281,7 @@ int refocus_source_set_control(struct refocus_source *source, const char *name,
                                name, value);
     if (!source->ops->set_control)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "sources of the kind '%s' have no controls",
-                               source->ops->scheme);
+                               "sources of the kind '%s' have no controls", source->ops->scheme);
     return source->ops->set_control(source, name, value, reason);
 }
 

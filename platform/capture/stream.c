@@ -57,13 +57,11 @@ static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
     char header[LONGEST_HEADER], *word, *rest = NULL;
     long numerator = 30, denominator = 1;
 
-    if (!read_line(stream->file, header, sizeof header) ||
-        strncmp(header, "YUV4MPEG2", 9) != 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                               "%.160s: it is not a YUV4MPEG2 stream", stream->path);
+    if (!read_line(stream->file, header, sizeof header) || strncmp(header, "YUV4MPEG2", 9) != 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "%.160s: it is not a YUV4MPEG2 stream",
+                               stream->path);
     stream->format = REFOCUS_FRAME_YUV420;
-    for (word = strtok_r(header + 9, " ", &rest); word;
-         word = strtok_r(NULL, " ", &rest)) {
+    for (word = strtok_r(header + 9, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
         if (*word == 'W')
             stream->width = atoi(word + 1);
         else if (*word == 'H')
@@ -80,8 +78,7 @@ static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "%.160s: give 4:2:0 or 4:2:2 of 8 bits, mono or mono16",
                                stream->path);
-    stream->fps =
-        numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator : 30;
+    stream->fps = numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator : 30;
     return REFOCUS_OK;
 }
 
@@ -163,8 +160,8 @@ static int open_stream(struct refocus_source *source, const char *rest, bool y4m
 
         if (rf_frame_bytes(stream->format, row, stream->width, stream->height) == 0)
             status = rf_capture_fail(reason, REFOCUS_ERR_SIZE,
-                                     "%.160s: %dx%d pixels are out of the range",
-                                     stream->path, stream->width, stream->height);
+                                     "%.160s: %dx%d pixels are out of the range", stream->path,
+                                     stream->width, stream->height);
     }
     if (status != REFOCUS_OK) {
         close_stream(source);
@@ -175,20 +172,17 @@ static int open_stream(struct refocus_source *source, const char *rest, bool y4m
     return REFOCUS_OK;
 }
 
-static int open_y4m(struct refocus_source *source, const char *rest,
-                    struct refocus_reason *reason)
+static int open_y4m(struct refocus_source *source, const char *rest, struct refocus_reason *reason)
 {
     return open_stream(source, rest, true, reason);
 }
 
-static int open_raw(struct refocus_source *source, const char *rest,
-                    struct refocus_reason *reason)
+static int open_raw(struct refocus_source *source, const char *rest, struct refocus_reason *reason)
 {
     return open_stream(source, rest, false, reason);
 }
 
-static int get_mode(struct refocus_source *source, int index,
-                    struct refocus_source_mode *mode)
+static int get_mode(struct refocus_source *source, int index, struct refocus_source_mode *mode)
 {
     const struct stream *stream = source->state;
 
@@ -231,8 +225,7 @@ static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
         if (c == EOF && !ferror(stream->file))
             return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more frames");
         ungetc(c, stream->file);
-        if (!read_line(stream->file, header, sizeof header) ||
-            strncmp(header, "FRAME", 5) != 0)
+        if (!read_line(stream->file, header, sizeof header) || strncmp(header, "FRAME", 5) != 0)
             return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
                                    "%.160s: damaged: frame %lld does not begin with "
                                    "FRAME",
@@ -246,16 +239,14 @@ static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
     if (n == 0 && !stream->y4m)
         return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more frames");
     return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                           "%.160s: it ends within frame %lld; was it cut off?",
-                           stream->path, (long long)stream->frame);
+                           "%.160s: it ends within frame %lld; was it cut off?", stream->path,
+                           (long long)stream->frame);
 }
 
 /* The same of 4:2:2 in planes, packed. */
-static int read_tall(struct stream *stream, uint8_t *memory,
-                     struct refocus_reason *reason)
+static int read_tall(struct stream *stream, uint8_t *memory, struct refocus_reason *reason)
 {
-    const size_t w = (size_t)stream->width, h = (size_t)stream->height,
-                 half = (w + 1) / 2;
+    const size_t w = (size_t)stream->width, h = (size_t)stream->height, half = (w + 1) / 2;
     const size_t bytes = (w + 2 * half) * h;
     struct rf_samples from[3], to[3];
     int status;
@@ -273,8 +264,7 @@ static int read_tall(struct stream *stream, uint8_t *memory,
                   (const ptrdiff_t[3]){(ptrdiff_t)w, (ptrdiff_t)half, (ptrdiff_t)half});
     rf_samples_of(to, REFOCUS_FRAME_YUYV, (const uint8_t *const[3]){memory, NULL, NULL},
                   (const ptrdiff_t[3]){4 * (ptrdiff_t)half, 0, 0});
-    rf_copy_samples(to, stream->height, from, stream->height, stream->width,
-                    stream->height);
+    rf_copy_samples(to, stream->height, from, stream->height, stream->width, stream->height);
     return REFOCUS_OK;
 }
 
@@ -291,14 +281,12 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     struct stream *stream = source->state;
     const int64_t due = rf_pace_due(&stream->pace, stream->frame);
     const int64_t row = rf_plane_row(stream->format, 0, stream->width);
-    const uint64_t bytes =
-        rf_frame_bytes(stream->format, row, stream->width, stream->height);
+    const uint64_t bytes = rf_frame_bytes(stream->format, row, stream->width, stream->height);
     struct refocus_frame *frame;
     int buffer, status;
 
     if (!stream->pace.fast && due > rf_now_ns()) {
-        status =
-            rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
+        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
         if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
             return status;
     }
@@ -311,8 +299,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                  ? read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
                  : rf_capture_fail_memory(reason);
     if (status == REFOCUS_ERR_END && source->config.flags & REFOCUS_SOURCE_LOOP &&
-        !stream->is_pipe && stream->frame > 0 &&
-        fseek(stream->file, stream->begin, SEEK_SET) == 0)
+        !stream->is_pipe && stream->frame > 0 && fseek(stream->file, stream->begin, SEEK_SET) == 0)
         status = read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason);
     if (status != REFOCUS_OK) {
         rf_ring_give(&stream->ring, (uint32_t)buffer);
@@ -347,16 +334,16 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
     const struct stream *stream = source->state;
 
     if (stream->is_pipe)
-        return rf_capture_fail(reason, REFOCUS_ERR_END,
-                               "%.160s: a pipe cannot be read again", stream->path);
+        return rf_capture_fail(reason, REFOCUS_ERR_END, "%.160s: a pipe cannot be read again",
+                               stream->path);
     return REFOCUS_OK;
 }
 
-#define STREAM_OPS(word, open_function)                                                \
-    {                                                                                  \
-        .scheme = word, .open = open_function, .get_mode = get_mode, .start = start,   \
-        .wait = wait_frame, .release = release, .stop = stop, .reopen = reopen,        \
-        .close = close_stream                                                          \
+#define STREAM_OPS(word, open_function)                                                            \
+    {                                                                                              \
+        .scheme = word, .open = open_function, .get_mode = get_mode, .start = start,               \
+        .wait = wait_frame, .release = release, .stop = stop, .reopen = reopen,                    \
+        .close = close_stream                                                                      \
     }
 const struct rf_source_ops rf_source_y4m = STREAM_OPS("y4m", open_y4m);
 const struct rf_source_ops rf_source_raw = STREAM_OPS("raw", open_raw);

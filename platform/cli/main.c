@@ -8,12 +8,9 @@
 #include "line/interrupt.h"
 #include "line/report.h"
 
-static const struct command *const commands[] = {&render_command, &depth_command,
-                                                 &sheet_command,
-                                                 &pull_command,
-                                                 &info_command, &compare_command,
-                                                 &bench_command, &live_command,
-                                                 &view_command};
+static const struct command *const commands[] = {&render_command, &depth_command, &sheet_command,
+                                                 &pull_command,   &info_command,  &compare_command,
+                                                 &bench_command,  &live_command,  &view_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_usage(FILE *out)
@@ -22,16 +19,15 @@ static void print_usage(FILE *out)
                  "Refocus photos by their depth.\n\n");
     for (int i = 0; i < COMMANDS; i++)
         fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
-    fprintf(out,
-            "\n"
-            "  refocus SUBCOMMAND --help  says more of one\n"
-            "  refocus --version          version and file formats\n"
-            "\n"
-            "Example: refocus render portrait.jpg --focus-at 1200,900 --blur 40 -o "
-            "out.jpg\n"
-            "\n"
-            "exit status: 0 done, 1 it could not be done, 2 the command line is "
-            "wrong\n");
+    fprintf(out, "\n"
+                 "  refocus SUBCOMMAND --help  says more of one\n"
+                 "  refocus --version          version and file formats\n"
+                 "\n"
+                 "Example: refocus render portrait.jpg --focus-at 1200,900 --blur 40 -o "
+                 "out.jpg\n"
+                 "\n"
+                 "exit status: 0 done, 1 it could not be done, 2 the command line is "
+                 "wrong\n");
 }
 
 static const char *command_name(const void *list, int i)
@@ -49,10 +45,9 @@ static int unknown(const char *argument)
                               "unknown option; give a subcommand first, or --help");
     nearest = options_nearest(argument, command_name, NULL);
     if (nearest)
-        return report_failure(EXIT_WRONG, argument,
-                              "unknown subcommand; did you mean '%s'?", nearest);
-    return report_failure(EXIT_WRONG, argument,
-                          "unknown subcommand; 'refocus --help' lists them");
+        return report_failure(EXIT_WRONG, argument, "unknown subcommand; did you mean '%s'?",
+                              nearest);
+    return report_failure(EXIT_WRONG, argument, "unknown subcommand; 'refocus --help' lists them");
 }
 
 /* The stack grows page by page, and where memory is short that is no failed allocation but a

@@ -6,9 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-void rf_depth_from_disparity(struct refocus_depth_map *map, double value_min,
-                             double value_max, double disparity_min,
-                             double disparity_max)
+void rf_depth_from_disparity(struct refocus_depth_map *map, double value_min, double value_max,
+                             double disparity_min, double disparity_max)
 {
     map->meaning = REFOCUS_DEPTH_DISPARITY;
     map->value_near = value_max;
@@ -18,8 +17,8 @@ void rf_depth_from_disparity(struct refocus_depth_map *map, double value_min,
         map->far_m = disparity_min > 0.0 ? 1.0 / disparity_min : INFINITY;
         if (disparity_min < 0.0) {
             /* Nothing is farther than infinity: d = 0 is where the disparity is. */
-            map->value_far += (value_max - value_min) * -disparity_min /
-                              (disparity_max - disparity_min);
+            map->value_far +=
+                (value_max - value_min) * -disparity_min / (disparity_max - disparity_min);
         }
     }
 }
@@ -40,16 +39,15 @@ static struct rf_bytes find_xmp(struct rf_bytes file)
     if (rf_jpeg_walk_begin(&walk, file)) {
         while (!packet.data && rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
             if (walk.marker == 0xe1) {
-                rf_jpeg_after(walk.segment, rf_jpeg_xmp_signature,
-                              sizeof rf_jpeg_xmp_signature, &packet);
+                rf_jpeg_after(walk.segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
+                              &packet);
             }
         }
     }
     return packet;
 }
 
-static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary,
-                       bool disparity)
+static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary, bool disparity)
 {
     const struct rf_xmp *const xmp = &auxiliary->xmp;
     struct refocus_depth_map *const map = &read->depth;
@@ -58,19 +56,18 @@ static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary,
     bool has_low, has_high, has_code_low, has_code_high;
     int status;
 
-    status = rf_xmp_number(read, xmp, RF_XMP_APPLE_FLOAT_MIN, "FloatMinValue", &has_low,
-                           &low);
+    status = rf_xmp_number(read, xmp, RF_XMP_APPLE_FLOAT_MIN, "FloatMinValue", &has_low, &low);
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_APPLE_FLOAT_MAX, "FloatMaxValue",
-                               &has_high, &high);
+        status =
+            rf_xmp_number(read, xmp, RF_XMP_APPLE_FLOAT_MAX, "FloatMaxValue", &has_high, &high);
     }
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_APPLE_INT_MIN, "IntMinValue",
-                               &has_code_low, &code_low);
+        status =
+            rf_xmp_number(read, xmp, RF_XMP_APPLE_INT_MIN, "IntMinValue", &has_code_low, &code_low);
     }
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_APPLE_INT_MAX, "IntMaxValue",
-                               &has_code_high, &code_high);
+        status = rf_xmp_number(read, xmp, RF_XMP_APPLE_INT_MAX, "IntMaxValue", &has_code_high,
+                               &code_high);
     }
     if (status != REFOCUS_OK) {
         return status;
@@ -86,14 +83,12 @@ static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary,
         map->meaning = REFOCUS_DEPTH_DISTANCE;
         map->metres_per_unit = (high - low) / (code_high - code_low);
         map->metres_at_zero = low - code_low * map->metres_per_unit;
-        rf_note(read->info, "Apple: distances from %g to %g m, bright is far", low,
-                high);
+        rf_note(read->info, "Apple: distances from %g to %g m, bright is far", low, high);
         return REFOCUS_OK;
     }
     if (has_low && has_high) {
         rf_depth_from_disparity(map, code_low, code_high, low, high);
-        rf_note(read->info, "Apple: disparity from %g to %g per metre, bright is near",
-                low, high);
+        rf_note(read->info, "Apple: disparity from %g to %g per metre, bright is near", low, high);
     } else {
         rf_depth_from_disparity(map, code_low, code_high, 0.0, 0.0);
         rf_note(read->info, "Apple: disparity without a range, bright is near");
@@ -104,8 +99,7 @@ static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary,
     return REFOCUS_OK;
 }
 
-static int take_depth(struct rf_read *read, const struct auxiliary *auxiliary,
-                      bool disparity)
+static int take_depth(struct rf_read *read, const struct auxiliary *auxiliary, bool disparity)
 {
     int status = rf_decode_part(read, auxiliary->file, "depth image", &read->samples);
 
@@ -118,8 +112,8 @@ static int take_depth(struct rf_read *read, const struct auxiliary *auxiliary,
     }
     if (status == REFOCUS_OK) {
         rf_note(read->info, "MPF: image %d is %s by its own XMP, %d x %d samples",
-                auxiliary->number, disparity ? "disparity" : "depth",
-                (int)read->samples.width, (int)read->samples.height);
+                auxiliary->number, disparity ? "disparity" : "depth", (int)read->samples.width,
+                (int)read->samples.height);
         status = set_meaning(read, auxiliary, disparity);
     }
     if (status == REFOCUS_OK) {
@@ -137,8 +131,7 @@ static int judge(struct rf_read *read, const struct auxiliary *auxiliary)
         if (!read->samples.pixels) {
             return take_depth(read, auxiliary, type[1] == 'i');
         }
-        rf_note(read->info, "MPF: image %d, a second depth image, passed over",
-                auxiliary->number);
+        rf_note(read->info, "MPF: image %d, a second depth image, passed over", auxiliary->number);
     } else if (type || auxiliary->xmp.value[RF_XMP_GAIN_MAP]) {
         rf_note(read->info, "MPF: image %d passed over, it is no depth but \"%.80s\"",
                 auxiliary->number, type ? type : "HDR gain map");
@@ -184,20 +177,17 @@ int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mp
         const uint64_t end = begin + mpf.image[i].size;
 
         if (end > file.size && file.size > main_end) {
-            return rf_fail(
-                read->reason, REFOCUS_ERR_FORMAT,
-                "damaged: it ends before image %d of those it announces; copy "
-                "it again",
-                i + 1);
+            return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                           "damaged: it ends before image %d of those it announces; copy "
+                           "it again",
+                           i + 1);
         }
         if (begin < main_end || end > file.size || begin == end) {
             /* An editor that kept the index and dropped or moved the images. */
-            rf_note(read->info,
-                    "MPF: image %d is not where the index says, passed over", i + 1);
+            rf_note(read->info, "MPF: image %d is not where the index says, passed over", i + 1);
             continue;
         }
-        status = read_image(
-            read, (struct rf_bytes){file.data + begin, mpf.image[i].size}, i + 1);
+        status = read_image(read, (struct rf_bytes){file.data + begin, mpf.image[i].size}, i + 1);
     }
     return status;
 }

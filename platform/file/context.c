@@ -59,8 +59,7 @@ void rf_note(struct refocus_photo_info *info, const char *format, ...)
         return;
     }
     va_start(arguments, format);
-    write_line(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, format,
-               arguments);
+    write_line(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, format, arguments);
     va_end(arguments);
 }
 
@@ -83,8 +82,7 @@ int rf_format_bytes(uint32_t format)
     }
 }
 
-int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height,
-                  uint64_t pixel_bytes)
+int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height, uint64_t pixel_bytes)
 {
     if (width == 0 || height == 0) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
@@ -93,8 +91,7 @@ int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height,
     if (width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE) {
         return rf_fail(read->reason, REFOCUS_ERR_SIZE,
                        "its %llu x %llu pixels are more than %d a side; scale it down",
-                       (unsigned long long)width, (unsigned long long)height,
-                       REFOCUS_MAX_SIDE);
+                       (unsigned long long)width, (unsigned long long)height, REFOCUS_MAX_SIDE);
     }
     if (width * height > read->limits.max_pixels) {
         return rf_fail(read->reason, REFOCUS_ERR_SIZE,
@@ -110,16 +107,14 @@ int rf_check_bytes(const struct rf_read *read, uint64_t bytes, const char *what)
     if (bytes > read->limits.max_bytes || bytes > PTRDIFF_MAX) {
         return rf_fail(read->reason, REFOCUS_ERR_SIZE,
                        "%s needs %llu bytes, more than the limit of %llu", what,
-                       (unsigned long long)bytes,
-                       (unsigned long long)read->limits.max_bytes);
+                       (unsigned long long)bytes, (unsigned long long)read->limits.max_bytes);
     }
     return REFOCUS_OK;
 }
 
 size_t rf_raster_stride(const struct rf_raster *raster)
 {
-    return (size_t)raster->width * (size_t)raster->channels *
-           rf_sample_bytes(raster->sample);
+    return (size_t)raster->width * (size_t)raster->channels * rf_sample_bytes(raster->sample);
 }
 
 int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster)

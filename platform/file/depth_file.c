@@ -18,14 +18,12 @@ static double metres_in(const char *unit)
     if (strcmp(unit, "mm") == 0) {
         return 0.001;
     }
-    if (length < 3 || length - 2 >= sizeof number ||
-        strcmp(unit + length - 2, "/m") != 0) {
+    if (length < 3 || length - 2 >= sizeof number || strcmp(unit + length - 2, "/m") != 0) {
         return 0.0;
     }
     memcpy(number, unit, length - 2);
     number[length - 2] = '\0';
-    if (!rf_parse_number(number, &per_metre) || per_metre <= 0.0 ||
-        !isfinite(1.0 / per_metre)) {
+    if (!rf_parse_number(number, &per_metre) || per_metre <= 0.0 || !isfinite(1.0 / per_metre)) {
         return 0.0;
     }
     return 1.0 / per_metre;
@@ -99,8 +97,7 @@ int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit)
          !rf_good_rows(map->stride, 4 * (int64_t)map->width, map->height))) {
         return REFOCUS_ERR_ARGUMENT;
     }
-    return rf_depth_unit(map, unit,
-                         map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
+    return rf_depth_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
 }
 
 static int check_range(double near_m, double far_m, struct refocus_reason *reason)
@@ -163,8 +160,8 @@ static int apply_unit(struct rf_read *read, const char *unit, double max_value)
     }
     if (!said) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_FILE;
-        rf_note(read->info, "depth file: %d x %d %s samples", (int)map->width,
-                (int)map->height, sample_name(map->sample));
+        rf_note(read->info, "depth file: %d x %d %s samples", (int)map->width, (int)map->height,
+                sample_name(map->sample));
     }
     if (unit) {
         rf_note(read->info, "depth: read as \"%s\", as asked for", unit);
@@ -175,9 +172,9 @@ static int apply_unit(struct rf_read *read, const char *unit, double max_value)
     return REFOCUS_OK;
 }
 
-int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
-                              size_t size, const char *unit, double near_m,
-                              double far_m, const struct refocus_read_limits *limits,
+int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, size_t size,
+                              const char *unit, double near_m, double far_m,
+                              const struct refocus_read_limits *limits,
                               struct refocus_reason *reason)
 {
     struct refocus_depth_map probe = {.sample = REFOCUS_SAMPLE_U8};
@@ -194,8 +191,7 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
     }
     *depth = NULL;
     status = check_range(near_m, far_m, reason);
-    if (status == REFOCUS_OK && unit &&
-        rf_depth_unit(&probe, unit, 255.0) != REFOCUS_OK) {
+    if (status == REFOCUS_OK && unit && rf_depth_unit(&probe, unit, 255.0) != REFOCUS_OK) {
         status = rf_fail(reason, REFOCUS_ERR_ARGUMENT,
                          "the depth unit is none of disparity, inverse, m, mm, or a "
                          "number per metre such as 5000/m");
@@ -210,8 +206,8 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
     if (!made) {
         return rf_fail_memory(reason);
     }
-    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false,
-                           false, &made->shown.info, reason);
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false, false,
+                           &made->shown.info, reason);
     if (status == REFOCUS_OK) {
         status = picture_as_samples(&read, &max_value);
     }
@@ -229,12 +225,10 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
 }
 
 int refocus_depth_read(struct refocus_photo **depth, const char *path, const char *unit,
-                       double near_m, double far_m,
-                       const struct refocus_read_limits *limits,
+                       double near_m, double far_m, const struct refocus_read_limits *limits,
                        struct refocus_reason *reason)
 {
-    const uint64_t max_bytes =
-        limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
+    const uint64_t max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
     struct refocus_reason unused;
     struct refocus_blob file;
     int status;
@@ -247,8 +241,8 @@ int refocus_depth_read(struct refocus_photo **depth, const char *path, const cha
     *depth = NULL;
     status = rf_load(path, max_bytes, reason, &file);
     if (status == REFOCUS_OK) {
-        status = refocus_depth_read_memory(depth, file.data, file.size, unit, near_m,
-                                           far_m, limits, reason);
+        status = refocus_depth_read_memory(depth, file.data, file.size, unit, near_m, far_m, limits,
+                                           reason);
         free(file.data);
     }
     return status;

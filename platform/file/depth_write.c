@@ -10,14 +10,14 @@
 enum { MARKER_APP0 = 0xe0, MARKER_APP1 = 0xe1, CHUNK = 65000 };
 
 #define OPENING "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\" x:xmptk=\"" RF_XMP_TOOL "\">"
-#define RDF                                                                            \
-    "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"              \
+#define RDF                                                                                        \
+    "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"                          \
     "<rdf:Description rdf:about=\"\""
 #define CLOSING "/></rdf:RDF></x:xmpmeta>"
 #define GDEPTH  " xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\""
 #define GFOCUS  " xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\""
-#define NOTE                                                                           \
-    " xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" "                                \
+#define NOTE                                                                                       \
+    " xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" "                                            \
     "xmpNote:HasExtendedXMP=\""
 
 /* Text that grows; `failed` once memory ran out. */
@@ -70,14 +70,13 @@ static void put_number(struct text *text, const char *name, double value)
 
 static void put_base64(struct text *text, struct rf_bytes bytes)
 {
-    static const char digits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
     for (size_t i = 0; i < bytes.size; i += 3) {
         const size_t n = bytes.size - i < 3 ? bytes.size - i : 3;
         const uint8_t *const b = bytes.data + i;
-        const uint32_t bits = (uint32_t)b[0] << 16 | (n > 1 ? (uint32_t)b[1] << 8 : 0) |
-                              (n > 2 ? b[2] : 0);
+        const uint32_t bits =
+            (uint32_t)b[0] << 16 | (n > 1 ? (uint32_t)b[1] << 8 : 0) | (n > 2 ? b[2] : 0);
         const char four[4] = {digits[bits >> 18], digits[bits >> 12 & 63],
                               n > 1 ? digits[bits >> 6 & 63] : '=',
                               n > 2 ? digits[bits & 63] : '='};
@@ -110,8 +109,7 @@ static int encode(const struct refocus_depth_write *depth, int orientation,
     for (int32_t y = 0; y < depth->height; y++) {
         const uint16_t *const in =
             (const uint16_t *)((const char *)depth->disparity + y * depth->stride);
-        uint16_t *const out =
-            (uint16_t *)raster.pixels + (size_t)y * (size_t)depth->width;
+        uint16_t *const out = (uint16_t *)raster.pixels + (size_t)y * (size_t)depth->width;
 
         for (int32_t x = 0; x < depth->width; x++) {
             out[x] = (uint16_t)(65535 - in[x]);
@@ -177,8 +175,7 @@ static void put_segment(struct rf_store *store, const void *head, size_t head_si
                         const void *body, size_t size)
 {
     const size_t length = head_size + size + 2;
-    const uint8_t marker[4] = {0xff, MARKER_APP1, (uint8_t)(length >> 8),
-                               (uint8_t)length};
+    const uint8_t marker[4] = {0xff, MARKER_APP1, (uint8_t)(length >> 8), (uint8_t)length};
 
     rf_store_write(store, marker, sizeof marker);
     rf_store_write(store, head, head_size);
@@ -191,8 +188,8 @@ static void put_packets(struct rf_store *store, const struct text *standard,
     uint8_t head[sizeof rf_jpeg_extended_signature + 40];
     uint8_t *const numbers = head + sizeof rf_jpeg_extended_signature + 32;
 
-    put_segment(store, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
-                standard->data, standard->size);
+    put_segment(store, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, standard->data,
+                standard->size);
     memcpy(head, rf_jpeg_extended_signature, sizeof rf_jpeg_extended_signature);
     memcpy(head + sizeof rf_jpeg_extended_signature, guid, 32);
     for (size_t at = 0; at < extended->size; at += CHUNK) {
@@ -208,8 +205,7 @@ static void put_packets(struct rf_store *store, const struct text *standard,
 
 bool rf_xmp_is_ours(struct rf_bytes packet)
 {
-    return packet.size > sizeof OPENING &&
-           memcmp(packet.data, OPENING, sizeof OPENING - 1) == 0;
+    return packet.size > sizeof OPENING && memcmp(packet.data, OPENING, sizeof OPENING - 1) == 0;
 }
 
 /* Whether a segment is of a packet that an earlier writing left; its GUID comes
@@ -219,8 +215,7 @@ static bool is_old(struct rf_bytes segment, char guid[33])
     const size_t before = sizeof(OPENING RDF GDEPTH NOTE) - 1;
     struct rf_bytes rest;
 
-    if (rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
-                      &rest) &&
+    if (rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, &rest) &&
         rf_xmp_is_ours(rest)) {
         if (rest.size >= before + 32) {
             memcpy(guid, rest.data + before, 32);
@@ -228,15 +223,14 @@ static bool is_old(struct rf_bytes segment, char guid[33])
         return true;
     }
     return guid[0] &&
-           rf_jpeg_after(segment, rf_jpeg_extended_signature,
-                         sizeof rf_jpeg_extended_signature, &rest) &&
+           rf_jpeg_after(segment, rf_jpeg_extended_signature, sizeof rf_jpeg_extended_signature,
+                         &rest) &&
            rest.size >= 32 && memcmp(rest.data, guid, 32) == 0;
 }
 
 /* Copy the original and put the packets in. */
-static int splice(struct rf_store *store, struct rf_bytes file,
-                  const struct text *standard, const struct text *extended,
-                  const char *guid, struct refocus_reason *reason)
+static int splice(struct rf_store *store, struct rf_bytes file, const struct text *standard,
+                  const struct text *extended, const char *guid, struct refocus_reason *reason)
 {
     struct rf_jpeg_walk walk;
     enum rf_jpeg_step step;
@@ -251,10 +245,9 @@ static int splice(struct rf_store *store, struct rf_bytes file,
     while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
         const size_t begin = (size_t)(walk.segment.data - file.data) - 4;
         struct rf_bytes rest;
-        const bool head =
-            walk.marker == MARKER_APP0 ||
-            (walk.marker == MARKER_APP1 &&
-             rf_jpeg_after(walk.segment, rf_jpeg_exif_signature, 6, &rest));
+        const bool head = walk.marker == MARKER_APP0 ||
+                          (walk.marker == MARKER_APP1 &&
+                           rf_jpeg_after(walk.segment, rf_jpeg_exif_signature, 6, &rest));
         const bool skip = walk.marker == MARKER_APP1 && is_old(walk.segment, old);
 
         if ((!head && !placed) || skip) {
@@ -280,10 +273,9 @@ static int splice(struct rf_store *store, struct rf_bytes file,
 
 static bool good(const struct refocus_depth_write *depth)
 {
-    return depth && depth->struct_size == sizeof *depth && depth->disparity &&
-           depth->width >= 1 && depth->width <= REFOCUS_MAX_SIDE &&
-           depth->height >= 1 && depth->height <= REFOCUS_MAX_SIDE &&
-           depth->stride % 2 == 0 &&
+    return depth && depth->struct_size == sizeof *depth && depth->disparity && depth->width >= 1 &&
+           depth->width <= REFOCUS_MAX_SIDE && depth->height >= 1 &&
+           depth->height <= REFOCUS_MAX_SIDE && depth->stride % 2 == 0 &&
            rf_good_rows(depth->stride, 2 * (int64_t)depth->width, depth->height) &&
            depth->focus_x <= 1 && depth->focus_y <= 1 && isfinite(depth->near_m) &&
            !isnan(depth->far_m) && !isnan(depth->focus_distance) &&
@@ -291,8 +283,7 @@ static bool good(const struct refocus_depth_write *depth)
 }
 
 static int write_all(const char *path, struct rf_bytes file, int orientation,
-                     const struct refocus_depth_write *depth,
-                     struct refocus_reason *reason)
+                     const struct refocus_depth_write *depth, struct refocus_reason *reason)
 {
     struct text standard = {NULL, 0, 0, false}, extended = {NULL, 0, 0, false};
     struct refocus_blob png = {NULL, 0};
@@ -308,8 +299,7 @@ static int write_all(const char *path, struct rf_bytes file, int orientation,
     put_words(&extended, "\"" CLOSING);
     free(png.data);
     if (!extended.failed) {
-        rf_md5_hex((struct rf_bytes){(const uint8_t *)extended.data, extended.size},
-                   guid);
+        rf_md5_hex((struct rf_bytes){(const uint8_t *)extended.data, extended.size}, guid);
         make_standard(&standard, depth, orientation, guid);
     }
     if (standard.failed || extended.failed) {
@@ -354,8 +344,8 @@ int refocus_photo_write_depth(const char *path, const char *original,
     /* Read as a whole: no depth goes into what cannot be opened again. */
     status = refocus_photo_read_memory(&photo, file.data, file.size, NULL, reason);
     if (status == REFOCUS_OK) {
-        status = write_all(path, (struct rf_bytes){file.data, file.size},
-                           photo->info.orientation, depth, reason);
+        status = write_all(path, (struct rf_bytes){file.data, file.size}, photo->info.orientation,
+                           depth, reason);
     }
     refocus_photo_free(&photo);
     free(file.data);

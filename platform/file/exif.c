@@ -35,8 +35,7 @@ static uint32_t get16(const struct tiff *tiff, size_t at)
 {
     const uint8_t *const b = tiff->data + at;
 
-    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1])
-                            : (uint32_t)(b[1] << 8 | b[0]);
+    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1]) : (uint32_t)(b[1] << 8 | b[0]);
 }
 
 static uint32_t get32(const struct tiff *tiff, size_t at)
@@ -65,8 +64,7 @@ static int count_entries(const struct tiff *tiff, size_t directory)
 }
 
 /* False for an entry whose value lies outside the block or is of no type used here. */
-static bool get_entry(const struct tiff *tiff, size_t directory, int index,
-                      struct entry *entry)
+static bool get_entry(const struct tiff *tiff, size_t directory, int index, struct entry *entry)
 {
     static const uint8_t type_bytes[] = {0, 1, 1, 2, 4, 8};
     uint64_t bytes;
@@ -101,8 +99,7 @@ static double get_rational(const struct tiff *tiff, const struct entry *entry)
     return below ? get32(tiff, entry->value) / (double)below : 0.0;
 }
 
-static void get_text(const struct tiff *tiff, const struct entry *entry, char *text,
-                     size_t size)
+static void get_text(const struct tiff *tiff, const struct entry *entry, char *text, size_t size)
 {
     size_t n = 0;
 
@@ -125,8 +122,7 @@ static void join_camera(struct rf_exif *exif, const char *make, const char *mode
     if (make[0] == '\0' || strncmp(model, make, strlen(make)) == 0) {
         snprintf(exif->camera, sizeof exif->camera, "%s", model);
     } else {
-        snprintf(exif->camera, sizeof exif->camera, "%s%s%s", make, model[0] ? " " : "",
-                 model);
+        snprintf(exif->camera, sizeof exif->camera, "%s%s%s", make, model[0] ? " " : "", model);
     }
 }
 

@@ -19,8 +19,8 @@ void rf_xmp_free(struct rf_xmp *xmp)
     }
 }
 
-int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp,
-                  enum rf_xmp_key key, const char *name, bool *found, double *value)
+int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp, enum rf_xmp_key key,
+                  const char *name, bool *found, double *value)
 {
     *found = false;
     *value = 0.0;
@@ -28,8 +28,7 @@ int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp,
         return REFOCUS_OK;
     }
     if (!rf_parse_number(xmp->value[key], value)) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no number",
-                       name);
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no number", name);
     }
     *found = true;
     return REFOCUS_OK;
@@ -44,18 +43,15 @@ double rf_xmp_simulated_f_number(const struct rf_xmp *xmp)
     return text && rf_parse_number(text, &value) && value > 0.0 ? value : 0.0;
 }
 
-static int read_range(const struct rf_read *read, const struct rf_xmp *xmp,
-                      struct range *range)
+static int read_range(const struct rf_read *read, const struct rf_xmp *xmp, struct range *range)
 {
     const char *const units = xmp->value[RF_XMP_DEPTH_UNITS];
     bool has_near, has_far;
     int status;
 
-    status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_NEAR, "GDepth:Near", &has_near,
-                           &range->near);
+    status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_NEAR, "GDepth:Near", &has_near, &range->near);
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_FAR, "GDepth:Far", &has_far,
-                               &range->far);
+        status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_FAR, "GDepth:Far", &has_far, &range->far);
     }
     if (status != REFOCUS_OK) {
         return status;
@@ -71,18 +67,17 @@ static int read_range(const struct rf_read *read, const struct rf_xmp *xmp,
     }
     if (range->near < 0.0 || range->far <= range->near) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged: its GDepth:Near %g and GDepth:Far %g are no range",
-                       range->near, range->far);
+                       "damaged: its GDepth:Near %g and GDepth:Far %g are no range", range->near,
+                       range->far);
     }
     if (!units) {
-        rf_note(read->info, "GDepth: Near %g, Far %g without a unit: no metres",
-                range->near, range->far);
+        rf_note(read->info, "GDepth: Near %g, Far %g without a unit: no metres", range->near,
+                range->far);
     } else if (range->metres > 0.0) {
-        rf_note(read->info, "GDepth: Near %g %s, Far %g %s", range->near, units,
-                range->far, units);
+        rf_note(read->info, "GDepth: Near %g %s, Far %g %s", range->near, units, range->far, units);
     } else {
-        rf_note(read->info, "GDepth: Near %g, Far %g in \"%.40s\": no metres",
-                range->near, range->far, units);
+        rf_note(read->info, "GDepth: Near %g, Far %g in \"%.40s\": no metres", range->near,
+                range->far, units);
     }
     return REFOCUS_OK;
 }
@@ -120,8 +115,7 @@ static int linear_to_disparity(struct rf_read *read, const struct range *range)
     return REFOCUS_OK;
 }
 
-static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp,
-                       struct range *range)
+static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp, struct range *range)
 {
     const char *const format = xmp->value[RF_XMP_DEPTH_FORMAT];
     struct refocus_depth_map *const map = &read->depth;
@@ -137,8 +131,7 @@ static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp,
         map->meaning = REFOCUS_DEPTH_DISPARITY;
         map->value_near = 0.0;
         map->value_far = max;
-        rf_note(read->info, "GDepth: RangeInverse: linear in 1/z, 0 is near, %g is far",
-                max);
+        rf_note(read->info, "GDepth: RangeInverse: linear in 1/z, 0 is near, %g is far", max);
         return REFOCUS_OK;
     }
     if (format && strcmp(format, "RangeLinear") == 0) {
@@ -152,13 +145,11 @@ static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp,
         map->meaning = REFOCUS_DEPTH_DISTANCE;
         map->metres_at_zero = map->near_m;
         map->metres_per_unit = (map->far_m - map->near_m) / max;
-        rf_note(read->info, "GDepth: RangeLinear: linear in z, 0 is near, %g is far",
-                max);
+        rf_note(read->info, "GDepth: RangeLinear: linear in z, 0 is near, %g is far", max);
         return REFOCUS_OK;
     }
-    return rf_fail(
-        read->reason, REFOCUS_ERR_FORMAT,
-        "damaged: its GDepth:Format is neither RangeInverse nor RangeLinear");
+    return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                   "damaged: its GDepth:Format is neither RangeInverse nor RangeLinear");
 }
 
 /* Base64 text of a property to a picture; the text is used up. */
@@ -170,8 +161,7 @@ static int decode_data(struct rf_read *read, struct rf_xmp *xmp, enum rf_xmp_key
     int status;
 
     if (size == (size_t)-1 || size == 0) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no base64",
-                       name);
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no base64", name);
     }
     status = rf_decode_part(read, part, name, raster);
     free(xmp->value[key]);
@@ -182,8 +172,7 @@ static int decode_data(struct rf_read *read, struct rf_xmp *xmp, enum rf_xmp_key
 static int read_samples(struct rf_read *read, struct rf_xmp *xmp)
 {
     const char *const mime = xmp->value[RF_XMP_DEPTH_MIME];
-    int status =
-        decode_data(read, xmp, RF_XMP_DEPTH_DATA, "GDepth:Data", &read->samples);
+    int status = decode_data(read, xmp, RF_XMP_DEPTH_DATA, "GDepth:Data", &read->samples);
 
     if (status == REFOCUS_OK) {
         status = rf_raster_to_grey(read, &read->samples);
@@ -193,9 +182,8 @@ static int read_samples(struct rf_read *read, struct rf_xmp *xmp)
         }
     }
     if (status == REFOCUS_OK) {
-        rf_note(read->info, "GDepth: %d x %d samples of %d bits (%.40s)",
-                (int)read->samples.width, (int)read->samples.height,
-                read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8,
+        rf_note(read->info, "GDepth: %d x %d samples of %d bits (%.40s)", (int)read->samples.width,
+                (int)read->samples.height, read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8,
                 mime ? mime : "kind not said");
     }
     return status;
@@ -236,8 +224,7 @@ static double find_own_blur(const struct rf_read *read, const struct range *rang
     return isfinite(blur) && blur > 0.0 ? blur : 0.0;
 }
 
-static int read_focus(struct rf_read *read, const struct rf_xmp *xmp,
-                      const struct range *range)
+static int read_focus(struct rf_read *read, const struct rf_xmp *xmp, const struct range *range)
 {
     struct refocus_photo_info *const info = read->info;
     double x, y;
@@ -246,16 +233,15 @@ static int read_focus(struct rf_read *read, const struct rf_xmp *xmp,
 
     status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_X, "GFocus:FocalPointX", &has_x, &x);
     if (status == REFOCUS_OK) {
-        status =
-            rf_xmp_number(read, xmp, RF_XMP_FOCUS_Y, "GFocus:FocalPointY", &has_y, &y);
+        status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_Y, "GFocus:FocalPointY", &has_y, &y);
     }
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_DISTANCE, "GFocus:FocalDistance",
-                               &found, &info->focus_distance);
+        status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_DISTANCE, "GFocus:FocalDistance", &found,
+                               &info->focus_distance);
     }
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_BLUR, "GFocus:BlurAtInfinity",
-                               &found, &info->blur_at_infinity);
+        status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_BLUR, "GFocus:BlurAtInfinity", &found,
+                               &info->blur_at_infinity);
     }
     if (status == REFOCUS_OK) {
         if (has_x && has_y && x >= 0.0 && x <= 1.0 && y >= 0.0 && y <= 1.0) {
@@ -280,16 +266,14 @@ static int read_original(struct rf_read *read, struct rf_xmp *xmp)
         return REFOCUS_OK;
     }
     if (xmp->value[RF_XMP_FOCUS_BLUR] && read->info->blur_at_infinity == 0.0) {
-        rf_note(read->info,
-                "GImage: original passed over, the main picture has no blur");
+        rf_note(read->info, "GImage: original passed over, the main picture has no blur");
         return REFOCUS_OK;
     }
     status = decode_data(read, xmp, RF_XMP_IMAGE_DATA, "GImage:Data", &read->image);
     if (status == REFOCUS_OK) {
         read->info->original_used = 1;
-        rf_note(read->info,
-                "GImage: the file's all-in-focus original is used, its main picture is "
-                "the phone's blurred result");
+        rf_note(read->info, "GImage: the file's all-in-focus original is used, its main picture is "
+                            "the phone's blurred result");
     }
     return status;
 }

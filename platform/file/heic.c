@@ -22,8 +22,7 @@ static int fail_heif(const struct rf_read *read, struct heif_error error)
     while (length > 0 && strchr(" \n", error.message[length - 1]))
         length--;
     if (error.subcode == heif_suberror_End_of_data)
-        return rf_fail(read->reason, status,
-                       "damaged HEIC: it ends too early; copy it again");
+        return rf_fail(read->reason, status, "damaged HEIC: it ends too early; copy it again");
     if (error.subcode == heif_suberror_Security_limit_exceeded) {
         status = REFOCUS_ERR_SIZE;
     } else if (error.code == heif_error_Memory_allocation_error) {
@@ -53,8 +52,7 @@ static int copy_plane(struct rf_read *read, const struct heif_image *image,
     status = rf_raster_alloc(read, raster);
     for (int32_t y = 0; status == REFOCUS_OK && y < raster->height; y++) {
         const size_t bytes = rf_raster_stride(raster);
-        memcpy(raster->pixels + (size_t)y * bytes, plane + (ptrdiff_t)y * stride,
-               bytes);
+        memcpy(raster->pixels + (size_t)y * bytes, plane + (ptrdiff_t)y * stride, bytes);
     }
     return status;
 }
@@ -86,10 +84,9 @@ static int decode(struct heic *heic, struct heif_image_handle *handle, bool colo
     raster->channels = colour ? 3 : 1;
     raster->sample = bits > 8 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
     raster->max_value = bits >= 1 && bits <= 16 ? (1u << bits) - 1 : 0;
-    status = raster->max_value == 0
-                 ? rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                           "HEIC: its picture is of an unknown layout")
-                 : copy_plane(read, image, channel, raster);
+    status = raster->max_value == 0 ? rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                                              "HEIC: its picture is of an unknown layout")
+                                    : copy_plane(read, image, channel, raster);
     heif_image_release(image);
     return status;
 }
@@ -103,14 +100,12 @@ static bool has_disparity(const struct heif_depth_representation_info *about)
 static bool has_distance(const struct heif_depth_representation_info *about)
 {
     return about->has_z_near && about->has_z_far && isfinite(about->z_near) &&
-           isfinite(about->z_far) && about->z_near > 0.0 &&
-           about->z_near < about->z_far;
+           isfinite(about->z_far) && about->z_near > 0.0 && about->z_near < about->z_far;
 }
 
 /* ISO/IEC 23008-2, depth representation information. False when it does not say enough.
  */
-static bool set_meaning(struct rf_read *read,
-                        const struct heif_depth_representation_info *about)
+static bool set_meaning(struct rf_read *read, const struct heif_depth_representation_info *about)
 {
     struct refocus_depth_map *const map = &read->depth;
     const double max = read->samples.max_value;
@@ -119,13 +114,11 @@ static bool set_meaning(struct rf_read *read,
     case heif_depth_representation_type_uniform_disparity:
         if (has_disparity(about)) {
             rf_depth_from_disparity(map, 0.0, max, about->d_min, about->d_max);
-            rf_note(read->info,
-                    "HEIC: uniform disparity from %g to %g per metre, bright is near",
+            rf_note(read->info, "HEIC: uniform disparity from %g to %g per metre, bright is near",
                     about->d_min, about->d_max);
         } else {
             rf_depth_from_disparity(map, 0.0, max, 0.0, 0.0);
-            rf_note(read->info,
-                    "HEIC: uniform disparity without a range, bright is near");
+            rf_note(read->info, "HEIC: uniform disparity without a range, bright is near");
         }
         return true;
     case heif_depth_representation_type_uniform_inverse_Z:
@@ -134,8 +127,8 @@ static bool set_meaning(struct rf_read *read,
             map->near_m = about->z_near;
             map->far_m = about->z_far;
         }
-        rf_note(read->info, "HEIC: uniform 1/z from %g to %g m, bright is near",
-                map->near_m, map->far_m);
+        rf_note(read->info, "HEIC: uniform 1/z from %g to %g m, bright is near", map->near_m,
+                map->far_m);
         return true;
     case heif_depth_representation_type_uniform_Z:
         if (!has_distance(about)) {
@@ -146,8 +139,8 @@ static bool set_meaning(struct rf_read *read,
         map->metres_per_unit = (about->z_far - about->z_near) / max;
         map->near_m = about->z_near;
         map->far_m = about->z_far;
-        rf_note(read->info, "HEIC: uniform z from %g to %g m, bright is far",
-                map->near_m, map->far_m);
+        rf_note(read->info, "HEIC: uniform z from %g to %g m, bright is far", map->near_m,
+                map->far_m);
         return true;
     default:
         return false;
@@ -171,8 +164,7 @@ static int read_simulated(struct heic *heic, const struct heif_image_handle *dep
         return REFOCUS_OK;
     }
     packet.size = heif_image_handle_get_metadata_size(depth, item);
-    if (packet.size == 0 ||
-        rf_check_bytes(&quiet, packet.size, "its XMP") != REFOCUS_OK) {
+    if (packet.size == 0 || rf_check_bytes(&quiet, packet.size, "its XMP") != REFOCUS_OK) {
         return REFOCUS_OK;
     }
     packet.data = bytes = malloc(packet.size);
@@ -241,8 +233,7 @@ static int read_depth(struct heic *heic)
     if (heif_image_handle_get_list_of_depth_image_IDs(heic->primary, &item, 1) < 1) {
         return REFOCUS_OK;
     }
-    if (!heif_image_handle_get_depth_image_representation_info(heic->primary, item,
-                                                               &about) ||
+    if (!heif_image_handle_get_depth_image_representation_info(heic->primary, item, &about) ||
         !about) {
         rf_note(read->info, "HEIC: a depth image that does not say which end is near: "
                             "passed over");
@@ -258,24 +249,21 @@ static void note_auxiliaries(struct heic *heic)
 {
     enum { MOST = 8 };
     heif_item_id items[MOST];
-    const int filter =
-        LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH | LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA;
-    const int count = heif_image_handle_get_list_of_auxiliary_image_IDs(
-        heic->primary, filter, items, MOST);
+    const int filter = LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH | LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA;
+    const int count =
+        heif_image_handle_get_list_of_auxiliary_image_IDs(heic->primary, filter, items, MOST);
 
     for (int i = 0; i < count; i++) {
         struct heif_image_handle *handle = NULL;
         const char *type = NULL;
 
-        if (heif_image_handle_get_auxiliary_image_handle(heic->primary, items[i],
-                                                         &handle)
-                .code != heif_error_Ok) {
+        if (heif_image_handle_get_auxiliary_image_handle(heic->primary, items[i], &handle).code !=
+            heif_error_Ok) {
             continue;
         }
         if (heif_image_handle_get_auxiliary_type(handle, &type).code == heif_error_Ok) {
             rf_note(heic->read->info,
-                    "HEIC: auxiliary image passed over, it is no depth but \"%.80s\"",
-                    type);
+                    "HEIC: auxiliary image passed over, it is no depth but \"%.80s\"", type);
             heif_image_handle_free_auxiliary_types(handle, &type);
         }
         heif_image_handle_release(handle);
@@ -291,8 +279,7 @@ static int read_exif(struct heic *heic)
     uint8_t *block;
     int status;
 
-    if (heif_image_handle_get_list_of_metadata_block_IDs(heic->primary, "Exif", &item,
-                                                         1) < 1) {
+    if (heif_image_handle_get_list_of_metadata_block_IDs(heic->primary, "Exif", &item, 1) < 1) {
         return REFOCUS_OK;
     }
     size = heif_image_handle_get_metadata_size(heic->primary, item);
@@ -304,12 +291,10 @@ static int read_exif(struct heic *heic)
     if (!block) {
         return rf_fail_memory(read->reason);
     }
-    if (heif_image_handle_get_metadata(heic->primary, item, block).code ==
-        heif_error_Ok) {
+    if (heif_image_handle_get_metadata(heic->primary, item, block).code == heif_error_Ok) {
         /* ISO/IEC 23008-12, A.2.1: where the TIFF header is, counted from behind this.
          */
-        skip = (size_t)block[0] << 24 | (size_t)block[1] << 16 | (size_t)block[2] << 8 |
-               block[3];
+        skip = (size_t)block[0] << 24 | (size_t)block[1] << 16 | (size_t)block[2] << 8 | block[3];
         if (skip < size - 4) {
             tiff = (struct rf_bytes){block + 4 + skip, size - 4 - skip};
         }
@@ -354,8 +339,7 @@ static void say_orientation(struct heic *heic)
     info->stored_height = heif_image_handle_get_ispe_height(heic->primary);
     info->orientation = rf_heif_orientation(heic->file, 0);
     if (info->orientation != 1) {
-        rf_note(info,
-                "HEIC: the container's orientation %d is applied to photo and depth",
+        rf_note(info, "HEIC: the container's orientation %d is applied to photo and depth",
                 info->orientation);
     }
 }
@@ -375,8 +359,8 @@ static int take_second(struct heic *heic)
     }
     heif_image_handle_release(heic->primary);
     heic->primary = NULL;
-    error = heif_context_get_image_handle(
-        heic->context, id[0] == main_id ? id[1] : id[0], &heic->primary);
+    error = heif_context_get_image_handle(heic->context, id[0] == main_id ? id[1] : id[0],
+                                          &heic->primary);
     return error.code == heif_error_Ok ? REFOCUS_OK : fail_heif(heic->read, error);
 }
 
@@ -402,8 +386,7 @@ static int run(struct heic *heic)
     }
     if (read->second) {
         status = take_second(heic);
-        return status == REFOCUS_OK ? decode(heic, heic->primary, true, &read->image)
-                                    : status;
+        return status == REFOCUS_OK ? decode(heic, heic->primary, true, &read->image) : status;
     }
     say_orientation(heic);
     read->info->stored_bits = heif_image_handle_get_luma_bits_per_pixel(heic->primary);

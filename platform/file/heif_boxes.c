@@ -73,8 +73,7 @@ struct turn {
     int right_x, right_y, down_x, down_y;
 };
 
-static void apply_property(struct turn *turn, struct rf_bytes properties,
-                           uint32_t index)
+static void apply_property(struct turn *turn, struct rf_bytes properties, uint32_t index)
 {
     const struct turn old = *turn;
     struct box box = {.type = ""};
@@ -91,8 +90,7 @@ static void apply_property(struct turn *turn, struct rf_bytes properties,
         /* Quarter turns anticlockwise: what leads right led down before. */
         for (int i = box.content.data[0] & 3; i > 0; i--) {
             const struct turn before = *turn;
-            *turn = (struct turn){before.down_x, before.down_y, -before.right_x,
-                                  -before.right_y};
+            *turn = (struct turn){before.down_x, before.down_y, -before.right_x, -before.right_y};
         }
     } else if (strcmp(box.type, "imir") == 0) {
         if (box.content.data[0] & 1) { /* left and right are exchanged */
@@ -104,8 +102,8 @@ static void apply_property(struct turn *turn, struct rf_bytes properties,
 }
 
 /* Item property associations: which properties, counted from 1, each item has. */
-static void apply_associations(struct turn *turn, struct rf_bytes ipma,
-                               struct rf_bytes properties, uint32_t item)
+static void apply_associations(struct turn *turn, struct rf_bytes ipma, struct rf_bytes properties,
+                               uint32_t item)
 {
     size_t id_bytes, index_bytes;
     uint32_t entries;
@@ -125,8 +123,7 @@ static void apply_associations(struct turn *turn, struct rf_bytes ipma,
         for (; count > 0 && ipma.size >= index_bytes; count--) {
             if (wanted) {
                 apply_property(turn, properties,
-                               get(ipma, 0, index_bytes) &
-                                   (index_bytes == 2 ? 0x7fff : 0x7f));
+                               get(ipma, 0, index_bytes) & (index_bytes == 2 ? 0x7fff : 0x7f));
             }
             skip(&ipma, index_bytes);
         }

@@ -41,7 +41,7 @@ struct rf_photo {
 struct rf_read {
     struct refocus_read_limits limits; /* no zeros */
     struct refocus_reason *reason;     /* never NULL */
-    bool picture_always; /* false: the main picture only when there is no depth */
+    bool picture_always;               /* false: the main picture only when there is no depth */
     struct refocus_photo_info *info;
     struct refocus_blob exif, icc;  /* owned */
     struct rf_raster image;         /* as stored */
@@ -54,8 +54,7 @@ struct rf_read {
 /* context.c: words, limits, memory ------------------------------------ */
 
 /* Put words into the reason; returns the status, so that errors are one line. */
-int rf_fail(struct refocus_reason *reason, int status, const char *format, ...)
-    RF_PRINTF(3, 4);
+int rf_fail(struct refocus_reason *reason, int status, const char *format, ...) RF_PRINTF(3, 4);
 int rf_fail_memory(struct refocus_reason *reason);
 /* The same with the words of errno's value. */
 int rf_fail_errno(struct refocus_reason *reason, int error, const char *what);
@@ -75,8 +74,7 @@ static inline bool rf_good_rows(ptrdiff_t stride, int64_t bytes, int64_t rows)
 {
     const int64_t most = PTRDIFF_MAX / rows;
 
-    return stride >= -most && stride <= most &&
-           (rows == 1 || stride >= bytes || stride <= -bytes);
+    return stride >= -most && stride <= most && (rows == 1 || stride >= bytes || stride <= -bytes);
 }
 /* Sizes are checked here and nowhere else, in 64 bits and before memory is asked for:
  * sides 1 to REFOCUS_MAX_SIDE, pixels and bytes within the limits. */
@@ -101,8 +99,7 @@ int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster);
 /* One channel from equal ones; REFOCUS_ERR_NO_DEPTH when they are not. */
 int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster);
 /* orient.c: turn upright, EXIF orientation 1 to 8. */
-int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster,
-                     int orientation);
+int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster, int orientation);
 void rf_orient_point(double *x, double *y, int orientation);
 /* The orientation that undoes one. */
 int rf_orient_inverse(int orientation);
@@ -116,11 +113,10 @@ int rf_load(const char *path, uint64_t max_bytes, struct refocus_reason *reason,
 struct rf_store {
     void *stream; /* FILE * */
     char *temporary, *path;
-    int error; /* errno of the first failure, or 0 */
+    int error;     /* errno of the first failure, or 0 */
     bool unsynced; /* renamed without waiting for the disk */
 };
-int rf_store_open(struct rf_store *store, const char *path,
-                  struct refocus_reason *reason);
+int rf_store_open(struct rf_store *store, const char *path, struct refocus_reason *reason);
 void rf_store_write(struct rf_store *store, const void *bytes, size_t size);
 /* Move into place when status is REFOCUS_OK and all was written, else remove. */
 int rf_store_close(struct rf_store *store, int status, struct refocus_reason *reason);
@@ -145,11 +141,9 @@ int rf_read_pfm(struct rf_read *read, struct rf_bytes file);
 int rf_read_png(struct rf_read *read, struct rf_bytes file);
 int rf_read_jpeg(struct rf_read *read, struct rf_bytes file);
 int rf_read_heic(struct rf_read *read, struct rf_bytes file);
-int rf_png_decode(const struct rf_read *read, struct rf_bytes file,
-                  struct rf_raster *raster, struct refocus_blob *exif,
-                  struct refocus_blob *icc);
-int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file,
-                   struct rf_raster *raster);
+int rf_png_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster,
+                  struct refocus_blob *exif, struct refocus_blob *icc);
+int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster);
 
 /* Rows of one or more samples as a file wants them. */
 struct rf_rows {
@@ -158,21 +152,17 @@ struct rf_rows {
     int32_t width, height;
     uint32_t format; /* enum refocus_format; NONE: 16-bit grey */
 };
-int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows,
-                 struct refocus_reason *reason);
-int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows,
-                 struct refocus_reason *reason);
+int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows, struct refocus_reason *reason);
+int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows, struct refocus_reason *reason);
 int rf_write_png(struct rf_store *store, const struct rf_rows *rows,
-                 const struct refocus_write_options *options,
-                 struct refocus_reason *reason);
+                 const struct refocus_write_options *options, struct refocus_reason *reason);
 int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
-                  const struct refocus_write_options *options,
-                  struct refocus_reason *reason);
+                  const struct refocus_write_options *options, struct refocus_reason *reason);
 
 /* exif.c -------------------------------------------------------------- */
 
 struct rf_exif {
-    int orientation; /* 1 to 8; 1 when there is none */
+    int orientation;                                     /* 1 to 8; 1 when there is none */
     double focal_length_mm, focal_length_35mm, f_number; /* 0: not said */
     char camera[96];
 };
@@ -213,8 +203,7 @@ extern const char rf_jpeg_mpf_signature[4];
 /* mpf.c: images that follow the main one in a file (CIPA DC-007) */
 enum { RF_MPF_MAX = 32 };
 struct rf_mpf_image {
-    uint64_t
-        offset; /* from the begin of the MPF segment's TIFF header; 0: the main one */
+    uint64_t offset; /* from the begin of the MPF segment's TIFF header; 0: the main one */
     uint64_t size;
 };
 struct rf_mpf {
@@ -256,12 +245,11 @@ struct rf_xmp {
 };
 /* Add a packet's properties; the first value of each stays. On an error the struct
  * holds what was read and is freed as ever. */
-int rf_xmp_parse(const struct rf_read *read, struct rf_bytes packet,
-                 struct rf_xmp *xmp);
+int rf_xmp_parse(const struct rf_read *read, struct rf_bytes packet, struct rf_xmp *xmp);
 void rf_xmp_free(struct rf_xmp *xmp);
 /* A number; false when the property is absent. A property that is no number fails. */
-int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp,
-                  enum rf_xmp_key key, const char *name, bool *found, double *value);
+int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp, enum rf_xmp_key key,
+                  const char *name, bool *found, double *value);
 /* f-number of the blur that an iPhone shows; 0: not said. */
 double rf_xmp_simulated_f_number(const struct rf_xmp *xmp);
 
@@ -281,12 +269,10 @@ bool rf_xmp_is_ours(struct rf_bytes packet);
 
 /* Depth containers: fill read->samples, read->depth, info. */
 int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp);
-int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mpf,
-                  size_t main_end);
+int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mpf, size_t main_end);
 /* A map linear in 1/z whose codes 0 and 1 of the unit interval have these values. */
-void rf_depth_from_disparity(struct refocus_depth_map *map, double value_min,
-                             double value_max, double disparity_min,
-                             double disparity_max);
+void rf_depth_from_disparity(struct refocus_depth_map *map, double value_min, double value_max,
+                             double disparity_min, double disparity_max);
 /* Unit words of depth_file.c for samples whose white is max_value. */
 int rf_depth_unit(struct refocus_depth_map *map, const char *unit, double max_value);
 

@@ -7,8 +7,7 @@
 
 static int fail_jpeg(const struct rf_read *read, tjhandle jpeg)
 {
-    return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged JPEG: %s",
-                   tjGetErrorStr2(jpeg));
+    return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged JPEG: %s", tjGetErrorStr2(jpeg));
 }
 
 /* TurboJPEG fills up what is missing with grey; the end of the picture must be there.
@@ -34,8 +33,8 @@ static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_byte
 
     /* It refuses rare chroma samplings here although it decodes them: judge by the
      * rest. */
-    tjDecompressHeader3(jpeg, file.data, (unsigned long)file.size, &width, &height,
-                        &sampling, &space);
+    tjDecompressHeader3(jpeg, file.data, (unsigned long)file.size, &width, &height, &sampling,
+                        &space);
     if (width < 1 || height < 1 || space < 0) {
         return fail_jpeg(read, jpeg);
     }
@@ -49,8 +48,7 @@ static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_byte
     raster->sample = REFOCUS_SAMPLE_U8;
     raster->max_value = 255;
     raster->lossy = true;
-    return rf_check_size(read, (uint64_t)width, (uint64_t)height,
-                         (uint64_t)raster->channels);
+    return rf_check_size(read, (uint64_t)width, (uint64_t)height, (uint64_t)raster->channels);
 }
 
 /* Some cameras leave a few bytes too many before a marker: every decoder skips them.
@@ -69,32 +67,29 @@ static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_byte
 {
     const int format = raster->channels == 1 ? TJPF_GRAY : TJPF_RGB;
     int flags = TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS | TJFLAG_STOPONWARNING;
-    int failed = tjDecompress2(
-        jpeg, file.data, (unsigned long)file.size, raster->pixels, raster->width,
-        (int)rf_raster_stride(raster), raster->height, format, flags);
+    int failed =
+        tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels, raster->width,
+                      (int)rf_raster_stride(raster), raster->height, format, flags);
 
     if (failed && few_bytes_too_many(tjGetErrorStr2(jpeg))) {
         flags &= ~TJFLAG_STOPONWARNING;
         failed =
-            tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels,
-                          raster->width, (int)rf_raster_stride(raster), raster->height,
-                          format, flags) != 0 &&
+            tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels, raster->width,
+                          (int)rf_raster_stride(raster), raster->height, format, flags) != 0 &&
             tjGetErrorCode(jpeg) != TJERR_WARNING;
     }
     return failed ? fail_jpeg(read, jpeg) : REFOCUS_OK;
 }
 
-int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file,
-                   struct rf_raster *raster)
+int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster)
 {
     tjhandle jpeg;
     int status;
 
     memset(raster, 0, sizeof *raster);
     if (file.size > ULONG_MAX || !is_whole(file)) {
-        return rf_fail(
-            read->reason, REFOCUS_ERR_FORMAT,
-            "damaged JPEG: it ends in the middle of the picture; copy it again");
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged JPEG: it ends in the middle of the picture; copy it again");
     }
     jpeg = tjInitDecompress();
     if (!jpeg) {

@@ -39,26 +39,22 @@ static void take_segment(struct parts *parts, int marker, struct rf_bytes segmen
     struct rf_bytes rest;
 
     if (marker == MARKER_APP1) {
-        if (!parts->exif.data &&
-            rf_jpeg_after(segment, rf_jpeg_exif_signature, 6, &rest)) {
+        if (!parts->exif.data && rf_jpeg_after(segment, rf_jpeg_exif_signature, 6, &rest)) {
             parts->exif = rest;
-        } else if (!parts->xmp.data &&
-                   rf_jpeg_after(segment, rf_jpeg_xmp_signature,
-                                 sizeof rf_jpeg_xmp_signature, &rest)) {
+        } else if (!parts->xmp.data && rf_jpeg_after(segment, rf_jpeg_xmp_signature,
+                                                     sizeof rf_jpeg_xmp_signature, &rest)) {
             parts->xmp = rest;
-        } else if (parts->xmp.data && !parts->older_xmp.data &&
-                   rf_xmp_is_ours(parts->xmp) &&
-                   rf_jpeg_after(segment, rf_jpeg_xmp_signature,
-                                 sizeof rf_jpeg_xmp_signature, &rest)) {
+        } else if (parts->xmp.data && !parts->older_xmp.data && rf_xmp_is_ours(parts->xmp) &&
+                   rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
+                                 &rest)) {
             parts->older_xmp = rest;
         }
     } else if (marker == MARKER_APP2) {
-        if (!parts->mpf.data && rf_jpeg_after(segment, rf_jpeg_mpf_signature,
-                                              sizeof rf_jpeg_mpf_signature, &rest)) {
+        if (!parts->mpf.data &&
+            rf_jpeg_after(segment, rf_jpeg_mpf_signature, sizeof rf_jpeg_mpf_signature, &rest)) {
             parts->mpf = rest;
-        } else if (parts->icc_count >= 0 &&
-                   rf_jpeg_after(segment, rf_jpeg_icc_signature,
-                                 sizeof rf_jpeg_icc_signature, &rest)) {
+        } else if (parts->icc_count >= 0 && rf_jpeg_after(segment, rf_jpeg_icc_signature,
+                                                          sizeof rf_jpeg_icc_signature, &rest)) {
             take_icc(parts, rest);
         }
     }
@@ -137,11 +133,10 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     if (status != REFOCUS_OK || !xmp->value[RF_XMP_EXTENDED]) {
         return status;
     }
-    status = rf_xmp_extended(read, file, xmp->value[RF_XMP_EXTENDED],
-                             xmp->length[RF_XMP_EXTENDED], &extended);
+    status = rf_xmp_extended(read, file, xmp->value[RF_XMP_EXTENDED], xmp->length[RF_XMP_EXTENDED],
+                             &extended);
     if (status == REFOCUS_OK) {
-        status =
-            rf_xmp_parse(read, (struct rf_bytes){extended.data, extended.size}, xmp);
+        status = rf_xmp_parse(read, (struct rf_bytes){extended.data, extended.size}, xmp);
     }
     free(extended.data);
     return status;
@@ -149,8 +144,8 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
 
 /* Of the packet before ours: the all-in-focus original, when its main picture is
  * blurred. */
-static int read_older(struct rf_read *read, struct rf_bytes file,
-                      struct rf_bytes packet, struct rf_xmp *xmp)
+static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
+                      struct rf_xmp *xmp)
 {
     static const enum rf_xmp_key keys[] = {RF_XMP_IMAGE_MIME, RF_XMP_IMAGE_DATA};
     struct rf_xmp older = {{NULL}, {0}};
@@ -159,8 +154,8 @@ static int read_older(struct rf_read *read, struct rf_bytes file,
     int status = read_xmp(read, file, packet, &older);
 
     if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, &older, RF_XMP_FOCUS_BLUR, "GFocus:BlurAtInfinity",
-                               &found, &blur);
+        status =
+            rf_xmp_number(read, &older, RF_XMP_FOCUS_BLUR, "GFocus:BlurAtInfinity", &found, &blur);
     }
     for (int i = 0; status == REFOCUS_OK && !(found && blur == 0.0) && i < 2; i++) {
         xmp->value[keys[i]] = older.value[keys[i]];
@@ -172,8 +167,7 @@ static int read_older(struct rf_read *read, struct rf_bytes file,
 }
 
 /* Depth from the first container that holds some. */
-static int read_depth(struct rf_read *read, struct rf_bytes file,
-                      const struct parts *parts)
+static int read_depth(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
     const struct rf_bytes main_picture = {file.data, parts->end};
     struct rf_xmp xmp = {{NULL}, {0}};
@@ -195,8 +189,7 @@ static int read_depth(struct rf_read *read, struct rf_bytes file,
     return status;
 }
 #else
-static int read_depth(struct rf_read *read, struct rf_bytes file,
-                      const struct parts *parts)
+static int read_depth(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
     (void)file;
     if (parts->xmp.data || parts->mpf.data) {
@@ -207,8 +200,7 @@ static int read_depth(struct rf_read *read, struct rf_bytes file,
 #endif
 
 /* The picture of an MPO that follows the first and is a whole JPEG. */
-static int read_second(struct rf_read *read, struct rf_bytes file,
-                       const struct parts *parts)
+static int read_second(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
     struct rf_mpf mpf;
 
@@ -219,15 +211,12 @@ static int read_second(struct rf_read *read, struct rf_bytes file,
             const uint64_t begin = base + mpf.image[i].offset;
             const uint64_t size = mpf.image[i].size;
 
-            if (begin < parts->end || begin > file.size || size > file.size - begin ||
-                size < 4 ||
-                rf_sniff((struct rf_bytes){file.data + begin, (size_t)size}) !=
-                    RF_CONTAINER_JPEG) {
+            if (begin < parts->end || begin > file.size || size > file.size - begin || size < 4 ||
+                rf_sniff((struct rf_bytes){file.data + begin, (size_t)size}) != RF_CONTAINER_JPEG) {
                 continue;
             }
             read->second = false;
-            return rf_read_jpeg(read,
-                                (struct rf_bytes){file.data + begin, (size_t)size});
+            return rf_read_jpeg(read, (struct rf_bytes){file.data + begin, (size_t)size});
         }
     }
     return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
@@ -242,9 +231,8 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
 
     memcpy(read->info->container, "JPEG", 5);
     if (!find_parts(file, &parts)) {
-        return rf_fail(
-            read->reason, REFOCUS_ERR_FORMAT,
-            "damaged JPEG: it ends in the middle of the picture; copy it again");
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged JPEG: it ends in the middle of the picture; copy it again");
     }
     if (read->second) {
         return read_second(read, file, &parts);
@@ -259,8 +247,7 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
     /* rf_read_gdepth() may have put the all-in-focus original there already. */
     if (status == REFOCUS_OK && !read->image.pixels &&
         (read->picture_always || !read->samples.pixels)) {
-        status =
-            rf_jpeg_decode(read, (struct rf_bytes){file.data, parts.end}, &read->image);
+        status = rf_jpeg_decode(read, (struct rf_bytes){file.data, parts.end}, &read->image);
     }
     return status;
 }

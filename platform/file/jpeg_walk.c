@@ -28,8 +28,7 @@ static int next_marker(struct rf_jpeg_walk *walk)
     const size_t size = walk->file.size;
 
     while (walk->position < size) {
-        const uint8_t *const found =
-            memchr(data + walk->position, 0xff, size - walk->position);
+        const uint8_t *const found = memchr(data + walk->position, 0xff, size - walk->position);
         if (!found) {
             return 0;
         }
@@ -59,8 +58,7 @@ enum rf_jpeg_step rf_jpeg_walk_next(struct rf_jpeg_walk *walk)
     if (walk->marker == 0 || walk->marker == MARKER_SOI || room < 2) {
         return RF_JPEG_DAMAGED;
     }
-    length = (size_t)walk->file.data[walk->position] << 8 |
-             walk->file.data[walk->position + 1];
+    length = (size_t)walk->file.data[walk->position] << 8 | walk->file.data[walk->position + 1];
     if (length < 2 || length > room) {
         return RF_JPEG_DAMAGED;
     }

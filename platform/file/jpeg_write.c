@@ -31,8 +31,7 @@ static void write_exif(struct rf_store *store, const struct refocus_blob *exif,
     }
     if (exif->size > SEGMENT_MAX - 6) {
         rf_fail(reason, REFOCUS_OK,
-                "EXIF of %zu bytes does not fit into a JPEG: left out; PNG takes it",
-                exif->size);
+                "EXIF of %zu bytes does not fit into a JPEG: left out; PNG takes it", exif->size);
         return;
     }
     write_segment(store, 0xe1, rf_jpeg_exif_signature, 6, exif->data, exif->size);
@@ -48,8 +47,7 @@ static void write_icc(struct rf_store *store, const struct refocus_blob *icc,
     }
     count = (icc->size + ICC_CHUNK - 1) / ICC_CHUNK;
     if (count > 255) {
-        rf_fail(reason, REFOCUS_OK,
-                "ICC profile of %zu bytes does not fit into a JPEG: left out",
+        rf_fail(reason, REFOCUS_OK, "ICC profile of %zu bytes does not fit into a JPEG: left out",
                 icc->size);
         return;
     }
@@ -79,8 +77,8 @@ static int pixel_format(uint32_t format)
     }
 }
 
-static int compress(tjhandle jpeg, const struct rf_rows *rows, int quality,
-                    unsigned char **bytes, unsigned long *size)
+static int compress(tjhandle jpeg, const struct rf_rows *rows, int quality, unsigned char **bytes,
+                    unsigned long *size)
 {
     const bool flipped = rows->stride < 0;
     const ptrdiff_t step = flipped ? -rows->stride : rows->stride;
@@ -90,9 +88,9 @@ static int compress(tjhandle jpeg, const struct rf_rows *rows, int quality,
      */
     const int sampling = quality >= 90 ? TJSAMP_444 : TJSAMP_420;
 
-    return tjCompress2(jpeg, first, rows->width, rows->height == 1 ? 0 : (int)step,
-                       rows->height, pixel_format(rows->format), bytes, size, sampling,
-                       quality, TJFLAG_ACCURATEDCT | (flipped ? TJFLAG_BOTTOMUP : 0));
+    return tjCompress2(jpeg, first, rows->width, rows->height == 1 ? 0 : (int)step, rows->height,
+                       pixel_format(rows->format), bytes, size, sampling, quality,
+                       TJFLAG_ACCURATEDCT | (flipped ? TJFLAG_BOTTOMUP : 0));
 }
 
 /* Where the segments of ours belong: behind SOI and JFIF. */
@@ -108,11 +106,9 @@ static size_t find_insertion(const unsigned char *bytes, unsigned long size)
 }
 
 int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
-                  const struct refocus_write_options *options,
-                  struct refocus_reason *reason)
+                  const struct refocus_write_options *options, struct refocus_reason *reason)
 {
-    const int quality =
-        options && options->quality ? options->quality : DEFAULT_QUALITY;
+    const int quality = options && options->quality ? options->quality : DEFAULT_QUALITY;
     unsigned char *bytes = NULL;
     unsigned long size = 0;
     int status = REFOCUS_OK;
@@ -120,8 +116,7 @@ int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
 
     if (rows->width > JPEG_SIDE_MAX || rows->height > JPEG_SIDE_MAX) {
         return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                       "a JPEG has at most %d pixels a side; write a PNG",
-                       JPEG_SIDE_MAX);
+                       "a JPEG has at most %d pixels a side; write a PNG", JPEG_SIDE_MAX);
     }
     if (rows->height > 1 && (rows->stride > INT_MAX || rows->stride < -INT_MAX)) {
         return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,

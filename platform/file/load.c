@@ -12,9 +12,8 @@ static size_t first_room(FILE *stream, uint64_t max_bytes)
     const size_t pipe_room = 1 << 16;
     struct stat facts;
 
-    if (fstat(fileno(stream), &facts) == 0 && S_ISREG(facts.st_mode) &&
-        facts.st_size >= 0 && (uint64_t)facts.st_size <= max_bytes &&
-        (uint64_t)facts.st_size < SIZE_MAX) {
+    if (fstat(fileno(stream), &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_size >= 0 &&
+        (uint64_t)facts.st_size <= max_bytes && (uint64_t)facts.st_size < SIZE_MAX) {
         return (size_t)facts.st_size + 1;
     }
     return pipe_room;
@@ -37,8 +36,7 @@ static int read_all(FILE *stream, uint64_t max_bytes, struct refocus_reason *rea
             return rf_fail_errno(reason, errno ? errno : EIO, "cannot read it");
         }
         if (blob->size > max_bytes) {
-            return rf_fail(reason, REFOCUS_ERR_SIZE,
-                           "it is larger than the limit of %llu bytes",
+            return rf_fail(reason, REFOCUS_ERR_SIZE, "it is larger than the limit of %llu bytes",
                            (unsigned long long)max_bytes);
         }
         if (blob->size < room) {
@@ -82,8 +80,9 @@ int refocus_file_read(const char *path, uint64_t max_bytes, struct refocus_blob 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
     if (!path || !blob) {
-        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or no place for "
-                                                     "it");
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
+                       "there is no name or no place for "
+                       "it");
     }
     return rf_load(path, max_bytes, reason, blob);
 }

@@ -11,8 +11,8 @@ static const char *skip_blanks(const char *text)
 }
 
 /* Digits into *mantissa and, for what no longer fits, into *exponent. */
-static const char *read_digits(const char *text, uint64_t *mantissa, int *exponent,
-                               int step, int *digits)
+static const char *read_digits(const char *text, uint64_t *mantissa, int *exponent, int step,
+                               int *digits)
 {
     for (; *text >= '0' && *text <= '9'; text++, ++*digits) {
         if (*mantissa < UINT64_MAX / 10 - 1) {

@@ -33,8 +33,7 @@ static struct steps find_steps(ptrdiff_t w, ptrdiff_t h, int orientation)
     }
 }
 
-int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster,
-                     int orientation)
+int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster, int orientation)
 {
     const size_t bytes = (size_t)raster->channels * rf_sample_bytes(raster->sample);
     const struct steps steps = find_steps(raster->width, raster->height, orientation);

@@ -33,9 +33,8 @@ static bool scan_side(struct rf_bytes file, size_t *position, uint64_t *side)
     char word[32];
     double value;
 
-    if (!scan_word(file, position, word, sizeof word) ||
-        !rf_parse_number(word, &value) || value < 0 || value > 4294967295.0 ||
-        value != floor(value)) {
+    if (!scan_word(file, position, word, sizeof word) || !rf_parse_number(word, &value) ||
+        value < 0 || value > 4294967295.0 || value != floor(value)) {
         return false;
     }
     *side = (uint64_t)value;
@@ -45,9 +44,8 @@ static bool scan_side(struct rf_bytes file, size_t *position, uint64_t *side)
 static float load_float(const uint8_t *b, bool little_endian)
 {
     const uint32_t bits =
-        little_endian
-            ? (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0]
-            : (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+        little_endian ? (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0]
+                      : (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
     float value;
 
     memcpy(&value, &bits, 4);
@@ -70,8 +68,8 @@ int rf_read_pfm(struct rf_read *read, struct rf_bytes file)
                        "kind \"Pf\"");
     }
     if (!scan_side(file, &position, &width) || !scan_side(file, &position, &height) ||
-        !scan_word(file, &position, word, sizeof word) ||
-        !rf_parse_number(word, &scale) || scale == 0.0) {
+        !scan_word(file, &position, word, sizeof word) || !rf_parse_number(word, &scale) ||
+        scale == 0.0) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: its PFM header holds no width, height and scale");
     }
@@ -93,8 +91,7 @@ int rf_read_pfm(struct rf_read *read, struct rf_bytes file)
     }
     stride = (size_t)width * 4;
     for (size_t y = 0; y < height; y++) {
-        const uint8_t *const from =
-            file.data + position + 1 + (height - 1 - y) * stride;
+        const uint8_t *const from = file.data + position + 1 + (height - 1 - y) * stride;
         float *const to = (float *)(void *)(raster->pixels + y * stride);
         for (size_t x = 0; x < width; x++) {
             to[x] = load_float(from + 4 * x, scale < 0);
@@ -108,8 +105,7 @@ int rf_read_pfm(struct rf_read *read, struct rf_bytes file)
     return REFOCUS_OK;
 }
 
-int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows,
-                 struct refocus_reason *reason)
+int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows, struct refocus_reason *reason)
 {
     uint8_t *const row = malloc((size_t)rows->width * 4);
     char header[64];
@@ -118,8 +114,7 @@ int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows,
     if (!row) {
         return rf_fail_memory(reason);
     }
-    n = snprintf(header, sizeof header, "Pf\n%d %d\n-1.0\n", (int)rows->width,
-                 (int)rows->height);
+    n = snprintf(header, sizeof header, "Pf\n%d %d\n-1.0\n", (int)rows->width, (int)rows->height);
     rf_store_write(store, header, (size_t)n);
     for (int32_t y = rows->height - 1; y >= 0; y--) {
         const uint8_t *const from = rows->top + y * rows->stride;

@@ -115,8 +115,8 @@ static void read_picture(struct reader *reader)
     png_read_end(png, reader->info);
 }
 
-static void copy_blob(struct reader *reader, struct refocus_blob *blob,
-                      const uint8_t *data, size_t size)
+static void copy_blob(struct reader *reader, struct refocus_blob *blob, const uint8_t *data,
+                      size_t size)
 {
     if (size == 0) {
         return;
@@ -140,8 +140,7 @@ static void read_extras(struct reader *reader)
     if (png_get_eXIf_1(reader->png, reader->info, &size, &data) & PNG_INFO_eXIf) {
         copy_blob(reader, &reader->exif, data, size);
     }
-    if (png_get_iCCP(reader->png, reader->info, &name, &method, &data, &size) &
-        PNG_INFO_iCCP) {
+    if (png_get_iCCP(reader->png, reader->info, &name, &method, &data, &size) & PNG_INFO_iCCP) {
         copy_blob(reader, &reader->icc, data, size);
     }
 }
@@ -149,8 +148,7 @@ static void read_extras(struct reader *reader)
 static bool run(struct reader *reader)
 {
     const struct refocus_read_limits *const limits = &reader->read->limits;
-    const uint64_t chunk =
-        limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
+    const uint64_t chunk = limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
     int status;
 
     if (setjmp(png_jmpbuf(reader->png))) {
@@ -173,14 +171,13 @@ static bool run(struct reader *reader)
     return true;
 }
 
-int rf_png_decode(const struct rf_read *read, struct rf_bytes file,
-                  struct rf_raster *raster, struct refocus_blob *exif,
-                  struct refocus_blob *icc)
+int rf_png_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster,
+                  struct refocus_blob *exif, struct refocus_blob *icc)
 {
     struct reader reader = {.read = read, .file = file};
 
-    reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, on_error,
-                                          on_warning, &reader, on_malloc, on_free);
+    reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning,
+                                          &reader, on_malloc, on_free);
     if (!reader.png) {
         return rf_fail_memory(read->reason);
     }

@@ -19,8 +19,8 @@ static void on_error(png_structp png, png_const_charp words)
     struct writer *const writer = png_get_error_ptr(png);
 
     if (writer->status == REFOCUS_OK) {
-        writer->status = rf_fail(writer->reason, REFOCUS_ERR_MEMORY,
-                                 "the PNG encoder gave up: %s", words);
+        writer->status =
+            rf_fail(writer->reason, REFOCUS_ERR_MEMORY, "the PNG encoder gave up: %s", words);
     }
     png_longjmp(png, 1);
 }
@@ -72,8 +72,7 @@ static void set_header(struct writer *writer)
                  grey    ? PNG_COLOR_TYPE_GRAY
                  : alpha ? PNG_COLOR_TYPE_RGB_ALPHA
                          : PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (options && options->icc && options->icc->data) {
         png_set_iCCP(writer->png, writer->info, "ICC", PNG_COMPRESSION_TYPE_BASE,
                      options->icc->data, (png_uint_32)options->icc->size);
@@ -117,14 +116,12 @@ static void run(struct writer *writer)
 }
 
 int rf_write_png(struct rf_store *store, const struct rf_rows *rows,
-                 const struct refocus_write_options *options,
-                 struct refocus_reason *reason)
+                 const struct refocus_write_options *options, struct refocus_reason *reason)
 {
-    struct writer writer = {
-        .store = store, .rows = rows, .options = options, .reason = reason};
+    struct writer writer = {.store = store, .rows = rows, .options = options, .reason = reason};
 
-    writer.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &writer, on_error,
-                                           on_warning, &writer, on_malloc, on_free);
+    writer.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning,
+                                           &writer, on_malloc, on_free);
     if (!writer.png) {
         return rf_fail_memory(reason);
     }

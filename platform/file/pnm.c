@@ -19,8 +19,7 @@ static void skip_blanks(struct scan *scan)
     while (scan->position < scan->file.size) {
         const uint8_t c = scan->file.data[scan->position];
         if (c == '#') {
-            while (scan->position < scan->file.size &&
-                   scan->file.data[scan->position] != '\n') {
+            while (scan->position < scan->file.size && scan->file.data[scan->position] != '\n') {
                 scan->position++;
             }
         } else if (is_blank(c)) {
@@ -57,22 +56,19 @@ static int fail_short(const struct rf_read *read)
                    "damaged: it ends in the middle of the picture; copy it again");
 }
 
-static int scan_header(struct rf_read *read, struct scan *scan,
-                       struct rf_raster *raster, bool raw)
+static int scan_header(struct rf_read *read, struct scan *scan, struct rf_raster *raster, bool raw)
 {
     uint64_t width, height, max;
     int status;
 
-    if (!scan_number(scan, &width) || !scan_number(scan, &height) ||
-        !scan_number(scan, &max) || max < 1 || max > 65535) {
-        return rf_fail(
-            read->reason, REFOCUS_ERR_FORMAT,
-            "damaged: its PNM header holds no width, height and greatest value");
+    if (!scan_number(scan, &width) || !scan_number(scan, &height) || !scan_number(scan, &max) ||
+        max < 1 || max > 65535) {
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                       "damaged: its PNM header holds no width, height and greatest value");
     }
     raster->sample = max > 255 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
     raster->max_value = (uint32_t)max;
-    status = rf_check_size(read, width, height,
-                           (uint64_t)raster->channels * (max > 255 ? 2 : 1));
+    status = rf_check_size(read, width, height, (uint64_t)raster->channels * (max > 255 ? 2 : 1));
     if (status != REFOCUS_OK) {
         return status;
     }
@@ -81,8 +77,7 @@ static int scan_header(struct rf_read *read, struct scan *scan,
     if (!raw) {
         return REFOCUS_OK;
     }
-    if (scan->position >= scan->file.size ||
-        !is_blank(scan->file.data[scan->position++])) {
+    if (scan->position >= scan->file.size || !is_blank(scan->file.data[scan->position++])) {
         return fail_short(read);
     }
     return REFOCUS_OK;
@@ -105,8 +100,7 @@ static int fail_value(const struct rf_read *read)
 
 static int scan_raw(struct rf_read *read, struct scan *scan, struct rf_raster *raster)
 {
-    const size_t count =
-        (size_t)raster->width * (size_t)raster->height * (size_t)raster->channels;
+    const size_t count = (size_t)raster->width * (size_t)raster->height * (size_t)raster->channels;
     const size_t bytes = raster->sample == REFOCUS_SAMPLE_U8 ? 1 : 2;
     const uint8_t *from = scan->file.data + scan->position;
     int status;
@@ -117,8 +111,7 @@ static int scan_raw(struct rf_read *read, struct scan *scan, struct rf_raster *r
     }
     status = rf_raster_alloc(read, raster);
     for (size_t i = 0; status == REFOCUS_OK && i < count; i++, from += bytes) {
-        const uint32_t value =
-            bytes == 1 ? from[0] : (uint32_t)(from[0] << 8 | from[1]);
+        const uint32_t value = bytes == 1 ? from[0] : (uint32_t)(from[0] << 8 | from[1]);
         if (value > raster->max_value) {
             return fail_value(read);
         }
@@ -129,8 +122,7 @@ static int scan_raw(struct rf_read *read, struct scan *scan, struct rf_raster *r
 
 static int scan_plain(struct rf_read *read, struct scan *scan, struct rf_raster *raster)
 {
-    const size_t count =
-        (size_t)raster->width * (size_t)raster->height * (size_t)raster->channels;
+    const size_t count = (size_t)raster->width * (size_t)raster->height * (size_t)raster->channels;
     int status;
 
     /* A sample takes a digit and a blank; only the last needs no blank. */
@@ -171,8 +163,7 @@ int rf_read_pnm(struct rf_read *read, struct rf_bytes file)
 /* Rows in the byte order of the file: R, G, B, or 16 bits with the high byte first. */
 static void pack_row(uint8_t *to, const uint8_t *from, const struct rf_rows *rows)
 {
-    const bool swap =
-        rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8;
+    const bool swap = rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8;
     const int step = rf_format_bytes(rows->format);
 
     for (int32_t x = 0; x < rows->width; x++) {
@@ -190,8 +181,7 @@ static void pack_row(uint8_t *to, const uint8_t *from, const struct rf_rows *row
     }
 }
 
-int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows,
-                 struct refocus_reason *reason)
+int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows, struct refocus_reason *reason)
 {
     const bool grey = rows->format == REFOCUS_FORMAT_NONE;
     const size_t row_bytes = (size_t)rows->width * (grey ? 2 : 3);
@@ -202,8 +192,8 @@ int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows,
     if (!row) {
         return rf_fail_memory(reason);
     }
-    n = snprintf(header, sizeof header, "P%d\n%d %d\n%d\n", grey ? 5 : 6,
-                 (int)rows->width, (int)rows->height, grey ? 65535 : 255);
+    n = snprintf(header, sizeof header, "P%d\n%d %d\n%d\n", grey ? 5 : 6, (int)rows->width,
+                 (int)rows->height, grey ? 65535 : 255);
     rf_store_write(store, header, (size_t)n);
     for (int32_t y = 0; y < rows->height; y++) {
         pack_row(row, rows->top + y * rows->stride, rows);

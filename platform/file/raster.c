@@ -16,8 +16,7 @@ static void fill_thresholds(uint8_t thresholds[64])
             int value = 0;
 
             for (int bit = 0; bit < 3; bit++) {
-                value |= ((x ^ y) >> bit & 1) << (5 - 2 * bit) |
-                         (y >> bit & 1) << (4 - 2 * bit);
+                value |= ((x ^ y) >> bit & 1) << (5 - 2 * bit) | (y >> bit & 1) << (4 - 2 * bit);
             }
             thresholds[8 * y + x] = (uint8_t)value;
         }
@@ -41,8 +40,8 @@ static void dither(const struct rf_raster *from, struct rf_raster *to)
             const uint32_t threshold = 2u * thresholds[8 * (y & 7) + (x & 7)] + 1;
 
             for (size_t c = 0; c < 3; c++) {
-                const uint32_t v = rf_raster_sample(from, (y * width + x) * channels +
-                                                              (channels == 3 ? c : 0));
+                const uint32_t v =
+                    rf_raster_sample(from, (y * width + x) * channels + (channels == 3 ? c : 0));
                 to->pixels[3 * (y * width + x) + c] =
                     (uint8_t)((v * (255u * 128) + threshold * max) / (max * 128));
             }

@@ -73,8 +73,8 @@ int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char 
         status = rf_png_decode(read, part, raster, NULL, NULL);
         break;
     default:
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged: its %s is neither PNG nor JPEG", what);
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is neither PNG nor JPEG",
+                       what);
     }
     if (status != REFOCUS_OK) {
         struct refocus_reason inner = *read->reason;
@@ -118,15 +118,13 @@ static int read_container(struct rf_read *read, struct rf_bytes file)
 
 static void set_limits(struct rf_read *read, const struct refocus_read_limits *limits)
 {
-    read->limits.max_pixels =
-        limits && limits->max_pixels ? limits->max_pixels : 1u << 28;
+    read->limits.max_pixels = limits && limits->max_pixels ? limits->max_pixels : 1u << 28;
     read->limits.max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
 }
 
 int rf_read_begin(struct rf_read *read, struct rf_bytes file,
-                  const struct refocus_read_limits *limits, bool picture_always,
-                  bool second, struct refocus_photo_info *info,
-                  struct refocus_reason *reason)
+                  const struct refocus_read_limits *limits, bool picture_always, bool second,
+                  struct refocus_photo_info *info, struct refocus_reason *reason)
 {
     int status;
 
@@ -144,8 +142,7 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
         status = read_container(read, file);
     }
     if (status == REFOCUS_OK) {
-        const struct rf_raster *const stored =
-            read->image.pixels ? &read->image : &read->samples;
+        const struct rf_raster *const stored = read->image.pixels ? &read->image : &read->samples;
         /* HEIC says its own size: its picture is upright already. */
         if (info->stored_width == 0) {
             info->stored_width = stored->width;
@@ -153,8 +150,7 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
         }
         if (read->orientation != 1) {
             info->orientation = read->orientation;
-            rf_note(info, "EXIF: orientation %d is applied to photo and depth",
-                    read->orientation);
+            rf_note(info, "EXIF: orientation %d is applied to photo and depth", read->orientation);
         }
         if (info->focus_x >= 0.0) {
             rf_orient_point(&info->focus_x, &info->focus_y, read->orientation);
@@ -173,9 +169,9 @@ static void hand_over(struct rf_read *read, struct rf_photo *photo)
     photo->exif = read->exif.data;
     photo->icc = read->icc.data;
     if (read->image.pixels) {
-        shown->image = refocus_image_packed(REFOCUS_FORMAT_RGB8, read->image.pixels,
-                                            read->image.width, read->image.height,
-                                            (ptrdiff_t)rf_raster_stride(&read->image));
+        shown->image =
+            refocus_image_packed(REFOCUS_FORMAT_RGB8, read->image.pixels, read->image.width,
+                                 read->image.height, (ptrdiff_t)rf_raster_stride(&read->image));
     }
     if (read->samples.pixels) {
         shown->depth = read->depth;
@@ -195,8 +191,7 @@ static void hand_over(struct rf_read *read, struct rf_photo *photo)
 int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
 {
     if (status == REFOCUS_OK && read->info->stored_bits == 0) {
-        const uint32_t max =
-            read->image.pixels ? read->image.max_value : read->samples.max_value;
+        const uint32_t max = read->image.pixels ? read->image.max_value : read->samples.max_value;
 
         while (max >> read->info->stored_bits) {
             read->info->stored_bits++;
@@ -246,8 +241,8 @@ static int read_memory(struct refocus_photo **photo, const void *bytes, size_t s
     if (!made) {
         return rf_fail_memory(reason);
     }
-    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true,
-                           second, &made->shown.info, reason);
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true, second,
+                           &made->shown.info, reason);
     status = rf_read_finish(&read, status, &made);
     *photo = made ? &made->shown : NULL;
     return status;
@@ -277,16 +272,15 @@ static int read_path(struct refocus_photo **photo, const char *path,
     return status;
 }
 
-int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
-                              size_t size, const struct refocus_read_limits *limits,
+int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes, size_t size,
+                              const struct refocus_read_limits *limits,
                               struct refocus_reason *reason)
 {
     return read_memory(photo, bytes, size, limits, false, reason);
 }
 
 int refocus_photo_read(struct refocus_photo **photo, const char *path,
-                       const struct refocus_read_limits *limits,
-                       struct refocus_reason *reason)
+                       const struct refocus_read_limits *limits, struct refocus_reason *reason)
 {
     return read_path(photo, path, limits, false, reason);
 }

@@ -7,9 +7,8 @@
 /* Read the container, or the second picture of a stereo file. The info must be zero and
  * stay where it is. */
 int rf_read_begin(struct rf_read *read, struct rf_bytes file,
-                  const struct refocus_read_limits *limits, bool picture_always,
-                  bool second, struct refocus_photo_info *info,
-                  struct refocus_reason *reason);
+                  const struct refocus_read_limits *limits, bool picture_always, bool second,
+                  struct refocus_photo_info *info, struct refocus_reason *reason);
 /* Turn upright and hand over, or, when status is an error, free; returns the status. */
 int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo);
 

@@ -126,8 +126,7 @@ static void sync_folder(char *path)
     }
 }
 
-int rf_store_open(struct rf_store *store, const char *path,
-                  struct refocus_reason *reason)
+int rf_store_open(struct rf_store *store, const char *path, struct refocus_reason *reason)
 {
     size_t folder;
     int file, error;
@@ -214,8 +213,9 @@ int refocus_file_write(const char *path, const void *bytes, size_t size,
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
     if (!path || !bytes) {
-        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or nothing to "
-                                                     "write");
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
+                       "there is no name or nothing to "
+                       "write");
     }
     status = rf_store_open(&store, path, reason);
     if (status != REFOCUS_OK) {
@@ -225,8 +225,7 @@ int refocus_file_write(const char *path, const void *bytes, size_t size,
     return rf_store_close(&store, REFOCUS_OK, reason);
 }
 
-int refocus_file_move(const char *temporary, const char *path,
-                      struct refocus_reason *reason)
+int refocus_file_move(const char *temporary, const char *path, struct refocus_reason *reason)
 {
     struct refocus_reason unused;
     char *place;

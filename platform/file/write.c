@@ -4,14 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum ending {
-    ENDING_UNKNOWN,
-    ENDING_JPEG,
-    ENDING_PNG,
-    ENDING_PPM,
-    ENDING_PGM,
-    ENDING_PFM
-};
+enum ending { ENDING_UNKNOWN, ENDING_JPEG, ENDING_PNG, ENDING_PPM, ENDING_PGM, ENDING_PFM };
 
 static enum ending find_ending(const char *path)
 {
@@ -51,8 +44,7 @@ static int check_encoder(enum ending ending, struct refocus_reason *reason)
 }
 
 static int write_rows(const char *path, enum ending ending, const struct rf_rows *rows,
-                      const struct refocus_write_options *options,
-                      struct refocus_reason *reason)
+                      const struct refocus_write_options *options, struct refocus_reason *reason)
 {
     struct rf_store store;
     int status = check_encoder(ending, reason);
@@ -83,14 +75,12 @@ static int write_rows(const char *path, enum ending ending, const struct rf_rows
 
 static bool fits(int64_t width, int64_t height, ptrdiff_t stride, int64_t pixel_bytes)
 {
-    return width >= 1 && width <= REFOCUS_MAX_SIDE && height >= 1 &&
-           height <= REFOCUS_MAX_SIDE &&
+    return width >= 1 && width <= REFOCUS_MAX_SIDE && height >= 1 && height <= REFOCUS_MAX_SIDE &&
            rf_good_rows(stride, width * pixel_bytes, height);
 }
 
 int refocus_image_write(const char *path, const struct refocus_image *image,
-                        const struct refocus_write_options *options,
-                        struct refocus_reason *reason)
+                        const struct refocus_write_options *options, struct refocus_reason *reason)
 {
     struct refocus_reason unused;
     struct rf_rows rows;
@@ -99,18 +89,16 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
     if (!path || !image || !image->plane[0] || rf_format_bytes(image->format) == 0 ||
-        !fits(image->width, image->height, image->stride[0],
-              rf_format_bytes(image->format)) ||
+        !fits(image->width, image->height, image->stride[0], rf_format_bytes(image->format)) ||
         (options && (options->quality < 0 || options->quality > 100))) {
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
                        "the picture or the quality is out of its range");
     }
     ending = find_ending(path);
     if (ending != ENDING_JPEG && ending != ENDING_PNG && ending != ENDING_PPM) {
-        return rf_fail(
-            reason, REFOCUS_ERR_UNSUPPORTED,
-            "a picture is written as .jpg, .jpeg, .png or .ppm; end the name "
-            "in one of them");
+        return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                       "a picture is written as .jpg, .jpeg, .png or .ppm; end the name "
+                       "in one of them");
     }
     rows.top = image->plane[0];
     rows.stride = image->stride[0];
@@ -120,8 +108,8 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     return write_rows(path, ending, &rows, options, reason);
 }
 
-int refocus_gray16_write(const char *path, const uint16_t *samples, int width,
-                         int height, ptrdiff_t stride, struct refocus_reason *reason)
+int refocus_gray16_write(const char *path, const uint16_t *samples, int width, int height,
+                         ptrdiff_t stride, struct refocus_reason *reason)
 {
     struct refocus_reason unused;
     struct rf_rows rows;
@@ -130,15 +118,13 @@ int refocus_gray16_write(const char *path, const uint16_t *samples, int width,
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
     if (!path || !samples || stride % 2 != 0 || !fits(width, height, stride, 2)) {
-        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
-                       "the samples are out of their range");
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "the samples are out of their range");
     }
     ending = find_ending(path);
     if (ending != ENDING_PNG && ending != ENDING_PGM && ending != ENDING_PFM) {
-        return rf_fail(
-            reason, REFOCUS_ERR_UNSUPPORTED,
-            "a depth map is written as .png, .pgm or .pfm; end the name in one "
-            "of them");
+        return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                       "a depth map is written as .png, .pgm or .pfm; end the name in one "
+                       "of them");
     }
     rows.top = (const uint8_t *)samples;
     rows.stride = stride;

@@ -103,8 +103,7 @@ static void begin_value(struct parsing *parsing, int key)
     parsing->room = 0;
 }
 
-static void XMLCALL on_start(void *user, const XML_Char *name,
-                             const XML_Char **attributes)
+static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **attributes)
 {
     struct parsing *const parsing = user;
     int key;
@@ -122,8 +121,7 @@ static void XMLCALL on_start(void *user, const XML_Char *name,
     }
     parsing->key = RF_XMP_KEYS;
     key = find_key(name);
-    if (key != RF_XMP_KEYS && !parsing->xmp->value[key] &&
-        parsing->status == REFOCUS_OK) {
+    if (key != RF_XMP_KEYS && !parsing->xmp->value[key] && parsing->status == REFOCUS_OK) {
         begin_value(parsing, key);
         append(parsing, "", 0);
     }
@@ -143,8 +141,7 @@ static void XMLCALL on_text(void *user, const XML_Char *text, int size)
 {
     struct parsing *const parsing = user;
 
-    if (parsing->key != RF_XMP_KEYS && parsing->depth == 0 &&
-        parsing->status == REFOCUS_OK) {
+    if (parsing->key != RF_XMP_KEYS && parsing->depth == 0 && parsing->status == REFOCUS_OK) {
         append(parsing, text, (size_t)size);
     }
 }
@@ -176,8 +173,8 @@ static int run(struct parsing *parsing, struct rf_bytes packet)
         /* In steps: expat takes an int, and doubles its buffer up to what one step
          * needs. */
         const size_t step = packet.size < INT_MAX / 2 ? packet.size : INT_MAX / 2;
-        if (XML_Parse(parsing->parser, (const char *)packet.data, (int)step,
-                      step == packet.size) == XML_STATUS_ERROR) {
+        if (XML_Parse(parsing->parser, (const char *)packet.data, (int)step, step == packet.size) ==
+            XML_STATUS_ERROR) {
             break;
         }
         packet.data += step;

@@ -44,11 +44,10 @@ static bool next_chunk(struct rf_jpeg_walk *walk, const char *guid, struct chunk
 
 static int fail_chunks(const struct rf_read *read, const char *why)
 {
-    return rf_fail(
-        read->reason, REFOCUS_ERR_FORMAT,
-        "damaged: its extended XMP, which holds the depth, %s; copy the file "
-        "again from the phone",
-        why);
+    return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                   "damaged: its extended XMP, which holds the depth, %s; copy the file "
+                   "again from the phone",
+                   why);
 }
 
 struct place {
@@ -83,8 +82,8 @@ static int check_places(const struct rf_read *read, struct place *places, size_t
 }
 
 /* Number of chunks and the packet's length, in which all chunks must agree. */
-static int survey(struct rf_read *read, struct rf_bytes jpeg, const char *guid,
-                  size_t *count, uint64_t *length)
+static int survey(struct rf_read *read, struct rf_bytes jpeg, const char *guid, size_t *count,
+                  uint64_t *length)
 {
     struct rf_jpeg_walk walk;
     struct chunk chunk;
@@ -103,8 +102,7 @@ static int survey(struct rf_read *read, struct rf_bytes jpeg, const char *guid,
         }
     }
     if (strangers > 0) {
-        rf_note(read->info, "XMP: %d extended parts of another GUID passed over",
-                strangers);
+        rf_note(read->info, "XMP: %d extended parts of another GUID passed over", strangers);
     }
     if (*count == 0) {
         return fail_chunks(read, "is missing");

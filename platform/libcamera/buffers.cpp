@@ -17,16 +17,11 @@ uint32_t format_of(const PixelFormat &format)
         PixelFormat theirs;
         uint32_t ours;
     } known[] = {
-        {formats::NV12, REFOCUS_FRAME_NV12},
-        {formats::NV21, REFOCUS_FRAME_NV21},
-        {formats::YUV420, REFOCUS_FRAME_YUV420},
-        {formats::YUYV, REFOCUS_FRAME_YUYV},
-        {formats::UYVY, REFOCUS_FRAME_UYVY},
-        {formats::BGR888, REFOCUS_FRAME_RGB24},
-        {formats::RGB888, REFOCUS_FRAME_BGR24},
-        {formats::XBGR8888, REFOCUS_FRAME_RGBX},
-        {formats::XRGB8888, REFOCUS_FRAME_BGRX},
-        {formats::MJPEG, REFOCUS_FRAME_MJPEG},
+        {formats::NV12, REFOCUS_FRAME_NV12},     {formats::NV21, REFOCUS_FRAME_NV21},
+        {formats::YUV420, REFOCUS_FRAME_YUV420}, {formats::YUYV, REFOCUS_FRAME_YUYV},
+        {formats::UYVY, REFOCUS_FRAME_UYVY},     {formats::BGR888, REFOCUS_FRAME_RGB24},
+        {formats::RGB888, REFOCUS_FRAME_BGR24},  {formats::XBGR8888, REFOCUS_FRAME_RGBX},
+        {formats::XRGB8888, REFOCUS_FRAME_BGRX}, {formats::MJPEG, REFOCUS_FRAME_MJPEG},
         {formats::R8, REFOCUS_FRAME_GREY},
     };
 
@@ -67,8 +62,7 @@ void Mapping::sync(bool begin) const
 {
     for (const auto &m : memory_) {
         struct dma_buf_sync sync = {};
-        sync.flags =
-            DMA_BUF_SYNC_READ | (begin ? DMA_BUF_SYNC_START : DMA_BUF_SYNC_END);
+        sync.flags = DMA_BUF_SYNC_READ | (begin ? DMA_BUF_SYNC_START : DMA_BUF_SYNC_END);
         while (ioctl(m.first, DMA_BUF_IOCTL_SYNC, &sync) != 0 && errno == EINTR)
             continue;
     }
@@ -88,11 +82,9 @@ bool Mapping::lay_out(const FrameBuffer &buffer, int64_t first_stride,
         const uint64_t needed =
             planes.size() == 1
                 ? rf_frame_bytes(frame->format, stride, frame->width, frame->height)
-                : (uint64_t)stride *
-                      (uint64_t)rf_plane_rows(frame->format, (int)i, frame->height);
+                : (uint64_t)stride * (uint64_t)rf_plane_rows(frame->format, (int)i, frame->height);
 
-        if (frame->format != REFOCUS_FRAME_MJPEG &&
-            (needed == 0 || needed > plane.length))
+        if (frame->format != REFOCUS_FRAME_MJPEG && (needed == 0 || needed > plane.length))
             return false;
         frame->plane[i] = memory_.at(plane.fd.get()).first + plane.offset;
         frame->stride[i] = (ptrdiff_t)stride;

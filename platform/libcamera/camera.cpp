@@ -18,8 +18,7 @@ template <typename Work> int guarded(struct refocus_reason *reason, Work work) n
     } catch (const std::bad_alloc &) {
         return rf_capture_fail_memory(reason);
     } catch (const std::exception &error) {
-        return rf_capture_fail(reason, REFOCUS_ERR_IO, "libcamera: %.180s",
-                               error.what());
+        return rf_capture_fail(reason, REFOCUS_ERR_IO, "libcamera: %.180s", error.what());
     } catch (...) {
         return rf_capture_fail(reason, REFOCUS_ERR_IO, "libcamera failed");
     }
@@ -30,8 +29,7 @@ Capture *of(struct refocus_source *source)
     return static_cast<Capture *>(source->state);
 }
 
-int open_camera(struct refocus_source *source, const char *rest,
-                struct refocus_reason *reason)
+int open_camera(struct refocus_source *source, const char *rest, struct refocus_reason *reason)
 {
     return guarded(reason, [&] {
         auto capture = std::make_unique<Capture>(rest);
@@ -55,11 +53,10 @@ int start(struct refocus_source *source, struct refocus_source_mode *mode,
     return guarded(reason, [&] { return of(source)->start(source, mode, reason); });
 }
 
-int wait_frame(struct refocus_source *source, int64_t deadline_ns,
-               struct refocus_frame **frame, struct refocus_reason *reason)
+int wait_frame(struct refocus_source *source, int64_t deadline_ns, struct refocus_frame **frame,
+               struct refocus_reason *reason)
 {
-    return guarded(
-        reason, [&] { return of(source)->wait(source, deadline_ns, frame, reason); });
+    return guarded(reason, [&] { return of(source)->wait(source, deadline_ns, frame, reason); });
 }
 
 void release(struct refocus_source *source, struct refocus_frame *frame)
@@ -92,8 +89,7 @@ int reopen(struct refocus_source *source, struct refocus_reason *reason)
 int set_control(struct refocus_source *source, const char *name, double value,
                 struct refocus_reason *reason)
 {
-    return guarded(reason,
-                   [&] { return of(source)->set_control(name, value, reason); });
+    return guarded(reason, [&] { return of(source)->set_control(name, value, reason); });
 }
 
 void close_camera(struct refocus_source *source)

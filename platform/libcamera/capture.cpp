@@ -12,8 +12,7 @@ using namespace libcamera;
 namespace refocus_libcamera
 {
 
-Capture::Capture(const char *name)
-    : name_(name), ready_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK))
+Capture::Capture(const char *name) : name_(name), ready_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK))
 {
 }
 
@@ -88,9 +87,8 @@ int Capture::get_mode(int index, struct refocus_source_mode *mode)
 int Capture::start(struct refocus_source *source, struct refocus_source_mode *mode,
                    struct refocus_reason *reason)
 {
-    int status = camera_
-                     ? configure(source->config, reason)
-                     : rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone");
+    int status = camera_ ? configure(source->config, reason)
+                         : rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone");
 
     if (status == REFOCUS_OK)
         status = allocate(reason);
@@ -133,8 +131,8 @@ void Capture::stop()
     allocator_.reset();
 }
 
-int Capture::wait(struct refocus_source *source, int64_t deadline_ns,
-                  struct refocus_frame **result, struct refocus_reason *reason)
+int Capture::wait(struct refocus_source *source, int64_t deadline_ns, struct refocus_frame **result,
+                  struct refocus_reason *reason)
 {
     for (;;) {
         uint64_t ignored;
@@ -147,8 +145,7 @@ int Capture::wait(struct refocus_source *source, int64_t deadline_ns,
                 request = done_.front();
                 done_.pop_front();
             } else if (gone_) {
-                return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                                       "the camera is gone; plug it in");
+                return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone; plug it in");
             }
         }
         if (request) {
@@ -194,17 +191,15 @@ int Capture::set_control(const char *name, double value, struct refocus_reason *
             wanted_[control.first->id()] = ControlValue((float)value);
             break;
         default:
-            return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                                   "'%.60s' is not one number", name);
+            return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED, "'%.60s' is not one number",
+                                   name);
         }
         return REFOCUS_OK;
     }
-    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "it has no control '%.60s'",
-                           name);
+    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "it has no control '%.60s'", name);
 }
 
-int Capture::configure(const struct refocus_source_config &wanted,
-                       struct refocus_reason *reason)
+int Capture::configure(const struct refocus_source_config &wanted, struct refocus_reason *reason)
 {
     config_ = camera_->generateConfiguration({StreamRole::Viewfinder});
     if (!config_ || config_->size() == 0)
@@ -223,11 +218,10 @@ int Capture::configure(const struct refocus_source_config &wanted,
     const uint32_t format = format_of(stream.pixelFormat);
     if (format == REFOCUS_FRAME_ANY ||
         (wanted.format != REFOCUS_FRAME_ANY && format != wanted.format))
-        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "the camera gives %.30s where %s was asked for",
-                               stream.pixelFormat.toString().c_str(),
-                               wanted.format ? refocus_frame_format_name(wanted.format)
-                                             : "a known format");
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_UNSUPPORTED, "the camera gives %.30s where %s was asked for",
+            stream.pixelFormat.toString().c_str(),
+            wanted.format ? refocus_frame_format_name(wanted.format) : "a known format");
     const int error = camera_->configure(config_.get());
     if (error != 0)
         return rf_capture_fail_errno(reason, -error, "setting the camera's format");

@@ -30,14 +30,13 @@ class Capture
     int start(struct refocus_source *source, struct refocus_source_mode *mode,
               struct refocus_reason *reason);
     void stop();
-    int wait(struct refocus_source *source, int64_t deadline_ns,
-             struct refocus_frame **result, struct refocus_reason *reason);
+    int wait(struct refocus_source *source, int64_t deadline_ns, struct refocus_frame **result,
+             struct refocus_reason *reason);
     void release(struct refocus_source *source, const struct refocus_frame *frame);
     int set_control(const char *name, double value, struct refocus_reason *reason);
 
   private:
-    int configure(const struct refocus_source_config &wanted,
-                  struct refocus_reason *reason);
+    int configure(const struct refocus_source_config &wanted, struct refocus_reason *reason);
     int allocate(struct refocus_reason *reason);
     bool deliver(libcamera::Request *request, struct refocus_frame **result);
     void requeue(struct refocus_source *source, libcamera::Request *request);

@@ -57,8 +57,8 @@ std::shared_ptr<Camera> find_camera(CameraManager &manager, const std::string &n
     std::shared_ptr<Camera> camera = manager.get(name);
     const auto cameras = manager.cameras();
 
-    if (camera || name.empty() ||
-        name.find_first_not_of("0123456789") != std::string::npos || name.size() > 4)
+    if (camera || name.empty() || name.find_first_not_of("0123456789") != std::string::npos ||
+        name.size() > 4)
         return camera;
     const size_t n = (size_t)std::stoul(name);
     return n < cameras.size() ? cameras[n] : nullptr;

@@ -12,9 +12,8 @@
  * in what is const, a Span, an optional or a string_view. What a release cannot do
  * without is chosen by this number and nowhere else; tests/libcamera/releases.sh
  * compiles against each. */
-#define RF_LIBCAMERA_VERSION                                                           \
-    (LIBCAMERA_VERSION_MAJOR * 10000 + LIBCAMERA_VERSION_MINOR * 100 +                 \
-     LIBCAMERA_VERSION_PATCH)
+#define RF_LIBCAMERA_VERSION                                                                       \
+    (LIBCAMERA_VERSION_MAJOR * 10000 + LIBCAMERA_VERSION_MINOR * 100 + LIBCAMERA_VERSION_PATCH)
 #if RF_LIBCAMERA_VERSION < 3
 #error "libcamera 0.0.3 or newer is needed"
 #endif

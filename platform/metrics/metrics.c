@@ -6,8 +6,8 @@
 
 enum { WINDOW = 11, HALF = WINDOW / 2 };
 
-double quality_rmse(const uint8_t *a, const uint8_t *b, int width, int height,
-                    int border, const uint8_t *mask, long *pixels)
+double quality_rmse(const uint8_t *a, const uint8_t *b, int width, int height, int border,
+                    const uint8_t *mask, long *pixels)
 {
     uint64_t sum = 0;
     long count = 0;
@@ -51,8 +51,8 @@ static void window_weights(double weight[WINDOW])
 }
 
 /* The five moments of one row, filtered along x: a, b, a a, b b, a b. */
-static void filter_row(const uint8_t *a, const uint8_t *b, int width,
-                       const double weight[WINDOW], double *out)
+static void filter_row(const uint8_t *a, const uint8_t *b, int width, const double weight[WINDOW],
+                       double *out)
 {
     for (int x = HALF; x < width - HALF; x++) {
         double m[5] = {0};
@@ -77,8 +77,8 @@ static double ssim_of(const double m[5])
     const double var_a = m[2] - m[0] * m[0], var_b = m[3] - m[1] * m[1];
     const double covariance = m[4] - m[0] * m[1];
 
-    return (2 * m[0] * m[1] + c1) * (2 * covariance + c2)
-           / ((m[0] * m[0] + m[1] * m[1] + c1) * (var_a + var_b + c2));
+    return (2 * m[0] * m[1] + c1) * (2 * covariance + c2) /
+           ((m[0] * m[0] + m[1] * m[1] + c1) * (var_a + var_b + c2));
 }
 
 int quality_ssim(const uint8_t *a, const uint8_t *b, int width, int height, int border,
@@ -96,16 +96,15 @@ int quality_ssim(const uint8_t *a, const uint8_t *b, int width, int height, int 
     for (int y = 0; y < height; y++) {
         const int centre = y - HALF;
 
-        filter_row(a + 3 * (size_t)y * (size_t)width, b + 3 * (size_t)y * (size_t)width,
-                   width, weight, rows + (size_t)(y % WINDOW) * row);
+        filter_row(a + 3 * (size_t)y * (size_t)width, b + 3 * (size_t)y * (size_t)width, width,
+                   weight, rows + (size_t)(y % WINDOW) * row);
         if (centre < margin || centre >= height - margin)
             continue;
         for (int x = margin; x < width - margin; x++) {
             double m[5] = {0};
 
             for (int i = 0; i < WINDOW; i++) {
-                const double *from = rows + (size_t)((centre + i - HALF) % WINDOW) * row
-                                     + 5 * x;
+                const double *from = rows + (size_t)((centre + i - HALF) % WINDOW) * row + 5 * x;
                 for (int k = 0; k < 5; k++)
                     m[k] += weight[i] * from[k];
             }
@@ -137,8 +136,8 @@ static void add_disc(int32_t *cover, int width, int height, int x, int y, double
 }
 
 /* Radius of the edge band about (x, y), or -1 where no jump is. */
-static double edge_radius(const uint16_t *disparity, int width, int height, int x,
-                          int y, double focus, double blur)
+static double edge_radius(const uint16_t *disparity, int width, int height, int x, int y,
+                          double focus, double blur)
 {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     const double here = disparity[(size_t)y * (size_t)width + (size_t)x] / 65535.0;
@@ -156,8 +155,8 @@ static double edge_radius(const uint16_t *disparity, int width, int height, int 
     return radius;
 }
 
-int quality_edge_mask(const uint16_t *disparity, int width, int height, double focus,
-                      double blur, uint8_t *mask)
+int quality_edge_mask(const uint16_t *disparity, int width, int height, double focus, double blur,
+                      uint8_t *mask)
 {
     int32_t *cover = calloc(((size_t)width + 1) * (size_t)height, sizeof *cover);
 
@@ -165,8 +164,7 @@ int quality_edge_mask(const uint16_t *disparity, int width, int height, double f
         return -1;
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
-            const double radius =
-                edge_radius(disparity, width, height, x, y, focus, blur);
+            const double radius = edge_radius(disparity, width, height, x, y, focus, blur);
             if (radius >= 0)
                 add_disc(cover, width, height, x, y, radius);
         }
@@ -182,17 +180,15 @@ int quality_edge_mask(const uint16_t *disparity, int width, int height, double f
     return 0;
 }
 
-int quality_score(const uint8_t *picture, const uint8_t *reference, int width,
-                  int height, int border, const uint8_t *mask,
-                  struct quality_scores *scores)
+int quality_score(const uint8_t *picture, const uint8_t *reference, int width, int height,
+                  int border, const uint8_t *mask, struct quality_scores *scores)
 {
-    scores->rmse = quality_rmse(picture, reference, width, height, border, NULL,
-                                &scores->pixels);
+    scores->rmse = quality_rmse(picture, reference, width, height, border, NULL, &scores->pixels);
     scores->psnr = quality_psnr(scores->rmse);
     scores->edge_psnr = NAN;
     scores->edge_pixels = 0;
     if (mask)
-        scores->edge_psnr = quality_psnr(quality_rmse(
-            picture, reference, width, height, border, mask, &scores->edge_pixels));
+        scores->edge_psnr = quality_psnr(
+            quality_rmse(picture, reference, width, height, border, mask, &scores->edge_pixels));
     return quality_ssim(picture, reference, width, height, border, &scores->ssim);
 }

@@ -16,8 +16,8 @@ struct quality_scores {
 
 /* Root mean square difference over R, G and B of the pixels at least @border from
  * each side and, when @mask is given, not 0 there. NAN when no pixel counts. */
-double quality_rmse(const uint8_t *a, const uint8_t *b, int width, int height,
-                    int border, const uint8_t *mask, long *pixels);
+double quality_rmse(const uint8_t *a, const uint8_t *b, int width, int height, int border,
+                    const uint8_t *mask, long *pixels);
 
 /* 20 log10(255 / rmse); INFINITY for equal pictures. */
 double quality_psnr(double rmse);
@@ -33,12 +33,11 @@ int quality_ssim(const uint8_t *a, const uint8_t *b, int width, int height, int 
  * disparities differ by 2 pixels of blur or more: K |d1 - d2| >= 2. The pixels within
  * max(K |d1 - df|, K |d2 - df|) of either of the two are the edge band: where the
  * blur of one surface can meet the other. Returns 0, or -1 without memory. */
-int quality_edge_mask(const uint16_t *disparity, int width, int height, double focus,
-                      double blur, uint8_t *mask);
+int quality_edge_mask(const uint16_t *disparity, int width, int height, double focus, double blur,
+                      uint8_t *mask);
 
 /* All of them; @mask may be NULL. Returns 0, or -1 without memory. */
-int quality_score(const uint8_t *picture, const uint8_t *reference, int width,
-                  int height, int border, const uint8_t *mask,
-                  struct quality_scores *scores);
+int quality_score(const uint8_t *picture, const uint8_t *reference, int width, int height,
+                  int border, const uint8_t *mask, struct quality_scores *scores);
 
 #endif

@@ -14,7 +14,8 @@ struct refocus_estimator {
     refocus_network network;
 };
 
-namespace {
+namespace
+{
 
 /* Mean and deviation of ImageNet, as MiDaS and its followers want them. */
 const float mean_r = 0.485f * 255, mean_g = 0.456f * 255, mean_b = 0.406f * 255;
@@ -30,8 +31,7 @@ const struct {
 };
 
 /* The last two sides of the output are rows and columns. */
-int take(const cv::Mat &output, bool inverse, refocus_estimate *estimate,
-         refocus_cv_reason *reason)
+int take(const cv::Mat &output, bool inverse, refocus_estimate *estimate, refocus_cv_reason *reason)
 {
     const int n = output.dims;
     const int height = n >= 2 ? output.size[n - 2] : 0, width = n >= 2 ? output.size[n - 1] : 0;
@@ -110,20 +110,22 @@ int refocus_cv_estimator_create(struct refocus_estimator **result, const char *m
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no file, or no such input");
     if (access(model, R_OK) != 0)
         return refocus_cv::fail(reason, REFOCUS_ERR_IO, "it cannot be read; give an ONNX file");
-    return fail_format(refocus_cv::guarded(reason, REFOCUS_ERR_FORMAT, [&] {
-        auto estimator = std::make_unique<refocus_estimator>();
+    return fail_format(refocus_cv::guarded(reason, REFOCUS_ERR_FORMAT,
+                                           [&] {
+                                               auto estimator =
+                                                   std::make_unique<refocus_estimator>();
 
-        estimator->network = *network;
-        estimator->net = cv::dnn::readNetFromONNX(model);
-        if (estimator->net.empty())
-            return (int)REFOCUS_ERR_FORMAT;
-        *result = estimator.release();
-        return (int)REFOCUS_OK;
-    }), reason);
+                                               estimator->network = *network;
+                                               estimator->net = cv::dnn::readNetFromONNX(model);
+                                               if (estimator->net.empty())
+                                                   return (int)REFOCUS_ERR_FORMAT;
+                                               *result = estimator.release();
+                                               return (int)REFOCUS_OK;
+                                           }),
+                       reason);
 }
 
-int refocus_cv_estimator_run(struct refocus_estimator *estimator,
-                             const struct refocus_image *photo,
+int refocus_cv_estimator_run(struct refocus_estimator *estimator, const struct refocus_image *photo,
                              struct refocus_estimate *estimate, struct refocus_cv_reason *reason)
 {
     if (!estimate)
@@ -131,15 +133,19 @@ int refocus_cv_estimator_run(struct refocus_estimator *estimator,
     *estimate = {nullptr, 0, 0};
     if (!estimator || !refocus_cv::good_photo(photo))
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no picture, or no network");
-    return fail_format(refocus_cv::guarded(reason, REFOCUS_ERR_FORMAT, [&] {
-        const refocus_network &network = estimator->network;
-        const cv::Scalar mean(network.mean[0], network.mean[1], network.mean[2]);
+    return fail_format(
+        refocus_cv::guarded(
+            reason, REFOCUS_ERR_FORMAT,
+            [&] {
+                const refocus_network &network = estimator->network;
+                const cv::Scalar mean(network.mean[0], network.mean[1], network.mean[2]);
 
-        estimator->net.setInput(
-            cv::dnn::blobFromImage(refocus_cv::view(photo), network.scale,
-                                   cv::Size(network.width, network.height), mean, false));
-        return take(estimator->net.forward(), network.inverse != 0, estimate, reason);
-    }), reason);
+                estimator->net.setInput(
+                    cv::dnn::blobFromImage(refocus_cv::view(photo), network.scale,
+                                           cv::Size(network.width, network.height), mean, false));
+                return take(estimator->net.forward(), network.inverse != 0, estimate, reason);
+            }),
+        reason);
 }
 
 void refocus_cv_estimator_destroy(struct refocus_estimator **estimator)

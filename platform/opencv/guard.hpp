@@ -11,7 +11,8 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <refocus/platform/opencv.h>
 
-namespace refocus_cv {
+namespace refocus_cv
+{
 
 inline int fail(refocus_cv_reason *reason, int status, const char *words)
 {
@@ -25,10 +26,16 @@ inline int fail(refocus_cv_reason *reason, int status, const char *words)
 }
 
 /* OpenCV logs what it throws; the log level is put back. */
-class Quiet {
+class Quiet
+{
   public:
-    Quiet() : level(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-    ~Quiet() { cv::utils::logging::setLogLevel(level); }
+    Quiet() : level(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT))
+    {
+    }
+    ~Quiet()
+    {
+        cv::utils::logging::setLogLevel(level);
+    }
     Quiet(const Quiet &) = delete;
     Quiet &operator=(const Quiet &) = delete;
 
@@ -65,16 +72,15 @@ inline bool good_rows(ptrdiff_t stride, ptrdiff_t bytes, int rows)
 
 inline bool good_photo(const refocus_image *image)
 {
-    return image && image->format == REFOCUS_FORMAT_RGB8 && image->plane[0] &&
-           image->width >= 1 && image->height >= 1 && image->width <= REFOCUS_MAX_SIDE &&
+    return image && image->format == REFOCUS_FORMAT_RGB8 && image->plane[0] && image->width >= 1 &&
+           image->height >= 1 && image->width <= REFOCUS_MAX_SIDE &&
            image->height <= REFOCUS_MAX_SIDE &&
            good_rows(image->stride[0], 3 * (ptrdiff_t)image->width, image->height);
 }
 
 inline cv::Mat view(const refocus_image *image)
 {
-    return cv::Mat(image->height, image->width, CV_8UC3, image->plane[0],
-                   (size_t)image->stride[0]);
+    return cv::Mat(image->height, image->width, CV_8UC3, image->plane[0], (size_t)image->stride[0]);
 }
 
 } // namespace refocus_cv

@@ -3,7 +3,8 @@
 #include <dlfcn.h>
 #include <string>
 
-namespace {
+namespace
+{
 
 const rf_ximgproc *open(const std::string &path)
 {

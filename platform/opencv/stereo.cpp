@@ -10,7 +10,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace {
+namespace
+{
 
 const float none = std::numeric_limits<float>::quiet_NaN();
 
@@ -165,10 +166,9 @@ int refine(const cv::Mat &left, const cv::Mat &right, const search &s, int reach
 
     for (int i = 0; i <= 2 * reach; i++) {
         const int offset = s.offset + (i % 2 ? (i + 1) / 2 : -i / 2);
-        const float matched =
-            match_both(left.rowRange(from, from + rows),
-                       shifted(right, offset).rowRange(from, from + rows), s.least, s.count,
-                       disparity);
+        const float matched = match_both(left.rowRange(from, from + rows),
+                                         shifted(right, offset).rowRange(from, from + rows),
+                                         s.least, s.count, disparity);
 
         if (matched > most + 0.005f) {
             most = matched;
@@ -221,8 +221,8 @@ int stereo(const refocus_image *left, const refocus_image *right,
         cv::Mat photo, filled = disparity.clone();
 
         cv::resize(refocus_cv::view(left), photo, a.size(), 0, 0, cv::INTER_AREA);
-        if (contrib->wls(photo.data, raw.ptr<float>(), back.ptr<float>(),
-                         filled.ptr<float>(), a.cols, a.rows))
+        if (contrib->wls(photo.data, raw.ptr<float>(), back.ptr<float>(), filled.ptr<float>(),
+                         a.cols, a.rows))
             return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED, "OpenCV gave up");
         /* It smooths over edges: what has been confirmed stays. */
         filled.copyTo(disparity, ~(disparity == disparity) & (filled >= s.least) &

@@ -7,7 +7,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace {
+namespace
+{
 
 int upsample(const refocus_image *photo, const refocus_disparity *map, float sigma, uint16_t *out)
 {
@@ -22,10 +23,11 @@ int upsample(const refocus_image *photo, const refocus_disparity *map, float sig
     refocus_cv::view(photo).convertTo(guide, CV_32F);
     samples.convertTo(depth, CV_32F, map->bits == 16 ? 1 : 257);
     coarse.create(samples.size(), CV_32FC3);
-    for (int y = 0; y < coarse.rows; y++) /* at the middle of each sample: resize() takes a corner */
+    for (int y = 0; y < coarse.rows;
+         y++) /* at the middle of each sample: resize() takes a corner */
         for (int x = 0; x < coarse.cols; x++)
-            coarse.at<cv::Vec3f>(y, x) = guide.at<cv::Vec3f>((int)((y + 0.5) / sy),
-                                                             (int)((x + 0.5) / sx));
+            coarse.at<cv::Vec3f>(y, x) =
+                guide.at<cv::Vec3f>((int)((y + 0.5) / sy), (int)((x + 0.5) / sx));
     for (int j = -REACH; j <= REACH; j++) {
         for (int i = -REACH; i <= REACH; i++) {
             cv::Mat near_by(size, CV_32F), colour, d, squares, likeness;
@@ -71,8 +73,7 @@ int bilinear(const refocus_image *photo, const refocus_disparity *map, cv::Mat &
 int upsample_by(uint32_t filter, const refocus_image *photo, const refocus_disparity *map,
                 uint16_t *out, refocus_cv_reason *reason)
 {
-    const rf_ximgproc *const contrib =
-        filter >= REFOCUS_CV_GUIDED ? rf_opencv_ximgproc() : nullptr;
+    const rf_ximgproc *const contrib = filter >= REFOCUS_CV_GUIDED ? rf_opencv_ximgproc() : nullptr;
     const int reach = std::max(1, cvRound(photo->width / (double)map->width));
     cv::Mat depth, packed = refocus_cv::view(photo);
 
@@ -83,8 +84,8 @@ int upsample_by(uint32_t filter, const refocus_image *photo, const refocus_dispa
     bilinear(photo, map, depth);
     if (!packed.isContinuous())
         packed = packed.clone();
-    if (contrib && contrib->smooth(filter, packed.data, depth.ptr<float>(), depth.cols, depth.rows,
-                                   2 * reach))
+    if (contrib &&
+        contrib->smooth(filter, packed.data, depth.ptr<float>(), depth.cols, depth.rows, 2 * reach))
         return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED, "OpenCV gave up");
     depth.convertTo(cv::Mat(depth.size(), CV_16U, out), CV_16U, 65535);
     return REFOCUS_OK;
@@ -96,7 +97,8 @@ bool good(const refocus_image *photo, const refocus_disparity *map, const uint16
            map->height >= 1 && map->width <= REFOCUS_MAX_SIDE && map->height <= REFOCUS_MAX_SIDE &&
            (map->bits == 8 || map->bits == 16) &&
            refocus_cv::good_rows(map->stride, (ptrdiff_t)map->width * (ptrdiff_t)(map->bits / 8),
-                                 map->height) && out;
+                                 map->height) &&
+           out;
 }
 
 const char *const names[] = {"bilinear", "joint-bilateral", "guided", "fast-global",

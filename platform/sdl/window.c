@@ -41,15 +41,14 @@ static bool make_window(struct screen *screen, int width, int height)
 
     SDL_GetDisplayUsableBounds(0, &room);
     scale = SDL_min(SDL_min((double)room.w / width, (double)room.h / height), 1);
-    screen->window = SDL_CreateWindow("refocus", SDL_WINDOWPOS_CENTERED,
-                                      SDL_WINDOWPOS_CENTERED, (int)(width * scale),
-                                      (int)(height * scale), SDL_WINDOW_RESIZABLE);
+    screen->window =
+        SDL_CreateWindow("refocus", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+                         (int)(width * scale), (int)(height * scale), SDL_WINDOW_RESIZABLE);
     if (!screen->window)
         return false;
     screen->renderer = SDL_CreateRenderer(screen->window, -1, 0);
     if (!screen->renderer)
-        screen->renderer =
-            SDL_CreateRenderer(screen->window, -1, SDL_RENDERER_SOFTWARE);
+        screen->renderer = SDL_CreateRenderer(screen->window, -1, SDL_RENDERER_SOFTWARE);
     return screen->renderer != NULL;
 }
 
@@ -64,8 +63,7 @@ static bool make_texture(struct screen *screen, int width, int height)
     screen->width = width;
     screen->height = height;
     /* Keeps the picture's proportions in a window of any. */
-    return screen->texture &&
-           SDL_RenderSetLogicalSize(screen->renderer, width, height) == 0;
+    return screen->texture && SDL_RenderSetLogicalSize(screen->renderer, width, height) == 0;
 }
 
 static void show(const struct screen *screen)
@@ -80,8 +78,7 @@ static void show(const struct screen *screen)
 static void fail(struct window *window, const char *what)
 {
     window->state = FAILED;
-    snprintf(window->reason.text, sizeof window->reason.text, "%s: %.180s", what,
-             SDL_GetError());
+    snprintf(window->reason.text, sizeof window->reason.text, "%s: %.180s", what, SDL_GetError());
 }
 
 /* The frame that waits goes into the texture. With the lock held. */
@@ -89,8 +86,7 @@ static void take_frame(struct window *window, struct screen *screen)
 {
     if ((!screen->window && !make_window(screen, window->width, window->height)) ||
         !make_texture(screen, window->width, window->height) ||
-        SDL_UpdateTexture(screen->texture, NULL, window->pixels, 3 * window->width) !=
-            0)
+        SDL_UpdateTexture(screen->texture, NULL, window->pixels, 3 * window->width) != 0)
         fail(window, "the window");
     window->fresh = false;
     pthread_cond_broadcast(&window->changed);
@@ -100,8 +96,8 @@ static bool ends_it(const SDL_Event *event)
 {
     if (event->type == SDL_KEYDOWN)
         return event->key.keysym.sym == SDLK_ESCAPE || event->key.keysym.sym == SDLK_q;
-    return event->type == SDL_QUIT || (event->type == SDL_WINDOWEVENT &&
-                                       event->window.event == SDL_WINDOWEVENT_CLOSE);
+    return event->type == SDL_QUIT ||
+           (event->type == SDL_WINDOWEVENT && event->window.event == SDL_WINDOWEVENT_CLOSE);
 }
 
 static void serve(struct window *window)
@@ -185,8 +181,7 @@ static void free_window(struct window *window)
     free(window);
 }
 
-static int open_window(struct refocus_sink *sink, const char *rest,
-                       struct refocus_reason *reason)
+static int open_window(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
 {
     struct window *window = calloc(1, sizeof *window);
     pthread_condattr_t attributes;
@@ -209,8 +204,7 @@ static int open_window(struct refocus_sink *sink, const char *rest,
     pthread_mutex_unlock(&window->lock);
     if (window->state == FAILED) {
         pthread_join(window->thread, NULL);
-        rf_capture_fail(reason, REFOCUS_ERR_GONE, "%s; is DISPLAY set?",
-                        window->reason.text);
+        rf_capture_fail(reason, REFOCUS_ERR_GONE, "%s; is DISPLAY set?", window->reason.text);
         free_window(window);
         return REFOCUS_ERR_GONE;
     }
@@ -234,8 +228,7 @@ static int start(struct refocus_sink *sink, int width, int height, double fps,
 static bool wait_for_room(struct window *window)
 {
     const int64_t until = rf_now_ns() + (int64_t)PATIENCE_MS * 1000000;
-    const struct timespec moment = {(time_t)(until / 1000000000),
-                                    (long)(until % 1000000000)};
+    const struct timespec moment = {(time_t)(until / 1000000000), (long)(until % 1000000000)};
     int error = 0;
 
     while (window->fresh && window->state == OPEN && error == 0)
@@ -256,8 +249,7 @@ static int copy_frame(struct window *window, const struct refocus_image *image,
     if (!window->pixels)
         return rf_capture_fail_memory(reason);
     for (int y = 0; y < image->height; y++)
-        memcpy(window->pixels + (size_t)y * row, image->plane[0] + y * image->stride[0],
-               row);
+        memcpy(window->pixels + (size_t)y * row, image->plane[0] + y * image->stride[0], row);
     window->width = image->width;
     window->height = image->height;
     window->fresh = true;
@@ -272,8 +264,8 @@ static int write_frame(struct refocus_sink *sink, const struct refocus_image *im
 
     pthread_mutex_lock(&window->lock);
     if (!wait_for_room(window) && window->state == OPEN)
-        status = rf_capture_fail(reason, REFOCUS_ERR_TIMEOUT,
-                                 "the window took no frame for a second");
+        status =
+            rf_capture_fail(reason, REFOCUS_ERR_TIMEOUT, "the window took no frame for a second");
     else if (window->state == CLOSED)
         status = rf_capture_fail(reason, REFOCUS_ERR_END, "the window was closed");
     else if (window->state == FAILED)

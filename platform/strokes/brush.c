@@ -2,15 +2,14 @@
 #include <string.h>
 #include "internal.h"
 
-struct rf_area rf_brush_area(const struct rf_stroke *stroke, double margin,
-                             int32_t width, int32_t height)
+struct rf_area rf_brush_area(const struct rf_stroke *stroke, double margin, int32_t width,
+                             int32_t height)
 {
     double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
     struct rf_area area;
 
     for (int32_t i = 0; i < stroke->count; i++) {
-        const double x = (double)stroke->points[2 * i],
-                     y = (double)stroke->points[2 * i + 1];
+        const double x = (double)stroke->points[2 * i], y = (double)stroke->points[2 * i + 1];
 
         x0 = x < x0 ? x : x0;
         x1 = x > x1 ? x : x1;
@@ -52,8 +51,7 @@ static void draw_path(const struct rf_stroke *stroke, int level, struct rf_area 
         const int32_t steps = (int32_t)ceil(fmax(fabs(x1 - x0), fabs(y1 - y0))) + 1;
 
         for (int32_t s = 0; s <= steps; s++)
-            mark(area, distance, x0 + (x1 - x0) * s / steps,
-                 y0 + (y1 - y0) * s / steps);
+            mark(area, distance, x0 + (x1 - x0) * s / steps, y0 + (y1 - y0) * s / steps);
     }
 }
 
@@ -115,8 +113,7 @@ void rf_brush_distance(const struct rf_stroke *stroke, int level, struct rf_area
     for (int64_t i = 0; i < pixels; i++) {
         const uint64_t scaled = (distance[i] * scale) >> 16;
 
-        distance[i] =
-            distance[i] == RF_FAR || scaled > RF_FAR ? RF_FAR : (uint16_t)scaled;
+        distance[i] = distance[i] == RF_FAR || scaled > RF_FAR ? RF_FAR : (uint16_t)scaled;
     }
 }
 
@@ -141,8 +138,7 @@ static void widen_by_disc(struct span *span, double x, double dy, double radius)
 }
 
 /* Where row y meets the line between two points, if it does. */
-static void widen_by_line(struct span *span, double y, double x0, double y0, double x1,
-                          double y1)
+static void widen_by_line(struct span *span, double y, double x0, double y0, double x1, double y1)
 {
     if ((y0 <= y && y <= y1) || (y1 <= y && y <= y0)) {
         widen(span, y0 < y1 || y1 < y0 ? x0 + (x1 - x0) * ((y - y0) / (y1 - y0)) : x0);
@@ -153,16 +149,14 @@ static void widen_by_line(struct span *span, double y, double x0, double y0, dou
 
 /* All within the radius of the line between two points: convex, so a span in every row.
  */
-static void cover_segment(const float *a, const float *b, double radius,
-                          struct rf_area area, uint8_t *mask)
+static void cover_segment(const float *a, const float *b, double radius, struct rf_area area,
+                          uint8_t *mask)
 {
-    const double x0 = (double)a[0], y0 = (double)a[1], x1 = (double)b[0],
-                 y1 = (double)b[1];
+    const double x0 = (double)a[0], y0 = (double)a[1], x1 = (double)b[0], y1 = (double)b[1];
     const double length = sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0));
     const double nx = length > 0 ? (y0 - y1) / length * radius : 0;
     const double ny = length > 0 ? (x1 - x0) / length * radius : 0;
-    const double top = ceil(fmin(y0, y1) - radius),
-                 bottom = floor(fmax(y0, y1) + radius);
+    const double top = ceil(fmin(y0, y1) - radius), bottom = floor(fmax(y0, y1) + radius);
     const int32_t first = top > area.y ? (int32_t)top : area.y;
     const int32_t last =
         bottom < area.y + area.height - 1 ? (int32_t)bottom : area.y + area.height - 1;
@@ -178,12 +172,10 @@ static void cover_segment(const float *a, const float *b, double radius,
         if (!(span.from <= area.x + area.width && span.to >= area.x))
             continue;
         from = span.from > area.x ? (int32_t)ceil(span.from) : area.x;
-        to = span.to < area.x + area.width - 1 ? (int32_t)floor(span.to) + 1
-                                               : area.x + area.width;
+        to = span.to < area.x + area.width - 1 ? (int32_t)floor(span.to) + 1 : area.x + area.width;
         if (from < to)
-            memset(mask + (size_t)(y - area.y) * (size_t)area.width +
-                       (size_t)(from - area.x),
-                   1, (size_t)(to - from));
+            memset(mask + (size_t)(y - area.y) * (size_t)area.width + (size_t)(from - area.x), 1,
+                   (size_t)(to - from));
     }
 }
 

@@ -13,8 +13,7 @@ static void smooth_axis(uint32_t *to, const uint32_t *from, int step, int length
     for (int i = 0; i < RF_BINS; i++) {
         const int at = i / step % length;
 
-        to[i] = 2 * from[i] + from[at > 0 ? i - step : i] +
-                from[at + 1 < length ? i + step : i];
+        to[i] = 2 * from[i] + from[at > 0 ? i - step : i] + from[at + 1 < length ? i + step : i];
     }
 }
 
@@ -39,8 +38,7 @@ static int log2_q4(uint64_t value)
 
     for (uint64_t rest = value; rest > 1; rest >>= 1)
         bits++;
-    return bits * 16 +
-           (int)(bits >= 4 ? value >> (bits - 4) & 15 : value << (4 - bits) & 15);
+    return bits * 16 + (int)(bits >= 4 ? value >> (bits - 4) & 15 : value << (4 - bits) & 15);
 }
 
 /* Counts become scores: log2 of the ratio of the shares, with a floor of 2^-13 under

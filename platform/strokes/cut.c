@@ -114,8 +114,7 @@ static void start(struct rf_cut *cut)
  */
 static int32_t outward(const struct rf_cut *cut, const struct rf_cut_node *p, int d)
 {
-    return p->tree == OBJECT ? p->capacity[d]
-                             : cut->nodes[p->neighbour[d]].capacity[7 - d];
+    return p->tree == OBJECT ? p->capacity[d] : cut->nodes[p->neighbour[d]].capacity[7 - d];
 }
 
 /* Let the tree grow from a node; the direction in which it meets the other tree, or -1.
@@ -244,8 +243,7 @@ static bool feeds(const struct rf_cut *cut, const struct rf_cut_node *p, int d)
 {
     const struct rf_cut_node *const q = &cut->nodes[p->neighbour[d]];
 
-    return q->tree == p->tree &&
-           (p->tree == OBJECT ? q->capacity[7 - d] : p->capacity[d]) > 0;
+    return q->tree == p->tree && (p->tree == OBJECT ? q->capacity[7 - d] : p->capacity[d]) > 0;
 }
 
 static void adopt(struct rf_cut *cut, int32_t node)
@@ -315,8 +313,7 @@ void rf_cut_solve(struct rf_cut *cut)
             continue;
         }
         augment(cut, node, direction);
-        for (int32_t orphan = pop_orphan(cut); orphan != NOBODY;
-             orphan = pop_orphan(cut))
+        for (int32_t orphan = pop_orphan(cut); orphan != NOBODY; orphan = pop_orphan(cut))
             adopt(cut, orphan);
     }
 }

@@ -8,8 +8,8 @@ static uint16_t code_of(double disparity)
 /* The gradient's parameter t runs along a row by a constant step, 32 bits after the
  * point. Points lie at least a pixel apart and within 2^20 of 0: |step| <= 2^32 and |t|
  * < 2^56. */
-static void fill_gradient(const struct refocus_fill *fill, uint16_t *row, int32_t y,
-                          int32_t from, int32_t to)
+static void fill_gradient(const struct refocus_fill *fill, uint16_t *row, int32_t y, int32_t from,
+                          int32_t to)
 {
     const double one = 4294967296.0;
     const double dx = (double)fill->x1 - (double)fill->x0;
@@ -27,8 +27,8 @@ static void fill_gradient(const struct refocus_fill *fill, uint16_t *row, int32_
     }
 }
 
-void rf_fill_span(const struct refocus_fill *fill, uint16_t *row, int32_t y,
-                  int32_t from, int32_t to)
+void rf_fill_span(const struct refocus_fill *fill, uint16_t *row, int32_t y, int32_t from,
+                  int32_t to)
 {
     if (fill->kind == REFOCUS_FILL_GRADIENT) {
         fill_gradient(fill, row, y, from, to);

@@ -7,9 +7,8 @@ static const int dy[RF_CUT_NEIGHBOURS] = {-1, -1, -1, 0, 0, 1, 1, 1};
 /* Slots of neighbours whose label is given, until their weight is known. */
 enum { NO_NEIGHBOUR = -1, FIXED_OUTSIDE = -2, FIXED_INSIDE = -3 };
 
-static struct rf_colour colour_at(const struct rf_grid *grid,
-                                  const struct rf_pyramid *pyramid, int32_t x,
-                                  int32_t y)
+static struct rf_colour colour_at(const struct rf_grid *grid, const struct rf_pyramid *pyramid,
+                                  int32_t x, int32_t y)
 {
     struct rf_colour colour;
 
@@ -17,8 +16,7 @@ static struct rf_colour colour_at(const struct rf_grid *grid,
     y += grid->area.y;
     if (grid->level > 0)
         return pyramid
-            ->level[grid->level]
-                   [(size_t)y * (size_t)pyramid->width[grid->level] + (size_t)x];
+            ->level[grid->level][(size_t)y * (size_t)pyramid->width[grid->level] + (size_t)x];
     rf_pyramid_row(pyramid, 0, x, y, 1, &colour);
     return colour;
 }
@@ -55,8 +53,8 @@ static int64_t count_open(const struct rf_grid *grid)
 /* Tie a node to what is there already: the nodes before it, and pixels whose label is
  * given. Capacities are contrasts as yet. */
 static void tie(struct rf_cut *cut, int32_t index, const struct rf_grid *grid,
-                const struct rf_pyramid *pyramid, struct rf_colour colour, int32_t x,
-                int32_t y, const int32_t *index_of)
+                const struct rf_pyramid *pyramid, struct rf_colour colour, int32_t x, int32_t y,
+                const int32_t *index_of)
 {
     struct rf_cut_node *const node = &cut->nodes[index];
     const int32_t w = grid->area.width, h = grid->area.height;
@@ -106,8 +104,7 @@ static void build(struct rf_grid *grid, struct rf_selector *selector,
                 node->neighbour[d] = NO_NEIGHBOUR;
                 node->capacity[d] = 0;
             }
-            node->terminal =
-                selector->likeness.score[rf_bin(colour)] + place_score(grid, x, y);
+            node->terminal = selector->likeness.score[rf_bin(colour)] + place_score(grid, x, y);
             node->place = (uint32_t)y << 16 | (uint32_t)x;
             index_of[(size_t)(y & 1) * (size_t)w + (size_t)x] = cut->count;
             rf_cut_guess(cut, cut->count, *at & RF_INSIDE);
@@ -171,8 +168,8 @@ int rf_grid_cut(struct rf_grid *grid, struct rf_selector *selector,
                 const struct rf_pyramid *pyramid, bool settle)
 {
     struct rf_cut *const cut = &selector->cut;
-    int32_t *const index_of = rf_selector_scratch(
-        selector, 7, 2 * (int64_t)grid->area.width, sizeof *index_of);
+    int32_t *const index_of =
+        rf_selector_scratch(selector, 7, 2 * (int64_t)grid->area.width, sizeof *index_of);
     const int status = rf_cut_reserve(cut, count_open(grid));
 
     if (status != REFOCUS_OK || !index_of)
@@ -186,18 +183,17 @@ int rf_grid_cut(struct rf_grid *grid, struct rf_selector *selector,
     for (int32_t i = 0; i < cut->count; i++) {
         const uint32_t place = cut->nodes[i].place;
 
-        grid->state[(size_t)(place >> 16) * (size_t)grid->area.width +
-                    (place & 0xffff)] = rf_cut_inside(cut, i) ? RF_INSIDE : 0;
+        grid->state[(size_t)(place >> 16) * (size_t)grid->area.width + (place & 0xffff)] =
+            rf_cut_inside(cut, i) ? RF_INSIDE : 0;
     }
     return REFOCUS_OK;
 }
 
-struct rf_area rf_grid_finer_area(const struct rf_grid *coarse,
-                                  const struct rf_pyramid *pyramid)
+struct rf_area rf_grid_finer_area(const struct rf_grid *coarse, const struct rf_pyramid *pyramid)
 {
     const int level = coarse->level - 1;
-    struct rf_area area = {2 * coarse->area.x, 2 * coarse->area.y,
-                           2 * coarse->area.width, 2 * coarse->area.height};
+    struct rf_area area = {2 * coarse->area.x, 2 * coarse->area.y, 2 * coarse->area.width,
+                           2 * coarse->area.height};
 
     if (area.x + area.width > pyramid->width[level])
         area.width = pyramid->width[level] - area.x;
@@ -217,17 +213,15 @@ static void open_row(struct rf_grid *grid, int32_t y)
 
     for (int32_t x = 0; x < w; x++) {
         const int32_t l = x > 0 ? x - 1 : x, r = x + 1 < w ? x + 1 : x;
-        const int differs = (above[l] ^ row[x]) | (above[x] ^ row[x]) |
-                            (above[r] ^ row[x]) | (row[l] ^ row[x]) |
-                            (row[r] ^ row[x]) | (below[l] ^ row[x]) |
+        const int differs = (above[l] ^ row[x]) | (above[x] ^ row[x]) | (above[r] ^ row[x]) |
+                            (row[l] ^ row[x]) | (row[r] ^ row[x]) | (below[l] ^ row[x]) |
                             (below[x] ^ row[x]) | (below[r] ^ row[x]);
 
         row[x] |= (uint8_t)((differs & RF_INSIDE & ~(row[x] >> 1)) << 2);
     }
 }
 
-void rf_grid_refine(struct rf_grid *fine, struct rf_grid *coarse,
-                    const struct rf_pyramid *pyramid)
+void rf_grid_refine(struct rf_grid *fine, struct rf_grid *coarse, const struct rf_pyramid *pyramid)
 {
     const int32_t cw = coarse->area.width;
 
@@ -268,8 +262,8 @@ void rf_grid_connect(struct rf_grid *grid, int32_t *stack)
     }
     while (depth > 0) {
         const int32_t at = stack[--depth], x = at % w, y = at / w;
-        const int32_t next[4] = {x > 0 ? at - 1 : at, x + 1 < w ? at + 1 : at,
-                                 y > 0 ? at - w : at, y + 1 < h ? at + w : at};
+        const int32_t next[4] = {x > 0 ? at - 1 : at, x + 1 < w ? at + 1 : at, y > 0 ? at - w : at,
+                                 y + 1 < h ? at + w : at};
 
         for (int i = 0; i < 4; i++) {
             if ((grid->state[next[i]] & (RF_INSIDE | REACHED)) == RF_INSIDE) {
@@ -314,6 +308,5 @@ void rf_grid_shrink(struct rf_grid *grid, int32_t margin)
     grid->area.height = y1 - y0;
     for (int32_t y = 0; y < y1 - y0; y++)
         memmove(grid->state + (size_t)y * (size_t)(x1 - x0),
-                grid->state + (size_t)(y + y0) * (size_t)old.width + (size_t)x0,
-                (size_t)(x1 - x0));
+                grid->state + (size_t)(y + y0) * (size_t)old.width + (size_t)x0, (size_t)(x1 - x0));
 }

@@ -29,11 +29,9 @@ int rf_grid_cut(struct rf_grid *grid, struct rf_selector *selector,
                 const struct rf_pyramid *pyramid, bool settle);
 
 /* The next finer level: labels from the coarser one, open where its edge is. */
-void rf_grid_refine(struct rf_grid *fine, struct rf_grid *coarse,
-                    const struct rf_pyramid *pyramid);
+void rf_grid_refine(struct rf_grid *fine, struct rf_grid *coarse, const struct rf_pyramid *pyramid);
 /* Of the area that rf_grid_refine() will make. */
-struct rf_area rf_grid_finer_area(const struct rf_grid *coarse,
-                                  const struct rf_pyramid *pyramid);
+struct rf_area rf_grid_finer_area(const struct rf_grid *coarse, const struct rf_pyramid *pyramid);
 
 /* Drop what does not hang together with a certain pixel; stack: a number for each
  * pixel. */

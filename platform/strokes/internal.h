@@ -52,8 +52,8 @@ void rf_brush_distance(const struct rf_stroke *stroke, int level, struct rf_area
 /* Set to 1 what lies within the radius, at full size. */
 void rf_brush_cover(const struct rf_stroke *stroke, struct rf_area area, uint8_t *mask);
 /* What lies within so many pixels of the path, cut by the picture. */
-struct rf_area rf_brush_area(const struct rf_stroke *stroke, double margin,
-                             int32_t width, int32_t height);
+struct rf_area rf_brush_area(const struct rf_stroke *stroke, double margin, int32_t width,
+                             int32_t height);
 
 /* Rows of spans: what a layer covers. x[2 i] is inside, x[2 i + 1] is the first
  * outside. */
@@ -69,8 +69,8 @@ void rf_spans_free(struct rf_spans *spans);
 /* Spans of picture row y: how many numbers, and where. */
 int64_t rf_spans_row(const struct rf_spans *spans, int32_t y, const int32_t **x);
 /* The columns of row y in which two differ; false when none. */
-bool rf_spans_differ(const struct rf_spans *a, const struct rf_spans *b, int32_t y,
-                     int32_t *from, int32_t *to);
+bool rf_spans_differ(const struct rf_spans *a, const struct rf_spans *b, int32_t y, int32_t *from,
+                     int32_t *to);
 
 /* colour.c: how likely a colour is the object's, from counts of both sides. */
 enum { RF_BINS = 16 * 32 * 32 };
@@ -101,21 +101,18 @@ void rf_selector_free(struct rf_selector *selector);
 int rf_select(struct rf_selector *selector, const struct rf_pyramid *pyramid,
               const struct rf_stroke *strokes, int count, struct rf_spans *spans);
 /* Memory that is kept for the next time; what is in it is lost. NULL: there is none. */
-void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count,
-                          size_t size);
+void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count, size_t size);
 
 /* strokes.c: between hold and release strokes are only listed, so that each layer is
  * selected and painted once. Instead of release, return goes back to the first count
  * strokes and needs no memory for it: what the last of their layers covers is kept. */
 int rf_strokes_hold(struct refocus_strokes *strokes, struct rf_spans *kept);
 int rf_strokes_release(struct refocus_strokes *strokes);
-void rf_strokes_return(struct refocus_strokes *strokes, int count,
-                       struct rf_spans *kept);
-void rf_strokes_size(const struct refocus_strokes *strokes, int32_t *width,
-                     int32_t *height);
+void rf_strokes_return(struct refocus_strokes *strokes, int count, struct rf_spans *kept);
+void rf_strokes_size(const struct refocus_strokes *strokes, int32_t *width, int32_t *height);
 
 /* fill.c: the pixels from one column to before another. */
-void rf_fill_span(const struct refocus_fill *fill, uint16_t *row, int32_t y,
-                  int32_t from, int32_t to);
+void rf_fill_span(const struct refocus_fill *fill, uint16_t *row, int32_t y, int32_t from,
+                  int32_t to);
 
 #endif

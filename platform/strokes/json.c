@@ -59,8 +59,7 @@ static const char *strange_key(json_t *object, const char *const *known)
     return NULL;
 }
 
-static bool read_number(const json_t *value, double least, double greatest,
-                        float *number)
+static bool read_number(const json_t *value, double least, double greatest, float *number)
 {
     const double v = json_is_number(value) ? json_number_value(value) : greatest + 1;
 
@@ -79,8 +78,7 @@ static int read_key(struct reading *reading, int index, json_t *object, const ch
     if (!value || read_number(value, least, greatest, number))
         return REFOCUS_OK;
     return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                  "strokes[%d].%s must be a number from %g to %g", index, key, least,
-                  greatest);
+                  "strokes[%d].%s must be a number from %g to %g", index, key, least, greatest);
 }
 
 static bool read_end(const json_t *end, float *x, float *y, float *d)
@@ -93,8 +91,7 @@ static bool read_end(const json_t *end, float *x, float *y, float *d)
            read_number(json_array_get(end, 2), 0, 1, d);
 }
 
-static int read_fill(struct reading *reading, int index, json_t *object,
-                     struct refocus_fill *fill)
+static int read_fill(struct reading *reading, int index, json_t *object, struct refocus_fill *fill)
 {
     json_t *const solid = json_object_get(object, "disparity");
     json_t *const gradient = json_object_get(object, "gradient");
@@ -102,8 +99,7 @@ static int read_fill(struct reading *reading, int index, json_t *object,
 
     if (solid && gradient)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d] has both a disparity and a gradient; give one",
-                      index);
+                      "strokes[%d] has both a disparity and a gradient; give one", index);
     if (solid)
         fill->kind = REFOCUS_FILL_SOLID;
     if (!gradient)
@@ -112,10 +108,9 @@ static int read_fill(struct reading *reading, int index, json_t *object,
     if (!json_is_array(gradient) || json_array_size(gradient) != 2 ||
         !read_end(json_array_get(gradient, 0), &fill->x0, &fill->y0, &fill->d0) ||
         !read_end(json_array_get(gradient, 1), &fill->x1, &fill->y1, &fill->d1))
-        return refuse(
-            reading->reason, REFOCUS_ERR_FORMAT,
-            "strokes[%d].gradient must be [[X, Y, D], [X, Y, D]] with D from 0 to 1",
-            index);
+        return refuse(reading->reason, REFOCUS_ERR_FORMAT,
+                      "strokes[%d].gradient must be [[X, Y, D], [X, Y, D]] with D from 0 to 1",
+                      index);
     dx = fill->x1 - fill->x0;
     dy = fill->y1 - fill->y0;
     if (dx < 1 && dx > -1 && dy < 1 && dy > -1)
@@ -125,8 +120,8 @@ static int read_fill(struct reading *reading, int index, json_t *object,
 }
 
 /* The points of a stroke; *points is to be freed. */
-static int read_points(struct reading *reading, int index, json_t *object,
-                       float **points, int *count)
+static int read_points(struct reading *reading, int index, json_t *object, float **points,
+                       int *count)
 {
     json_t *const list = json_object_get(object, "points");
     const size_t size = json_is_array(list) ? json_array_size(list) : 0;
@@ -135,12 +130,11 @@ static int read_points(struct reading *reading, int index, json_t *object,
     *count = 0;
     if (size == 0)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d].points must be a list of [X, Y], one at least",
-                      index);
+                      "strokes[%d].points must be a list of [X, Y], one at least", index);
     if (size > REFOCUS_MAX_STROKE_POINTS)
         return refuse(reading->reason, REFOCUS_ERR_SIZE,
-                      "strokes[%d] has %zu points; all strokes may have %d", index,
-                      size, (int)REFOCUS_MAX_STROKE_POINTS);
+                      "strokes[%d] has %zu points; all strokes may have %d", index, size,
+                      (int)REFOCUS_MAX_STROKE_POINTS);
     *points = malloc(2 * size * sizeof **points);
     if (!*points)
         return no_memory(reading->reason);
@@ -151,10 +145,9 @@ static int read_points(struct reading *reading, int index, json_t *object,
         if (!json_is_array(point) || json_array_size(point) != 2 ||
             !read_number(json_array_get(point, 0), -0.5, reading->width - 0.5, p) ||
             !read_number(json_array_get(point, 1), -0.5, reading->height - 0.5, p + 1))
-            return refuse(
-                reading->reason, REFOCUS_ERR_FORMAT,
-                "strokes[%d].points[%zu] must be a pixel, 0 to %d and 0 to %d", index,
-                i, (int)reading->width - 1, (int)reading->height - 1);
+            return refuse(reading->reason, REFOCUS_ERR_FORMAT,
+                          "strokes[%d].points[%zu] must be a pixel, 0 to %d and 0 to %d", index, i,
+                          (int)reading->width - 1, (int)reading->height - 1);
     }
     *count = (int)size;
     return REFOCUS_OK;
@@ -176,18 +169,16 @@ static int read_kind(struct reading *reading, int index, json_t *object,
         kind++;
     if (!name || kind == sizeof kinds / sizeof *kinds)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d].kind must be all, object, more, less, brush or fill",
-                      index);
+                      "strokes[%d].kind must be all, object, more, less, brush or fill", index);
     *stroke = refocus_stroke_default(kind, 0);
-    strange = strange_key(
-        object, kind == REFOCUS_STROKE_ALL || kind == REFOCUS_STROKE_FILL ? plain
-                : kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE
-                    ? selecting
-                    : painted);
+    strange = strange_key(object, kind == REFOCUS_STROKE_ALL || kind == REFOCUS_STROKE_FILL ? plain
+                                  : kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE
+                                      ? selecting
+                                      : painted);
     if (strange)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d] has a key '%.40s', which '%s' does not take", index,
-                      strange, name);
+                      "strokes[%d] has a key '%.40s', which '%s' does not take", index, strange,
+                      name);
     return REFOCUS_OK;
 }
 
@@ -199,8 +190,7 @@ static int read_stroke(struct reading *reading, int index, json_t *object,
     *points = NULL;
     *count = 0;
     if (!json_is_object(object))
-        return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d] must be an object", index);
+        return refuse(reading->reason, REFOCUS_ERR_FORMAT, "strokes[%d] must be an object", index);
     status = read_kind(reading, index, object, stroke);
     if (status == REFOCUS_OK)
         status = read_fill(reading, index, object, &stroke->fill);
@@ -208,8 +198,7 @@ static int read_stroke(struct reading *reading, int index, json_t *object,
         return status;
     if (stroke->kind == REFOCUS_STROKE_FILL && stroke->fill.kind == REFOCUS_FILL_NONE)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "strokes[%d] must have a disparity or a gradient to fill with",
-                      index);
+                      "strokes[%d] must have a disparity or a gradient to fill with", index);
     if (stroke->kind == REFOCUS_STROKE_ALL || stroke->kind == REFOCUS_STROKE_FILL)
         return REFOCUS_OK;
     if (!json_object_get(object, "radius"))
@@ -218,8 +207,7 @@ static int read_stroke(struct reading *reading, int index, json_t *object,
     status = read_key(reading, index, object, "radius", 0.5, 4096, &stroke->radius);
     if (status == REFOCUS_OK)
         status = read_key(reading, index, object, "reach", 1, 64, &stroke->reach);
-    return status == REFOCUS_OK ? read_points(reading, index, object, points, count)
-                                : status;
+    return status == REFOCUS_OK ? read_points(reading, index, object, points, count) : status;
 }
 
 static int paint(struct reading *reading, int index, json_t *object)
@@ -234,8 +222,7 @@ static int paint(struct reading *reading, int index, json_t *object)
         if (status == REFOCUS_ERR_STATE)
             status =
                 refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                       "strokes[%d] is '%s', which needs %s before it", index,
-                       kinds[stroke.kind],
+                       "strokes[%d] is '%s', which needs %s before it", index, kinds[stroke.kind],
                        stroke.kind == REFOCUS_STROKE_FILL ? "a layer" : "an object");
         else if (status == REFOCUS_OK && count > 0)
             status = refocus_strokes_extend(reading->strokes, points, count, NULL);
@@ -252,8 +239,7 @@ static int paint(struct reading *reading, int index, json_t *object)
 /* All but the strokes. */
 static int read_head(struct reading *reading, json_t *root)
 {
-    static const char *const known[] = {"refocus-strokes", "width", "height", "strokes",
-                                        NULL};
+    static const char *const known[] = {"refocus-strokes", "width", "height", "strokes", NULL};
     json_t *const width = json_object_get(root, "width");
     json_t *const height = json_object_get(root, "height");
     const char *strange;
@@ -263,23 +249,21 @@ static int read_head(struct reading *reading, json_t *root)
                       "no file of strokes: it has no key 'refocus-strokes'");
     if (json_integer_value(json_object_get(root, "refocus-strokes")) != VERSION)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "'refocus-strokes' must be %d, the version that is known here",
-                      VERSION);
+                      "'refocus-strokes' must be %d, the version that is known here", VERSION);
     strange = strange_key(root, known);
     if (strange)
-        return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "it has an unknown key '%.40s'", strange);
+        return refuse(reading->reason, REFOCUS_ERR_FORMAT, "it has an unknown key '%.40s'",
+                      strange);
     if (!json_is_integer(width) || !json_is_integer(height))
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "width and height must be those of the photo, %dx%d",
-                      (int)reading->width, (int)reading->height);
+                      "width and height must be those of the photo, %dx%d", (int)reading->width,
+                      (int)reading->height);
     if (json_integer_value(width) != reading->width ||
         json_integer_value(height) != reading->height)
         return refuse(reading->reason, REFOCUS_ERR_SIZE,
                       "its strokes are of a picture of %lldx%lld, the photo has %dx%d",
-                      (long long)json_integer_value(width),
-                      (long long)json_integer_value(height), (int)reading->width,
-                      (int)reading->height);
+                      (long long)json_integer_value(width), (long long)json_integer_value(height),
+                      (int)reading->width, (int)reading->height);
     if (!json_is_array(json_object_get(root, "strokes")))
         return refuse(reading->reason, REFOCUS_ERR_FORMAT, "'strokes' must be a list");
     return REFOCUS_OK;
@@ -307,8 +291,8 @@ static int paint_all(struct reading *reading, json_t *root)
     return status;
 }
 
-int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
-                         size_t size, struct refocus_strokes_reason *reason)
+int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, size_t size,
+                         struct refocus_strokes_reason *reason)
 {
     struct refocus_strokes_reason unread;
     struct reading reading = {strokes, reason ? reason : &unread, 0, 0};
@@ -328,11 +312,10 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
     root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
     if (!root) {
         /* Where memory fails jansson has no words. */
-        if (json_error_code(&error) == json_error_out_of_memory || error.line < 1 ||
-            !error.text[0])
+        if (json_error_code(&error) == json_error_out_of_memory || error.line < 1 || !error.text[0])
             return no_memory(reading.reason);
-        return refuse(reading.reason, REFOCUS_ERR_FORMAT, "line %d is no JSON: %s",
-                      error.line, error.text);
+        return refuse(reading.reason, REFOCUS_ERR_FORMAT, "line %d is no JSON: %s", error.line,
+                      error.text);
     }
     status = read_head(&reading, root);
     if (status == REFOCUS_OK)
@@ -343,9 +326,8 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
 
 static json_t *fill_json(const struct refocus_fill *fill)
 {
-    return json_pack("[[f, f, f], [f, f, f]]", (double)fill->x0, (double)fill->y0,
-                     (double)fill->d0, (double)fill->x1, (double)fill->y1,
-                     (double)fill->d1);
+    return json_pack("[[f, f, f], [f, f, f]]", (double)fill->x0, (double)fill->y0, (double)fill->d0,
+                     (double)fill->x1, (double)fill->y1, (double)fill->d1);
 }
 
 static json_t *points_json(const float *points, int count)
@@ -353,8 +335,8 @@ static json_t *points_json(const float *points, int count)
     json_t *const list = json_array();
 
     for (int i = 0; i < count; i++) {
-        if (json_array_append_new(list, json_pack("[f, f]", (double)points[2 * i],
-                                                  (double)points[2 * i + 1]))) {
+        if (json_array_append_new(
+                list, json_pack("[f, f]", (double)points[2 * i], (double)points[2 * i + 1]))) {
             json_decref(list);
             return NULL;
         }
@@ -362,24 +344,20 @@ static json_t *points_json(const float *points, int count)
     return list;
 }
 
-static json_t *stroke_json(const struct refocus_stroke *stroke, const float *points,
-                           int count)
+static json_t *stroke_json(const struct refocus_stroke *stroke, const float *points, int count)
 {
     const uint32_t kind = stroke->kind;
     json_t *const object = json_pack("{s:s}", "kind", kinds[kind]);
     int failed = !object;
 
     if (kind != REFOCUS_STROKE_ALL && kind != REFOCUS_STROKE_FILL) {
-        failed |=
-            json_object_set_new(object, "radius", json_real((double)stroke->radius));
+        failed |= json_object_set_new(object, "radius", json_real((double)stroke->radius));
         if (kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE)
-            failed |=
-                json_object_set_new(object, "reach", json_real((double)stroke->reach));
+            failed |= json_object_set_new(object, "reach", json_real((double)stroke->reach));
         failed |= json_object_set_new(object, "points", points_json(points, count));
     }
     if (stroke->fill.kind == REFOCUS_FILL_SOLID)
-        failed |= json_object_set_new(object, "disparity",
-                                      json_real((double)stroke->fill.d0));
+        failed |= json_object_set_new(object, "disparity", json_real((double)stroke->fill.d0));
     if (stroke->fill.kind == REFOCUS_FILL_GRADIENT)
         failed |= json_object_set_new(object, "gradient", fill_json(&stroke->fill));
     if (!failed)
@@ -388,8 +366,7 @@ static json_t *stroke_json(const struct refocus_stroke *stroke, const float *poi
     return NULL;
 }
 
-int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
-                         size_t *size)
+int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, size_t *size)
 {
     json_t *root, *list;
     int32_t width, height;
@@ -400,8 +377,8 @@ int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
     *text = NULL;
     rf_strokes_size(strokes, &width, &height);
     list = json_array();
-    root = json_pack("{s:i, s:i, s:i, s:O}", "refocus-strokes", (int)VERSION, "width",
-                     (int)width, "height", (int)height, "strokes", list);
+    root = json_pack("{s:i, s:i, s:i, s:O}", "refocus-strokes", (int)VERSION, "width", (int)width,
+                     "height", (int)height, "strokes", list);
     failed = !root || !list;
     for (int i = 0; i < refocus_strokes_count(strokes) && !failed; i++) {
         struct refocus_stroke stroke;
@@ -410,8 +387,7 @@ int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
 
         refocus_strokes_get(strokes, i, &stroke, &points, &count);
         /* One that was begun and never drawn selects nothing, and has no words. */
-        if (count > 0 || stroke.kind == REFOCUS_STROKE_ALL ||
-            stroke.kind == REFOCUS_STROKE_FILL)
+        if (count > 0 || stroke.kind == REFOCUS_STROKE_ALL || stroke.kind == REFOCUS_STROKE_FILL)
             failed = json_array_append_new(list, stroke_json(&stroke, points, count));
     }
     if (!failed)
@@ -424,8 +400,8 @@ int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
     return REFOCUS_OK;
 }
 #else
-int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
-                         size_t size, struct refocus_strokes_reason *reason)
+int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, size_t size,
+                         struct refocus_strokes_reason *reason)
 {
     (void)strokes;
     (void)bytes;
@@ -437,8 +413,7 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
     return REFOCUS_ERR_UNSUPPORTED;
 }
 
-int refocus_strokes_save(const struct refocus_strokes *strokes, char **text,
-                         size_t *size)
+int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, size_t *size)
 {
     (void)strokes;
     if (text)

@@ -23,8 +23,7 @@ void rf_pyramid_row(const struct rf_pyramid *pyramid, int level, int32_t x, int3
     const uint8_t *p;
 
     if (level > 0) {
-        memcpy(row,
-               pyramid->level[level] + (size_t)y * (size_t)pyramid->width[level] + x,
+        memcpy(row, pyramid->level[level] + (size_t)y * (size_t)pyramid->width[level] + x,
                (size_t)count * sizeof *row);
         return;
     }
@@ -34,8 +33,8 @@ void rf_pyramid_row(const struct rf_pyramid *pyramid, int level, int32_t x, int3
 }
 
 /* A row of means of two rows, the same one twice at the lower border. */
-static void halve_row(struct rf_colour *out, const struct rf_colour *a,
-                      const struct rf_colour *b, int32_t width)
+static void halve_row(struct rf_colour *out, const struct rf_colour *a, const struct rf_colour *b,
+                      int32_t width)
 {
     for (int32_t x = 0; 2 * x < width; x++) {
         const int32_t l = 2 * x, r = 2 * x + 1 < width ? 2 * x + 1 : l;
@@ -74,8 +73,7 @@ int rf_pyramid_create(struct rf_pyramid *pyramid, const struct refocus_image *ph
         }
         for (int32_t y = 0; y < rest; y++) {
             rf_pyramid_row(pyramid, k - 1, 0, 2 * y, w, rows);
-            rf_pyramid_row(pyramid, k - 1, 0, 2 * y + 1 < h ? 2 * y + 1 : 2 * y, w,
-                           rows + w);
+            rf_pyramid_row(pyramid, k - 1, 0, 2 * y + 1 < h ? 2 * y + 1 : 2 * y, w, rows + w);
             halve_row(pyramid->level[k] + (size_t)y * (size_t)half, rows, rows + w, w);
         }
         pyramid->width[k] = half;

@@ -16,8 +16,7 @@ enum { UNDER_BRUSH = RF_BIT, FARTHEST = -3 * RF_BIT, OUT_OF_REACH = -1000 };
 
 enum { PLACE, DISTANCE, STACK, STATES }; /* which scratch; STATES is the first of two */
 
-void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count,
-                          size_t size)
+void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count, size_t size)
 {
     void *more;
     size_t bytes;
@@ -46,8 +45,8 @@ void rf_selector_free(struct rf_selector *selector)
 }
 
 /* What the strokes can reach, in whole pixels of the coarsest level that is needed. */
-static int choose_area(const struct rf_pyramid *pyramid,
-                       const struct rf_stroke *strokes, int count, struct rf_area *area)
+static int choose_area(const struct rf_pyramid *pyramid, const struct rf_stroke *strokes, int count,
+                       struct rf_area *area)
 {
     const int32_t w = pyramid->width[0], h = pyramid->height[0];
     int32_t x0 = w, y0 = h, x1 = 0, y1 = 0;
@@ -60,8 +59,7 @@ static int choose_area(const struct rf_pyramid *pyramid,
         if (s->kind == REFOCUS_STROKE_LESS || strokes[i].count == 0)
             continue;
         /* A quarter more, to see what lies around. */
-        one = rf_brush_area(&strokes[i], (double)s->radius * (double)s->reach * 1.25, w,
-                            h);
+        one = rf_brush_area(&strokes[i], (double)s->radius * (double)s->reach * 1.25, w, h);
         x0 = one.x < x0 ? one.x : x0;
         y0 = one.y < y0 ? one.y : y0;
         x1 = one.x + one.width > x1 ? one.x + one.width : x1;
@@ -79,8 +77,8 @@ static int choose_area(const struct rf_pyramid *pyramid,
 
 /* What the strokes say of each pixel: certain ones, and scores by the distance. Where
  * two strokes are certain of a pixel the later one is right. */
-static void read_stroke(const struct rf_stroke *stroke, struct rf_grid *grid,
-                        int16_t *place, uint16_t *distance)
+static void read_stroke(const struct rf_stroke *stroke, struct rf_grid *grid, int16_t *place,
+                        uint16_t *distance)
 {
     const int64_t pixels = rf_area_pixels(grid->area);
     const bool less = stroke->stroke.kind == REFOCUS_STROKE_LESS;
@@ -94,8 +92,7 @@ static void read_stroke(const struct rf_stroke *stroke, struct rf_grid *grid,
             grid->state[i] = less ? RF_SEED : RF_SEED | RF_INSIDE;
         if (!less && d < reach) {
             const int32_t score =
-                d <= RF_RADIUS ? UNDER_BRUSH
-                               : FARTHEST * (d - RF_RADIUS) / (reach - RF_RADIUS + 1);
+                d <= RF_RADIUS ? UNDER_BRUSH : FARTHEST * (d - RF_RADIUS) / (reach - RF_RADIUS + 1);
             if (score > place[i])
                 place[i] = (int16_t)score;
         }
@@ -109,8 +106,7 @@ static int count_colours(const struct rf_grid *grid, const int16_t *place, bool 
 {
     enum { SURE = 4 };
     struct rf_likeness *const likeness = &selector->likeness;
-    struct rf_colour *const row =
-        rf_selector_scratch(selector, 6, grid->area.width, sizeof *row);
+    struct rf_colour *const row = rf_selector_scratch(selector, 6, grid->area.width, sizeof *row);
 
     if (!row)
         return REFOCUS_ERR_MEMORY;
@@ -118,16 +114,14 @@ static int count_colours(const struct rf_grid *grid, const int16_t *place, bool 
     for (int32_t y = 0; y < grid->area.height; y++) {
         const size_t at = (size_t)y * (size_t)grid->area.width;
 
-        rf_pyramid_row(pyramid, grid->level, grid->area.x, grid->area.y + y,
-                       grid->area.width, row);
+        rf_pyramid_row(pyramid, grid->level, grid->area.x, grid->area.y + y, grid->area.width, row);
         for (int32_t x = 0; x < grid->area.width; x++) {
             const uint8_t state = grid->state[at + (size_t)x];
             const int16_t score = place[at + (size_t)x];
             const int bin = rf_bin(row[x]);
 
             if (state & RF_SEED)
-                *(state & RF_INSIDE ? &likeness->object[bin]
-                                    : &likeness->outside[bin]) += SURE;
+                *(state & RF_INSIDE ? &likeness->object[bin] : &likeness->outside[bin]) += SURE;
             else if (first ? score == UNDER_BRUSH : state & RF_INSIDE)
                 likeness->object[bin]++;
             else if (!first || score < FARTHEST / 2)
@@ -159,16 +153,15 @@ static void close_reach(struct rf_area area, int16_t *place, int32_t *stack)
     for (int32_t i = 0; i < pixels; i++) {
         const int32_t x = i % w, y = i / w;
 
-        if (place[i] == OUT_OF_REACH &&
-            (x == 0 || y == 0 || x == w - 1 || y == h - 1)) {
+        if (place[i] == OUT_OF_REACH && (x == 0 || y == 0 || x == w - 1 || y == h - 1)) {
             place[i] = AROUND;
             stack[depth++] = i;
         }
     }
     while (depth > 0) {
         const int32_t at = stack[--depth], x = at % w, y = at / w;
-        const int32_t next[4] = {x > 0 ? at - 1 : at, x + 1 < w ? at + 1 : at,
-                                 y > 0 ? at - w : at, y + 1 < h ? at + w : at};
+        const int32_t next[4] = {x > 0 ? at - 1 : at, x + 1 < w ? at + 1 : at, y > 0 ? at - w : at,
+                                 y + 1 < h ? at + w : at};
 
         for (int i = 0; i < 4; i++) {
             if (place[next[i]] == OUT_OF_REACH) {
@@ -184,13 +177,12 @@ static void close_reach(struct rf_area area, int16_t *place, int32_t *stack)
 }
 
 static int select_coarse(struct rf_grid *grid, struct rf_selector *selector,
-                         const struct rf_pyramid *pyramid,
-                         const struct rf_stroke *strokes, int count)
+                         const struct rf_pyramid *pyramid, const struct rf_stroke *strokes,
+                         int count)
 {
     const int64_t pixels = rf_area_pixels(grid->area);
     int16_t *const place = rf_selector_scratch(selector, PLACE, pixels, sizeof *place);
-    uint16_t *const distance =
-        rf_selector_scratch(selector, DISTANCE, pixels, sizeof *distance);
+    uint16_t *const distance = rf_selector_scratch(selector, DISTANCE, pixels, sizeof *distance);
     int32_t *const stack = rf_selector_scratch(selector, STACK, pixels, sizeof *stack);
     int status = REFOCUS_OK;
 

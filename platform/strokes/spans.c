@@ -41,8 +41,7 @@ static int32_t run_end(const uint8_t *row, int32_t x, int32_t width, uint8_t val
 }
 
 /* The ends of runs of 1 in a row of zeros and ones; out may be NULL to count them. */
-static int64_t find_runs(const uint8_t *row, int32_t width, int32_t offset,
-                         int32_t *out)
+static int64_t find_runs(const uint8_t *row, int32_t width, int32_t offset, int32_t *out)
 {
     int64_t count = 0;
     int32_t x = 0;
@@ -66,16 +65,15 @@ int rf_spans_of_mask(struct rf_spans *spans, const uint8_t *mask, struct rf_area
     int status;
 
     for (int32_t y = 0; y < area.height; y++)
-        numbers +=
-            find_runs(mask + (size_t)y * (size_t)area.width, area.width, 0, NULL);
+        numbers += find_runs(mask + (size_t)y * (size_t)area.width, area.width, 0, NULL);
     status = take_memory(spans, area.y, area.height, numbers);
     if (status != REFOCUS_OK)
         return status;
     spans->first[0] = 0;
     for (int32_t y = 0; y < area.height; y++)
         spans->first[y + 1] =
-            spans->first[y] + find_runs(mask + (size_t)y * (size_t)area.width,
-                                        area.width, area.x, spans->x + spans->first[y]);
+            spans->first[y] + find_runs(mask + (size_t)y * (size_t)area.width, area.width, area.x,
+                                        spans->x + spans->first[y]);
     return REFOCUS_OK;
 }
 
@@ -126,8 +124,8 @@ static int32_t most(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-bool rf_spans_differ(const struct rf_spans *a, const struct rf_spans *b, int32_t y,
-                     int32_t *from, int32_t *to)
+bool rf_spans_differ(const struct rf_spans *a, const struct rf_spans *b, int32_t y, int32_t *from,
+                     int32_t *to)
 {
     const int32_t *p = NULL, *q = NULL;
     const int64_t m = rf_spans_row(a, y, &p), n = rf_spans_row(b, y, &q);

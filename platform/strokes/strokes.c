@@ -64,12 +64,11 @@ static bool selects(uint32_t kind)
 
 static bool stroke_is_valid(const struct refocus_stroke *stroke)
 {
-    return stroke && stroke->struct_size >= sizeof *stroke &&
-           stroke->kind <= REFOCUS_STROKE_FILL && fill_is_valid(&stroke->fill) &&
+    return stroke && stroke->struct_size >= sizeof *stroke && stroke->kind <= REFOCUS_STROKE_FILL &&
+           fill_is_valid(&stroke->fill) &&
            (!has_points(stroke->kind) || in_range(stroke->radius, (float)0.5, 4096)) &&
            (!selects(stroke->kind) || in_range(stroke->reach, 1, 64)) &&
-           (stroke->kind != REFOCUS_STROKE_FILL ||
-            stroke->fill.kind != REFOCUS_FILL_NONE);
+           (stroke->kind != REFOCUS_STROKE_FILL || stroke->fill.kind != REFOCUS_FILL_NONE);
 }
 
 static struct layer *last_layer(const struct refocus_strokes *strokes)
@@ -83,15 +82,14 @@ static const struct refocus_fill *fill_of(const struct refocus_strokes *strokes,
 {
     int i = layer->first + layer->count - 1;
 
-    while (i > layer->first &&
-           strokes->strokes[i].stroke.fill.kind == REFOCUS_FILL_NONE)
+    while (i > layer->first && strokes->strokes[i].stroke.fill.kind == REFOCUS_FILL_NONE)
         i--;
     return &strokes->strokes[i].stroke.fill;
 }
 
 /* The topmost layer that hides all below it between two columns, or 0. */
-static int lowest_visible(const struct refocus_strokes *strokes, int32_t y,
-                          int32_t from, int32_t to)
+static int lowest_visible(const struct refocus_strokes *strokes, int32_t y, int32_t from,
+                          int32_t to)
 {
     int i = strokes->layer_count - 1;
 
@@ -99,16 +97,14 @@ static int lowest_visible(const struct refocus_strokes *strokes, int32_t y,
         const int32_t *x = NULL;
 
         if (fill_of(strokes, &strokes->layers[i])->kind != REFOCUS_FILL_NONE &&
-            rf_spans_row(&strokes->layers[i].spans, y, &x) == 2 && x[0] <= from &&
-            x[1] >= to)
+            rf_spans_row(&strokes->layers[i].spans, y, &x) == 2 && x[0] <= from && x[1] >= to)
             break;
     }
     return i > 0 ? i : 0;
 }
 
 /* One row from x to the pixel before end, from the bottom up. */
-static void paint_row(struct refocus_strokes *strokes, int32_t y, int32_t from,
-                      int32_t to)
+static void paint_row(struct refocus_strokes *strokes, int32_t y, int32_t from, int32_t to)
 {
     const size_t width = (size_t)strokes->pyramid.width[0];
     uint16_t *const row = strokes->disparity + (size_t)y * width;
@@ -148,8 +144,7 @@ static void widen(struct bounds *bounds, int32_t y, int32_t from, int32_t to)
 /* Paint anew where two layers cover different pixels, or all that they cover when the
  * fill is another. */
 static void repaint(struct refocus_strokes *strokes, const struct rf_spans *before,
-                    const struct rf_spans *after, bool all,
-                    struct refocus_changed *changed)
+                    const struct rf_spans *after, bool all, struct refocus_changed *changed)
 {
     const int32_t height = strokes->pyramid.height[0];
     struct bounds bounds = {INT32_MAX, INT32_MAX, 0, 0};
@@ -194,15 +189,13 @@ static int cover_brush(struct refocus_strokes *strokes, const struct rf_stroke *
 }
 
 /* What the strokes of the layer cover. */
-static int cover(struct refocus_strokes *strokes, const struct layer *layer,
-                 struct rf_spans *spans)
+static int cover(struct refocus_strokes *strokes, const struct layer *layer, struct rf_spans *spans)
 {
     const struct rf_stroke *const first = &strokes->strokes[layer->first];
 
     memset(spans, 0, sizeof *spans);
     if (first->stroke.kind == REFOCUS_STROKE_ALL)
-        return rf_spans_of_all(spans, strokes->pyramid.width[0],
-                               strokes->pyramid.height[0]);
+        return rf_spans_of_all(spans, strokes->pyramid.width[0], strokes->pyramid.height[0]);
     if (first->count == 0)
         return REFOCUS_OK;
     if (first->stroke.kind == REFOCUS_STROKE_BRUSH)
@@ -211,8 +204,7 @@ static int cover(struct refocus_strokes *strokes, const struct layer *layer,
 }
 
 /* After the last layer's strokes have changed: cover, and paint what is different. */
-static int update(struct refocus_strokes *strokes, bool all,
-                  struct refocus_changed *changed)
+static int update(struct refocus_strokes *strokes, bool all, struct refocus_changed *changed)
 {
     struct layer *const layer = last_layer(strokes);
     struct rf_spans spans, before = layer->spans;
@@ -258,8 +250,7 @@ static void drop_stroke(struct refocus_strokes *strokes)
     }
 }
 
-int refocus_strokes_begin(struct refocus_strokes *strokes,
-                          const struct refocus_stroke *stroke,
+int refocus_strokes_begin(struct refocus_strokes *strokes, const struct refocus_stroke *stroke,
                           struct refocus_changed *changed)
 {
     const struct layer *const last = strokes ? last_layer(strokes) : NULL;
@@ -279,8 +270,8 @@ int refocus_strokes_begin(struct refocus_strokes *strokes,
     status = reserve((void **)&strokes->strokes, &strokes->room, strokes->count + 1,
                      sizeof *strokes->strokes);
     if (status == REFOCUS_OK)
-        status = reserve((void **)&strokes->layers, &strokes->layer_room,
-                         strokes->layer_count + 1, sizeof *strokes->layers);
+        status = reserve((void **)&strokes->layers, &strokes->layer_room, strokes->layer_count + 1,
+                         sizeof *strokes->layers);
     if (status != REFOCUS_OK)
         return status;
     if (begins_layer(stroke->kind)) {
@@ -298,15 +289,14 @@ int refocus_strokes_begin(struct refocus_strokes *strokes,
         status = update(strokes, false, changed);
     else if (!begins_layer(stroke->kind) && stroke->fill.kind != REFOCUS_FILL_NONE &&
              !strokes->held)
-        repaint(strokes, &last_layer(strokes)->spans, &last_layer(strokes)->spans, true,
-                changed);
+        repaint(strokes, &last_layer(strokes)->spans, &last_layer(strokes)->spans, true, changed);
     if (status != REFOCUS_OK)
         drop_stroke(strokes);
     return status;
 }
 
-int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points,
-                           int count, struct refocus_changed *changed)
+int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points, int count,
+                           struct refocus_changed *changed)
 {
     struct rf_stroke *last;
     int status;
@@ -315,24 +305,20 @@ int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points,
         memset(changed, 0, sizeof *changed);
     if (!strokes || !points || count < 1)
         return REFOCUS_ERR_ARGUMENT;
-    if (strokes->count == 0 ||
-        !has_points(strokes->strokes[strokes->count - 1].stroke.kind))
+    if (strokes->count == 0 || !has_points(strokes->strokes[strokes->count - 1].stroke.kind))
         return REFOCUS_ERR_STATE;
     if (count > REFOCUS_MAX_STROKE_POINTS - strokes->points)
         return REFOCUS_ERR_SIZE;
     for (int i = 0; i < count; i++)
-        if (!in_range(points[2 * i], (float)-0.5,
-                      (float)strokes->pyramid.width[0] - (float)0.5) ||
+        if (!in_range(points[2 * i], (float)-0.5, (float)strokes->pyramid.width[0] - (float)0.5) ||
             !in_range(points[2 * i + 1], (float)-0.5,
                       (float)strokes->pyramid.height[0] - (float)0.5))
             return REFOCUS_ERR_ARGUMENT;
     last = &strokes->strokes[strokes->count - 1];
-    status = reserve((void **)&last->points, &last->room, last->count + count,
-                     2 * sizeof *points);
+    status = reserve((void **)&last->points, &last->room, last->count + count, 2 * sizeof *points);
     if (status != REFOCUS_OK)
         return status;
-    memcpy(last->points + 2 * (size_t)last->count, points,
-           2 * (size_t)count * sizeof *points);
+    memcpy(last->points + 2 * (size_t)last->count, points, 2 * (size_t)count * sizeof *points);
     last->count += count;
     strokes->points += count;
     status = update(strokes, false, changed);
@@ -343,8 +329,7 @@ int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points,
     return status;
 }
 
-int refocus_strokes_undo(struct refocus_strokes *strokes,
-                         struct refocus_changed *changed)
+int refocus_strokes_undo(struct refocus_strokes *strokes, struct refocus_changed *changed)
 {
     struct rf_stroke *last;
     struct layer *layer;
@@ -422,8 +407,7 @@ int rf_strokes_release(struct refocus_strokes *strokes)
     return REFOCUS_OK;
 }
 
-void rf_strokes_return(struct refocus_strokes *strokes, int count,
-                       struct rf_spans *kept)
+void rf_strokes_return(struct refocus_strokes *strokes, int count, struct rf_spans *kept)
 {
     strokes->held = false;
     while (strokes->count > count)
@@ -437,18 +421,15 @@ void rf_strokes_return(struct refocus_strokes *strokes, int count,
     paint_all(strokes);
 }
 
-void rf_strokes_size(const struct refocus_strokes *strokes, int32_t *width,
-                     int32_t *height)
+void rf_strokes_size(const struct refocus_strokes *strokes, int32_t *width, int32_t *height)
 {
     *width = strokes->pyramid.width[0];
     *height = strokes->pyramid.height[0];
 }
 
-static int take_base(struct refocus_strokes *strokes,
-                     const struct refocus_disparity *base)
+static int take_base(struct refocus_strokes *strokes, const struct refocus_disparity *base)
 {
-    const int32_t width = strokes->pyramid.width[0],
-                  height = strokes->pyramid.height[0];
+    const int32_t width = strokes->pyramid.width[0], height = strokes->pyramid.height[0];
     const size_t pixels = (size_t)width * (size_t)height;
 
     strokes->disparity = calloc(pixels, sizeof *strokes->disparity);
@@ -476,30 +457,26 @@ static bool is_stride(ptrdiff_t stride, ptrdiff_t bytes, int32_t rows)
 {
     const ptrdiff_t most = PTRDIFF_MAX / rows;
 
-    return stride >= -most && stride <= most &&
-           (rows == 1 || stride >= bytes || stride <= -bytes);
+    return stride >= -most && stride <= most && (rows == 1 || stride >= bytes || stride <= -bytes);
 }
 
 static bool is_photo(const struct refocus_image *photo)
 {
     return photo && refocus_format_bytes(photo->format) > 0 && photo->plane[0] &&
-           photo->width >= 1 && photo->width <= REFOCUS_MAX_SIDE &&
-           photo->height >= 1 && photo->height <= REFOCUS_MAX_SIDE &&
-           is_stride(photo->stride[0],
-                     refocus_plane_row_bytes(photo->format, 0, photo->width),
+           photo->width >= 1 && photo->width <= REFOCUS_MAX_SIDE && photo->height >= 1 &&
+           photo->height <= REFOCUS_MAX_SIDE &&
+           is_stride(photo->stride[0], refocus_plane_row_bytes(photo->format, 0, photo->width),
                      photo->height);
 }
 
 static bool is_base(const struct refocus_disparity *base, const struct refocus_image *photo)
 {
-    return base->width == photo->width && base->height == photo->height &&
-           base->samples && (base->bits == 8 || base->bits == 16) &&
-           is_stride(base->stride, (ptrdiff_t)base->width * (base->bits / 8),
-                     base->height);
+    return base->width == photo->width && base->height == photo->height && base->samples &&
+           (base->bits == 8 || base->bits == 16) &&
+           is_stride(base->stride, (ptrdiff_t)base->width * (base->bits / 8), base->height);
 }
 
-int refocus_strokes_create(struct refocus_strokes **strokes,
-                           const struct refocus_image *photo,
+int refocus_strokes_create(struct refocus_strokes **strokes, const struct refocus_image *photo,
                            const struct refocus_disparity *base)
 {
     struct refocus_strokes *made;
@@ -566,26 +543,22 @@ const uint16_t *refocus_strokes_disparity(const struct refocus_strokes *strokes)
     return strokes ? strokes->disparity : NULL;
 }
 
-int refocus_strokes_selection(const struct refocus_strokes *strokes, uint8_t *mask,
-                              int width, int height, ptrdiff_t stride)
+int refocus_strokes_selection(const struct refocus_strokes *strokes, uint8_t *mask, int width,
+                              int height, ptrdiff_t stride)
 {
     const struct layer *const layer = strokes ? last_layer(strokes) : NULL;
 
-    if (!strokes || !mask || width < 1 || height < 1 ||
-        !is_stride(stride, width, height))
+    if (!strokes || !mask || width < 1 || height < 1 || !is_stride(stride, width, height))
         return REFOCUS_ERR_ARGUMENT;
     for (int y = 0; y < height; y++) {
-        const int64_t rows = strokes->pyramid.height[0],
-                      columns = strokes->pyramid.width[0];
-        const int32_t at =
-            (int32_t)((2 * (int64_t)y + 1) * rows / (2 * (int64_t)height));
+        const int64_t rows = strokes->pyramid.height[0], columns = strokes->pyramid.width[0];
+        const int32_t at = (int32_t)((2 * (int64_t)y + 1) * rows / (2 * (int64_t)height));
         const int32_t *ends = NULL;
         const int64_t n = layer ? rf_spans_row(&layer->spans, at, &ends) : 0;
         int64_t i = 0;
 
         for (int x = 0; x < width; x++) {
-            const int64_t column =
-                (2 * (int64_t)x + 1) * columns / (2 * (int64_t)width);
+            const int64_t column = (2 * (int64_t)x + 1) * columns / (2 * (int64_t)width);
 
             while (i < n && ends[i] <= column)
                 i++;

@@ -29,8 +29,7 @@ static int64_t bytes_per_line(const struct rf_v4l2 *device, int memory)
 {
     const struct v4l2_format *f = &device->v4l2_format;
 
-    return device->multi ? f->fmt.pix_mp.plane_fmt[memory].bytesperline
-                         : f->fmt.pix.bytesperline;
+    return device->multi ? f->fmt.pix_mp.plane_fmt[memory].bytesperline : f->fmt.pix.bytesperline;
 }
 
 uint64_t rf_v4l2_needed(const struct rf_v4l2 *device, int i)
@@ -43,8 +42,7 @@ uint64_t rf_v4l2_needed(const struct rf_v4l2 *device, int i)
         return UINT64_MAX;
     if (device->memories == 1)
         return rf_frame_bytes(device->format, stride, device->width, device->height);
-    return (uint64_t)stride *
-           (uint64_t)rf_plane_rows(device->format, i, device->height);
+    return (uint64_t)stride * (uint64_t)rf_plane_rows(device->format, i, device->height);
 }
 
 /* Map memory i of buffer n; 0 or an errno. */
@@ -74,8 +72,8 @@ static int map_memory(struct rf_v4l2 *device, int n, int i, const struct slot *s
         fd = buffer->dmabuf[i] = export.fd;
         offset = 0;
     }
-    memory = mmap(NULL, buffer->length[i], output ? PROT_READ | PROT_WRITE : PROT_READ,
-                  MAP_SHARED, fd, offset);
+    memory = mmap(NULL, buffer->length[i], output ? PROT_READ | PROT_WRITE : PROT_READ, MAP_SHARED,
+                  fd, offset);
     if (memory == MAP_FAILED)
         return errno;
     buffer->memory[i] = memory;
@@ -107,8 +105,7 @@ int rf_v4l2_map(struct rf_v4l2 *device, int count, bool export_dmabuf,
     error = rf_v4l2_ioctl(device->fd, VIDIOC_REQBUFS, &request);
     if (error)
         return rf_v4l2_fail(device, reason, error, "asking for buffers");
-    device->count =
-        request.count < RF_MOST_BUFFERS ? (int)request.count : RF_MOST_BUFFERS;
+    device->count = request.count < RF_MOST_BUFFERS ? (int)request.count : RF_MOST_BUFFERS;
     for (int n = 0; n < device->count; n++)
         for (int i = 0; i < 3; i++) {
             device->buffer[n].memory[i] = NULL;
@@ -126,8 +123,8 @@ int rf_v4l2_map(struct rf_v4l2 *device, int count, bool export_dmabuf,
                                device->path);
     if (!error)
         return rf_capture_fail_memory(reason);
-    return rf_v4l2_fail(device, reason, error, export_dmabuf ? "exporting its buffers"
-                                                             : "mapping its buffers");
+    return rf_v4l2_fail(device, reason, error,
+                        export_dmabuf ? "exporting its buffers" : "mapping its buffers");
 }
 
 void rf_v4l2_unmap(struct rf_v4l2 *device)
@@ -170,8 +167,7 @@ void rf_v4l2_lay_out(const struct rf_v4l2 *device, int n, const uint32_t offset[
     frame->flags = device->flags;
     frame->buffer = (uint32_t)n;
     if (device->memories == 1) {
-        rf_frame_lay_out(frame, buffer->memory[0] + offset[0],
-                         bytes_per_line(device, 0));
+        rf_frame_lay_out(frame, buffer->memory[0] + offset[0], bytes_per_line(device, 0));
         for (int i = 0; i < rf_format_planes(frame->format); i++)
             frame->dmabuf[i] = buffer->dmabuf[0];
         return;
@@ -230,9 +226,8 @@ void rf_v4l2_sync(const struct rf_v4l2_buffer *buffer, bool begin)
 {
     for (int i = 0; i < 3; i++)
         if (buffer->dmabuf[i] >= 0) {
-            struct dma_buf_sync sync = {
-                .flags = DMA_BUF_SYNC_READ |
-                         (begin ? DMA_BUF_SYNC_START : DMA_BUF_SYNC_END)};
+            struct dma_buf_sync sync = {.flags = DMA_BUF_SYNC_READ |
+                                                 (begin ? DMA_BUF_SYNC_START : DMA_BUF_SYNC_END)};
 
             rf_v4l2_ioctl(buffer->dmabuf[i], DMA_BUF_IOCTL_SYNC, &sync);
         }

@@ -94,13 +94,11 @@ static bool find_size(const struct rf_v4l2 *device, uint32_t fourcc, int *index,
 
     memset(&size, 0, sizeof size);
     size.pixel_format = fourcc;
-    for (; size.index < MOST_MODES &&
-           rf_v4l2_ioctl(device->fd, VIDIOC_ENUM_FRAMESIZES, &size) == 0;
+    for (; size.index < MOST_MODES && rf_v4l2_ioctl(device->fd, VIDIOC_ENUM_FRAMESIZES, &size) == 0;
          size.index++) {
         const bool discrete = size.type == V4L2_FRMSIZE_TYPE_DISCRETE;
         const uint32_t width = discrete ? size.discrete.width : size.stepwise.max_width;
-        const uint32_t height =
-            discrete ? size.discrete.height : size.stepwise.max_height;
+        const uint32_t height = discrete ? size.discrete.height : size.stepwise.max_height;
 
         if ((*index)-- == 0) {
             mode->format = rf_v4l2_format_of(fourcc);
@@ -120,8 +118,7 @@ static bool find_size(const struct rf_v4l2 *device, uint32_t fourcc, int *index,
     return false;
 }
 
-static int get_mode(struct refocus_source *source, int index,
-                    struct refocus_source_mode *mode)
+static int get_mode(struct refocus_source *source, int index, struct refocus_source_mode *mode)
 {
     const struct camera *camera = source->state;
     struct v4l2_fmtdesc format;
@@ -143,8 +140,7 @@ static bool offers(const struct rf_v4l2 *device, uint32_t fourcc)
 
     memset(&format, 0, sizeof format);
     format.type = device->type;
-    for (; format.index < MOST_MODES &&
-           rf_v4l2_ioctl(device->fd, VIDIOC_ENUM_FMT, &format) == 0;
+    for (; format.index < MOST_MODES && rf_v4l2_ioctl(device->fd, VIDIOC_ENUM_FMT, &format) == 0;
          format.index++)
         if (format.pixelformat == fourcc)
             return true;
@@ -154,16 +150,13 @@ static bool offers(const struct rf_v4l2 *device, uint32_t fourcc)
 /* Start ---------------------------------------------------------------------------- */
 
 /* What the node is set to, then what is cheap to convert, then depth. */
-static uint32_t choose_fourcc(const struct rf_v4l2 *device, uint32_t wanted,
-                              uint32_t present)
+static uint32_t choose_fourcc(const struct rf_v4l2 *device, uint32_t wanted, uint32_t present)
 {
-    static const uint32_t preferred[] = {REFOCUS_FRAME_NV12,   REFOCUS_FRAME_NV21,
-                                         REFOCUS_FRAME_YUV420, REFOCUS_FRAME_YUYV,
-                                         REFOCUS_FRAME_UYVY,   REFOCUS_FRAME_RGB24,
-                                         REFOCUS_FRAME_BGR24,  REFOCUS_FRAME_RGBX,
-                                         REFOCUS_FRAME_BGRX,   REFOCUS_FRAME_MJPEG,
-                                         REFOCUS_FRAME_Z16,    REFOCUS_FRAME_Y16,
-                                         REFOCUS_FRAME_GREY};
+    static const uint32_t preferred[] = {
+        REFOCUS_FRAME_NV12, REFOCUS_FRAME_NV21,  REFOCUS_FRAME_YUV420, REFOCUS_FRAME_YUYV,
+        REFOCUS_FRAME_UYVY, REFOCUS_FRAME_RGB24, REFOCUS_FRAME_BGR24,  REFOCUS_FRAME_RGBX,
+        REFOCUS_FRAME_BGRX, REFOCUS_FRAME_MJPEG, REFOCUS_FRAME_Z16,    REFOCUS_FRAME_Y16,
+        REFOCUS_FRAME_GREY};
     const uint32_t is = rf_v4l2_format_of(present);
     uint32_t fourcc;
 
@@ -235,22 +228,20 @@ static int choose_format(struct refocus_source *source, struct refocus_reason *r
     error = rf_v4l2_ioctl(device->fd, VIDIOC_G_FMT, &present);
     if (error)
         return rf_v4l2_fail(device, reason, error, "asking for the format");
-    fourcc =
-        device->multi ? present.fmt.pix_mp.pixelformat : present.fmt.pix.pixelformat;
+    fourcc = device->multi ? present.fmt.pix_mp.pixelformat : present.fmt.pix.pixelformat;
     width = device->multi ? present.fmt.pix_mp.width : present.fmt.pix.width;
     height = device->multi ? present.fmt.pix_mp.height : present.fmt.pix.height;
     fourcc = choose_fourcc(device, source->config.format, fourcc);
     if (fourcc == 0)
-        return rf_capture_fail(
-            reason, REFOCUS_ERR_UNSUPPORTED,
-            "%s: it has no %s; --list shows what it has", device->path,
-            source->config.format ? refocus_frame_format_name(source->config.format)
-                                  : "format that is known");
-    status = rf_v4l2_set_format(
-        device, fourcc, source->config.width ? source->config.width : (int)width,
-        source->config.height ? source->config.height : (int)height, reason);
-    if (status == REFOCUS_OK && source->config.format &&
-        device->format != source->config.format)
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "%s: it has no %s; --list shows what it has", device->path,
+                               source->config.format
+                                   ? refocus_frame_format_name(source->config.format)
+                                   : "format that is known");
+    status =
+        rf_v4l2_set_format(device, fourcc, source->config.width ? source->config.width : (int)width,
+                           source->config.height ? source->config.height : (int)height, reason);
+    if (status == REFOCUS_OK && source->config.format && device->format != source->config.format)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "%s: it gives %s where %s was asked for", device->path,
                                refocus_frame_format_name(device->format),
@@ -337,14 +328,12 @@ static void fill(struct camera *camera, const struct rf_v4l2_done *done,
 
     rf_v4l2_lay_out(device, done->index, cut ? none : done->offset, frame);
     if (device->format == REFOCUS_FRAME_MJPEG) {
-        frame->plane[0] =
-            device->buffer[done->index].memory[0] + (cut ? 0 : done->offset[0]);
+        frame->plane[0] = device->buffer[done->index].memory[0] + (cut ? 0 : done->offset[0]);
         frame->bytes = cut ? 0 : done->bytes[0] - done->offset[0];
     }
     if (cut || done->flags & V4L2_BUF_FLAG_ERROR)
         frame->flags |= REFOCUS_FRAME_CORRUPT;
-    if ((done->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) ==
-        V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC)
+    if ((done->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC)
         frame->flags |= REFOCUS_FRAME_MONOTONIC;
     frame->sequence = done->sequence;
     frame->timestamp_ns = done->timestamp_ns;
@@ -360,25 +349,22 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     int error, status;
 
     if (camera->failed)
-        return rf_capture_fail(reason, REFOCUS_ERR_IO,
-                               "%s: the driver takes its buffers no more",
+        return rf_capture_fail(reason, REFOCUS_ERR_IO, "%s: the driver takes its buffers no more",
                                device->path);
     for (;;) {
-        status =
-            rf_source_poll(source, device->fd, POLLIN | POLLPRI, deadline_ns, &events);
+        status = rf_source_poll(source, device->fd, POLLIN | POLLPRI, deadline_ns, &events);
         if (status != REFOCUS_OK)
             return status;
         if (events & POLLPRI && read_events(camera))
-            return rf_capture_fail(reason, REFOCUS_ERR_IO,
-                                   "%s: another signal is at its input", device->path);
+            return rf_capture_fail(reason, REFOCUS_ERR_IO, "%s: another signal is at its input",
+                                   device->path);
         error = rf_v4l2_dequeue(device, &done);
         if (error == 0)
             break;
         if (error == EAGAIN && !(events & (POLLERR | POLLHUP | POLLNVAL)))
             continue;
         if (error == EAGAIN && source->out)
-            return rf_capture_fail(reason, REFOCUS_ERR_STATE,
-                                   "every buffer is out; release one");
+            return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
         return rf_v4l2_fail(device, reason, error == EAGAIN ? EIO : error,
                             "taking a frame from the driver");
     }
@@ -438,17 +424,16 @@ static int set_control(struct refocus_source *source, const char *name, double v
     while (rf_v4l2_ioctl(camera->device.fd, VIDIOC_QUERYCTRL, &query) == 0) {
         plain_name(plain, sizeof plain, (const char *)query.name);
         if (strcmp(plain, name) == 0) {
-            struct v4l2_control control = {.id = query.id,
-                                           .value = (int32_t)lround(value)};
+            struct v4l2_control control = {.id = query.id, .value = (int32_t)lround(value)};
             const int error = rf_v4l2_ioctl(camera->device.fd, VIDIOC_S_CTRL, &control);
 
-            return error ? rf_v4l2_fail(&camera->device, reason, error, name)
-                         : REFOCUS_OK;
+            return error ? rf_v4l2_fail(&camera->device, reason, error, name) : REFOCUS_OK;
         }
         query.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
     }
-    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%s: it has no control "
-                                                         "'%.60s'",
+    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                           "%s: it has no control "
+                           "'%.60s'",
                            camera->device.path, name);
 }
 

@@ -13,8 +13,7 @@ struct output {
     int fresh; /* buffers that were never queued */
 };
 
-static int open_output(struct refocus_sink *sink, const char *rest,
-                       struct refocus_reason *reason)
+static int open_output(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
 {
     struct output *output = calloc(1, sizeof *output);
     int status;
@@ -53,8 +52,8 @@ static bool try_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int h
     if (!rf_can_encode(rf_v4l2_format_of(fourcc)))
         return false;
     *status = rf_v4l2_set_format(device, fourcc, width, height, reason);
-    return *status == REFOCUS_OK && rf_can_encode(device->format) &&
-           device->width == width && device->height == height;
+    return *status == REFOCUS_OK && rf_can_encode(device->format) && device->width == width &&
+           device->height == height;
 }
 
 /* That of the pictures themselves, else one with as many samples, else any of Y, U and
@@ -62,9 +61,8 @@ static bool try_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int h
 static int choose_yuv(struct rf_v4l2 *device, uint32_t format, int width, int height,
                       struct refocus_reason *reason)
 {
-    static const uint32_t formats[] = {REFOCUS_FRAME_NV12, REFOCUS_FRAME_YUV420,
-                                       REFOCUS_FRAME_NV21, REFOCUS_FRAME_YUYV,
-                                       REFOCUS_FRAME_UYVY};
+    static const uint32_t formats[] = {REFOCUS_FRAME_NV12, REFOCUS_FRAME_YUV420, REFOCUS_FRAME_NV21,
+                                       REFOCUS_FRAME_YUYV, REFOCUS_FRAME_UYVY};
     enum { OWN, AS_MANY, ANY };
     const uint32_t own = rf_frame_format_of(format);
     int status = REFOCUS_OK;
@@ -76,19 +74,17 @@ static int choose_yuv(struct rf_v4l2 *device, uint32_t format, int width, int he
                              : rf_same_samples(formats[i], own) ? AS_MANY
                                                                 : ANY;
 
-            for (int n = 0;
-                 rank == round && (fourcc = rf_v4l2_fourcc_of(formats[i], n)); n++)
+            for (int n = 0; rank == round && (fourcc = rf_v4l2_fourcc_of(formats[i], n)); n++)
                 if (try_format(device, fourcc, width, height, reason, &status) &&
                     device->format == formats[i])
                     return REFOCUS_OK;
         }
     if (status != REFOCUS_OK && status != REFOCUS_ERR_UNSUPPORTED)
         return status;
-    return rf_capture_fail(
-        reason, REFOCUS_ERR_UNSUPPORTED,
-        "%s: it takes no frames of Y, U and V of %dx%d; set its size or the "
-        "camera's",
-        device->path, width, height);
+    return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                           "%s: it takes no frames of Y, U and V of %dx%d; set its size or the "
+                           "camera's",
+                           device->path, width, height);
 }
 
 /* The format that the node is set to, if it is one of ours, else the first that
@@ -96,10 +92,9 @@ static int choose_yuv(struct rf_v4l2 *device, uint32_t format, int width, int he
 static int choose_format(struct rf_v4l2 *device, int width, int height,
                          struct refocus_reason *reason)
 {
-    static const uint32_t preferred[] = {REFOCUS_FRAME_YUYV,  REFOCUS_FRAME_NV12,
-                                         REFOCUS_FRAME_YUV420, REFOCUS_FRAME_UYVY,
-                                         REFOCUS_FRAME_RGB24, REFOCUS_FRAME_BGR24,
-                                         REFOCUS_FRAME_RGBX,  REFOCUS_FRAME_BGRX};
+    static const uint32_t preferred[] = {
+        REFOCUS_FRAME_YUYV,  REFOCUS_FRAME_NV12,  REFOCUS_FRAME_YUV420, REFOCUS_FRAME_UYVY,
+        REFOCUS_FRAME_RGB24, REFOCUS_FRAME_BGR24, REFOCUS_FRAME_RGBX,   REFOCUS_FRAME_BGRX};
     struct v4l2_format present;
     int status = REFOCUS_OK;
     uint32_t fourcc;
@@ -107,8 +102,8 @@ static int choose_format(struct rf_v4l2 *device, int width, int height,
     memset(&present, 0, sizeof present);
     present.type = device->type;
     if (rf_v4l2_ioctl(device->fd, VIDIOC_G_FMT, &present) == 0 &&
-        try_format(device, device->multi ? present.fmt.pix_mp.pixelformat
-                                         : present.fmt.pix.pixelformat,
+        try_format(device,
+                   device->multi ? present.fmt.pix_mp.pixelformat : present.fmt.pix.pixelformat,
                    width, height, reason, &status))
         return REFOCUS_OK;
     for (size_t i = 0; i < sizeof preferred / sizeof *preferred; i++)
@@ -173,8 +168,8 @@ static int take_buffer(struct output *output, int *index, struct refocus_reason 
         if (n > 0 && wait.revents & (POLLERR | POLLHUP))
             return rf_v4l2_fail(device, reason, EIO, "getting a buffer back");
         if (left <= 0)
-            return rf_capture_fail(reason, REFOCUS_ERR_TIMEOUT,
-                                   "%s: it took no frame for a second", device->path);
+            return rf_capture_fail(reason, REFOCUS_ERR_TIMEOUT, "%s: it took no frame for a second",
+                                   device->path);
     }
 }
 

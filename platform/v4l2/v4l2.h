@@ -14,10 +14,10 @@ struct rf_v4l2_buffer {
 struct rf_v4l2 {
     char path[64];
     int fd;
-    bool multi; /* the multi-planar API */
+    bool multi;    /* the multi-planar API */
     uint32_t type; /* enum v4l2_buf_type */
     struct v4l2_format v4l2_format;
-    uint32_t format; /* enum refocus_frame_format */
+    uint32_t format;             /* enum refocus_frame_format */
     int width, height, memories; /* memories of a buffer: 1 to 3 */
     uint32_t matrix, flags;      /* of struct refocus_frame */
     struct rf_v4l2_buffer buffer[RF_MOST_BUFFERS];

@@ -28,12 +28,11 @@ double rf_window_cpu_ms(void)
 
 void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause)
 {
-    const double now = (double)SDL_GetPerformanceCounter() * 1000 /
-                       (double)SDL_GetPerformanceFrequency();
+    const double now =
+        (double)SDL_GetPerformanceCounter() * 1000 / (double)SDL_GetPerformanceFrequency();
     struct rf_view_time *time;
 
-    if (request == 0 || w->report->count == RF_VIEW_TIMES ||
-        w->pending_count == RF_PENDING)
+    if (request == 0 || w->report->count == RF_VIEW_TIMES || w->pending_count == RF_PENDING)
         return;
     time = &w->report->times[w->report->count];
     /* Until they are answered the two hold the time of the question, below 0. */
@@ -84,8 +83,7 @@ void rf_window_fit(struct rf_window *w)
 
 void rf_window_zoom(struct rf_window *w, double factor, double x, double y)
 {
-    const double px = w->state.x + x / w->state.scale,
-                 py = w->state.y + y / w->state.scale;
+    const double px = w->state.x + x / w->state.scale, py = w->state.y + y / w->state.scale;
 
     w->state.scale = clamp(w->state.scale * factor, 1.0 / 64, 16);
     w->state.x = px - x / w->state.scale;
@@ -99,10 +97,9 @@ void rf_window_pan(struct rf_window *w, double dx, double dy)
 {
     const struct refocus_image *const photo = w->setup->session.photo;
 
-    w->state.x = clamp(w->state.x - dx / w->state.scale, -w->width / w->state.scale,
-                       photo->width);
-    w->state.y = clamp(w->state.y - dy / w->state.scale, -w->height / w->state.scale,
-                       photo->height);
+    w->state.x = clamp(w->state.x - dx / w->state.scale, -w->width / w->state.scale, photo->width);
+    w->state.y =
+        clamp(w->state.y - dy / w->state.scale, -w->height / w->state.scale, photo->height);
     w->fitted = false;
     w->redraw = true; /* what there is, at its new place, until the frame comes */
     rf_window_show(w, "zoom");
@@ -117,8 +114,7 @@ static void inside(const struct rf_window *w, double x, double y, float *px, flo
     *py = (float)clamp(photo_y(w, y), 0, photo->height - 1);
 }
 
-static void begin_stroke(struct rf_window *w, struct refocus_stroke *stroke,
-                         bool end_from_depth)
+static void begin_stroke(struct rf_window *w, struct refocus_stroke *stroke, bool end_from_depth)
 {
     w->state.selection = w->tool != RF_TOOL_FOCUS;
     rf_session_show(w->session, &w->state);
@@ -127,8 +123,8 @@ static void begin_stroke(struct rf_window *w, struct refocus_stroke *stroke,
 
 static struct refocus_stroke make_stroke(const struct rf_window *w, uint32_t kind)
 {
-    struct refocus_stroke stroke = refocus_stroke_default(
-        kind, (float)clamp(w->brush / w->state.scale, 0.5, 4096));
+    struct refocus_stroke stroke =
+        refocus_stroke_default(kind, (float)clamp(w->brush / w->state.scale, 0.5, 4096));
 
     if (kind != REFOCUS_STROKE_MORE && kind != REFOCUS_STROKE_LESS)
         stroke.fill.kind = REFOCUS_FILL_SOLID;
@@ -177,8 +173,7 @@ static void next_method(struct rf_window *w)
     static const uint32_t methods[] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
                                        REFOCUS_METHOD_JITTERED, REFOCUS_METHOD_BLUR};
     enum { COUNT = sizeof methods / sizeof *methods };
-    const uint32_t allowed =
-        w->setup->methods ? w->setup->methods : REFOCUS_METHODS_ALL;
+    const uint32_t allowed = w->setup->methods ? w->setup->methods : REFOCUS_METHODS_ALL;
     int from = 0;
 
     while (from < COUNT && methods[from] != w->state.method)

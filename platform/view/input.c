@@ -15,8 +15,7 @@ static const struct {
     {SDLK_a, RF_ACT_MORE, "a", "paint what belongs to the object too"},
     {SDLK_x, RF_ACT_LESS, "x", "paint what does not belong to it"},
     {SDLK_o, RF_ACT_BRUSH, "o", "paint exactly what the brush covers"},
-    {SDLK_g, RF_ACT_GRADIENT, "g",
-     "drag: a gradient, to the depth where the drag ends"},
+    {SDLK_g, RF_ACT_GRADIENT, "g", "drag: a gradient, to the depth where the drag ends"},
     {SDLK_l, RF_ACT_GROUND, "l", "a layer of the whole picture"},
     {SDLK_f, RF_ACT_FILL, "f", "fill the last layer anew"},
     {SDLK_PAGEUP, RF_ACT_NEARER, "page up", "fill with something nearer"},
@@ -38,11 +37,11 @@ static const struct {
     const char *label;
     enum rf_action action;
 } buttons[] = {
-    {"focus", RF_ACT_FOCUS},  {"paint", RF_ACT_PAINT},   {"more", RF_ACT_MORE},
-    {"less", RF_ACT_LESS},    {"ground", RF_ACT_GROUND}, {"slope", RF_ACT_GRADIENT},
-    {"fill", RF_ACT_FILL},    {"far", RF_ACT_FARTHER},   {"near", RF_ACT_NEARER},
-    {"undo", RF_ACT_UNDO},    {"method", RF_ACT_METHOD}, {"depth", RF_ACT_DEPTH},
-    {"peak", RF_ACT_PEAKING}, {"before", RF_ACT_BEFORE}, {"set", RF_ACT_SETTINGS},
+    {"focus", RF_ACT_FOCUS},       {"paint", RF_ACT_PAINT},   {"more", RF_ACT_MORE},
+    {"less", RF_ACT_LESS},         {"ground", RF_ACT_GROUND}, {"slope", RF_ACT_GRADIENT},
+    {"fill", RF_ACT_FILL},         {"far", RF_ACT_FARTHER},   {"near", RF_ACT_NEARER},
+    {"undo", RF_ACT_UNDO},         {"method", RF_ACT_METHOD}, {"depth", RF_ACT_DEPTH},
+    {"peak", RF_ACT_PEAKING},      {"before", RF_ACT_BEFORE}, {"set", RF_ACT_SETTINGS},
     {"save", RF_ACT_SAVE_PICTURE},
 };
 enum { KEYS = sizeof keys / sizeof *keys, BUTTONS = sizeof buttons / sizeof *buttons };
@@ -61,16 +60,15 @@ int rf_window_buttons(const struct rf_window *w)
 }
 
 /* Two rows where one would be too narrow for fingers. */
-SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label,
-                          bool *on)
+SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label, bool *on)
 {
     const int rows = w->width < 60 * BUTTONS ? 2 : 1;
     const int columns = (BUTTONS + rows - 1) / rows;
     const int height = (int)(36 * w->density);
     const int row = index / columns, column = index % columns;
-    const SDL_Rect place = {
-        column * w->width / columns, w->height - (rows - row) * height,
-        (column + 1) * w->width / columns - column * w->width / columns, height};
+    const SDL_Rect place = {column * w->width / columns, w->height - (rows - row) * height,
+                            (column + 1) * w->width / columns - column * w->width / columns,
+                            height};
     const enum rf_action action = buttons[index].action;
 
     *label = buttons[index].label;

@@ -44,8 +44,7 @@ void rf_reduce_photo(const struct refocus_image *photo, int n, uint8_t *to)
     }
 }
 
-void rf_reduce_disparity(const uint16_t *disparity, int width, int height, int n,
-                         uint16_t *to)
+void rf_reduce_disparity(const uint16_t *disparity, int width, int height, int n, uint16_t *to)
 {
     for (int y = 0; y < height; y += n) {
         const uint16_t *const row =

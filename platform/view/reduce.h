@@ -11,7 +11,6 @@ void rf_reduce_photo(const struct refocus_image *photo, int n, uint8_t *to);
 
 /* The disparity in the middle of each square of a part of the reduced map: no two are
  * mixed. */
-void rf_reduce_disparity(const uint16_t *disparity, int width, int height, int n,
-                         uint16_t *to);
+void rf_reduce_disparity(const uint16_t *disparity, int width, int height, int n, uint16_t *to);
 
 #endif

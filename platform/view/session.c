@@ -19,8 +19,7 @@ static int take_memory(struct rf_session *s)
     s->selection = malloc(small);
     s->small_disparity = malloc(2 * small);
     s->full_out = malloc(3 * (size_t)pixels);
-    if (!s->small_photo || !s->small_out || !s->selection || !s->small_disparity ||
-        !s->full_out)
+    if (!s->small_photo || !s->small_out || !s->selection || !s->small_disparity || !s->full_out)
         return REFOCUS_ERR_MEMORY;
     if (s->strokes)
         return REFOCUS_OK;
@@ -39,8 +38,7 @@ int rf_session_create(struct rf_session **session, const struct rf_session_setup
     s->setup = *setup;
     s->strokes = setup->strokes;
     s->reduction = 1;
-    while ((int64_t)(photo->width / s->reduction) * (photo->height / s->reduction) >
-           PREVIEW_PIXELS)
+    while ((int64_t)(photo->width / s->reduction) * (photo->height / s->reduction) > PREVIEW_PIXELS)
         s->reduction++;
     s->width = (photo->width + s->reduction - 1) / s->reduction;
     s->height = (photo->height + s->reduction - 1) / s->reduction;

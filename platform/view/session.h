@@ -14,18 +14,17 @@ enum rf_view_mode { RF_VIEW_RESULT, RF_VIEW_BEFORE, RF_VIEW_DEPTH, RF_VIEW_MODES
 
 /* All that a picture depends on beside the photo and its depth. */
 struct rf_view_state {
-    float focus;        /* df; where focus_tap is set, what was found there */
-    uint64_t focus_tap; /* 0: focus holds; else the number of the tap at tap_x, tap_y */
+    float focus;         /* df; where focus_tap is set, what was found there */
+    uint64_t focus_tap;  /* 0: focus holds; else the number of the tap at tap_x, tap_y */
     double tap_x, tap_y; /* pixel of the photo */
     float blur;          /* K in pixels of the photo */
     uint32_t method;     /* enum refocus_method */
     uint32_t mode;       /* enum rf_view_mode */
-    bool hold;      /* quick pictures only, as long as something is being dragged */
-    bool peaking;   /* mark what is sharp */
-    bool selection; /* mark what the last layer of the painting covers */
-    double x, y,
-        scale; /* photo pixel at the window's corner; window pixels a photo pixel */
-    int width, height; /* of the window, 1 to 16384 */
+    bool hold;           /* quick pictures only, as long as something is being dragged */
+    bool peaking;        /* mark what is sharp */
+    bool selection;      /* mark what the last layer of the painting covers */
+    double x, y, scale;  /* photo pixel at the window's corner; window pixels a photo pixel */
+    int width, height;   /* of the window, 1 to 16384 */
 };
 
 /* A picture for the window: 0xffRRGGBB, packed. */
@@ -71,15 +70,14 @@ struct rf_session_setup {
 };
 
 /* REFOCUS_OK, REFOCUS_ERR_MEMORY, REFOCUS_ERR_THREAD, REFOCUS_ERR_SIZE. */
-int rf_session_create(struct rf_session **session,
-                      const struct rf_session_setup *setup);
+int rf_session_create(struct rf_session **session, const struct rf_session_setup *setup);
 void rf_session_destroy(struct rf_session **session);
 
 /* These return the number of the request, which frames answer; 0 = no memory for it. A
  * newer request replaces one that is not done. */
 uint64_t rf_session_show(struct rf_session *session, const struct rf_view_state *state);
-uint64_t rf_session_begin(struct rf_session *session,
-                          const struct refocus_stroke *stroke, bool end_from_depth);
+uint64_t rf_session_begin(struct rf_session *session, const struct refocus_stroke *stroke,
+                          bool end_from_depth);
 uint64_t rf_session_extend(struct rf_session *session, float x, float y);
 uint64_t rf_session_undo(struct rf_session *session);
 uint64_t rf_session_save(struct rf_session *session, uint32_t what);

@@ -23,9 +23,9 @@ static bool is_outside(double place, int size)
 
 /* What the columns of the window stand for, worked out once. */
 struct columns {
-    uint32_t *sums; /* 3 for each column */
-    int32_t *edge; /* the source pixel that each begins with, and that after the last */
-    int32_t *left; /* the source pixel left of its middle, */
+    uint32_t *sums;    /* 3 for each column */
+    int32_t *edge;     /* the source pixel that each begins with, and that after the last */
+    int32_t *left;     /* the source pixel left of its middle, */
     int32_t *across;   /* and how far right of that one it is, of 256 */
     int32_t *nearest;  /* pixel of the photo */
     uint32_t *wide[2]; /* source rows brought to the window's width, */
@@ -33,8 +33,7 @@ struct columns {
 };
 
 /* Pixels of the source before which column or row `pixel` of the window begins. */
-static int source_edge(const struct rf_show *show, double corner, double scale,
-                       int pixel, int size)
+static int source_edge(const struct rf_show *show, double corner, double scale, int pixel, int size)
 {
     return clamp((corner + pixel / scale) / show->reduction, 0, size);
 }
@@ -65,8 +64,8 @@ static void find_columns(const struct rf_show *show, const struct rf_view_state 
 }
 
 /* A row as means of whole source pixels, where the window is smaller. */
-static void draw_mean(const struct rf_show *show, const struct rf_view_state *state,
-                      int row, uint32_t *out, const struct columns *columns)
+static void draw_mean(const struct rf_show *show, const struct rf_view_state *state, int row,
+                      uint32_t *out, const struct columns *columns)
 {
     const int w = state->width;
     const int32_t *const edge = columns->edge;
@@ -96,17 +95,14 @@ static void draw_mean(const struct rf_show *show, const struct rf_view_state *st
         const int wide = edge[i + 1] > edge[i] ? edge[i + 1] - edge[i] : 1;
         const uint32_t n = (uint32_t)((bottom - top) * wide);
 
-        out[i] =
-            (sums[3 * i] / n) << 16 | (sums[3 * i + 1] / n) << 8 | sums[3 * i + 2] / n;
+        out[i] = (sums[3 * i] / n) << 16 | (sums[3 * i + 1] / n) << 8 | sums[3 * i + 2] / n;
     }
 }
 
 static uint32_t mix(uint32_t a, uint32_t b, uint32_t part_q8)
 {
-    const uint32_t rb =
-        ((a & 0xff00ff) * (256 - part_q8) + (b & 0xff00ff) * part_q8) >> 8;
-    const uint32_t g =
-        ((a & 0x00ff00) * (256 - part_q8) + (b & 0x00ff00) * part_q8) >> 8;
+    const uint32_t rb = ((a & 0xff00ff) * (256 - part_q8) + (b & 0xff00ff) * part_q8) >> 8;
+    const uint32_t g = ((a & 0x00ff00) * (256 - part_q8) + (b & 0x00ff00) * part_q8) >> 8;
 
     return (rb & 0xff00ff) | (g & 0x00ff00);
 }
@@ -117,8 +113,7 @@ static uint32_t pixel_of(const uint8_t *p)
 }
 
 /* A source row, between its pixels, at the window's width; kept for the next row. */
-static const uint32_t *widen(const struct rf_show *show, int width, int y,
-                             struct columns *columns)
+static const uint32_t *widen(const struct rf_show *show, int width, int y, struct columns *columns)
 {
     const uint8_t *const from = show->rgb + 3 * (size_t)y * (size_t)show->width;
     uint32_t *const wide = columns->wide[y & 1];
@@ -131,18 +126,16 @@ static const uint32_t *widen(const struct rf_show *show, int width, int y,
         const int left = 3 * (at > 0 ? at : 0);
         const int right = 3 * (at + 1 < show->width ? at + 1 : at);
 
-        wide[i] = mix(pixel_of(from + left), pixel_of(from + right),
-                      (uint32_t)columns->across[i]);
+        wide[i] = mix(pixel_of(from + left), pixel_of(from + right), (uint32_t)columns->across[i]);
     }
     return wide;
 }
 
 /* A row between the source's pixels, where the window is as large or larger. */
-static void draw_between(const struct rf_show *show, const struct rf_view_state *state,
-                         int row, uint32_t *out, struct columns *columns)
+static void draw_between(const struct rf_show *show, const struct rf_view_state *state, int row,
+                         uint32_t *out, struct columns *columns)
 {
-    const double v =
-        (photo_place(state->y, state->scale, row) + 0.5) / show->reduction - 0.5;
+    const double v = (photo_place(state->y, state->scale, row) + 0.5) / show->reduction - 0.5;
     const int top = clamp(floor(v), 0, show->height - 1);
     const int bottom = clamp(floor(v) + 1, 0, show->height - 1);
     const uint32_t down = (uint32_t)clamp((v - floor(v)) * 256, 0, 255);
@@ -153,17 +146,17 @@ static void draw_between(const struct rf_show *show, const struct rf_view_state 
         out[i] = mix(a[i], b[i], down);
 }
 
-static const uint16_t *depth_row(const struct rf_show *show,
-                                 const struct rf_view_state *state, int row)
+static const uint16_t *depth_row(const struct rf_show *show, const struct rf_view_state *state,
+                                 int row)
 {
-    const int y = clamp(floor(photo_place(state->y, state->scale, row) + 0.5), 0,
-                        show->photo_height - 1);
+    const int y =
+        clamp(floor(photo_place(state->y, state->scale, row) + 0.5), 0, show->photo_height - 1);
 
     return show->disparity + (size_t)y * (size_t)show->photo_width;
 }
 
-static void draw_depth(const struct rf_show *show, const struct rf_view_state *state,
-                       int row, uint32_t *out, const struct columns *columns)
+static void draw_depth(const struct rf_show *show, const struct rf_view_state *state, int row,
+                       uint32_t *out, const struct columns *columns)
 {
     const uint16_t *const from = depth_row(show, state, row);
 
@@ -171,16 +164,14 @@ static void draw_depth(const struct rf_show *show, const struct rf_view_state *s
         out[i] = (uint32_t)(from[columns->nearest[i]] >> 8) * 0x010101;
 }
 
-static void mark_selection(const struct rf_show *show,
-                           const struct rf_view_state *state, int row, uint32_t *out,
-                           const struct columns *columns)
+static void mark_selection(const struct rf_show *show, const struct rf_view_state *state, int row,
+                           uint32_t *out, const struct columns *columns)
 {
     enum { TINT = 0xff7010 };
     const int n = show->selection_reduction;
-    const int y = clamp((photo_place(state->y, state->scale, row) + 0.5) / n, 0,
-                        show->selection_height - 1);
-    const uint8_t *const from =
-        show->selection + (size_t)y * (size_t)show->selection_width;
+    const int y =
+        clamp((photo_place(state->y, state->scale, row) + 0.5) / n, 0, show->selection_height - 1);
+    const uint8_t *const from = show->selection + (size_t)y * (size_t)show->selection_width;
 
     for (int i = 0; i < state->width; i++)
         if (from[columns->nearest[i] / n])
@@ -194,9 +185,8 @@ static int luma(uint32_t pixel)
 
 /* Edges of the picture where the lens blurs by less than a pixel of the window, or of
  * the photo. below: the next row, or the same. */
-static void mark_sharp(const struct rf_show *show, const struct rf_view_state *state,
-                       int row, uint32_t *out, const uint32_t *below,
-                       const struct columns *columns)
+static void mark_sharp(const struct rf_show *show, const struct rf_view_state *state, int row,
+                       uint32_t *out, const uint32_t *below, const struct columns *columns)
 {
     enum { EDGE = 20, TINT = 0x20ff40 };
     const double pixel = state->scale < 1 ? 1 / state->scale : 1;
@@ -212,22 +202,20 @@ static void mark_sharp(const struct rf_show *show, const struct rf_view_state *s
     }
 }
 
-static void blank_outside(const struct rf_show *show, const struct rf_view_state *state,
-                          int row, uint32_t *out)
+static void blank_outside(const struct rf_show *show, const struct rf_view_state *state, int row,
+                          uint32_t *out)
 {
-    const bool all =
-        is_outside(photo_place(state->y, state->scale, row), show->photo_height);
+    const bool all = is_outside(photo_place(state->y, state->scale, row), show->photo_height);
 
     for (int i = 0; i < state->width; i++) {
-        if (all ||
-            is_outside(photo_place(state->x, state->scale, i), show->photo_width))
+        if (all || is_outside(photo_place(state->x, state->scale, i), show->photo_width))
             out[i] = BACKGROUND;
         out[i] |= (uint32_t)ALPHA;
     }
 }
 
-void rf_show(const struct rf_show *show, const struct rf_view_state *state,
-             uint32_t *pixels, uint32_t *scratch)
+void rf_show(const struct rf_show *show, const struct rf_view_state *state, uint32_t *pixels,
+             uint32_t *scratch)
 {
     const bool smaller = state->scale * show->reduction < 1;
     struct columns columns;
@@ -247,8 +235,8 @@ void rf_show(const struct rf_show *show, const struct rf_view_state *state,
         uint32_t *const out = pixels + (size_t)row * (size_t)state->width;
 
         if (state->peaking)
-            mark_sharp(show, state, row, out,
-                       row + 1 < state->height ? out + state->width : out, &columns);
+            mark_sharp(show, state, row, out, row + 1 < state->height ? out + state->width : out,
+                       &columns);
         if (state->selection && show->selection)
             mark_selection(show, state, row, out, &columns);
         blank_outside(show, state, row, out);

@@ -20,7 +20,7 @@ struct rf_show {
 /* Draw state's part of the photo into state->width x state->height pixels. scratch:
  * RF_SHOW_SCRATCH numbers a column, and as many again. */
 enum { RF_SHOW_SCRATCH = 10 };
-void rf_show(const struct rf_show *show, const struct rf_view_state *state,
-             uint32_t *pixels, uint32_t *scratch);
+void rf_show(const struct rf_show *show, const struct rf_view_state *state, uint32_t *pixels,
+             uint32_t *scratch);
 
 #endif

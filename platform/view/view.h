@@ -17,9 +17,9 @@ struct rf_view_setup {
     struct rf_session_setup session; /* all but notify, which is the window's */
     struct rf_view_state state;      /* focus, blur and method to begin with */
     const char *title;               /* UTF-8 */
-    const char *settings; /* lines that tell what else the picture is made by; may be ""
-                             or NULL */
-    uint32_t methods; /* REFOCUS_METHOD_BIT() of those to choose from, or-ed; 0 = all */
+    const char *settings;            /* lines that tell what else the picture is made by; may be ""
+                                        or NULL */
+    uint32_t methods;  /* REFOCUS_METHOD_BIT() of those to choose from, or-ed; 0 = all */
     int width, height; /* of the window; 0 = as large as the photo asks for */
     bool fullscreen;
     bool (*stop)(void *user); /* polled: whether to end; may be NULL */
@@ -46,8 +46,8 @@ struct rf_view_report {
 
 /* Show the window until it is closed. Returns REFOCUS_OK or a status, with words in
  * reason (256 bytes). To be called from the main thread. */
-RF_VIEW_CALL int rf_view_run(const struct rf_view_setup *setup,
-                             struct rf_view_report *report, char *reason);
+RF_VIEW_CALL int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report,
+                             char *reason);
 
 /* Keys and what they do, two of each line; NULL ends them. */
 const char *rf_view_key(int index, const char **what);

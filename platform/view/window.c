@@ -16,8 +16,7 @@ static void notify(void *user)
 
 static double now_ms(void)
 {
-    return (double)SDL_GetPerformanceCounter() * 1000 /
-           (double)SDL_GetPerformanceFrequency();
+    return (double)SDL_GetPerformanceCounter() * 1000 / (double)SDL_GetPerformanceFrequency();
 }
 
 static int fail(char *reason, const char *what)
@@ -56,8 +55,8 @@ static int open_window(struct rf_window *w, char *reason)
     if (SDL_Init(SDL_INIT_VIDEO) != 0)
         return fail(reason, "no display can be opened");
     choose_size(w->setup, &width, &height);
-    w->window = SDL_CreateWindow(w->setup->title, SDL_WINDOWPOS_UNDEFINED,
-                                 SDL_WINDOWPOS_UNDEFINED, width, height, flags);
+    w->window = SDL_CreateWindow(w->setup->title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
+                                 width, height, flags);
     if (!w->window)
         return fail(reason, "no window can be opened");
     w->renderer = SDL_CreateRenderer(w->window, -1, 0);
@@ -89,13 +88,11 @@ static void take_frame(struct rf_window *w)
 {
     const struct rf_view_state *const of = &w->frame->of;
 
-    if (!w->texture || w->texture_width != of->width ||
-        w->texture_height != of->height) {
+    if (!w->texture || w->texture_width != of->width || w->texture_height != of->height) {
         if (w->texture)
             SDL_DestroyTexture(w->texture);
-        w->texture =
-            SDL_CreateTexture(w->renderer, SDL_PIXELFORMAT_ARGB8888,
-                              SDL_TEXTUREACCESS_STREAMING, of->width, of->height);
+        w->texture = SDL_CreateTexture(w->renderer, SDL_PIXELFORMAT_ARGB8888,
+                                       SDL_TEXTUREACCESS_STREAMING, of->width, of->height);
         w->texture_width = of->width;
         w->texture_height = of->height;
     }
@@ -105,8 +102,7 @@ static void take_frame(struct rf_window *w)
 
 static void set_grey(struct rf_window *w, int grey, int alpha)
 {
-    SDL_SetRenderDrawColor(w->renderer, (Uint8)grey, (Uint8)grey, (Uint8)grey,
-                           (Uint8)alpha);
+    SDL_SetRenderDrawColor(w->renderer, (Uint8)grey, (Uint8)grey, (Uint8)grey, (Uint8)alpha);
 }
 
 static void draw_circle(struct rf_window *w, double x, double y, double radius)
@@ -124,8 +120,7 @@ static void draw_circle(struct rf_window *w, double x, double y, double radius)
 /* Where the focus is, what is being painted, and the brush. */
 static void draw_marks(struct rf_window *w)
 {
-    if (w->tool == RF_TOOL_FOCUS && w->state.focus_tap > 0 &&
-        w->state.mode == RF_VIEW_RESULT) {
+    if (w->tool == RF_TOOL_FOCUS && w->state.focus_tap > 0 && w->state.mode == RF_VIEW_RESULT) {
         const int half = (int)(14 * w->density);
         const int x = (int)((w->state.tap_x + 0.5 - w->state.x) * w->state.scale);
         const int y = (int)((w->state.tap_y + 0.5 - w->state.y) * w->state.scale);
@@ -142,8 +137,8 @@ static void draw_marks(struct rf_window *w)
     if (w->tool == RF_TOOL_PAINT)
         draw_circle(w, w->last_x, w->last_y, w->brush);
     else if (w->pressed)
-        SDL_RenderDrawLine(w->renderer, (int)w->press_x, (int)w->press_y,
-                           (int)w->last_x, (int)w->last_y);
+        SDL_RenderDrawLine(w->renderer, (int)w->press_x, (int)w->press_y, (int)w->last_x,
+                           (int)w->last_y);
 }
 
 static void draw_buttons(struct rf_window *w)
@@ -152,8 +147,7 @@ static void draw_buttons(struct rf_window *w)
         const char *label;
         bool on;
         const SDL_Rect place = rf_window_button(w, i, &label, &on);
-        const int dot =
-            place.w > rf_text_width(label, 2) + 6 ? (int)(2 * w->density) : 1;
+        const int dot = place.w > rf_text_width(label, 2) + 6 ? (int)(2 * w->density) : 1;
 
         set_grey(w, on ? 90 : 20, 180);
         SDL_RenderFillRect(w->renderer, &place);
@@ -176,8 +170,7 @@ static void draw_status(struct rf_window *w)
     SDL_snprintf(text, sizeof text, "%s  focus %.3f  blur %.1f%s%s",
                  refocus_method_name(w->state.method),
                  w->frame ? (double)w->frame->of.focus : (double)w->state.focus,
-                 (double)w->state.blur, more,
-                 w->frame && w->frame->full ? "" : "  ...");
+                 (double)w->state.blur, more, w->frame && w->frame->full ? "" : "  ...");
     set_grey(w, 20, 150);
     SDL_RenderFillRect(w->renderer, &bar);
     set_grey(w, 240, 255);
@@ -332,8 +325,7 @@ static int start_session(struct rf_window *w, char *reason)
     return status;
 }
 
-int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report,
-                char *reason)
+int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report, char *reason)
 {
     struct rf_window *const w = SDL_calloc(1, sizeof *w);
     int status;
@@ -353,8 +345,7 @@ int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report
     if (status == REFOCUS_OK)
         status = start_session(w, reason);
     if (status == REFOCUS_OK) {
-        SDL_snprintf(report->driver, sizeof report->driver, "%s",
-                     SDL_GetCurrentVideoDriver());
+        SDL_snprintf(report->driver, sizeof report->driver, "%s", SDL_GetCurrentVideoDriver());
         report->width = w->width;
         report->height = w->height;
         report->reduction = rf_session_reduction(w->session);

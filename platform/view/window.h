@@ -82,8 +82,7 @@ struct rf_window {
 /* input.c: events, and the buttons along the lower border. */
 void rf_window_event(struct rf_window *w, const SDL_Event *event);
 int rf_window_buttons(const struct rf_window *w);
-SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label,
-                          bool *on);
+SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label, bool *on);
 
 /* actions.c: what they do. */
 void rf_window_act(struct rf_window *w, enum rf_action action);

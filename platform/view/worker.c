@@ -27,14 +27,20 @@ static float focus_at(const struct rf_session *s, double at_x, double at_y)
     const int x = (int)(at_x + 0.5), y = (int)(at_y + 0.5);
     float focus = 0;
 
-    refocus_focus_at_point(&map, x < 0 ? 0 : x < w ? x : w - 1,
-                           y < 0 ? 0 : y < h ? y : h - 1, 0, &focus);
+    refocus_focus_at_point(&map,
+                           x < 0   ? 0
+                           : x < w ? x
+                                   : w - 1,
+                           y < 0   ? 0
+                           : y < h ? y
+                                   : h - 1,
+                           0, &focus);
     return focus;
 }
 
 /* The lens of a state, for the full picture or for the reduced one. */
-static struct refocus_render_params
-lens_of(const struct rf_session *s, const struct rf_view_state *state, bool full)
+static struct refocus_render_params lens_of(const struct rf_session *s,
+                                            const struct rf_view_state *state, bool full)
 {
     const int reduction = full ? 1 : s->reduction;
     struct refocus_render_params params = s->setup.params;
@@ -62,15 +68,13 @@ static bool is_same(float a, float b)
     return memcmp(&a, &b, sizeof a) == 0;
 }
 
-static bool same_lens(const struct refocus_render_params *a,
-                      const struct refocus_render_params *b)
+static bool same_lens(const struct refocus_render_params *a, const struct refocus_render_params *b)
 {
     /* Numbers that come from the same places: equal when nothing has changed. */
     return a->method == b->method && is_same(a->focus_disparity, b->focus_disparity) &&
            is_same(a->max_blur_radius, b->max_blur_radius) &&
-           is_same(a->field_disparity, b->field_disparity) &&
-           is_same(a->tilt_x, b->tilt_x) && is_same(a->tilt_y, b->tilt_y) &&
-           is_same(a->tilt_across, b->tilt_across) &&
+           is_same(a->field_disparity, b->field_disparity) && is_same(a->tilt_x, b->tilt_x) &&
+           is_same(a->tilt_y, b->tilt_y) && is_same(a->tilt_across, b->tilt_across) &&
            is_same(a->tilt_down, b->tilt_down);
 }
 
@@ -127,8 +131,8 @@ static void paint(struct rf_session *s, struct order *orders, int count)
     }
 }
 
-static int make_renderer(struct rf_session *s, struct refocus_renderer **renderer,
-                         int width, int height, int reduction)
+static int make_renderer(struct rf_session *s, struct refocus_renderer **renderer, int width,
+                         int height, int reduction)
 {
     struct refocus_renderer_params params = refocus_renderer_params_default(
         width, height, (float)REFOCUS_MAX_BLUR_RADIUS / (float)reduction);
@@ -152,15 +156,14 @@ static uint32_t *back_pixels(struct rf_session *s, const struct rf_view_state *s
     }
     if (state->width > s->scratch_room) {
         free(s->scratch);
-        s->scratch =
-            malloc(RF_SHOW_SCRATCH * ((size_t)state->width + 1) * sizeof *s->scratch);
+        s->scratch = malloc(RF_SHOW_SCRATCH * ((size_t)state->width + 1) * sizeof *s->scratch);
         s->scratch_room = s->scratch ? state->width : 0;
     }
     return frame->pixels && s->scratch ? frame->pixels : NULL;
 }
 
-static void publish(struct rf_session *s, const struct rf_view_state *state,
-                    uint64_t request, bool full)
+static void publish(struct rf_session *s, const struct rf_view_state *state, uint64_t request,
+                    bool full)
 {
     const struct refocus_image *const photo = s->setup.photo;
     const bool result = state->mode == RF_VIEW_RESULT;
@@ -183,8 +186,8 @@ static void publish(struct rf_session *s, const struct rf_view_state *state,
         rf_worker_note(s, REFOCUS_ERR_MEMORY);
         return;
     }
-    if (state->selection && !refocus_strokes_selection(s->strokes, s->selection,
-                                                       s->width, s->height, s->width))
+    if (state->selection &&
+        !refocus_strokes_selection(s->strokes, s->selection, s->width, s->height, s->width))
         show.selection = s->selection;
     if (full && (result || photo->stride[0] == 3 * (ptrdiff_t)photo->width)) {
         show.rgb = result ? s->full_out : photo->plane[0];
@@ -208,11 +211,10 @@ static void publish(struct rf_session *s, const struct rf_view_state *state,
 static int prepare_small(struct rf_session *s)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->small_photo, s->width, s->height,
-                             3 * (ptrdiff_t)s->width);
-    const struct refocus_disparity map = refocus_disparity16(
-        s->small_disparity, s->width, s->height, 2 * (ptrdiff_t)s->width);
+    const struct refocus_image image = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, s->small_photo, s->width, s->height, 3 * (ptrdiff_t)s->width);
+    const struct refocus_disparity map =
+        refocus_disparity16(s->small_disparity, s->width, s->height, 2 * (ptrdiff_t)s->width);
     int status;
 
     if (!s->small_stale)
@@ -227,9 +229,8 @@ static int prepare_small(struct rf_session *s)
 static int render_small(struct rf_session *s, const struct rf_view_state *state)
 {
     const struct refocus_render_params params = lens_of(s, state, false);
-    const struct refocus_image out =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->small_out, s->width, s->height,
-                             3 * (ptrdiff_t)s->width);
+    const struct refocus_image out = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, s->small_out, s->width, s->height, 3 * (ptrdiff_t)s->width);
     const int status = prepare_small(s);
 
     return status == REFOCUS_OK ? refocus_render(s->small, &params, &out) : status;
@@ -240,9 +241,8 @@ static int render_full(struct rf_session *s, const struct rf_view_state *state)
 {
     const struct refocus_image *const photo = s->setup.photo;
     const struct refocus_render_params params = lens_of(s, state, true);
-    const struct refocus_image out =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width,
-                             photo->height, 3 * (ptrdiff_t)photo->width);
+    const struct refocus_image out = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
     const struct refocus_disparity map = refocus_disparity16(
         disparity_of(s), photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
     int status = REFOCUS_OK;
@@ -322,9 +322,8 @@ static void save(struct rf_session *s, const struct rf_view_state *state, uint32
 {
     const struct refocus_image *const photo = s->setup.photo;
     const struct refocus_render_params params = lens_of(s, state, true);
-    const struct refocus_image picture =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->full_out, photo->width,
-                             photo->height, 3 * (ptrdiff_t)photo->width);
+    const struct refocus_image picture = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
     const struct rf_view_result result = {.what = what,
                                           .picture = &picture,
                                           .params = &params,
@@ -355,9 +354,8 @@ static void find_focus(struct rf_session *s, struct rf_view_state *state)
 }
 
 /* Wait for something to do; false at the end. */
-static bool take_work(struct rf_session *s, struct rf_view_state *state,
-                      uint64_t *request, struct order **orders, int *count,
-                      uint32_t *what)
+static bool take_work(struct rf_session *s, struct rf_view_state *state, uint64_t *request,
+                      struct order **orders, int *count, uint32_t *what)
 {
     bool quit;
 

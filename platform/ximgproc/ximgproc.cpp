@@ -10,7 +10,8 @@
 #include <opencv2/ximgproc/disparity_filter.hpp>
 #include <refocus/platform/opencv.h>
 
-namespace {
+namespace
+{
 
 void smooth(uint32_t filter, const cv::Mat &photo, cv::Mat &depth, int reach)
 {
@@ -21,19 +22,16 @@ void smooth(uint32_t filter, const cv::Mat &photo, cv::Mat &depth, int reach)
         cv::ximgproc::guidedFilter(photo, depth, out, reach, 0.02 * 255 * 0.02 * 255);
         break;
     case REFOCUS_CV_FAST_GLOBAL:
-        cv::ximgproc::fastGlobalSmootherFilter(photo, depth, out, reach * (double)reach,
-                                               12);
+        cv::ximgproc::fastGlobalSmootherFilter(photo, depth, out, reach * (double)reach, 12);
         break;
     default:
         photo.convertTo(guide, CV_32F, 1 / 255.0);
-        cv::ximgproc::jointBilateralFilter(guide, depth, out, 2 * reach + 1, 0.1,
-                                           reach);
+        cv::ximgproc::jointBilateralFilter(guide, depth, out, 2 * reach + 1, 0.1, reach);
     }
     out.copyTo(depth);
 }
 
-int try_smooth(uint32_t filter, const uint8_t *rgb, float *depth, int width, int height,
-               int reach)
+int try_smooth(uint32_t filter, const uint8_t *rgb, float *depth, int width, int height, int reach)
 {
     try {
         const cv::Mat photo(height, width, CV_8UC3, const_cast<uint8_t *>(rgb));
@@ -62,20 +60,18 @@ cv::Mat fixed(const float *d, int width, int height)
         for (int x = 0; x < width; x++) {
             const float v = d[(size_t)y * (size_t)width + (size_t)x];
 
-            out.at<short>(y, x) =
-                std::isnan(v) ? unknown : cv::saturate_cast<short>(v * 16);
+            out.at<short>(y, x) = std::isnan(v) ? unknown : cv::saturate_cast<short>(v * 16);
         }
     return out;
 }
 
-int try_wls(const uint8_t *rgb, const float *left, const float *right, float *out,
-            int width, int height)
+int try_wls(const uint8_t *rgb, const float *left, const float *right, float *out, int width,
+            int height)
 {
     try {
         const cv::Mat photo(height, width, CV_8UC3, const_cast<uint8_t *>(rgb));
         const auto filter = cv::ximgproc::createDisparityWLSFilterGeneric(true);
-        cv::Mat result, back = fixed(right, width, height),
-                        map(height, width, CV_32F, out);
+        cv::Mat result, back = fixed(right, width, height), map(height, width, CV_32F, out);
 
         back = -back; /* of the right picture they are negative there */
         filter->setLambda(8000);

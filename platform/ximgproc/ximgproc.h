@@ -10,12 +10,12 @@
 struct rf_ximgproc {
     uint32_t version; /* RF_XIMGPROC_VERSION */
     /* depth: in and out, of the size of rgb, 0 to 1. filter: enum refocus_cv_filter. */
-    int (*smooth)(uint32_t filter, const uint8_t *rgb, float *depth, int width,
-                  int height, int reach);
+    int (*smooth)(uint32_t filter, const uint8_t *rgb, float *depth, int width, int height,
+                  int reach);
     /* Disparities of left from left and right, in pixels, NaN where there is none; wls:
      * out. */
-    int (*wls)(const uint8_t *rgb, const float *left, const float *right, float *out,
-               int width, int height);
+    int (*wls)(const uint8_t *rgb, const float *left, const float *right, float *out, int width,
+               int height);
 };
 enum { RF_XIMGPROC_VERSION = 1 };
 

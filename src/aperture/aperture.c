@@ -15,10 +15,12 @@ void rf_sincos_turns(double turns, double *sine, double *cosine)
     const double quarters = floor(turns * 4 + 0.5);
     const double x = (turns * 4 - quarters) * (pi / 2); /* -pi/4 .. pi/4 */
     const double xx = x * x;
-    const double s = x * (1 - xx / 6 * (1 - xx / 20 * (1 - xx / 42 * (1 - xx / 72 *
-                     (1 - xx / 110 * (1 - xx / 156))))));
-    const double c = 1 - xx / 2 * (1 - xx / 12 * (1 - xx / 30 * (1 - xx / 56 *
-                     (1 - xx / 90 * (1 - xx / 132)))));
+    const double s =
+        x *
+        (1 -
+         xx / 6 * (1 - xx / 20 * (1 - xx / 42 * (1 - xx / 72 * (1 - xx / 110 * (1 - xx / 156))))));
+    const double c =
+        1 - xx / 2 * (1 - xx / 12 * (1 - xx / 30 * (1 - xx / 56 * (1 - xx / 90 * (1 - xx / 132)))));
     const int quarter = (int)(quarters - 4 * floor(quarters / 4));
 
     *sine = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
@@ -150,8 +152,8 @@ static void reduce(struct refocus_aperture *a)
     }
 }
 
-int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8_t *mask,
-                                 int width, int height, ptrdiff_t stride)
+int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8_t *mask, int width,
+                                 int height, ptrdiff_t stride)
 {
     struct refocus_aperture *a;
     int status, any = 0;
@@ -192,12 +194,10 @@ static bool good_params(const struct refocus_aperture_params *p)
 {
     const bool iris = p->curvature != 0 || p->opening != 0;
 
-    return p->struct_size == sizeof *p &&
-           (p->blades == 0 || (p->blades >= 3 && p->blades <= 16)) &&
-           in(p->rotation_deg, -3600, 3600) && in(p->curvature, 0, 1) &&
-           in(p->opening, 0, 1) && in(p->squeeze, 0.5, 2) && in(p->hole, 0, 0.9) &&
-           in(p->edge_behind, -1, 1) && in(p->edge_before, -1, 1) &&
-           p->figure <= REFOCUS_FIGURE_STAR && !(p->figure && iris) &&
+    return p->struct_size == sizeof *p && (p->blades == 0 || (p->blades >= 3 && p->blades <= 16)) &&
+           in(p->rotation_deg, -3600, 3600) && in(p->curvature, 0, 1) && in(p->opening, 0, 1) &&
+           in(p->squeeze, 0.5, 2) && in(p->hole, 0, 0.9) && in(p->edge_behind, -1, 1) &&
+           in(p->edge_before, -1, 1) && p->figure <= REFOCUS_FIGURE_STAR && !(p->figure && iris) &&
            !(p->mask && (p->figure || p->blades || p->rotation_deg != 0 || iris));
 }
 
@@ -231,8 +231,8 @@ int refocus_aperture_create(struct refocus_aperture **aperture,
     if (!p || !good_params(p))
         return REFOCUS_ERR_ARGUMENT;
     if (p->mask) {
-        status = refocus_aperture_create_mask(aperture, p->mask, p->mask_width,
-                                              p->mask_height, p->mask_stride);
+        status = refocus_aperture_create_mask(aperture, p->mask, p->mask_width, p->mask_height,
+                                              p->mask_stride);
     } else if (is_simple(p) && !p->figure && (p->blades == 0 || p->opening == 1)) {
         return refocus_aperture_create_disc(aperture);
     } else if (is_simple(p) && !p->figure && p->curvature == 0 && p->opening == 0) {
@@ -242,9 +242,9 @@ int refocus_aperture_create(struct refocus_aperture **aperture,
         if (status == REFOCUS_OK) {
             rf_outline_make(*aperture, p);
             (*aperture)->figure = p->figure != REFOCUS_FIGURE_NONE;
-            (*aperture)->id = hash(4, (*aperture)->vertex_x, sizeof (*aperture)->vertex_x);
-            (*aperture)->id = hash((*aperture)->id, (*aperture)->vertex_y,
-                                   sizeof (*aperture)->vertex_y);
+            (*aperture)->id = hash(4, (*aperture)->vertex_x, sizeof(*aperture)->vertex_x);
+            (*aperture)->id =
+                hash((*aperture)->id, (*aperture)->vertex_y, sizeof(*aperture)->vertex_y);
         }
     }
     if (status == REFOCUS_OK && !is_simple(p))

@@ -31,10 +31,10 @@ struct refocus_aperture {
     double corner_x[16], corner_y[16]; /* units of K, y down, as the mask is seen */
     int width, height;                 /* of the mask picture */
     uint8_t mask[REFOCUS_MAX_APERTURE_SIDE * REFOCUS_MAX_APERTURE_SIDE];
-    uint8_t reduced[RF_CURVE_SIDE * RF_CURVE_SIDE]; /* spans -1..1 in x and y */
+    uint8_t reduced[RF_CURVE_SIDE * RF_CURVE_SIDE];            /* spans -1..1 in x and y */
     double vertex_x[RF_OUTLINE + 1], vertex_y[RF_OUTLINE + 1]; /* of an outline, y up */
-    double area[RF_OUTLINE + 1]; /* of the triangles before a vertex, 1 = all */
-    double squeeze_x, squeeze_y; /* factors of what is drawn */
+    double area[RF_OUTLINE + 1];      /* of the triangles before a vertex, 1 = all */
+    double squeeze_x, squeeze_y;      /* factors of what is drawn */
     struct rf_profile behind, before; /* the focus */
     bool figure;                      /* an outline that no iris has */
     int chord_sets; /* of an outline: so many chords in a row at most; 0: too many, or none kept */
@@ -69,8 +69,7 @@ void rf_outline_make(struct refocus_aperture *aperture,
                      const struct refocus_aperture_params *params);
 
 /* Where on an outline: a share of its area, counter-clockwise. */
-void rf_outline_at(const struct refocus_aperture *aperture, double share, double *x,
-                   double *y);
+void rf_outline_at(const struct refocus_aperture *aperture, double share, double *x, double *y);
 
 /* rho^2 of a place, 1 on the outline. */
 double rf_outline_square(const struct refocus_aperture *aperture, double x, double y);

@@ -22,8 +22,8 @@ static void add_up(double pushed, double area[STEPS + 1])
 {
     area[0] = 0;
     for (int i = 0; i < STEPS; i++)
-        area[i + 1] = area[i] + height_at((i + 0.5) / STEPS * (1 - pushed), pushed) *
-                                    (1 - pushed) / STEPS;
+        area[i + 1] =
+            area[i] + height_at((i + 0.5) / STEPS * (1 - pushed), pushed) * (1 - pushed) / STEPS;
 }
 
 void rf_cat_eye_make(struct rf_cat_eye *eye)
@@ -46,8 +46,7 @@ void rf_cat_eye_make(struct rf_cat_eye *eye)
 
             while (at < STEPS - 1 && cut[at + 1] <= share)
                 at++;
-            x = (at + (share - cut[at]) / (cut[at + 1] - cut[at])) / STEPS *
-                (1 - pushed);
+            x = (at + (share - cut[at]) / (cut[at + 1] - cut[at])) / STEPS * (1 - pushed);
             eye->to[level][k] = to_q15(k < RF_CAT_KNOTS ? x : 1 - pushed);
             eye->height[level][k] =
                 to_q15(height_at(x, pushed) / height_at((double)knot / STEPS, 0));
@@ -61,8 +60,8 @@ static int mix(int a, int b, int part, int bits)
     return a + (((b - a) * part + (1 << (bits - 1))) >> bits);
 }
 
-void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t corner,
-                   int amount, struct rf_cat_eye_here *here)
+void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t corner, int amount,
+                   struct rf_cat_eye_here *here)
 {
     const int64_t square = x * x + y * y;
     const double length = sqrt((double)square); /* exact to the last bit */
@@ -81,8 +80,7 @@ void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t c
     here->axis_y = (int)floor((double)y / length * ONE + 0.5);
     for (int k = 0; k <= RF_CAT_KNOTS; k++) {
         here->to[k] = (int16_t)mix(eye->to[level][k], eye->to[level + 1][k], part, 8);
-        here->height[k] =
-            (int16_t)mix(eye->height[level][k], eye->height[level + 1][k], part, 8);
+        here->height[k] = (int16_t)mix(eye->height[level][k], eye->height[level + 1][k], part, 8);
     }
 }
 
@@ -96,8 +94,7 @@ static int16_t clamp(int v)
     return (int16_t)(v > ONE ? ONE : v < -ONE ? -ONE : v);
 }
 
-struct refocus_ray rf_cat_eye_ray(const struct rf_cat_eye_here *here,
-                                  const struct refocus_ray *ray)
+struct refocus_ray rf_cat_eye_ray(const struct rf_cat_eye_here *here, const struct refocus_ray *ray)
 {
     const int64_t ax = here->axis_x, ay = here->axis_y;
     const int along = half_up(ray->u * ax + ray->v * ay);
@@ -110,6 +107,5 @@ struct refocus_ray rf_cat_eye_ray(const struct rf_cat_eye_here *here,
     const int64_t new_across = half_up((int64_t)across * height);
 
     return (struct refocus_ray){clamp(half_up(new_along * ax - new_across * ay)),
-                                clamp(half_up(new_along * ay + new_across * ax)),
-                                ray->weight};
+                                clamp(half_up(new_along * ay + new_across * ax)), ray->weight};
 }

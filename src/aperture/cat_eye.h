@@ -38,8 +38,8 @@ struct rf_cat_eye_here {
 
 /* At (x, y) from the middle of a picture, `corner` from there to a corner squared,
  * where d is `amount`, Q16. */
-void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t corner,
-                   int amount, struct rf_cat_eye_here *here);
+void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t corner, int amount,
+                   struct rf_cat_eye_here *here);
 
 /* A ray of the circle in that opening. */
 struct refocus_ray rf_cat_eye_ray(const struct rf_cat_eye_here *here,

@@ -42,15 +42,13 @@ static struct point corner(const struct refocus_aperture *a, int i)
 {
     if (a->shape == RF_SHAPE_POLYGON)
         return (struct point){-a->corner_x[i % a->blades], -a->corner_y[i % a->blades]};
-    return (struct point){-a->vertex_x[i] * a->squeeze_x,
-                          a->vertex_y[i] * a->squeeze_y};
+    return (struct point){-a->vertex_x[i] * a->squeeze_x, a->vertex_y[i] * a->squeeze_y};
 }
 
 static bool is_circle(const struct refocus_aperture *a)
 {
     for (int i = 0; i < RF_OUTLINE; i++)
-        if (fabs(a->vertex_x[i] * a->vertex_x[i] + a->vertex_y[i] * a->vertex_y[i] -
-                 1) > 1e-9)
+        if (fabs(a->vertex_x[i] * a->vertex_x[i] + a->vertex_y[i] * a->vertex_y[i] - 1) > 1e-9)
             return false;
     return true;
 }
@@ -89,8 +87,7 @@ static double quarter_turns(struct point p)
 static double turn_at(const struct refocus_aperture *a, int i)
 {
     const int n = corners(a);
-    const struct point p = corner(a, (i + n - 1) % n), q = corner(a, i),
-                       r = corner(a, (i + 1) % n);
+    const struct point p = corner(a, (i + n - 1) % n), q = corner(a, i), r = corner(a, (i + 1) % n);
     const struct point in = {q.u - p.u, q.v - p.v}, out = {r.u - q.u, r.v - q.v};
 
     return fabs(cross(in, out)) /
@@ -166,13 +163,13 @@ static int16_t to_q15(double x)
     return (int16_t)(q > ONE ? ONE : q < -ONE ? -ONE : q);
 }
 
-void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y,
-                     int64_t corner, int amount, struct rf_cat_shape_here *here)
+void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y, int64_t corner,
+                     int amount, struct rf_cat_shape_here *here)
 {
     double u[RF_RIM + 1], v[RF_RIM + 1], area[RF_RIM + 1];
     const int64_t square = x * x + y * y;
-    const double distance = sqrt((double)square), d = (double)(square * amount) /
-                                                      ((double)corner * 65536);
+    const double distance = sqrt((double)square),
+                 d = (double)(square * amount) / ((double)corner * 65536);
     const double axis_u = (double)x / distance, axis_v = (double)y / distance;
     double all;
     int at = 0;
@@ -207,10 +204,7 @@ void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y,
 /* Quarter turns and parts of one, Q16. */
 static int32_t place_of(int u, int v, int32_t span)
 {
-    const int32_t quarter = u > 0 && v >= 0    ? 0
-                            : u <= 0 && v > 0  ? 1
-                            : u < 0 && v <= 0  ? 2
-                                               : 3;
+    const int32_t quarter = u > 0 && v >= 0 ? 0 : u <= 0 && v > 0 ? 1 : u < 0 && v <= 0 ? 2 : 3;
     const int32_t past = quarter % 2 ? abs(u) : abs(v);
 
     return (quarter << 16) + (int32_t)(((int64_t)past << 16) / span);
@@ -259,10 +253,8 @@ struct refocus_ray rf_cat_shape_ray(const struct rf_cat_shape *shape,
     k = find_knot(shape, &place);
     part = (int)((int64_t)(place - shape->place[k]) * (1 << PART_BITS) /
                  (shape->place[k + 1] - shape->place[k]));
-    share = (int32_t)(((int64_t)span << 15) /
-                      mix(shape->span[k], shape->span[k + 1], part));
+    share = (int32_t)(((int64_t)span << 15) / mix(shape->span[k], shape->span[k + 1], part));
     share = share < 1 << 15 ? share : 1 << 15; /* rims between knots are straight */
     return (struct refocus_ray){scaled(mix(here->u[k], here->u[k + 1], part), share),
-                                scaled(mix(here->v[k], here->v[k + 1], part), share),
-                                ray->weight};
+                                scaled(mix(here->v[k], here->v[k + 1], part), share), ray->weight};
 }

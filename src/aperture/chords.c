@@ -24,8 +24,7 @@ static struct point corner(const struct refocus_aperture *a, int i)
 
     if (a->shape == RF_SHAPE_POLYGON)
         return (struct point){a->corner_x[k], a->corner_y[k]};
-    return (struct point){a->vertex_x[k] * a->squeeze_x,
-                          -a->vertex_y[k] * a->squeeze_y};
+    return (struct point){a->vertex_x[k] * a->squeeze_x, -a->vertex_y[k] * a->squeeze_y};
 }
 
 static int16_t to_q14(double v)
@@ -35,8 +34,7 @@ static int16_t to_q14(double v)
 
 /* Where the outline crosses a height, from left to right: so many, or one more than
  * there is room for. */
-static int crossings(const struct refocus_aperture *a, double y,
-                     double x[2 * RF_CHORD_SETS])
+static int crossings(const struct refocus_aperture *a, double y, double x[2 * RF_CHORD_SETS])
 {
     int count = 0;
 

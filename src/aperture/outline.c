@@ -38,8 +38,8 @@ static double iris_radius(const struct refocus_aperture_params *p, double turns)
 
     if (p->blades == 0)
         return 1;
-    radius = side_radius(p->blades, p->curvature,
-                         (along_blade(turns, p->blades) - 0.5) / p->blades);
+    radius =
+        side_radius(p->blades, p->curvature, (along_blade(turns, p->blades) - 0.5) / p->blades);
     if (p->opening == 0)
         return radius;
     least = side_radius(p->blades, p->curvature, 0);
@@ -54,8 +54,7 @@ static double iris_radius(const struct refocus_aperture_params *p, double turns)
 static double star_radius(int points, double turns)
 {
     const double part = along_blade(turns, points);
-    const double off = (part < 0.5 ? part : 1 - part) / points,
-                 notch = 0.38196601125010515;
+    const double off = (part < 0.5 ? part : 1 - part) / points, notch = 0.38196601125010515;
     double sine, cosine, dx, dy;
 
     rf_sincos_turns(0.5 / points, &sine, &cosine);
@@ -97,8 +96,7 @@ static double radius_at(const struct refocus_aperture_params *p, double turns)
     }
 }
 
-void rf_outline_make(struct refocus_aperture *a,
-                     const struct refocus_aperture_params *p)
+void rf_outline_make(struct refocus_aperture *a, const struct refocus_aperture_params *p)
 {
     const double rotation = p->rotation_deg / 360;
     double sum = 0;
@@ -116,8 +114,7 @@ void rf_outline_make(struct refocus_aperture *a,
     a->vertex_y[RF_OUTLINE] = a->vertex_y[0];
     for (int i = 0; i < RF_OUTLINE; i++) {
         a->area[i] = sum;
-        sum +=
-            a->vertex_x[i] * a->vertex_y[i + 1] - a->vertex_y[i] * a->vertex_x[i + 1];
+        sum += a->vertex_x[i] * a->vertex_y[i + 1] - a->vertex_y[i] * a->vertex_x[i + 1];
     }
     for (int i = 0; i < RF_OUTLINE; i++)
         a->area[i] /= sum;

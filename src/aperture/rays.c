@@ -26,11 +26,9 @@ static int16_t to_q15(double x)
     return (int16_t)(q > 32767 ? 32767 : q < -32767 ? -32767 : q);
 }
 
-static struct refocus_ray squeezed_ray(const struct refocus_aperture *a, double x,
-                                       double y)
+static struct refocus_ray squeezed_ray(const struct refocus_aperture *a, double x, double y)
 {
-    return (struct refocus_ray){to_q15(-x * a->squeeze_x), to_q15(-y * a->squeeze_y),
-                                255};
+    return (struct refocus_ray){to_q15(-x * a->squeeze_x), to_q15(-y * a->squeeze_y), 255};
 }
 
 static struct refocus_ray make_ray(double x, double y, int weight)
@@ -67,8 +65,7 @@ static void disc_rays(int count, struct refocus_ray *rays)
     }
 }
 
-static void polygon_rays(const struct refocus_aperture *a, int count,
-                         struct refocus_ray *rays)
+static void polygon_rays(const struct refocus_aperture *a, int count, struct refocus_ray *rays)
 {
     for (int n = 0; n < count; n++) {
         double r, t;
@@ -130,8 +127,7 @@ struct place {
     int32_t x, y;
 };
 
-static void relax(const uint8_t *cell, int count, struct place *place,
-                  struct rf_run *run)
+static void relax(const uint8_t *cell, int count, struct place *place, struct rf_run *run)
 {
     int64_t sum_x[REFOCUS_MAX_RAYS] = {0}, sum_y[REFOCUS_MAX_RAYS] = {0};
     int64_t sum[REFOCUS_MAX_RAYS] = {0};
@@ -253,16 +249,14 @@ static int coverage(const struct refocus_aperture *a, double radius, int x, int 
     return (sum + 32) / 64;
 }
 
-int rf_aperture_full_rays(const struct refocus_aperture *aperture,
-                          double max_blur_radius, int capacity,
-                          struct refocus_ray *rays, struct rf_run *run)
+int rf_aperture_full_rays(const struct refocus_aperture *aperture, double max_blur_radius,
+                          int capacity, struct refocus_ray *rays, struct rf_run *run)
 {
     int count = 0, most = 0;
 
     if (!aperture)
         aperture = &rf_disc;
-    if (!(max_blur_radius > 0 && max_blur_radius <= 127) || capacity < 0 ||
-        (capacity > 0 && !rays))
+    if (!(max_blur_radius > 0 && max_blur_radius <= 127) || capacity < 0 || (capacity > 0 && !rays))
         return REFOCUS_ERR_ARGUMENT;
     most = (int)ceil(max_blur_radius);
     for (int open = 1; open >= 0; open--) { /* the open pixels, then those half open */
@@ -273,8 +267,7 @@ int rf_aperture_full_rays(const struct refocus_aperture *aperture,
                 if (weight == 0 || (weight == 255) != open)
                     continue;
                 if (count < capacity)
-                    rays[count] = make_ray(x / max_blur_radius, y / max_blur_radius,
-                                           weight);
+                    rays[count] = make_ray(x / max_blur_radius, y / max_blur_radius, weight);
                 count++;
             }
         }
@@ -287,9 +280,8 @@ int rf_aperture_full_rays(const struct refocus_aperture *aperture,
     return count;
 }
 
-int refocus_aperture_full_rays(const struct refocus_aperture *aperture,
-                               double max_blur_radius, int capacity,
-                               struct refocus_ray *rays)
+int refocus_aperture_full_rays(const struct refocus_aperture *aperture, double max_blur_radius,
+                               int capacity, struct refocus_ray *rays)
 {
     return rf_aperture_full_rays(aperture, max_blur_radius, capacity, rays, NULL);
 }

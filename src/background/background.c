@@ -31,8 +31,8 @@ void rf_background_dilate(struct refocus_renderer *r, bool upwards)
     }
 }
 
-void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach,
-                             int y0, int y1)
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach, int y0,
+                             int y1)
 {
     const int w = r->width;
     uint16_t *row = scratch + RF_SPREAD_MARGIN;
@@ -74,15 +74,12 @@ static void push_rows(struct refocus_renderer *r, int i, int y0, int y1)
     for (int y = y0; y < y1; y++) {
         const ptrdiff_t at = y * coarse.stride, a = 2 * y * fine.stride;
         const ptrdiff_t b = 2 * y + 1 < fine.height ? a + fine.stride : a;
-        uint16_t *const out[3] = {coarse.light[0] + at, coarse.light[1] + at,
-                                  coarse.light[2] + at};
-        const uint16_t *const upper[3] = {fine.light[0] + a, fine.light[1] + a,
-                                          fine.light[2] + a};
-        const uint16_t *const lower[3] = {fine.light[0] + b, fine.light[1] + b,
-                                          fine.light[2] + b};
+        uint16_t *const out[3] = {coarse.light[0] + at, coarse.light[1] + at, coarse.light[2] + at};
+        const uint16_t *const upper[3] = {fine.light[0] + a, fine.light[1] + a, fine.light[2] + a};
+        const uint16_t *const lower[3] = {fine.light[0] + b, fine.light[1] + b, fine.light[2] + b};
 
-        r->kernels.push(out, coarse.blur + at, upper, lower, fine.blur + a,
-                        fine.blur + b, coarse.width);
+        r->kernels.push(out, coarse.blur + at, upper, lower, fine.blur + a, fine.blur + b,
+                        coarse.width);
         if (coarse.width % 2)
             coarse.blur[at + coarse.width] = RF_NO_BLUR;
     }
@@ -173,7 +170,7 @@ static void push_item(void *context, int band, int worker)
 
     (void)worker;
     push_rows(fill->r, fill->level, band * BAND,
-                            end_of(band, level_of(fill->r, fill->level + 1).height));
+              end_of(band, level_of(fill->r, fill->level + 1).height));
 }
 
 static void pull_item(void *context, int band, int worker)
@@ -217,6 +214,5 @@ void rf_background_pull(struct refocus_renderer *r, int from, int to)
         run(&fill, pull_item, level_of(r, fill.level).height);
     if (r->levels == 0) /* a picture of one pixel: nothing is unknown */
         for (int c = 0; c < 4; c++)
-            rf_extend_rows(r, c < 3 ? (void *)r->behind.light[c] : r->behind.blur, 0,
-                           1);
+            rf_extend_rows(r, c < 3 ? (void *)r->behind.light[c] : r->behind.blur, 0, 1);
 }

@@ -25,8 +25,8 @@
 void rf_background_dilate(struct refocus_renderer *r, bool upwards);
 
 /* The steps along rows, `reach` of them at the most, and the mark; copies r->smooth. */
-void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach,
-                             int y0, int y1);
+void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach, int y0,
+                             int y1);
 
 /* The part of levels 1 to `levels` that lies over a row of tiles by itself: up to
  * RF_BAND_LEVELS, of which it is a row. */
@@ -63,8 +63,8 @@ bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run);
  * pyramid and is filled from there on; a sample is known if any of its pixels is. That
  * of 4:2:2 is made as small for it: what is filled in has half its rows.
  */
-void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch,
-                                 int reach, int y0, int y1);
+void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach, int y0,
+                                 int y1);
 void rf_background_yuv_fill(struct refocus_renderer *r);
 
 #endif

@@ -5,8 +5,8 @@
 #include "planes/yuv.h"
 #include "renderer/bands.h"
 
-void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch,
-                                 int reach, int y0, int y1)
+void rf_background_yuv_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach, int y0,
+                                 int y1)
 {
     const int w = r->width;
     uint16_t *row = scratch + RF_SPREAD_MARGIN;
@@ -86,8 +86,8 @@ static void pull_band(void *context, int band, int worker)
     for (int y = c0; y < c1; y++) {
         const ptrdiff_t at = (yuv->down ? y : y / 2) * level->stride;
 
-        r->kernels.join2(yuv->behind + y * r->stride, level->light[1] + at,
-                         level->light[2] + at, level->width);
+        r->kernels.join2(yuv->behind + y * r->stride, level->light[1] + at, level->light[2] + at,
+                         level->width);
         if (!yuv->down) /* what is known has rows of its own */
             r->kernels.keep2(yuv->behind + y * r->stride, yuv->smooth + y * r->stride,
                              r->front.blur + y * r->stride, r->behind.blur + y * r->stride,

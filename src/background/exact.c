@@ -1,8 +1,7 @@
 #include "background/background.h"
 
 /* The parents that unknown pixels of `need` at a level take from; x1 <= x0: none do. */
-static struct rf_rect parents(const int16_t *blur, ptrdiff_t stride,
-                              struct rf_rect need)
+static struct rf_rect parents(const int16_t *blur, ptrdiff_t stride, struct rf_rect need)
 {
     struct rf_rect unknown = {need.x1, need.y1, need.x0, need.y0};
 
@@ -18,8 +17,8 @@ static struct rf_rect parents(const int16_t *blur, ptrdiff_t stride,
     }
     if (unknown.x1 <= unknown.x0)
         return (struct rf_rect){0, 0, 0, 0};
-    return (struct rf_rect){unknown.x0 / 2 - 1, unknown.y0 / 2 - 1,
-                            (unknown.x1 - 1) / 2 + 2, (unknown.y1 - 1) / 2 + 2};
+    return (struct rf_rect){unknown.x0 / 2 - 1, unknown.y0 / 2 - 1, (unknown.x1 - 1) / 2 + 2,
+                            (unknown.y1 - 1) / 2 + 2};
 }
 
 static int clamp(int v, int most)

@@ -52,9 +52,9 @@ static void set_codes(struct rf_yuv_curve *curve, int black, double tones_per_co
         while (code < white) {
             const double at = (code - black + 0.5) * tones_per_code;
             const int tone = (int)at;
-            const int light = 4 * curve->light[tone] +
-                              rounded(4 * (curve->light[tone + 1] - curve->light[tone]) *
-                                      (at - tone));
+            const int light =
+                4 * curve->light[tone] +
+                rounded(4 * (curve->light[tone + 1] - curve->light[tone]) * (at - tone));
 
             if (mean < light)
                 break;
@@ -64,8 +64,7 @@ static void set_codes(struct rf_yuv_curve *curve, int black, double tones_per_co
     }
 }
 
-void rf_yuv_curve_init(struct rf_yuv_curve *curve, uint32_t matrix, uint32_t range,
-                       uint32_t blend)
+void rf_yuv_curve_init(struct rf_yuv_curve *curve, uint32_t matrix, uint32_t range, uint32_t blend)
 {
     const bool limited = range == REFOCUS_RANGE_LIMITED, hd = matrix == REFOCUS_MATRIX_BT709;
     const double per_luma = 4 * (limited ? 255.0 / 219 : 1); /* tones of a code */

@@ -34,25 +34,24 @@ enum {
     RF_TONES = 4 * 255 + 1, /* Y', R', G', B' in quarters of a full-range code */
     RF_CHROMA_ZERO = 4096,  /* what D = 0 is stored as */
     RF_CHROMA_MAX = RF_CHROMA_ZERO + RF_LIGHT_MAX,
-    RF_SHARE = 1 << 14,     /* of Kr, Kg, Kb */
+    RF_SHARE = 1 << 14, /* of Kr, Kg, Kb */
 };
 
 struct rf_yuv_curve {
-    int16_t luma[256];          /* tone of a code of Y */
+    int16_t luma[256]; /* tone of a code of Y */
     uint16_t light_of_luma[256];
-    int32_t tones_per_code[2];  /* of B' - Y' for U, R' - Y' for V, Q12, */
-    int32_t green_per_code[2];  /* and what they take from G' */
-    uint16_t light[RF_TONES];   /* Q12 */
+    int32_t tones_per_code[2];            /* of B' - Y' for U, R' - Y' for V, Q12, */
+    int32_t green_per_code[2];            /* and what they take from G' */
+    uint16_t light[RF_TONES];             /* Q12 */
     int16_t tone[(RF_MEAN_MAX >> 1) + 1]; /* of a Q13 mean */
     uint8_t to_code[RF_MEAN_MAX + 1];     /* Y of a Q14 mean */
-    int32_t codes_per_tone[2];  /* of U and V, Q16 */
-    int32_t kr, kg, kb;         /* in 1 / RF_SHARE, of sum 1 */
-    int32_t red, blue;          /* Kr / Kg, Kb / Kg */
+    int32_t codes_per_tone[2];            /* of U and V, Q16 */
+    int32_t kr, kg, kb;                   /* in 1 / RF_SHARE, of sum 1 */
+    int32_t red, blue;                    /* Kr / Kg, Kb / Kg */
 };
 
 /* matrix: enum refocus_matrix; range: enum refocus_range; blend: enum refocus_blend. */
-void rf_yuv_curve_init(struct rf_yuv_curve *curve, uint32_t matrix, uint32_t range,
-                       uint32_t blend);
+void rf_yuv_curve_init(struct rf_yuv_curve *curve, uint32_t matrix, uint32_t range, uint32_t blend);
 
 /* Means in Q14, clipped to black and white. */
 static inline int rf_clip_mean(int mean)
@@ -73,8 +72,8 @@ static inline int rf_more(const struct rf_yuv_curve *curve, int i, int code)
 
 static inline int rf_less_green(const struct rf_yuv_curve *curve, int u, int v)
 {
-    return ((u - 128) * curve->green_per_code[0] + (v - 128) * curve->green_per_code[1] +
-            2048) >> 12;
+    return ((u - 128) * curve->green_per_code[0] + (v - 128) * curve->green_per_code[1] + 2048) >>
+           12;
 }
 
 /* What a sample of chroma gives. */
@@ -91,8 +90,8 @@ static inline struct rf_chroma rf_chroma_of(const struct rf_yuv_curve *curve, in
     const int blue = curve->light[rf_clip_tone(tone + rf_more(curve, 0, u))];
     const int red = curve->light[rf_clip_tone(tone + rf_more(curve, 1, v))];
     const int green = curve->light[rf_clip_tone(tone - rf_less_green(curve, u, v))];
-    const int all = (curve->kr * red + curve->kg * green + curve->kb * blue + RF_SHARE / 2) /
-                    RF_SHARE;
+    const int all =
+        (curve->kr * red + curve->kg * green + curve->kb * blue + RF_SHARE / 2) / RF_SHARE;
 
     return (struct rf_chroma){(uint16_t)(RF_CHROMA_ZERO + blue - all),
                               (uint16_t)(RF_CHROMA_ZERO + red - all), (int16_t)(all - own)};
@@ -125,8 +124,12 @@ static inline struct rf_chroma_code rf_chroma_code(const struct rf_yuv_curve *cu
     const int u = 128 + (((b - y) * curve->codes_per_tone[0] + (1 << 15)) >> 16);
     const int v = 128 + (((r - y) * curve->codes_per_tone[1] + (1 << 15)) >> 16);
 
-    return (struct rf_chroma_code){(uint8_t)(u < 0 ? 0 : u > 255 ? 255 : u),
-                                   (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v),
+    return (struct rf_chroma_code){(uint8_t)(u < 0     ? 0
+                                             : u > 255 ? 255
+                                                       : u),
+                                   (uint8_t)(v < 0     ? 0
+                                             : v > 255 ? 255
+                                                       : v),
                                    light - 4 * curve->light[y]};
 }
 

@@ -27,7 +27,7 @@ struct values {
  * disparities, 1/z for distances. */
 struct conversion {
     const struct refocus_depth_map *map;
-    struct values *values; /* NULL: of samples one by one */
+    struct values *values;      /* NULL: of samples one by one */
     double rank_near, rank_far; /* of d = 1 and d = 0 */
     double scale;               /* from ranks to 65535 d; 0 for a map of one depth */
     uint64_t unknown, clamped, specks;
@@ -51,12 +51,10 @@ static bool is_depth_or_unknown(double metres)
     return metres == 0 || (metres > 0 && 1 / metres < INFINITY);
 }
 
-static int check(const struct refocus_depth_map *map, const uint16_t *disparity,
-                 ptrdiff_t stride)
+static int check(const struct refocus_depth_map *map, const uint16_t *disparity, ptrdiff_t stride)
 {
-    if (!map || !map->samples || !disparity || ((uintptr_t)disparity & 1) ||
-        map->width < 1 || map->height < 1 || map->width > REFOCUS_MAX_SIDE ||
-        map->height > REFOCUS_MAX_SIDE)
+    if (!map || !map->samples || !disparity || ((uintptr_t)disparity & 1) || map->width < 1 ||
+        map->height < 1 || map->width > REFOCUS_MAX_SIDE || map->height > REFOCUS_MAX_SIDE)
         return REFOCUS_ERR_ARGUMENT;
 
     const int bytes = sample_bytes(map->sample);
@@ -66,8 +64,7 @@ static int check(const struct refocus_depth_map *map, const uint16_t *disparity,
         return REFOCUS_ERR_ARGUMENT;
 
     if (!is_depth_or_unknown(map->near_m) || !is_depth_or_unknown(map->far_m) ||
-        map->near_m == INFINITY ||
-        (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m))
+        map->near_m == INFINITY || (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m))
         return REFOCUS_ERR_ARGUMENT;
 
     if (map->meaning == REFOCUS_DEPTH_DISPARITY)
@@ -228,8 +225,7 @@ static uint16_t convert_value(struct conversion *conversion, double v, uint32_t 
 }
 
 /* Row y by the values, each of which is converted. */
-static void look_up_row(const struct conversion *conversion, int y, uint16_t *out,
-                        uint8_t *state)
+static void look_up_row(const struct conversion *conversion, int y, uint16_t *out, uint8_t *state)
 {
     const struct refocus_depth_map *map = conversion->map;
     const struct values *values = conversion->values;
@@ -261,13 +257,12 @@ static void convert(struct conversion *conversion, uint16_t *disparity, ptrdiff_
         if (values)
             look_up_row(conversion, y, out, known);
         for (int x = 0; !values && x < map->width; x++)
-            out[x] = convert_value(conversion, value_of(map, row, x), 1,
-                                   known ? known + x : &unasked);
+            out[x] =
+                convert_value(conversion, value_of(map, row, x), 1, known ? known + x : &unasked);
     }
 }
 
-static void fill_report(const struct conversion *conversion,
-                        struct refocus_depth_report *report)
+static void fill_report(const struct conversion *conversion, struct refocus_depth_report *report)
 {
     const struct refocus_depth_map *map = conversion->map;
 
@@ -331,8 +326,8 @@ static bool good_repair(const struct refocus_repair_params *params,
 {
     return params && params->struct_size == sizeof *params && params->speckle >= 0 &&
            params->speckle <= REFOCUS_MAX_SPECKLE &&
-           (!params->confidence || rf_good_stride(params->confidence_stride,
-                                                  map->width, map->height));
+           (!params->confidence ||
+            rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
 int refocus_depth_repair(const struct refocus_depth_map *map,
@@ -366,8 +361,7 @@ int refocus_depth_repair(const struct refocus_depth_map *map,
         conversion.specks = rf_remove_specks(disparity, stride, map->width, map->height,
                                              params->speckle, state, work);
     /* All of it specks: then there is nothing to tell them by. */
-    if (conversion.specks + conversion.unknown ==
-        (uint64_t)map->width * (uint64_t)map->height) {
+    if (conversion.specks + conversion.unknown == (uint64_t)map->width * (uint64_t)map->height) {
         conversion.specks = 0;
         conversion.clamped = 0;
         convert(&conversion, disparity, stride, state);

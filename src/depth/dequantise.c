@@ -8,12 +8,12 @@
 
 enum {
     CODES = 65536,
-    FEWEST = 32,             /* codes in use, of a map that is smoothed */
-    MOST = 320,              /* 8 bits, and some between that came by way of resampling */
-    MOST_STEP = CODES / 64,  /* 6 bits */
-    PIXELS_A_CODE = 64,      /* fewer: a small picture of a fine map */
-    LOOKED_AT = 1 << 17,     /* pixels, about: the others hardly have more codes */
-    ROWS = 16,               /* a work item of a thread */
+    FEWEST = 32,            /* codes in use, of a map that is smoothed */
+    MOST = 320,             /* 8 bits, and some between that came by way of resampling */
+    MOST_STEP = CODES / 64, /* 6 bits */
+    PIXELS_A_CODE = 64,     /* fewer: a small picture of a fine map */
+    LOOKED_AT = 1 << 17,    /* pixels, about: the others hardly have more codes */
+    ROWS = 16,              /* a work item of a thread */
     PASSES = 3,
 };
 
@@ -209,9 +209,14 @@ void rf_dequantised_patch(const struct rf_kernels *kernels, const struct refocus
     const int y1 = rf_smaller(y + height + reach, map->height);
     uint16_t code[SIDE * SIDE], spare[2][SIDE * SIDE];
     const struct rf_dequantiser d = {
-        .kernels = kernels, .code = code, .stride = SIDE,
-        .spare = {spare[0], spare[1]}, .spare_stride = {SIDE, SIDE},
-        .width = x1 - x0, .height = y1 - y0, .step = step,
+        .kernels = kernels,
+        .code = code,
+        .stride = SIDE,
+        .spare = {spare[0], spare[1]},
+        .spare_stride = {SIDE, SIDE},
+        .width = x1 - x0,
+        .height = y1 - y0,
+        .step = step,
     };
 
     for (int v = y0; v < y1; v++)

@@ -100,11 +100,9 @@ static void spread(const struct holes *holes, int down)
             for (int x = -1; (x = unknown_from(state, x + 1, width)) < width;) {
                 spread_from(holes, d + x, state + x, last[x], last_state[x], STRAIGHT);
                 if (x > 0)
-                    spread_from(holes, d + x, state + x, last[x - 1], last_state[x - 1],
-                                DIAGONAL);
+                    spread_from(holes, d + x, state + x, last[x - 1], last_state[x - 1], DIAGONAL);
                 if (x + 1 < width)
-                    spread_from(holes, d + x, state + x, last[x + 1], last_state[x + 1],
-                                DIAGONAL);
+                    spread_from(holes, d + x, state + x, last[x + 1], last_state[x + 1], DIAGONAL);
             }
         }
         for (int x = 0; (x = unknown_from(state, x + 1, width)) < width;)
@@ -125,8 +123,7 @@ static uint16_t smoothed(const struct holes *holes, int x, int y, int step)
             continue;
         const uint16_t *d = disparity_row(holes, j);
         for (int i = x - step; i <= x + step; i += step) {
-            if (i < 0 || i >= holes->width || (i == x && j == y) ||
-                abs(d[i] - centre) > CONTINUOUS)
+            if (i < 0 || i >= holes->width || (i == x && j == y) || abs(d[i] - centre) > CONTINUOUS)
                 continue;
             sum += d[i];
             count++;
@@ -143,8 +140,7 @@ static void smooth(const struct holes *holes, int step, int forwards)
         uint16_t *d = disparity_row(holes, y);
         const uint8_t *state = state_row(holes, y);
 
-        for (int x = -1;
-             forwards && (x = unknown_from(state, x + 1, holes->width)) < holes->width;)
+        for (int x = -1; forwards && (x = unknown_from(state, x + 1, holes->width)) < holes->width;)
             if (state[x] >= step * STRAIGHT)
                 d[x] = smoothed(holes, x, y, step);
         for (int x = holes->width; !forwards && (x = unknown_to(state, x - 1)) >= 0;)
@@ -153,12 +149,11 @@ static void smooth(const struct holes *holes, int step, int forwards)
     }
 }
 
-void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
-                   uint8_t *state)
+void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height, uint8_t *state)
 {
     const int side = width > height ? width : height;
-    const struct holes holes = {disparity, stride, state, width, height,
-                                (uint32_t)(side > 128 ? side / 8 : 16) * STRAIGHT};
+    const struct holes holes = {
+        disparity, stride, state, width, height, (uint32_t)(side > 128 ? side / 8 : 16) * STRAIGHT};
 
     for (int i = 0; i < SPREADS; i++)
         spread(&holes, i % 2 == 0);

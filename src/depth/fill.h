@@ -26,7 +26,6 @@ enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
  * state:  width x height, RF_SAMPLE_KNOWN or RF_SAMPLE_UNKNOWN; holds the distances to q
  *         in half samples afterwards, 254 at most
  */
-void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
-                   uint8_t *state);
+void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height, uint8_t *state);
 
 #endif

@@ -4,8 +4,8 @@
 
 enum {
     MOST_STEPS = 8,
-    MOST_APART = 40,  /* of disparities, in 1/256 of the range: a hole is not a movement */
-    STANDING = 48,    /* what a movement has to be better by */
+    MOST_APART = 40, /* of disparities, in 1/256 of the range: a hole is not a movement */
+    STANDING = 48,   /* what a movement has to be better by */
 };
 
 struct block {
@@ -67,8 +67,9 @@ static struct rf_motion follow(const struct block *b, const struct rf_motion *ca
         bool better = false;
 
         for (int k = 0; k < 8; k++)
-            better |= try(b, (struct rf_motion){(int8_t)(from.x + step[k].x),
-                                                (int8_t)(from.y + step[k].y)}, &best, &least);
+            better |= try(
+                b, (struct rf_motion){(int8_t)(from.x + step[k].x), (int8_t)(from.y + step[k].y)},
+                &best, &least);
         if (!better)
             break;
     }
@@ -85,7 +86,12 @@ void rf_find_motion(struct rf_motion *motion, const struct rf_frame *now,
 
         for (int i = 0; i < columns; i++) {
             const int x = i * RF_BLOCK;
-            const struct block block = {now, last, width, height, x, y,
+            const struct block block = {now,
+                                        last,
+                                        width,
+                                        height,
+                                        x,
+                                        y,
                                         width - x < RF_BLOCK ? width - x : RF_BLOCK,
                                         height - y < RF_BLOCK ? height - y : RF_BLOCK};
             struct rf_motion candidate[4];

@@ -16,7 +16,7 @@ enum {
 struct snap {
     const struct refocus_disparity *map;
     int width, height, reach;
-    int columns, rows; /* of the coarse map: a sample for every reach x reach pixels */
+    int columns, rows;      /* of the coarse map: a sample for every reach x reach pixels */
     uint16_t *least, *most; /* of each pixel's surroundings, reach to each side */
     uint16_t *coarse;
     uint8_t *confidence;

@@ -84,8 +84,7 @@ uint64_t rf_remove_specks(const uint16_t *disparity, ptrdiff_t stride, int width
             if (state[(size_t)y * (size_t)width + (size_t)x] == RF_SAMPLE_KNOWN)
                 visit(&patches, x, y);
     for (uint32_t i = 0; i < samples; i++) {
-        if (state[i] == RF_SAMPLE_KNOWN &&
-            (int)(work[find(work, i)] & ~ROOT) < least) {
+        if (state[i] == RF_SAMPLE_KNOWN && (int)(work[find(work, i)] & ~ROOT) < least) {
             state[i] = RF_SAMPLE_UNKNOWN;
             removed++;
         }

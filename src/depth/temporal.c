@@ -23,7 +23,7 @@ struct refocus_temporal {
     struct rf_frame now, last; /* last.disparity is filtered */
     uint16_t *before;          /* the last map as it came */
     uint16_t *filtered;
-    uint8_t *count, *counted;  /* frames that each sample has been seen in */
+    uint8_t *count, *counted; /* frames that each sample has been seen in */
     struct rf_motion *motion;
     void *block;
 };
@@ -155,8 +155,8 @@ static uint8_t guide_at(const struct refocus_image *photo, int x, int y, int dx,
     int sum = 0;
 
     for (int j = -1; j <= 1; j++) {
-        const uint8_t *row = photo->plane[0] +
-                             clamp(y + j * dy, photo->height - 1) * photo->stride[0];
+        const uint8_t *row =
+            photo->plane[0] + clamp(y + j * dy, photo->height - 1) * photo->stride[0];
 
         for (int i = -1; i <= 1; i++) {
             const uint8_t *p = row + clamp(x + i * dx, photo->width - 1) * step;
@@ -205,8 +205,7 @@ static void filter(struct refocus_temporal *f, size_t i, size_t q)
         return;
     if (apart >= f->noise) {
         /* A jump that nothing in the photo explains: not before it is seen twice. */
-        if (f->guided && f->strength > 0 && changed <= STILL &&
-            abs(d - f->before[q]) >= f->noise) {
+        if (f->guided && f->strength > 0 && changed <= STILL && abs(d - f->before[q]) >= f->noise) {
             f->filtered[i] = (uint16_t)p;
             f->counted[i] = (uint8_t)n;
         }

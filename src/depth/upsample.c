@@ -20,8 +20,7 @@ static int mean_weight(int t)
 
     if (a >= 512)
         return 0;
-    return a >= 256 ? left * left * left
-                    : 4 * (1 << 24) - 6 * 256 * a * a + 3 * a * a * a;
+    return a >= 256 ? left * left * left : 4 * (1 << 24) - 6 * 256 * a * a + 3 * a * a * a;
 }
 
 /* 0.465 (1 - (t / 2)^2)^2 in Q16 for what is expected before the photo is looked at:
@@ -65,8 +64,7 @@ static int clamp(int v, int most)
 /* Which of `size` columns or rows is the i-th of `samples`. */
 static int place(int i, int samples, int size)
 {
-    return (int)((2 * (int64_t)clamp(i, samples - 1) + 1) * size /
-                 (2 * (int64_t)samples));
+    return (int)((2 * (int64_t)clamp(i, samples - 1) + 1) * size / (2 * (int64_t)samples));
 }
 
 /* place() of 0, 1, 2 ... without divisions: `at` and `rest` / per. */
@@ -94,14 +92,12 @@ static void load_colours(const struct rf_upsampler *up, int y)
 {
     const struct refocus_image *photo = up->photo;
     const int bytes = refocus_format_bytes(photo->format), n = up->columns;
-    const uint8_t *row =
-        photo->plane[0] + place(y, up->rows, photo->height) * photo->stride[0];
+    const uint8_t *row = photo->plane[0] + place(y, up->rows, photo->height) * photo->stride[0];
     const struct rf_span *restrict span = up->span;
     uint8_t *const out[3] = {up->colour[0] + y * up->colour_stride,
                              up->colour[1] + y * up->colour_stride,
                              up->colour[2] + y * up->colour_stride};
-    uint8_t *restrict first = out[0], *restrict second = out[1],
-                      *restrict third = out[2];
+    uint8_t *restrict first = out[0], *restrict second = out[1], *restrict third = out[2];
 
     for (int x = 0; x < n; x++) {
         const uint8_t *restrict pixel = row + (ptrdiff_t)span[x].shown * bytes;
@@ -203,9 +199,8 @@ static void widen_row(void *context, int y, int worker)
     const struct rf_upsampler *up = context;
 
     (void)worker;
-    up->kernels->widen4(up->wide + y * up->wide_stride,
-                        up->coarse + y * up->coarse_stride, up->across,
-                        up->photo->width);
+    up->kernels->widen4(up->wide + y * up->wide_stride, up->coarse + y * up->coarse_stride,
+                        up->across, up->photo->width);
 }
 
 /* Three rows, of which the middle one is settled. */
@@ -217,8 +212,7 @@ struct three {
 
 /* n pixels of which some are not sure, from those around; at the border, of one block.
  */
-static void settle_block(const struct rf_upsampler *up, const struct three *three,
-                         int x, int n)
+static void settle_block(const struct rf_upsampler *up, const struct three *three, int x, int n)
 {
     const int right = up->photo->width - 1;
     uint16_t near_by[3][BLOCK + 2];
@@ -256,8 +250,7 @@ static void settle_row(const struct rf_upsampler *up, int y)
         const int x = unsure[i] * BLOCK;
         int n = width - x < BLOCK ? width - x : BLOCK;
 
-        for (; x > 0 && i < blocks && unsure[i + 1] == unsure[i] + 1 &&
-               x + n + BLOCK < width;
+        for (; x > 0 && i < blocks && unsure[i + 1] == unsure[i] + 1 && x + n + BLOCK < width;
              n += BLOCK)
             i++;
         settle_block(up, &three, x, n);
@@ -323,8 +316,7 @@ static void fill_band(void *context, int item, int worker)
 static void settle_border(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int y0 = row_of(up, item * SPAN - PAD),
-              y1 = row_of(up, (item + 1) * SPAN - PAD);
+    const int y0 = row_of(up, item * SPAN - PAD), y1 = row_of(up, (item + 1) * SPAN - PAD);
 
     (void)worker;
     if (y0 < y1)
@@ -336,8 +328,7 @@ static void settle_border(void *context, int item, int worker)
 static void take_over_border(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int y0 = row_of(up, item * SPAN - PAD),
-              y1 = row_of(up, (item + 1) * SPAN - PAD);
+    const int y0 = row_of(up, item * SPAN - PAD), y1 = row_of(up, (item + 1) * SPAN - PAD);
 
     (void)worker;
     for (int y = y0; y < y1; y++)

@@ -41,8 +41,7 @@ struct patch {
 };
 
 /* The colours of n pixels from column x on, a row after the other. */
-static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *patch,
-                    int x, int n)
+static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *patch, int x, int n)
 {
     const struct refocus_image *photo = patch->up->photo;
     const int rows = patch->y1 - patch->y0;
@@ -92,10 +91,9 @@ static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
         for (int i = 0; i < n; i++, at++) {
             lie->all[at] = 0;
             for (int t = 0; t < RF_TAP_COUNT; t++) {
-                const uint32_t near_by =
-                    (uint32_t)up->across[x + i].near_by[t / RF_TAPS] *
-                        up->down[y].near_by[t % RF_TAPS] >>
-                    16;
+                const uint32_t near_by = (uint32_t)up->across[x + i].near_by[t / RF_TAPS] *
+                                             up->down[y].near_by[t % RF_TAPS] >>
+                                         16;
 
                 lie->near_by[t][at] = (uint16_t)near_by;
                 lie->all[at] = (uint16_t)(lie->all[at] + near_by);
@@ -111,8 +109,7 @@ static inline void put(void *to, const void *from, size_t n, size_t size)
 {
     if (n >= 4) {
         memcpy(to, from, 4 * size);
-        memcpy((char *)to + (n - 4) * size, (const char *)from + (n - 4) * size,
-               4 * size);
+        memcpy((char *)to + (n - 4) * size, (const char *)from + (n - 4) * size, 4 * size);
     } else {
         memcpy(to, from, n * size);
     }
@@ -143,8 +140,7 @@ static int clamp(int v, int most)
 }
 
 /* Elements of a row from x on; beyond the border those at the border. */
-static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
-                            int columns)
+static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x, int columns)
 {
     const int from = x < 0 ? -x : 0;
     const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
@@ -158,8 +154,7 @@ static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x,
     return spare;
 }
 
-static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, int x,
-                              int columns)
+static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, int x, int columns)
 {
     const int from = x < 0 ? -x : 0;
     const int to = columns - x < RF_TURNED ? columns - x : RF_TURNED;
@@ -182,8 +177,7 @@ static void turn(const struct patch *patch, uint8_t *out, const uint8_t *samples
     const uint8_t *row[RF_AROUND];
 
     for (int j = 0; j < RF_AROUND; j++)
-        row[j] = inside ? samples + off[j] + x
-                        : take8(spare[j], samples + off[j], x, up->columns);
+        row[j] = inside ? samples + off[j] + x : take8(spare[j], samples + off[j], x, up->columns);
     up->kernels->turn8(out, row);
 }
 
@@ -221,8 +215,7 @@ static void fill_cell(struct patch *patch, int cell, int i)
     const int at = RF_AROUND * i;
     const struct rf_window window = {
         .disparity = around->disparity + at,
-        .colour = {around->colour[0] + at, around->colour[1] + at,
-                   around->colour[2] + at},
+        .colour = {around->colour[0] + at, around->colour[1] + at, around->colour[2] + at},
         .trust = up->confidence ? around->trust + at : NULL};
     bool found = false;
 
@@ -236,8 +229,8 @@ static void fill_cell(struct patch *patch, int cell, int i)
         if (!found)
             up->kernels->find_surfaces(&patch->cell, &window, &patch->parts, i);
         found = true;
-        up->kernels->surface(result, sure, &patch->cell, &window,
-                             lie_of(patch, cell, x, n), colour, rows * n);
+        up->kernels->surface(result, sure, &patch->cell, &window, lie_of(patch, cell, x, n), colour,
+                             rows * n);
         put_rows(patch, result, sure, x, (size_t)n);
     }
 }
@@ -257,8 +250,8 @@ static inline void clamp_run(uint16_t *out, int n, uint16_t low, uint16_t high)
 
 /* Taps in the corners are in the means, but nothing beyond the others is to come of
  * that. */
-static void clamp_cell(const struct patch *patch, int cell,
-                       const uint16_t *const row[RF_TAPS], int at)
+static void clamp_cell(const struct patch *patch, int cell, const uint16_t *const row[RF_TAPS],
+                       int at)
 {
     const struct rf_upsampler *up = patch->up;
     const int x1 = up->span[cell + 1].begin;
@@ -309,8 +302,7 @@ static void fill_cells(struct patch *patch, int first, int n)
     up->kernels->part(&patch->parts, row, n);
     look_around(patch, first);
     for (int i = 0; i < n; i++)
-        if (rough[i] == RF_ROUGH &&
-            up->span[first + i].begin < up->span[first + i + 1].begin)
+        if (rough[i] == RF_ROUGH && up->span[first + i].begin < up->span[first + i + 1].begin)
             fill_cell(patch, first + i, i);
 }
 
@@ -349,8 +341,7 @@ void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1)
     for (int i = 0; i < RF_TAPS; i++)
         wide[i] = up->wide + clamp(first + i, up->rows - 1) * up->wide_stride;
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
-        up->kernels->blend4(up->out + y * up->out_stride, wide, up->down[y].share,
-                            width);
+        up->kernels->blend4(up->out + y * up->out_stride, wide, up->down[y].share, width);
         memset(up->sure + y * up->sure_stride, 255, (size_t)width);
     }
     for (patch.y0 = y0; patch.y0 < y1; patch.y0 = patch.y1) {

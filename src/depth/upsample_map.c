@@ -12,8 +12,7 @@
 /* Sets the pointers, or with arena->base == NULL only counts. */
 static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
 {
-    const uint64_t width = (uint64_t)up->photo->width,
-                   height = (uint64_t)up->photo->height;
+    const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
     const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
 
     up->coarse_stride = up->columns + 4;
@@ -43,16 +42,14 @@ static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
     }
 }
 
-static void copy_map(const struct refocus_disparity *map, uint16_t *out,
-                     ptrdiff_t stride)
+static void copy_map(const struct refocus_disparity *map, uint16_t *out, ptrdiff_t stride)
 {
     for (int y = 0; y < map->height; y++) {
         const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
         uint16_t *to = (uint16_t *)((char *)out + y * stride);
 
         for (int x = 0; x < map->width; x++)
-            to[x] =
-                (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
+            to[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
     }
 }
 
@@ -65,10 +62,8 @@ static bool good_params(const struct refocus_upsample_params *params,
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
-int refocus_upsample(const struct refocus_image *photo,
-                     const struct refocus_disparity *map,
-                     const struct refocus_upsample_params *params, uint16_t *out,
-                     ptrdiff_t stride)
+int refocus_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
+                     const struct refocus_upsample_params *params, uint16_t *out, ptrdiff_t stride)
 {
     struct refocus_renderer_params threads = refocus_renderer_params_default(1, 1, 0);
     struct rf_arena arena = {NULL, RF_ARENA_ALIGN};
@@ -78,8 +73,8 @@ int refocus_upsample(const struct refocus_image *photo,
     void *block;
     int status;
 
-    if (!rf_good_image(photo) || !rf_good_map(map) || !params ||
-        !good_params(params, map) || !out || ((uintptr_t)out & 1) || (stride & 1) ||
+    if (!rf_good_image(photo) || !rf_good_map(map) || !params || !good_params(params, map) ||
+        !out || ((uintptr_t)out & 1) || (stride & 1) ||
         !rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
     threads.threads = params->threads;

@@ -23,12 +23,7 @@ struct rf_star {
 };
 
 /* Most stars of a picture; the lamps after them, row by row, have no spikes. */
-enum {
-    RF_MOST_STARS = 1024,
-    RF_MOST_SPIKES = 16,
-    RF_NOISE_LEVELS = 8,
-    RF_NOISE_BINS = 1024
-};
+enum { RF_MOST_STARS = 1024, RF_MOST_SPIKES = 16, RF_NOISE_LEVELS = 8, RF_NOISE_BINS = 1024 };
 
 /* Grain of the photo, measured where it is sharp. */
 struct rf_grain {

@@ -41,8 +41,7 @@ static int luma_at(const struct refocus_renderer *r, int x, int y)
     if (r->in_place.on) {
         const struct refocus_image *image = &r->in_place.photo;
         const struct rf_order o = rf_order_of(image->format);
-        const uint8_t *code =
-            image->plane[0] + y * image->stride[0] + (ptrdiff_t)x * o.bytes;
+        const uint8_t *code = image->plane[0] + y * image->stride[0] + (ptrdiff_t)x * o.bytes;
 
         return luma(code[o.r], code[o.g], code[o.b]);
     }
@@ -64,8 +63,7 @@ static bool is_blurred(const struct rf_frame *f, int x0, int y0)
 
 /* Variance of a block's noise in 1/16, and its mean; -1 when it does not count: it is
  * not sharp, or touches black or white, where noise is cut off. */
-static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blur,
-                          int *mean)
+static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blur, int *mean)
 {
     int sum = 0, square = 0;
 
@@ -134,10 +132,9 @@ static void fill_levels(const int sigma[RF_NOISE_LEVELS], uint16_t out[RF_NOISE_
         out[i] = 0;
         for (int away = 0; away < RF_NOISE_LEVELS; away++) {
             const int below = i - away, above = i + away;
-            const int found = below >= 0 && sigma[below] >= 0 ? sigma[below]
-                              : above < RF_NOISE_LEVELS && sigma[above] >= 0
-                                  ? sigma[above]
-                                  : -1;
+            const int found = below >= 0 && sigma[below] >= 0                ? sigma[below]
+                              : above < RF_NOISE_LEVELS && sigma[above] >= 0 ? sigma[above]
+                                                                             : -1;
 
             if (found >= 0) {
                 out[i] = (uint16_t)found;
@@ -158,8 +155,7 @@ void rf_measure_grain(struct rf_frame *f)
         sigma[i] = sigma_of(r->grain->blocks[i]);
     fill_levels(sigma, r->grain->sigma);
     for (int i = 0; i < 1024; i++) {
-        const double radius = (i * 32 + 16) / 256.0,
-                     area = 3.14159265358979 * radius * radius;
+        const double radius = (i * 32 + 16) / 256.0, area = 3.14159265358979 * radius * radius;
         const double left = area > 1 ? 1 / area : 1;
 
         r->grain->lost[i] = (uint8_t)floor(sqrt(1 - left) * 255 + 0.5);
@@ -175,8 +171,7 @@ static int sigma_at(const struct rf_grain *grain, int code)
 
     if (level >= last)
         return grain->sigma[last];
-    return (grain->sigma[level] * (LEVEL_WIDTH - part) +
-            grain->sigma[level + 1] * part) /
+    return (grain->sigma[level] * (LEVEL_WIDTH - part) + grain->sigma[level + 1] * part) /
            LEVEL_WIDTH;
 }
 
@@ -184,8 +179,7 @@ static int sigma_at(const struct rf_grain *grain, int code)
  * 147.8. */
 static int noise_at(int x, int y, uint32_t seed)
 {
-    uint32_t h =
-        seed * 0x9e3779b9u + (uint32_t)x * 0x85ebca6bu + (uint32_t)y * 0xc2b2ae35u;
+    uint32_t h = seed * 0x9e3779b9u + (uint32_t)x * 0x85ebca6bu + (uint32_t)y * 0xc2b2ae35u;
 
     h = (h ^ (h >> 16)) * 0x7feb352du;
     h = (h ^ (h >> 15)) * 0x846ca68bu;
@@ -215,8 +209,7 @@ void rf_add_grain(const struct rf_frame *f, struct rf_rect rect)
             if (lost == 0)
                 continue;
             rf_pixel_codes(f, x, y, code);
-            add = amount * lost *
-                  noise_at(r->origin_x + x, r->origin_y + y, f->params->seed) *
+            add = amount * lost * noise_at(r->origin_x + x, r->origin_y + y, f->params->seed) *
                   sigma_at(r->grain, luma(*code[0], *code[1], *code[2]));
             change = (int)((llabs(add) + unit / 2) / unit);
             for (int c = 0; c < 3; c++)

@@ -45,8 +45,8 @@ static struct rf_star *new_star(struct refocus_renderer *r, int x, int y)
 
 /* Pixel i of a lamp: one more of a star, whose place becomes the middle of them all. What a lamp
  * lost, a third of `added`, is its hue at white. */
-static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp,
-                      int i, struct rf_star *star)
+static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp, int i,
+                      struct rf_star *star)
 {
     const uint32_t times = (uint32_t)floorf(f->params->highlight_gain * 256 + 0.5f);
     const int x = lamp->x + i;
@@ -107,14 +107,12 @@ static struct spikes spikes_of(const struct refocus_render_params *p)
     struct spikes spikes = {
         .count = p->star_spikes,
         .length = (int64_t)floorf(p->star_length * 256 + 0.5f),
-        .share =
-            (int64_t)floorf(p->star_strength / (float)p->star_spikes * 65536 + 0.5f)};
+        .share = (int64_t)floorf(p->star_strength / (float)p->star_spikes * 65536 + 0.5f)};
 
     for (int i = 0; i < spikes.count; i++) {
         double sine, cosine;
 
-        rf_sincos_turns(p->star_angle / 360.0 + (double)i / spikes.count, &sine,
-                        &cosine);
+        rf_sincos_turns(p->star_angle / 360.0 + (double)i / spikes.count, &sine, &cosine);
         spikes.x[i] = (int64_t)floor(cosine * 32768 + 0.5);
         spikes.y[i] = (int64_t)floor(-sine * 32768 + 0.5); /* y down */
     }
@@ -132,8 +130,8 @@ static int64_t density(int64_t along, int64_t across, int64_t length, int64_t wi
     return a * b >> 16;
 }
 
-static void add_star(const struct rf_star *star, const struct spikes *spikes, int x0,
-                     int y0, int64_t sum[3][LANES])
+static void add_star(const struct rf_star *star, const struct spikes *spikes, int x0, int y0,
+                     int64_t sum[3][LANES])
 {
     const int64_t wide = star->blur > 192 ? star->blur : 192;
 
@@ -156,8 +154,7 @@ static void add_star(const struct rf_star *star, const struct spikes *spikes, in
 }
 
 /* Add Q20 light to encoded pixels. */
-static void add_light(const struct rf_frame *f, struct rf_rect rect,
-                      int64_t sum[3][LANES])
+static void add_light(const struct rf_frame *f, struct rf_rect rect, int64_t sum[3][LANES])
 {
     const struct rf_transfer *transfer = &f->r->transfer[f->r->blend];
 
@@ -168,12 +165,11 @@ static void add_light(const struct rf_frame *f, struct rf_rect rect,
 
             rf_pixel_codes(f, x, y, code);
             for (int c = 0; c < 3; c++) {
-                const int64_t mean = 4 * (int64_t)transfer->to_light[*code[c]] +
-                                     ((sum[c][i] + (1 << 5)) >> 6);
+                const int64_t mean =
+                    4 * (int64_t)transfer->to_light[*code[c]] + ((sum[c][i] + (1 << 5)) >> 6);
 
                 if (sum[c][i] >= 1 << 5)
-                    *code[c] =
-                        transfer->to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
+                    *code[c] = transfer->to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
             }
         }
     }

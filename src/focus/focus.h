@@ -32,27 +32,26 @@ struct rf_field {
 /* What refocus_render_params ask for, in fixed point. */
 struct rf_focus_plan {
     struct rf_focus focus;
-    bool plain; /* s = K (df - d) and nothing else */
-    uint32_t number; /* of this render, when maps say something: they may change */
-    int width, height; /* of the whole photo */
-    uint16_t least, most;    /* disparities are clamped to them */
-    uint16_t limit;          /* of |s|, Q7.8 */
-    int32_t share;           /* of depth, Q16 */
+    bool plain;                   /* s = K (df - d) and nothing else */
+    uint32_t number;              /* of this render, when maps say something: they may change */
+    int width, height;            /* of the whole photo */
+    uint16_t least, most;         /* disparities are clamped to them */
+    uint16_t limit;               /* of |s|, Q7.8 */
+    int32_t share;                /* of depth, Q16 */
     int64_t tilt, tilt_x, tilt_y; /* at pixel (0, 0), and a pixel's step: Q24 */
-    int bands;               /* 1 or more when any is wider than nothing, else 0 */
+    int bands;                    /* 1 or more when any is wider than nothing, else 0 */
     struct rf_band band[REFOCUS_MAX_BANDS];
     const struct refocus_disparity *surface, *sharp, *picture; /* or NULL */
     struct rf_field field;
 };
 
 /* Of parameters that are in their ranges. */
-void rf_focus_plan_make(struct rf_focus_plan *plan,
-                        const struct refocus_render_params *params,
+void rf_focus_plan_make(struct rf_focus_plan *plan, const struct refocus_render_params *params,
                         struct rf_focus focus, int width, int height);
 
 /* Signed blur of n pixels of disparities from (x, y) on, Q7.8. */
-void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur,
-                  const uint16_t *disparity, int x, int y, int n);
+void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity, int x,
+                  int y, int n);
 
 /* e of a field, signed as s is: what is nearer than its centre is below 0. */
 int32_t rf_field_at(const struct rf_focus_plan *plan, int x, int y, int d);

@@ -27,8 +27,7 @@ static int value_at(const struct part *part, int x, int y)
 {
     const uint8_t *row = (const uint8_t *)part->map->samples + y * part->map->stride;
 
-    return part->map->bits == 8 ? row[x] * 257
-                                : ((const uint16_t *)(const void *)row)[x];
+    return part->map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
 }
 
 static bool is_inside(const struct part *part, int x, int y)
@@ -110,13 +109,13 @@ static float pick(const struct part *part)
     return mean_of_bin(part, find_surface(count, sum));
 }
 
-int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y,
-                           int radius, float *focus)
+int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y, int radius,
+                           float *focus)
 {
     struct part part = {.map = map, .cx = x, .cy = y};
 
-    if (!rf_good_map(map) || !focus || x < 0 || y < 0 || x >= map->width ||
-        y >= map->height || radius < 0 || radius > REFOCUS_MAX_TAP_RADIUS)
+    if (!rf_good_map(map) || !focus || x < 0 || y < 0 || x >= map->width || y >= map->height ||
+        radius < 0 || radius > REFOCUS_MAX_TAP_RADIUS)
         return REFOCUS_ERR_ARGUMENT;
     if (radius == 0)
         radius = rf_larger(3, rf_larger(map->width, map->height) / 256);
@@ -129,8 +128,8 @@ int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y,
     return REFOCUS_OK;
 }
 
-int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y,
-                               int width, int height, float *focus)
+int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y, int width,
+                               int height, float *focus)
 {
     struct part part = {.map = map, .x0 = x, .y0 = y};
 

@@ -25,8 +25,8 @@ static void plan_tilt(struct rf_focus_plan *plan, const struct refocus_render_pa
 
 /* An offset of a band is that of its middle from the focus: with it, e is counted from
  * there. */
-static struct rf_band band_of(const struct rf_focus_plan *plan, int disparity,
-                              float half_width, float transition)
+static struct rf_band band_of(const struct rf_focus_plan *plan, int disparity, float half_width,
+                              float transition)
 {
     const int64_t away = (int64_t)(disparity - plan->focus.disparity) * plan->share;
     const int32_t sharp = to_fixed(half_width, RF_ONE);
@@ -35,21 +35,18 @@ static struct rf_band band_of(const struct rf_focus_plan *plan, int disparity,
                             sharp + to_fixed(transition, RF_ONE)};
 }
 
-static void plan_bands(struct rf_focus_plan *plan,
-                       const struct refocus_render_params *p)
+static void plan_bands(struct rf_focus_plan *plan, const struct refocus_render_params *p)
 {
     if (p->bands == 0 && p->focus_half_width <= 0)
         return;
     plan->band[plan->bands++] =
         band_of(plan, plan->focus.disparity, p->focus_half_width, p->focus_transition);
     for (int i = 0; i < p->bands; i++)
-        plan->band[plan->bands++] =
-            band_of(plan, to_fixed(p->band[i].disparity, RF_ONE), p->band[i].half_width,
-                    p->band[i].transition);
+        plan->band[plan->bands++] = band_of(plan, to_fixed(p->band[i].disparity, RF_ONE),
+                                            p->band[i].half_width, p->band[i].transition);
 }
 
-static void plan_field(struct rf_focus_plan *plan,
-                       const struct refocus_render_params *p)
+static void plan_field(struct rf_focus_plan *plan, const struct refocus_render_params *p)
 {
     double sine, cosine;
 
@@ -67,9 +64,8 @@ static void plan_field(struct rf_focus_plan *plan,
     };
 }
 
-void rf_focus_plan_make(struct rf_focus_plan *plan,
-                        const struct refocus_render_params *p, struct rf_focus focus,
-                        int width, int height)
+void rf_focus_plan_make(struct rf_focus_plan *plan, const struct refocus_render_params *p,
+                        struct rf_focus focus, int width, int height)
 {
     memset(plan, 0, sizeof *plan);
     plan->focus = focus;
@@ -84,8 +80,7 @@ void rf_focus_plan_make(struct rf_focus_plan *plan,
     plan_tilt(plan, p);
     plan_bands(plan, p);
     plan_field(plan, p);
-    plan->plain = p->field == REFOCUS_FIELD_LENS && plan->least == 0 &&
-                  plan->most == RF_ONE && plan->limit >= focus.radius &&
-                  plan->share == 65536 && !plan->tilt_x && !plan->tilt_y &&
-                  !plan->tilt && !plan->bands && !plan->surface && !plan->sharp;
+    plan->plain = p->field == REFOCUS_FIELD_LENS && plan->least == 0 && plan->most == RF_ONE &&
+                  plan->limit >= focus.radius && plan->share == 65536 && !plan->tilt_x &&
+                  !plan->tilt_y && !plan->tilt && !plan->bands && !plan->surface && !plan->sharp;
 }

@@ -19,8 +19,7 @@ static bool good_point(const struct refocus_focus_point *p)
 
 static int good_plane(const struct refocus_focus_plane *plane)
 {
-    return fabsf(plane->across) <= REFOCUS_MAX_TILT &&
-                   fabsf(plane->down) <= REFOCUS_MAX_TILT
+    return fabsf(plane->across) <= REFOCUS_MAX_TILT && fabsf(plane->down) <= REFOCUS_MAX_TILT
                ? REFOCUS_OK
                : REFOCUS_ERR_ARGUMENT;
 }
@@ -57,8 +56,8 @@ int refocus_focus_plane_of_line(struct refocus_focus_plane *plane,
 {
     double dx, dy, length, sine, cosine, slope;
 
-    if (!plane || !from || !to || !good_point(from) || !good_point(to) ||
-        !(aspect > 0) || !isfinite(aspect) || !(angle_deg > -90 && angle_deg < 90))
+    if (!plane || !from || !to || !good_point(from) || !good_point(to) || !(aspect > 0) ||
+        !isfinite(aspect) || !(angle_deg > -90 && angle_deg < 90))
         return REFOCUS_ERR_ARGUMENT;
     dx = (double)to->x - from->x; /* in picture widths */
     dy = ((double)to->y - from->y) * aspect;

@@ -15,8 +15,7 @@ static int32_t shorten(const struct rf_band *band, int32_t distance)
         return 0;
     if (distance >= band->whole)
         return distance;
-    return (int32_t)((int64_t)(distance - band->sharp) * band->whole /
-                     (band->whole - band->sharp));
+    return (int32_t)((int64_t)(distance - band->sharp) * band->whole / (band->whole - band->sharp));
 }
 
 /*
@@ -25,8 +24,7 @@ static int32_t shorten(const struct rf_band *band, int32_t distance)
  * nearest of them a pixel is a foreground, behind it a background: so what is blurred
  * between two bands stays behind the near one instead of spreading over it.
  */
-static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e,
-                                int32_t flat)
+static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e, int32_t flat)
 {
     int32_t least = INT32_MAX;
     bool before = true;
@@ -55,28 +53,24 @@ static int32_t lens_at(const struct rf_focus_plan *plan, int x, int y, int d)
     int32_t e = flat;
 
     if (plan->surface)
-        e = depth_of(plan,
-                     rf_map_at(plan->surface, plan->width, plan->height, x, y) - d) +
-            rise;
+        e = depth_of(plan, rf_map_at(plan->surface, plan->width, plan->height, x, y) - d) + rise;
     return plan->bands ? shorten_by_bands(plan, e, flat) : e;
 }
 
-void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur,
-                  const uint16_t *disparity, int x, int y, int n)
+void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity, int x,
+                  int y, int n)
 {
     for (int i = 0; i < n; i++) {
         const int d = clamp(disparity[i], plan->least, plan->most);
-        const int32_t e = plan->field.shape == REFOCUS_FIELD_LENS
-                              ? lens_at(plan, x + i, y, d)
-                              : rf_field_at(plan, x + i, y, d);
+        const int32_t e = plan->field.shape == REFOCUS_FIELD_LENS ? lens_at(plan, x + i, y, d)
+                                                                  : rf_field_at(plan, x + i, y, d);
         const uint32_t distance = (uint32_t)clamp(abs(e), 0, RF_ONE);
         /* as signed_blur */
         uint32_t s = (distance * plan->focus.radius + (1 << 15)) >> 16;
 
         s = s > plan->limit ? plan->limit : s;
         if (plan->sharp) {
-            const int sharp =
-                rf_map_at(plan->sharp, plan->width, plan->height, x + i, y);
+            const int sharp = rf_map_at(plan->sharp, plan->width, plan->height, x + i, y);
 
             s = (s * (uint32_t)(RF_ONE - sharp) + RF_ONE / 2) / RF_ONE;
         }

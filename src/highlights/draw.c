@@ -21,8 +21,7 @@ bool rf_draws_lamps(const struct rf_frame *f)
     const struct refocus_aperture *a = f->aperture;
 
     return rf_is_sweep(f) && p->highlight_gain > 1 && !rf_weighs(p) &&
-           (a->shape == RF_SHAPE_DISC || a->chord_sets) && p->cat_eye == 0 &&
-           p->fringe == 0;
+           (a->shape == RF_SHAPE_DISC || a->chord_sets) && p->cat_eye == 0 && p->fringe == 0;
 }
 
 /* Whether the discs of its pixels reach into the tile. */
@@ -43,8 +42,7 @@ static double light_of(const struct rf_frame *f, const struct rf_highlight *lamp
 
 /* The light of each pixel of the run that a pixel sees whole, Q14, times 2^(15 - shift)
  * / RF_LAMP_UNIT: all of it, over the disc. */
-static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
-                      const struct rf_seen *run)
+static bool set_light(struct rf_disc_job *job, const struct rf_frame *f, const struct rf_seen *run)
 {
     const struct refocus_aperture *a = f->aperture;
     const double unit = a->shape == RF_SHAPE_DISC ? 3.14159265358979 : a->chord_area;
@@ -68,26 +66,23 @@ static bool set_light(struct rf_disc_job *job, const struct rf_frame *f,
 }
 
 /* Where a chord begins and ends at a height, in parts of the radius. */
-static void chord_at(const struct refocus_aperture *a, int set, double height,
-                     double ends[2])
+static void chord_at(const struct refocus_aperture *a, int set, double height, double ends[2])
 {
     const int16_t(*const chord)[2] = a->chord[set];
     const double at = (height + 1) * (RF_CHORDS / 2);
     const int row = (int)floor(at);
 
     for (int k = 0; k < 2; k++)
-        ends[k] =
-            row < 0 || row >= RF_CHORDS
-                ? 0
-                : chord[row][k] + (at - row) * (chord[row + 1][k] - chord[row][k]);
+        ends[k] = row < 0 || row >= RF_CHORDS
+                      ? 0
+                      : chord[row][k] + (at - row) * (chord[row + 1][k] - chord[row][k]);
 }
 
 /* Of a disc rows are as wide to both sides. Behind the focus an iris is seen as it is,
  * and pixels see through it to the other side; before it the other way round. Means, as
  * kernels->half_chords.
  */
-static void set_chords(struct rf_disc_job *job, const struct rf_frame *f,
-                       const struct rf_seen *run)
+static void set_chords(struct rf_disc_job *job, const struct rf_frame *f, const struct rf_seen *run)
 {
     const struct refocus_aperture *a = f->aperture;
     const double unit = run->blur * (RF_LAMP_UNIT / (2 * 256.0 * 16384)) / run->rows;
@@ -115,8 +110,7 @@ static void set_chords(struct rf_disc_job *job, const struct rf_frame *f,
 }
 
 /* Rows that the discs reach, and where they end in them. */
-static void set_shape(struct rf_disc_job *job, const struct rf_frame *f,
-                      const struct rf_seen *run)
+static void set_shape(struct rf_disc_job *job, const struct rf_frame *f, const struct rf_seen *run)
 {
     set_chords(job, f, run);
     job->first = 0;
@@ -196,8 +190,7 @@ static void draw(struct canvas *canvas, struct rf_seen run)
 }
 
 /* Puts `count` pixels of a row of the window in a run, from (x, y) on. */
-static void place(struct rf_seen *run, const struct rf_lamp_sights *tile, int x, int y,
-                  int count)
+static void place(struct rf_seen *run, const struct rf_lamp_sights *tile, int x, int y, int count)
 {
     x -= tile->tx * RF_TILE;
     run->from = RF_LAMP_UNIT * x - RF_LAMP_UNIT / 2;
@@ -243,8 +236,8 @@ static int part_of(struct rf_seen *part, const struct rf_lamp_sights *tile,
 }
 
 /* Whether any of pixels i to end - 1 of a run does. */
-static bool may_reach(const struct rf_lamp_sights *tile,
-                      const struct rf_highlight *lamp, int i, int end)
+static bool may_reach(const struct rf_lamp_sights *tile, const struct rf_highlight *lamp, int i,
+                      int end)
 {
     const struct refocus_renderer *r = tile->f->r;
     const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
@@ -278,8 +271,8 @@ static void draw_parts(struct canvas *canvas, const struct rf_highlight *lamp)
 }
 
 /* Rows that are drawn as one: in their middle, as wide as they are in the mean. */
-static struct rf_seen stack_of(const struct rf_lamp_sights *tile,
-                               const struct rf_highlight *top, int rows)
+static struct rf_seen stack_of(const struct rf_lamp_sights *tile, const struct rf_highlight *top,
+                               int rows)
 {
     const struct refocus_renderer *r = tile->f->r;
     const struct rf_highlight *lamp = top;
@@ -305,8 +298,7 @@ static struct rf_seen stack_of(const struct rf_lamp_sights *tile,
 
 /* Where nothing hides them; else they are drawn in parts, for each to see past that by
  * other ways. */
-static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
-                       struct rf_seen run)
+static void draw_stack(struct canvas *canvas, const struct rf_highlight *top, struct rf_seen run)
 {
     const struct rf_frame *f = canvas->sights.f;
     struct rf_disc_job job = {.planes = canvas->planes};
@@ -351,8 +343,8 @@ static void draw_lamp(struct canvas *canvas, const struct rf_highlight *lamp)
             draw_stack(canvas, lamp, run);
 }
 
-void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
-                   int ty, uint16_t *const mean[3], int planes)
+void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx, int ty,
+                   uint16_t *const mean[3], int planes)
 {
     const struct refocus_renderer *r = f->r;
     const int reach = plan->lamp / 256 + 1;
@@ -369,8 +361,7 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
     canvas.planes = planes;
     canvas.even[0] = canvas.even[1] = canvas.even[2] = 0;
     rf_start_sights(&canvas.sights, f, plan, tx, ty);
-    for (int part = y0 / RF_LAMP_ROWS; part < parts && part * RF_LAMP_ROWS < y1;
-         part++) {
+    for (int part = y0 / RF_LAMP_ROWS; part < parts && part * RF_LAMP_ROWS < y1; part++) {
         const struct rf_highlights *found = &r->photo[r->used].highlights[part];
         const struct rf_highlight *lamp = found->lamp, *const end = lamp + found->count;
 

@@ -40,7 +40,7 @@ bool rf_draws_lamps(const struct rf_frame *f);
 void rf_take_lamps_out(struct refocus_renderer *r);
 
 /* Adds lamps to the means of a tile, Q14 and 65535 at most, of so many planes. */
-void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx,
-                   int ty, uint16_t *const mean[3], int planes);
+void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, int tx, int ty,
+                   uint16_t *const mean[3], int planes);
 
 #endif

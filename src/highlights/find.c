@@ -25,7 +25,7 @@ enum {
 
 struct search {
     struct rf_lamp_search lamps;
-    uint16_t *bits; /* ROWS rows of `words`: that of row y is y % ROWS */
+    uint16_t *bits;   /* ROWS rows of `words`: that of row y is y % ROWS */
     int words, ready; /* rows before that have their bits */
 };
 
@@ -170,7 +170,7 @@ static void clear_shape(const struct search *s, const struct rf_lamp_shape *shap
         for (uint64_t row = shape->row[j]; row; row &= row - 1) {
             const int x = shape->x + __builtin_ctzll(row);
 
-            bits[x / 16] &= (uint16_t)~(1 << x % 16);
+            bits[x / 16] &= (uint16_t) ~(1 << x % 16);
         }
     }
 }

@@ -6,14 +6,13 @@
  * than what is around them, with a steep rim. Never large clipped areas: a white wall is
  * just white.
  *
- *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing, nor
- *                where one channel alone is clipped: hair, leaves, petals
- *     isolation  ramp of mean luminance / that of all else up to 12 cells away, 2.5 to 3.75, and
- *                of the bright channel that stands out most: what is blue among blue is a petal
- *     steepness  ramp of pixels of the edge / half lit ones beside them, 1.67 to 2.25: those
- *                2/5 of the way and more from what is 2 or 3 cells away to white, so that what
- *                a lamp lights around it is not its rim; soft rims of large photos: judge.c
- *     added      (gain - 1) * level * isolation * steepness * hue, of each channel
+ *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing,
+ * nor where one channel alone is clipped: hair, leaves, petals isolation  ramp of mean luminance /
+ * that of all else up to 12 cells away, 2.5 to 3.75, and of the bright channel that stands out
+ * most: what is blue among blue is a petal steepness  ramp of pixels of the edge / half lit ones
+ * beside them, 1.67 to 2.25: those 2/5 of the way and more from what is 2 or 3 cells away to white,
+ * so that what a lamp lights around it is not its rim; soft rims of large photos: judge.c added
+ * (gain - 1) * level * isolation * steepness * hue, of each channel
  *
  * The hue is that of the lamp's rim: what the pixels beside it have more than those 2 or 3 cells
  * away, the brighter ones for more. A lamp and what it lights may hang together, a flame and its
@@ -49,14 +48,14 @@ struct rf_highlight {
     uint16_t x, y;     /* the first */
     uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095: mean of what they lost */
     uint8_t count;     /* 1 to RF_LAMP_RUN */
-    uint8_t size;      /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
-    uint16_t edges;    /* for this lens: a bit each that is the edge of something bright and sharper;
-                          rays leave those alone that are mostly that, drawn ones fade, */
-    int16_t blur;      /* and the mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ, */
-    uint16_t shining;  /* by how much all of them shine together, 256 each */
-    uint16_t own[3];   /* Q12 light that was taken out of what rays meet, mean of what shines */
-    uint8_t rows;      /* that are drawn as one, from this one on; 0: with one above */
-    uint8_t below;     /* the next of them is so much further in the list */
+    uint8_t size;   /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
+    uint16_t edges; /* for this lens: a bit each that is the edge of something bright and sharper;
+                       rays leave those alone that are mostly that, drawn ones fade, */
+    int16_t blur; /* and the mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ, */
+    uint16_t shining; /* by how much all of them shine together, 256 each */
+    uint16_t own[3];  /* Q12 light that was taken out of what rays meet, mean of what shines */
+    uint8_t rows;     /* that are drawn as one, from this one on; 0: with one above */
+    uint8_t below;    /* the next of them is so much further in the list */
 };
 
 /* Highlights are kept in parts of so many rows, each with room for one run in 76 pixels; further
@@ -64,7 +63,7 @@ struct rf_highlight {
 enum {
     RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
     RF_LAMP_RUN = 16,
-    RF_LAMP_STACK = 4,    /* rows that are drawn as one at most */
+    RF_LAMP_STACK = 4, /* rows that are drawn as one at most */
     RF_LAMP_ROWS = 64,
     RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS
 };
@@ -144,8 +143,8 @@ int rf_lamp_shine(const struct refocus_renderer *r, int x, int y);
  * miss. */
 void rf_widen_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
 
-/* And: lamps and what was widened of them count as foreground (tiles/ranges.h): what rays see past them
- * is not to shine like them. */
+/* And: lamps and what was widened of them count as foreground (tiles/ranges.h): what rays see past
+ * them is not to shine like them. */
 void rf_put_lamps_in_front(struct refocus_renderer *r, double gap);
 
 /* Up to that gain, sums of 16 bits hold the light of 16 rays over 4. */

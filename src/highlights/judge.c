@@ -12,7 +12,8 @@ enum {
     BESIDE = 2,  /* and its limbs */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     GAIN = 3, /* full gain of 4 adds three times white */
-    SMALL = 5, LARGE = 6, /* halves of its surroundings that a lamp has to exceed: small or of cells */
+    SMALL = 5,
+    LARGE = 6,  /* halves of its surroundings that a lamp has to exceed: small or of cells */
     ALIKE = 16, /* colours of a run differ by at most that part of the light, in each channel */
 };
 
@@ -23,7 +24,7 @@ struct lit {
     int64_t base;              /* and the brightest channel there */
     int64_t rim[3];            /* what its rim has more than that, or its surroundings, added up */
     int pixels;
-    int edge, half_lit;        /* those of its edge, and half lit ones beside it */
+    int edge, half_lit; /* those of its edge, and half lit ones beside it */
     int fade[2]; /* pixels in its cells and beside them, on the way to its surroundings: the upper
                     part of it, from 0.4 on, and the lower one, from 0.1 */
 };
@@ -181,8 +182,7 @@ static struct grown grown_by(const struct rf_lamp_shape *shape, int by)
 }
 
 /* Where a body meets a limb there is nothing to be told. */
-static struct grown near_limbs(const struct rf_lamp_shape *body,
-                               const struct rf_lamp_shape *shape)
+static struct grown near_limbs(const struct rf_lamp_shape *body, const struct rf_lamp_shape *shape)
 {
     struct rf_lamp_shape limbs = *shape;
 
@@ -372,7 +372,8 @@ static void list(struct rf_lamp_search *s, int x, int y, const struct lamp *lamp
     if (!goes_on(s, x, y, full)) {
         rf_end_list(s);
         s->run = (struct rf_highlight){
-            .x = (uint16_t)x, .y = (uint16_t)y,
+            .x = (uint16_t)x,
+            .y = (uint16_t)y,
             .size = (uint8_t)(lamp->size < UINT8_MAX ? lamp->size : UINT8_MAX)};
         memset(s->lost, 0, sizeof s->lost);
         memcpy(s->full, full, sizeof s->full);
@@ -495,8 +496,8 @@ static void take_square(const struct rf_lamp_photo *p, int x, int y, struct squa
         for (int i = 0; i <= 2 * NEAR; i++) {
             int *colour = square->colour[j][i];
 
-            sample(p, rf_within(x + i - NEAR, p->across - 1),
-                   rf_within(y + j - NEAR, p->down - 1), colour);
+            sample(p, rf_within(x + i - NEAR, p->across - 1), rf_within(y + j - NEAR, p->down - 1),
+                   colour);
             square->clipped[j + 1][i + 1] = rf_level_of(p, colour) > RF_CLIPPED;
         }
 }
@@ -550,8 +551,8 @@ static void list_pixels(struct rf_lamp_search *s, struct rf_rect in, const struc
                 list(s, x, y, lamp);
 }
 
-/* Mean colour of a sparse grid around a cell, and in it. False: `own` does not stand out; where much
- * is white the rows beside it tell. */
+/* Mean colour of a sparse grid around a cell, and in it. False: `own` does not stand out; where
+ * much is white the rows beside it tell. */
 static bool look_at_square(const struct rf_lamp_photo *p, int x, int y, struct lit *lit)
 {
     enum { ACROSS = 2 * AROUND / GRID + 1, ALL = ACROSS * ACROSS };

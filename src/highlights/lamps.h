@@ -8,8 +8,8 @@
 /* The photo's light, in planes or, in strip mode, as the caller's codes. */
 struct rf_lamp_photo {
     int width, height;
-    int cell;         /* pixels that a cell is wide and high */
-    int across, down; /* cells */
+    int cell;               /* pixels that a cell is wide and high */
+    int across, down;       /* cells */
     uint16_t *const *light; /* planes, rows `stride` elements apart, or NULL: */
     const uint8_t *code;    /* rows `stride` bytes apart */
     ptrdiff_t stride;

@@ -16,10 +16,10 @@ enum {
     EDGE_FROM = 128, /* Q7.8: what something bright is sharper by for this to be its edge, */
     EDGE_PART = 16,  /* by that part of this blur at least, and wholly so by 3 times that; where
                         lamps are not drawn, by twice that */
-    DISC_RIM = 256,  /* Q7.8: what a disc goes beyond the blur of a lamp's pixel, half a pixel at its
-                        rim and half of what blurs of a run may differ by, and some */
-    STACKED = 4096,  /* Q7.8: from this blur on two rows of a lamp are drawn as one, from twice that on
-                        four, */
+    DISC_RIM = 256, /* Q7.8: what a disc goes beyond the blur of a lamp's pixel, half a pixel at its
+                       rim and half of what blurs of a run may differ by, and some */
+    STACKED = 4096, /* Q7.8: from this blur on two rows of a lamp are drawn as one, from twice that
+                       on four, */
     STACK_RIM = 512, /* which may reach farther by what rows differ by at their ends */
 };
 
@@ -84,8 +84,9 @@ static int blur_of_most(struct refocus_renderer *r, const struct rf_highlight *l
         return RF_NO_BLUR;
     middle = r->front.blur[y * r->stride + x];
     for (int i = 0; i < lamp->count; i++) {
-        const int shines =
-            !rf_place_of(r, lamp, i, &x, &y) ? 0 : lamp->edges >> i & 1 ? rf_lamp_shine(r, x, y) : 256;
+        const int shines = !rf_place_of(r, lamp, i, &x, &y) ? 0
+                           : lamp->edges >> i & 1           ? rf_lamp_shine(r, x, y)
+                                                            : 256;
         const int blur = shines ? r->front.blur[y * r->stride + x] : 0;
 
         if (shines && 2 * abs(blur - middle) <= rf_blurs_alike(middle)) {
@@ -187,8 +188,7 @@ static void mark_part(void *context, int item, int worker)
 {
     const struct marks *marks = context;
     struct refocus_renderer *r = marks->r;
-    const struct rf_highlights *found =
-        &r->photo[r->used].highlights[rf_first_lamp_part(r) + item];
+    const struct rf_highlights *found = &r->photo[r->used].highlights[rf_first_lamp_part(r) + item];
 
     (void)worker;
     for (uint32_t i = 0; i < found->count; i++) {

@@ -57,8 +57,8 @@ static int reach_of(int blur, double gap)
  * it within half a gap, farther away and blurred itself, takes its blur: then the
  * pre-filter spreads its light over that.
  */
-static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y,
-                  struct rf_bin_scale scale, double gap)
+static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_bin_scale scale,
+                  double gap)
 {
     const int16_t own = r->front.blur[lamp_y * r->stride + lamp_x];
     const int reach = reach_of(own, gap);
@@ -170,8 +170,7 @@ static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach
             const ptrdiff_t at = y * r->stride + x;
 
             if (x >= 0 && y >= 0 && x < r->width && y < r->height &&
-                dx * dx + dy * dy <= reach * reach + 1 &&
-                abs(r->front.blur[at] - own) <= 256)
+                dx * dx + dy * dy <= reach * reach + 1 && abs(r->front.blur[at] - own) <= 256)
                 place[count++] = at;
         }
     }

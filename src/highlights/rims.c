@@ -11,9 +11,9 @@
 #include "tiles/tiles.h"
 
 enum {
-    JUMP = 65535 / 32,           /* disparities this far apart are two surfaces */
+    JUMP = 65535 / 32,             /* disparities this far apart are two surfaces */
     LEVEL = RF_LIGHT_MAX * 9 / 10, /* clipped, or nearly */
-    CONTRAST = RF_LIGHT_MAX / 2, /* least |N - F| */
+    CONTRAST = RF_LIGHT_MAX / 2,   /* least |N - F| */
     DARK = RF_LIGHT_MAX / 2,
     AROUND = 6, /* pixels on each side that tell whose light it is */
     FAR = 3,
@@ -59,8 +59,7 @@ static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 static void add_rim(const struct refocus_renderer *r, struct rf_photo *photo, int x, int y,
                     uint16_t disparity)
 {
-    const struct rf_rim rim = {(uint16_t)(x + r->origin_x), (uint16_t)(y + r->origin_y),
-                               disparity};
+    const struct rf_rim rim = {(uint16_t)(x + r->origin_x), (uint16_t)(y + r->origin_y), disparity};
 
     rf_add_place(photo->rim, &photo->rims, photo->capacity, &rim, sizeof rim);
 }
@@ -156,8 +155,7 @@ static bool has_other(const struct refocus_renderer *r, int x, int y, ptrdiff_t 
 
 /* The rims around a bright pixel beside something much farther, of each the nearest pixel that has
  * it. */
-static void find_around(const struct refocus_renderer *r, int x, int y,
-                        struct rf_photo *photo)
+static void find_around(const struct refocus_renderer *r, int x, int y, struct rf_photo *photo)
 {
     const ptrdiff_t n = y * r->stride + x;
     const struct rf_rect in = rf_around(r, x, y, 1);

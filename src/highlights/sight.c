@@ -76,27 +76,24 @@ static int farthest_look(const struct rf_frame *f)
 }
 
 /* Of the photo, where the tile sees the screen on its way to the run; to the last. */
-static struct rf_rect region_of(const struct screen *screen,
-                                const struct rf_lamp_sights *tile,
-                                const struct rf_seen *run,
-                                const struct rf_disc_job *job)
+static struct rf_rect region_of(const struct screen *screen, const struct rf_lamp_sights *tile,
+                                const struct rf_seen *run, const struct rf_disc_job *job)
 {
     const double middle = run->middle * 0.5, apart = run->rows * 0.5 - 0.25;
-    const int x = tile->tx * RF_TILE, y = tile->ty * RF_TILE,
-              far = farthest_look(tile->f), most = RF_TILE - 1 + far;
+    const int x = tile->tx * RF_TILE, y = tile->ty * RF_TILE, far = farthest_look(tile->f),
+              most = RF_TILE - 1 + far;
     struct rf_rect at;
 
     extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_LAMP_UNIT,
            run->to / (double)RF_LAMP_UNIT, &at.x0, &at.x1);
-    extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart,
-           &at.y0, &at.y1);
+    extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart, &at.y0, &at.y1);
     return (struct rf_rect){x + rf_larger(at.x0, -far), y + rf_larger(at.y0, -far),
                             x + rf_smaller(at.x1, most), y + rf_smaller(at.y1, most)};
 }
 
 /* By the ranges of what may be met, tiles/ranges.h. */
-static enum rf_hidden hidden_in_ranges(const struct refocus_renderer *r,
-                                       const struct rf_slab *slab, struct rf_rect at)
+static enum rf_hidden hidden_in_ranges(const struct refocus_renderer *r, const struct rf_slab *slab,
+                                       struct rf_rect at)
 {
     const int low = slab->low, high = low + slab->width;
     const int border = rf_range_border(r->pad), each = RF_TILE / RF_CELL;
@@ -126,21 +123,17 @@ static bool may_meet(const struct refocus_renderer *r, const struct rf_slab *sla
     const int x = rf_larger(at.x1 - wide + 1, -far);
 
     return wide > LARGE || high > LARGE ||
-           r->kernels.meets(r->front.blur + at.y0 * r->stride + x, r->stride, wide,
-                            high, slab);
+           r->kernels.meets(r->front.blur + at.y0 * r->stride + x, r->stride, wide, high, slab);
 }
 
-static enum rf_hidden hidden_by(const struct screen *screen,
-                                const struct rf_lamp_sights *tile,
-                                const struct rf_seen *run,
-                                const struct rf_disc_job *job)
+static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_lamp_sights *tile,
+                                const struct rf_seen *run, const struct rf_disc_job *job)
 {
     const struct refocus_renderer *r = tile->f->r;
     const struct rf_rect at = region_of(screen, tile, run, job);
     const enum rf_hidden hidden = hidden_in_ranges(r, &screen->slab, at);
 
-    return hidden == RF_HIDDEN_PARTLY &&
-                   !may_meet(r, &screen->slab, at, farthest_look(tile->f))
+    return hidden == RF_HIDDEN_PARTLY && !may_meet(r, &screen->slab, at, farthest_look(tile->f))
                ? RF_HIDDEN_NOWHERE
                : hidden;
 }
@@ -159,8 +152,7 @@ static int rows_alike(double part, int radius)
 
 /* A look part of the way to the run. No pixel looks farther away than its disc reaches,
  * and half its rows, nor then farther than `far`. */
-static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen *screen,
-                                 int far)
+static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen *screen, int far)
 {
     const int farthest = run->radius / 2 + RF_LAMP_UNIT * run->rows;
     static const int aside[4] = {14, 6, 2, 10}; /* so that all of a lamp is met */
@@ -220,8 +212,7 @@ static float apart(const struct rf_seen *one, const struct rf_seen *other, int c
     return (float)abs(centre * away) / (float)(RF_LAMP_UNIT * one->radius);
 }
 
-static bool serves(const struct rf_lamp_look *look, const struct rf_lamp_look *wanted,
-                   int centre)
+static bool serves(const struct rf_lamp_look *look, const struct rf_lamp_look *wanted, int centre)
 {
     return look->slab == wanted->slab && look->run.set == wanted->run.set &&
            look->first <= wanted->first && look->end >= wanted->end &&
@@ -248,8 +239,7 @@ static void set_shade(struct rf_lamp_shade *shade, const struct rf_lamp_sights *
     const struct rf_seen *run = &shade->look.run;
     const struct rf_slab *slab = &tile->slab[shade->look.slab];
     const struct screen screen = screen_of(slab, run);
-    const int16_t *const blur =
-        r->front.blur + tile->ty * RF_TILE * r->stride + tile->tx * RF_TILE;
+    const int16_t *const blur = r->front.blur + tile->ty * RF_TILE * r->stride + tile->tx * RF_TILE;
     struct rf_disc_way way;
 
     shade->hidden = hidden_by(&screen, tile, run, job);
@@ -266,8 +256,7 @@ static const struct rf_lamp_shade *shade_of(struct rf_lamp_sights *tile,
 {
     const struct rf_lamp_look wanted = {*run, job->first, job->end, slab};
     const int centre = tile->slab[slab].centre;
-    const bool kept =
-        4 * abs(centre) <= run->radius; /* else it serves for no other row */
+    const bool kept = 4 * abs(centre) <= run->radius; /* else it serves for no other row */
     struct rf_lamp_shade *shade = &tile->other;
 
     for (int i = 0; kept && i < RF_SHADES && i < tile->count; i++)
@@ -304,9 +293,8 @@ static bool is_nearer(const struct rf_slab *slab, const struct rf_seen *run)
     return slab->low <= run->blur - NEARER;
 }
 
-enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights,
-                              const struct rf_disc_job *job, const struct rf_seen *run,
-                              uint64_t *clear)
+enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights, const struct rf_disc_job *job,
+                              const struct rf_seen *run, uint64_t *clear)
 {
     enum rf_hidden hidden = RF_HIDDEN_NOWHERE;
 
@@ -325,8 +313,8 @@ enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights,
     return hidden;
 }
 
-bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job,
-                  const struct rf_seen *run, uint64_t clear)
+bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job, const struct rf_seen *run,
+                  uint64_t clear)
 {
     job->visible = NULL;
     for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {

@@ -55,13 +55,12 @@ void rf_start_sights(struct rf_lamp_sights *sights, const struct rf_frame *f,
 
 /* How much of a run is hidden, at a glance: in part it may not be at all. Of a job
  * whose shape is set. `clear`: slabs that hide nothing of it, a bit each of the first. */
-enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights,
-                              const struct rf_disc_job *job, const struct rf_seen *run,
-                              uint64_t *clear);
+enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights, const struct rf_disc_job *job,
+                              const struct rf_seen *run, uint64_t *clear);
 
 /* Sets job->visible, in `sights`, for a run of one row or two; false: it is
  * hidden. `clear`: those of a run that it is part of. */
-bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job,
-                  const struct rf_seen *run, uint64_t clear);
+bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job, const struct rf_seen *run,
+                  uint64_t clear);
 
 #endif

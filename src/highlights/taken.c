@@ -22,8 +22,8 @@ struct chain {
     int y, left, right; /* in the window: the pixels beside them */
 };
 
-static struct chain chain_of(const struct refocus_renderer *r,
-                             struct rf_highlight *lamp, const struct rf_highlight *end)
+static struct chain chain_of(const struct refocus_renderer *r, struct rf_highlight *lamp,
+                             const struct rf_highlight *end)
 {
     struct chain chain = {lamp, 1, lamp->y - r->origin_y, lamp->x - r->origin_x - 1, 0};
     int next = lamp->x + lamp->count;
@@ -95,11 +95,9 @@ static void take_run(struct refocus_renderer *r, struct rf_highlight *lamp,
     if (!lamp->shining)
         return;
     for (int i = 0; i < lamp->count; i++) {
-        const int shines =
-            lamp->edges >> i & 1 ? rf_lamp_shine(r, x + i, chain->y) : 256;
+        const int shines = lamp->edges >> i & 1 ? rf_lamp_shine(r, x + i, chain->y) : 256;
 
-        share[i] =
-            shines * rf_ramp(abs(r->front.blur[row + x + i]), TAKEN_FROM, TAKEN_TO);
+        share[i] = shines * rf_ramp(abs(r->front.blur[row + x + i]), TAKEN_FROM, TAKEN_TO);
     }
     for (int c = 0; c < planes_of(r); c++) {
         const uint16_t *const light = r->front.light[c] + row;

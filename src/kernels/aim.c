@@ -92,7 +92,7 @@ static bool meet_slab(struct state *restrict s, const struct rf_sort_job *job, i
         joined[n] |= join & bit;
         first[n] |= start & bit;
         tests[n] += (all & beside) - start; /* -1 is true */
-        last[n] = ((all | pass) & slab) | ((uint16_t)~(all | pass) & last[n]);
+        last[n] = ((all | pass) & slab) | ((uint16_t) ~(all | pass) & last[n]);
         beneath[n] |= pass;
         open[n] &= partly & (uint16_t)~pass;
         any |= open[n];
@@ -136,8 +136,8 @@ static ALWAYS_INLINE void place_tests(struct rf_sorted_rays *restrict sorted,
         k = block * BITS + bit;
         need &= need - 1;
         sorted->from[t][m] = s->from[k];
-        sorted->to[t][m] = (uint16_t)(s->until[k + joined_to(s->joined[block][n], bit)] -
-                                      s->from[k]);
+        sorted->to[t][m] =
+            (uint16_t)(s->until[k + joined_to(s->joined[block][n], bit)] - s->from[k]);
         sorted->offset[t][m] = job->offset[k][n];
         if (way.weighted)
             sorted->weight_offset[t][m] = job->weight_offset[k][n];
@@ -200,8 +200,8 @@ static ALWAYS_INLINE void put_in_order(struct rf_sorted_rays *restrict sorted,
     uint8_t class[RF_RAY_CHUNK]; /* bits from which its byte begins */
 
     for (int n = 0; n < job->rays; n++)
-        class[n] = (uint8_t)(8 * (s->tests[n] < RF_SORTED_TESTS ? s->tests[n]
-                                                                : RF_SORTED_TESTS - 1));
+        class[n] =
+            (uint8_t)(8 * (s->tests[n] < RF_SORTED_TESTS ? s->tests[n] : RF_SORTED_TESTS - 1));
     for (int n = 0; n < first; n++)
         count += UINT64_C(1) << class[n];
     first_count = count;
@@ -313,8 +313,8 @@ static void RF_VEC(rf_tolerances)(int32_t *restrict within, const int16_t *restr
 }
 
 static void RF_VEC(rf_settle)(uint8_t *settled, int32_t *offset, const uint32_t *range,
-                              const int32_t *cell, const struct rf_search_rays *rays,
-                              int tests, int32_t stride, int32_t cell_stride)
+                              const int32_t *cell, const struct rf_search_rays *rays, int tests,
+                              int32_t stride, int32_t cell_stride)
 {
     const int32_t own = tests == 1 ? rf_range_least(range[0]) : INT16_MIN - 1;
     const int16_t *restrict u = rays->u, *restrict v = rays->v;
@@ -344,9 +344,9 @@ static void RF_VEC(rf_settle)(uint8_t *settled, int32_t *offset, const uint32_t 
         const int32_t least = rf_range_least(guess[i]), most = rf_range_most(guess[i]);
         const int32_t low = rf_range_least(seen[i]), high = rf_range_most(seen[i]);
 
-        settled[i] = (uint8_t)(same[i] & (((high - least <= within[i]) &
-                                           (most - low <= within[i])) |
-                                          (high <= own)));
+        settled[i] =
+            (uint8_t)(same[i] &
+                      (((high - least <= within[i]) & (most - low <= within[i])) | (high <= own)));
     }
 }
 

@@ -18,8 +18,7 @@ enum {
 
 /* Samples that may be like one of the pixels: those that are near the box around their
  * colours. */
-static inline uint64_t near_samples(const uint8_t *const sample[3],
-                                    const vec_u8 colour[3])
+static inline uint64_t near_samples(const uint8_t *const sample[3], const vec_u8 colour[3])
 {
     const vec_u8 reach = vec_u8_set(ALIKE_TO);
     vec_u8 low[3], high[3];
@@ -56,14 +55,13 @@ static inline void look(uint16_t alike[VEC_U8], const vec_u8 colour[3],
         const vec_u8 d1 = vec_u8_apart(colour[1], vec_u8_set(sample[1][i]));
         const vec_u8 d2 = vec_u8_apart(colour[2], vec_u8_set(sample[2][i]));
 
-        vec_u8_add_wide(
-            sum, vec_u8_lookup_or_0(table, vec_u8_adds(vec_u8_adds(d0, d1), d2)));
+        vec_u8_add_wide(sum, vec_u8_lookup_or_0(table, vec_u8_adds(vec_u8_adds(d0, d1), d2)));
     }
     vec_u8_store_wide(alike, sum);
 }
 
-static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell,
-                            unsigned taps, const struct rf_lie *lie, int x)
+static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell, unsigned taps,
+                            const struct rf_lie *lie, int x)
 {
     vec_u16 sum[HALVES] = {vec_u16_set(0), vec_u16_set(0)};
 
@@ -84,8 +82,8 @@ static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell,
 
 /* What is expected of each surface. Where the taps are sure, the surface with the most
  * of them is given what the others leave. */
-static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES],
-                          const struct rf_cell *cell, const struct rf_lie *lie, int x)
+static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES], const struct rf_cell *cell,
+                          const struct rf_lie *lie, int x)
 {
     const int rest = cell->sure ? cell->greatest : RF_TAP_COUNT;
     vec_u16 left[HALVES];
@@ -103,15 +101,14 @@ static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES],
         prior[rest][h] = left[h];
 }
 
-static inline vec_u16 height_of(const struct rf_surface *surface,
-                                const struct rf_lie *lie, int x)
+static inline vec_u16 height_of(const struct rf_surface *surface, const struct rf_lie *lie, int x)
 {
     vec_u16 d = vec_u16_set((uint16_t)surface->mean);
 
-    d = vec_u16_add(d, vec_s16_scale(vec_u16_set((uint16_t)surface->right),
-                                     vec_u16_load(lie->x + x)));
-    d = vec_u16_add(d, vec_s16_scale(vec_u16_set((uint16_t)surface->below),
-                                     vec_u16_load(lie->y + x)));
+    d = vec_u16_add(d,
+                    vec_s16_scale(vec_u16_set((uint16_t)surface->right), vec_u16_load(lie->x + x)));
+    d = vec_u16_add(d,
+                    vec_s16_scale(vec_u16_set((uint16_t)surface->below), vec_u16_load(lie->y + x)));
     d = vec_u16_min(vec_s16_max(d, vec_u16_set(0)), vec_u16_set(surface->range));
     return vec_u16_add(d, vec_u16_set(surface->low));
 }
@@ -121,9 +118,8 @@ struct found {
     vec_u16 best[HALVES], second[HALVES], disparity[HALVES];
 };
 
-static inline void weigh(struct found *found, const struct rf_surface *s,
-                         const struct rf_lie *lie, int x, const vec_u16 prior[HALVES],
-                         const uint16_t alike[VEC_U8])
+static inline void weigh(struct found *found, const struct rf_surface *s, const struct rf_lie *lie,
+                         int x, const vec_u16 prior[HALVES], const uint16_t alike[VEC_U8])
 {
     const vec_u16 grow = vec_u16_set(s->grow), scale = vec_u16_set(s->scale);
     const vec_u16 unlike = vec_u16_set(RF_UNLIKE), four = vec_u16_set(4);
@@ -135,17 +131,16 @@ static inline void weigh(struct found *found, const struct rf_surface *s,
             vec_u16_mul_high(vec_u16_add(vec_u16_mul(mean, four), unlike), prior[h]);
         const vec_u16 best = found->best[h];
 
-        found->disparity[h] =
-            vec_u16_select(vec_u16_at_most(score, best), found->disparity[h],
-                           height_of(s, lie, x + h * VEC_U16));
+        found->disparity[h] = vec_u16_select(vec_u16_at_most(score, best), found->disparity[h],
+                                             height_of(s, lie, x + h * VEC_U16));
         found->second[h] = vec_u16_max(found->second[h], vec_u16_min(best, score));
         found->best[h] = vec_u16_max(best, score);
     }
 }
 
 static void RF_VEC(rf_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
-                               const struct rf_cell *cell,
-                               const struct rf_window *window, const struct rf_lie *lie,
+                               const struct rf_cell *cell, const struct rf_window *window,
+                               const struct rf_lie *lie,
                                uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += VEC_U8) {
@@ -241,8 +236,7 @@ static void look(uint16_t alike[LANES], uint8_t *const colour[3], const struct b
             continue;
         /* The table, in numbers: (124 - 11 d)^4 / 2^20. */
         for (int x = 0; x < LANES; x++) {
-            const uint8_t d =
-                (uint8_t)(apart(p0[x], c0) + apart(p1[x], c1) + apart(p2[x], c2));
+            const uint8_t d = (uint8_t)(apart(p0[x], c0) + apart(p1[x], c1) + apart(p2[x], c2));
             const uint8_t like = (uint8_t)(124 - 11 * least(d, 11));
             const uint16_t square = (uint16_t)(like * like);
             const uint16_t fourth = (uint16_t)((uint32_t)square * square >> 16);
@@ -254,8 +248,7 @@ static void look(uint16_t alike[LANES], uint8_t *const colour[3], const struct b
 }
 
 static void add_taps(uint16_t prior[LANES], const struct rf_cell *cell,
-                     const struct rf_surface *surface, const struct rf_lie *lie,
-                     int from)
+                     const struct rf_surface *surface, const struct rf_lie *lie, int from)
 {
     for (int x = 0; x < LANES; x++)
         prior[x] = 0;
@@ -301,16 +294,16 @@ static void height_of(uint16_t height[LANES], const struct rf_surface *surface,
     const int16_t *restrict at_x = lie->x + from, *restrict at_y = lie->y + from;
 
     for (int x = 0; x < LANES; x++) {
-        const int d = mean + ((right * at_x[x] + (1 << 14)) >> 15) +
-                      ((below * at_y[x] + (1 << 14)) >> 15);
+        const int d =
+            mean + ((right * at_x[x] + (1 << 14)) >> 15) + ((below * at_y[x] + (1 << 14)) >> 15);
 
         height[x] = (uint16_t)(low + (d < 0 ? 0 : d > range ? range : d));
     }
 }
 
-static void choose(uint16_t *restrict out, uint8_t *restrict sure,
-                   const struct rf_cell *cell, const struct rf_window *window,
-                   const struct rf_lie *lie, uint8_t *const colour[3], int from)
+static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct rf_cell *cell,
+                   const struct rf_window *window, const struct rf_lie *lie,
+                   uint8_t *const colour[3], int from)
 {
     const struct box box = box_of(colour);
     uint16_t best[LANES] = {0}, second[LANES] = {0}, prior[RF_TAP_COUNT][LANES];
@@ -326,8 +319,7 @@ static void choose(uint16_t *restrict out, uint8_t *restrict sure,
         look(alike, colour, &box, window, s->samples);
         height_of(height, s, lie, from);
         for (int x = 0; x < LANES; x++) {
-            const uint16_t mean =
-                (uint16_t)((uint32_t)(uint16_t)(alike[x] * grow) * scale >> 16);
+            const uint16_t mean = (uint16_t)((uint32_t)(uint16_t)(alike[x] * grow) * scale >> 16);
             const uint16_t evidence = (uint16_t)(4 * mean + RF_UNLIKE);
             const uint16_t score = (uint16_t)((uint32_t)prior[k][x] * evidence >> 16);
             const uint16_t less = score < best[x] ? score : best[x];
@@ -342,8 +334,8 @@ static void choose(uint16_t *restrict out, uint8_t *restrict sure,
 }
 
 static void RF_VEC(rf_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
-                               const struct rf_cell *cell,
-                               const struct rf_window *window, const struct rf_lie *lie,
+                               const struct rf_cell *cell, const struct rf_window *window,
+                               const struct rf_lie *lie,
                                uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += LANES) {

@@ -24,7 +24,8 @@ static inline void rf_cubic_row(uint16_t *restrict mean, const uint16_t *restric
 
     for (int x = 0; x < RF_TILE; x++) {
         const int32_t v = (s0 * row[x] + s1 * row[x + RF_TILE] + s2 * row[x + 2 * RF_TILE] +
-                           s3 * row[x + 3 * RF_TILE] + 8192) >> 14;
+                           s3 * row[x + 3 * RF_TILE] + 8192) >>
+                          14;
         const int32_t a = before[x], b = before[x + RF_TILE];
         const int32_t low = a < b ? a : b, high = a < b ? b : a;
 

@@ -6,9 +6,9 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-/* What two opposite neighbours differ from their pixel in sum, or 0 if one lies outside low .. high:
- * a difference too large to be a rounding error. What is kept is below 2^15, so that it is exact
- * modulo 2^16. */
+/* What two opposite neighbours differ from their pixel in sum, or 0 if one lies outside low ..
+ * high: a difference too large to be a rounding error. What is kept is below 2^15, so that it is
+ * exact modulo 2^16. */
 static inline int16_t bend(uint16_t a, uint16_t b, uint16_t own, uint16_t low, uint16_t high)
 {
     const uint16_t most = a > b ? a : b, least = a > b ? b : a;
@@ -27,12 +27,10 @@ static void RF_VEC(rf_smooth_codes)(uint16_t *restrict out, const uint16_t *cons
         const uint16_t own = here[x];
         const uint16_t low = (uint16_t)(own > most ? own - most : 0);
         const uint16_t high = (uint16_t)(own < 65535 - most ? own + most : 65535);
-        const int16_t slanted =
-            (int16_t)(bend(above[x - apart], below[x + apart], own, low, high) +
-                      bend(above[x + apart], below[x - apart], own, low, high));
-        const int16_t straight =
-            (int16_t)(bend(above[x], below[x], own, low, high) +
-                      bend(here[x - apart], here[x + apart], own, low, high));
+        const int16_t slanted = (int16_t)(bend(above[x - apart], below[x + apart], own, low, high) +
+                                          bend(above[x + apart], below[x - apart], own, low, high));
+        const int16_t straight = (int16_t)(bend(above[x], below[x], own, low, high) +
+                                           bend(here[x - apart], here[x + apart], own, low, high));
 
         out[x] = (uint16_t)(own + ((int16_t)(slanted + 2 * straight + 8) >> 4));
     }

@@ -4,8 +4,7 @@
 
 #include <math.h>
 
-static void RF_VEC(rf_half_chords)(int16_t *restrict half, int radius, int first,
-                                   int tall)
+static void RF_VEC(rf_half_chords)(int16_t *restrict half, int radius, int first, int tall)
 {
     const float r = (float)radius * (1 / 256.0f), square = r * r;
     const float scale = 32 / (float)tall;

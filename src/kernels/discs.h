@@ -20,11 +20,12 @@
  * that is all 1 there and not 0. 2^shift v and each are below 2^15.
  *
  * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`,
- * half pixels, on from its middle. Or of as many discs one above the other, of rows of a lamp, as it
- * is `tall`, 1 to 4, the mean: of what each is a quarter of a pixel above and below the middle of
- * the row.
+ * half pixels, on from its middle. Or of as many discs one above the other, of rows of a lamp, as
+ * it is `tall`, 1 to 4, the mean: of what each is a quarter of a pixel above and below the middle
+ * of the row.
  *
- * meets: whether any of width x height pixels from `blur` on lies in a slab; width: RF_TILE at least.
+ * meets: whether any of width x height pixels from `blur` on lies in a slab; width: RF_TILE at
+ * least.
  *
  * hide: both masks of `visible` in those rows: not where a slab that is part of the way to the run
  * hides it, where blur, of the tile's first pixel, lies in it at
@@ -34,9 +35,9 @@
  *            first + last - 128 x + floor((16 - aside) (last - first) / 16) for the other
  *
  * halves up, step = 2^shift times. The part of the run that the pixel sees goes from first to last:
- * the masks look half of it apart, from aside / 32 of it to the left of its middle on, and a quarter
- * of a row to either side, the first one to the left, or to the right where `mirrored`, and up.
- * Where a pixel sees nothing, both look for the middle of the run as far as it sees: away is
+ * the masks look half of it apart, from aside / 32 of it to the left of its middle on, and a
+ * quarter of a row to either side, the first one to the left, or to the right where `mirrored`, and
+ * up. Where a pixel sees nothing, both look for the middle of the run as far as it sees: away is
  * from + to - 128 x, at least 2 left and at most 2 right. Without `times` no such product is beyond
  * int16, and no place is farther than `most` to a side, nor than blur is readable. What is found
  * for a row holds for `rows` from it on.

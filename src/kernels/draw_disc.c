@@ -15,8 +15,7 @@ void rf_draw_disc_c(uint16_t *const mean[3], const struct rf_disc_job *job)
                         (sight / 2 & job->visible[RF_TILE * RF_TILE + i]);
             for (int c = 0; c < job->planes; c++) {
                 const int seen = sight << job->shift;
-                const int light =
-                    mean[c][i] + ((seen * job->each[c] + (1 << 14)) >> 15);
+                const int light = mean[c][i] + ((seen * job->each[c] + (1 << 14)) >> 15);
 
                 mean[c][i] = (uint16_t)(light < 65535 ? light : 65535);
             }

@@ -22,8 +22,7 @@ static inline vec_u16 sight(vec_u16 seen, const uint16_t *visible)
 
 static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_job *job)
 {
-    const vec_u16 times = vec_u16_set((uint16_t)(1 << job->shift)),
-                  zero = vec_u16_set(0);
+    const vec_u16 times = vec_u16_set((uint16_t)(1 << job->shift)), zero = vec_u16_set(0);
     vec_u16 each[3];
 
     for (int c = 0; c < job->planes; c++)
@@ -33,8 +32,8 @@ static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_j
 
         for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
             const vec_u16 place = rf_disc_place_of(x);
-            const vec_u16 v = rf_disc_seen(&row, rf_disc_first(&row, place),
-                                           rf_disc_last(&row, place));
+            const vec_u16 v =
+                rf_disc_seen(&row, rf_disc_first(&row, place), rf_disc_last(&row, place));
             vec_u16 seen = vec_s16_max(v, zero);
 
             if (job->visible)

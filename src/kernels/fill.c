@@ -5,9 +5,9 @@ static bool is_known(int16_t blur)
     return blur != RF_NO_BLUR;
 }
 
-static void push_pixel(uint16_t *const out[3], int16_t *out_blur,
-                       const uint16_t *const upper[3], const uint16_t *const lower[3],
-                       const int16_t *blur0, const int16_t *blur1, int x)
+static void push_pixel(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
+                       const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
+                       int x)
 {
     unsigned sum[3] = {0, 0, 0}, count = 0;
     int16_t farthest = RF_NO_BLUR;
@@ -29,8 +29,7 @@ static void push_pixel(uint16_t *const out[3], int16_t *out_blur,
 }
 
 void rf_push_c(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
-               const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
-               int n)
+               const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1, int n)
 {
     for (int x = 0; x < n; x++)
         push_pixel(out, out_blur, upper, lower, blur0, blur1, x);

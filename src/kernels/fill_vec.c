@@ -36,16 +36,16 @@ static inline struct use use_of(const vec_u16 blur[4])
         use.known[i] = invert(unknown(blur[i]));
     first = vec_u16_and(use.known[0], use.known[1]);
     last = vec_u16_and(use.known[2], use.known[3]);
-    either = vec_u16_and(vec_u16_or(use.known[0], use.known[1]),
-                         vec_u16_or(use.known[2], use.known[3]));
+    either =
+        vec_u16_and(vec_u16_or(use.known[0], use.known[1]), vec_u16_or(use.known[2], use.known[3]));
     use.single = invert(vec_u16_or(vec_u16_or(first, last), either));
     odd = vec_u16_xor(vec_u16_xor(use.known[0], use.known[1]),
                       vec_u16_xor(use.known[2], use.known[3]));
     all = vec_u16_and(first, last);
     use.bias = vec_u16_add(vec_u16_set(2), odd);
     use.factor = vec_u16_sub(vec_u16_set(65535), vec_u16_and(all, vec_u16_set(32767)));
-    use.factor = vec_u16_sub(use.factor, vec_u16_and(vec_u16_without(odd, use.single),
-                                                     vec_u16_set(21844)));
+    use.factor =
+        vec_u16_sub(use.factor, vec_u16_and(vec_u16_without(odd, use.single), vec_u16_set(21844)));
     return use;
 }
 
@@ -71,8 +71,7 @@ static inline void push_light(uint16_t *out, const uint16_t *upper, const uint16
     for (int i = 1; i < 4; i++)
         sum = vec_u16_add(sum, vec_u16_and(child[i], use->known[i]));
     sum = vec_u16_add(sum, vec_u16_and(sum, use->single));
-    vec_u16_store(out, vec_u16_half(vec_u16_mul_high(vec_u16_add(sum, use->bias),
-                                                     use->factor)));
+    vec_u16_store(out, vec_u16_half(vec_u16_mul_high(vec_u16_add(sum, use->bias), use->factor)));
 }
 
 static void RF_VEC(rf_push)(uint16_t *const out[3], int16_t *out_blur,
@@ -111,8 +110,7 @@ static inline vec_u16 quarters(vec_u16 three, vec_u16 one)
 /* Where lanes of `mask` are set, `to` becomes v. */
 static inline void put_where(void *to, vec_u16 mask, vec_u16 v)
 {
-    vec_u16_store(to, vec_u16_or(vec_u16_and(v, mask),
-                                 vec_u16_without(vec_u16_load(to), mask)));
+    vec_u16_store(to, vec_u16_or(vec_u16_and(v, mask), vec_u16_without(vec_u16_load(to), mask)));
 }
 
 static inline uint16_t quarters_of(unsigned three, unsigned one)
@@ -127,8 +125,7 @@ static void RF_VEC(rf_pull)(uint16_t *out, const int16_t *out_blur, const uint16
 
     mixed++; /* mixed[-1] and mixed[pairs] repeat the ends */
     for (; x + LANES <= pairs; x += LANES)
-        vec_u16_store(mixed + x,
-                      quarters(vec_u16_load(near_row + x), vec_u16_load(far_row + x)));
+        vec_u16_store(mixed + x, quarters(vec_u16_load(near_row + x), vec_u16_load(far_row + x)));
     for (; x < pairs; x++)
         mixed[x] = quarters_of(near_row[x], far_row[x]);
     mixed[-1] = mixed[0];

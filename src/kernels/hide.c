@@ -18,9 +18,8 @@ static int go(const struct rf_disc_way *way, int v)
     return (v * (1 << way->shift) * way->times + (1 << 22)) >> 23;
 }
 
-void rf_hide_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
-               const struct rf_slab *slab, const struct rf_disc_job *job,
-               const struct rf_disc_way *way)
+void rf_hide_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride, const struct rf_slab *slab,
+               const struct rf_disc_job *job, const struct rf_disc_way *way)
 {
     const uint16_t low = rf_range_from(slab), to = rf_range_to(slab, slab);
 
@@ -30,13 +29,12 @@ void rf_hide_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
         const int first = rf_larger(64 * x + job->left[like], job->from);
         const int last = rf_smaller(64 * x + job->right[like], job->to);
         const bool right = way->mirrored ? side < 0 : side > 0;
-        const int aside = right ? (16 - way->aside) * (last - first) / 16
-                                : -(way->aside * (last - first) / 16);
+        const int aside =
+            right ? (16 - way->aside) * (last - first) / 16 : -(way->aside * (last - first) / 16);
         const int whole = job->from + job->to - 128 * x;
-        const int away = first < last
-                             ? first + last - 128 * x + aside
-                             : rf_larger(rf_smaller(whole, 2 * job->right[like]),
-                                         2 * job->left[like]);
+        const int away =
+            first < last ? first + last - 128 * x + aside
+                         : rf_larger(rf_smaller(whole, 2 * job->right[like]), 2 * job->left[like]);
         const int down = go(way, 64 * way->middle - 128 * like + 32 * side);
 
         const int16_t met = blur[(like + down) * stride + x + go(way, away)];

@@ -5,8 +5,8 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-static bool RF_VEC(rf_meets)(const int16_t *blur, ptrdiff_t stride, int width,
-                             int height, const struct rf_slab *slab)
+static bool RF_VEC(rf_meets)(const int16_t *blur, ptrdiff_t stride, int width, int height,
+                             const struct rf_slab *slab)
 {
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
@@ -23,8 +23,7 @@ static bool RF_VEC(rf_meets)(const int16_t *blur, ptrdiff_t stride, int width,
     return vec_u16_any(met);
 }
 
-static const uint16_t column[RF_TILE] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                         8, 9, 10, 11, 12, 13, 14, 15};
+static const uint16_t column[RF_TILE] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /* Where in a row, way->most from its first one readable on, pixels look for the masks, a
  * tile of them after the other. */
@@ -46,26 +45,21 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
 
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
         const vec_u16 place = rf_disc_place_of(x);
-        const vec_u16 first = rf_disc_first(&row, place),
-                      last = rf_disc_last(&row, place);
-        const vec_u16 seen = rf_disc_seen(&row, first, last),
-                      some = vec_s16_less(zero, seen);
+        const vec_u16 first = rf_disc_first(&row, place), last = rf_disc_last(&row, place);
+        const vec_u16 seen = rf_disc_seen(&row, first, last), some = vec_s16_less(zero, seen);
         const vec_u16 sum = vec_u16_add(vec_u16_add(first, last), both);
         const vec_u16 twice = vec_u16_add(place, place);
-        const vec_u16 far =
-            vec_u16_max(vec_u16_min(vec_u16_sub(middle, twice), farthest), nearest);
-        const vec_u16 away = vec_u16_select(
-            some, vec_u16_sub(sum, twice), vec_u16_sub(far, vec_u16_set(RF_DISC_SIGN)));
+        const vec_u16 far = vec_u16_max(vec_u16_min(vec_u16_sub(middle, twice), farthest), nearest);
+        const vec_u16 away = vec_u16_select(some, vec_u16_sub(sum, twice),
+                                            vec_u16_sub(far, vec_u16_set(RF_DISC_SIGN)));
         const vec_u16 length = vec_u16_and(seen, some);
         const vec_u16 a = vec_u16_sub(away, vec_u16_mul_high(length, before));
         const vec_u16 b = vec_u16_add(away, vec_u16_mul_high(length, after));
 
         const vec_u16 own = vec_u16_add(vec_u16_load(column + x), to);
 
-        vec_u16_store(left + x,
-                      vec_u16_add(own, vec_u16_offset(vec_u16_mul(a, power), times)));
-        vec_u16_store(right + x,
-                      vec_u16_add(own, vec_u16_offset(vec_u16_mul(b, power), times)));
+        vec_u16_store(left + x, vec_u16_add(own, vec_u16_offset(vec_u16_mul(a, power), times)));
+        vec_u16_store(right + x, vec_u16_add(own, vec_u16_offset(vec_u16_mul(b, power), times)));
     }
 }
 
@@ -77,12 +71,11 @@ static inline void meet(uint16_t *at, const int16_t *row)
 }
 
 /* Pixels of rows y to end - 1, by what those of one row met. */
-static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from,
-                         vec_u16 to, int y, int end)
+static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, vec_u16 to, int y,
+                         int end)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-        const vec_u16 hidden =
-            vec_s16_less(vec_u16_sub(vec_u16_load(met + x), from), to);
+        const vec_u16 hidden = vec_s16_less(vec_u16_sub(vec_u16_load(met + x), from), to);
         const vec_u16 seen = vec_u16_without(vec_u16_set(0xffff), hidden);
 
         for (int i = y * RF_TILE + x; i < end * RF_TILE; i += RF_TILE)

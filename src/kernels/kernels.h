@@ -81,8 +81,8 @@ typedef void rf_bare_fn(uint32_t *range, const int16_t *const foreground[RF_WIND
 
 /* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset
  * x + y stride, and as one of cells: floor(x / RF_CELL) + floor(y / RF_CELL) cell_stride. */
-typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const int16_t *v,
-                       int blur, int32_t stride, int32_t cell_stride, int n);
+typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const int16_t *v, int blur,
+                       int32_t stride, int32_t cell_stride, int n);
 
 /*
  * sort_rays: what the rays of a strip have to look at.
@@ -110,16 +110,16 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
 enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 
 struct rf_sort_job {
-    const uint32_t *range; /* at the strip's first pixel, */
-    const uint32_t *below; /* and at that of the strip below, if both are one; else NULL */
+    const uint32_t *range;          /* at the strip's first pixel, */
+    const uint32_t *below;          /* and at that of the strip below, if both are one; else NULL */
     const uint16_t *front, *behind; /* first of three planes of light, there */
     const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
     bool beneath;
     const struct rf_slab *slab;
-    const bool *joined; /* [slabs]: slab k to k - 1 */
+    const bool *joined;                                           /* [slabs]: slab k to k - 1 */
     const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
-    const int32_t (*weight_offset)[RF_RAY_CHUNK]; /* [slabs] */
+    const int32_t (*weight_offset)[RF_RAY_CHUNK];                 /* [slabs] */
 
     /* Rays 0 to shared - 1 are those of chroma, too, with planes and offsets of its own, and of the
      * same weights. What a ray of luma need not look for in a whole tile, chroma need not, either:
@@ -175,7 +175,7 @@ struct rf_sweep_job {
     const struct rf_sorted_rays *rays;
     int steps;             /* of sweep: values that a 16-bit sum holds, 1 to 16 */
     enum rf_bright bright; /* of sweep_weighted */
-    int lanes; /* those of an even number of rows, of RF_STRIP at most */
+    int lanes;             /* those of an even number of rows, of RF_STRIP at most */
 
     /* weights of the front, 1 to RF_WEIGHT_MAX in sweep_weighted */
     const uint16_t *weight;
@@ -199,8 +199,8 @@ struct rf_focus {
  * signed_blur: s = K (df - d), Yang et al. 2016, eq. 4. Q7.8 pixels, rounded half up in
  * magnitude: within 1/512 pixel for this focus, within 1.25/256 of that of real K and df.
  */
-typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity,
-                               struct rf_focus focus, int n);
+typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity, struct rf_focus focus,
+                               int n);
 
 /*
  * smooth3, of three planes: a third of the way from a pixel to each of its two neighbours, `apart`
@@ -247,9 +247,9 @@ typedef void rf_mark_fn(int16_t *behind, const int16_t *blur, const uint16_t *di
 
 /* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
  * farthest blur; 0 and RF_NO_BLUR if none is known. */
-typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur,
-                        const uint16_t *const upper[3], const uint16_t *const lower[3],
-                        const int16_t *blur0, const int16_t *blur1, int n);
+typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
+                        const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
+                        int n);
 
 /* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
  * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their
@@ -357,8 +357,8 @@ enum { RF_VEIL_CELLS = 6, RF_VEIL_SHIFT = 14 };
 typedef void rf_lay_veil_fn(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4]);
 
 /* brightest: the largest value of any channel of a row. */
-typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
-                                 const uint16_t *blue, int n);
+typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green, const uint16_t *blue,
+                                 int n);
 
 /*
  * search: rays of one strip by the randomized intersection search, plain sums.
@@ -373,9 +373,9 @@ typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green,
  */
 struct rf_search_rays {
     int rays;
-    int32_t start[RF_RAY_CHUNK]; /* elements */
+    int32_t start[RF_RAY_CHUNK];              /* elements */
     int16_t u[RF_RAY_CHUNK], v[RF_RAY_CHUNK]; /* Q15 */
-    int32_t within[RF_RAY_CHUNK]; /* Q7.8, 0 to 32766 */
+    int32_t within[RF_RAY_CHUNK];             /* Q7.8, 0 to 32766 */
 };
 struct rf_search_job {
     const int16_t *blur;
@@ -411,8 +411,8 @@ struct rf_sweep1_job {
     const int16_t *blur;
     const uint16_t *light;
     ptrdiff_t apart, half;
-    int rows;         /* an even number, 16 at most */
-    int steps;        /* values that a 16-bit sum holds, 4 to 16 */
+    int rows;  /* an even number, 16 at most */
+    int steps; /* values that a 16-bit sum holds, 4 to 16 */
     bool chroma;
     const struct rf_sorted_rays *rays;
 
@@ -442,9 +442,8 @@ typedef void rf_smooth1_fn(uint16_t *out, const uint16_t *light, const int16_t *
  * of them down, two elements of a row each: 2 x + y stride, x = round(u s / 2) and
  * y = round(v s / 2^down); of their pixels: 2 x + 2^down y stride.
  */
-typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u,
-                              const int16_t *v, int blur, int down, int32_t stride,
-                              int n);
+typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u, const int16_t *v,
+                              int blur, int down, int32_t stride, int n);
 
 /* sharpest4: of 2 x 2 blurs the first with the least |s|, twice: n pairs out of rows of 2 n.
  * Blurs are at most 127 pixels. */
@@ -452,12 +451,12 @@ typedef void rf_sharpest4_fn(int16_t *out, const int16_t *upper, const int16_t *
 
 /* push1: push, of one plane. */
 typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper,
-                         const uint16_t *lower, const int16_t *blur0, const int16_t *blur1,
-                         int n);
+                         const uint16_t *lower, const int16_t *blur0, const int16_t *blur1, int n);
 
 /* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
  * join2: pairs of them again.
- * keep2: n pairs become `own` where either of the two pixels has the same blur in front and behind. */
+ * keep2: n pairs become `own` where either of the two pixels has the same blur in front and behind.
+ */
 typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
                           const uint16_t *lower, int n);
 typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *second, int n);
@@ -485,9 +484,9 @@ struct rf_decode_job {
     const struct rf_yuv_curve *curve;
     int down;
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE]; /* rows of RF_TILE, Q14 */
-    const uint16_t *own_luma, *own_chroma; /* Q12, of the tile's first element */
-    ptrdiff_t stride;                      /* of both */
-    uint16_t within[2];                    /* of luma and of chroma; 15 at most */
+    const uint16_t *own_luma, *own_chroma;               /* Q12, of the tile's first element */
+    ptrdiff_t stride;                                    /* of both */
+    uint16_t within[2];                                  /* of luma and of chroma; 15 at most */
     uint8_t y[RF_TILE * RF_TILE], uv[RF_TILE * RF_TILE]; /* in: codes that were; out */
 };
 typedef void rf_decode_fn(struct rf_decode_job *job);
@@ -595,17 +594,16 @@ rf_weigh_chroma_fn rf_weigh_chroma_c;
 /* Each set overwrites what it does better; rf_kernels_use() calls the others of its set. */
 typedef void rf_kernels_use_fn(struct rf_kernels *kernels);
 #define RF_VECTOR_SETS(use) use##_neon, use##_sse41, use##_avx2, use##_avx512
-#define RF_ALL_SETS(use) use##_c, RF_VECTOR_SETS(use)
+#define RF_ALL_SETS(use)    use##_c, RF_VECTOR_SETS(use)
 rf_kernels_use_fn RF_VECTOR_SETS(rf_kernels_use), RF_VECTOR_SETS(rf_draw_disc_use),
-    RF_VECTOR_SETS(rf_fill_use), RF_VECTOR_SETS(rf_hide_use),
-    RF_VECTOR_SETS(rf_search_use), RF_VECTOR_SETS(rf_smooth_use),
-    RF_VECTOR_SETS(rf_sweep1_use), RF_VECTOR_SETS(rf_sweep1_weighted_use),
-    RF_VECTOR_SETS(rf_sweep_weighted_use),
+    RF_VECTOR_SETS(rf_fill_use), RF_VECTOR_SETS(rf_hide_use), RF_VECTOR_SETS(rf_search_use),
+    RF_VECTOR_SETS(rf_smooth_use), RF_VECTOR_SETS(rf_sweep1_use),
+    RF_VECTOR_SETS(rf_sweep1_weighted_use), RF_VECTOR_SETS(rf_sweep_weighted_use),
     RF_VECTOR_SETS(rf_weigh_use), RF_VECTOR_SETS(rf_weigh1_use);
-rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use),
-    RF_ALL_SETS(rf_discs_use), RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
-    RF_ALL_SETS(rf_dequantise_use), RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use), RF_ALL_SETS(rf_thin_use),
-    RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_windows_use), RF_ALL_SETS(rf_yuv_use),
-    RF_ALL_SETS(rf_yuv_codes_use);
+rf_kernels_use_fn RF_ALL_SETS(rf_aim_use), RF_ALL_SETS(rf_choose_use), RF_ALL_SETS(rf_discs_use),
+    RF_ALL_SETS(rf_light_use), RF_ALL_SETS(rf_part_use), RF_ALL_SETS(rf_rows_use),
+    RF_ALL_SETS(rf_dequantise_use), RF_ALL_SETS(rf_series_use), RF_ALL_SETS(rf_surfaces_use),
+    RF_ALL_SETS(rf_thin_use), RF_ALL_SETS(rf_upsample_use), RF_ALL_SETS(rf_windows_use),
+    RF_ALL_SETS(rf_yuv_use), RF_ALL_SETS(rf_yuv_codes_use);
 
 #endif

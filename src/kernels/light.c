@@ -52,7 +52,8 @@ static const struct between {
     uint8_t before, first;
     int16_t share[4];
 } between[3][RF_TILE] = {
-    { /* 2 */
+    {
+        /* 2 */
         {0, 0, {16384, 0, 0, 0}},
         {0, 0, {5120, 15360, -5120, 1024}},
         {1, 0, {0, 16384, 0, 0}},
@@ -70,7 +71,8 @@ static const struct between {
         {6, 4, {1024, -5120, 15360, 5120}},
         {6, 4, {0, 0, 0, 16384}},
     },
-    { /* 3 */
+    {
+        /* 3 */
         {0, 0, {16384, 0, 0, 0}},
         {0, 0, {8091, 12137, -4855, 1011}},
         {0, 0, {2832, 16991, -4248, 809}},
@@ -88,7 +90,8 @@ static const struct between {
         {4, 2, {1011, -4855, 12137, 8091}},
         {4, 2, {0, 0, 0, 16384}},
     },
-    { /* 5 */
+    {
+        /* 5 */
         {0, 0, {16384, 0, 0, 0}},
         {0, 0, {11010, 8258, -3670, 786}},
         {0, 0, {6816, 13631, -5112, 1049}},
@@ -132,8 +135,8 @@ static inline uint16_t moved(uint16_t own, uint16_t a, uint16_t b, uint32_t shar
 }
 
 /* A row moved towards the averages of what lies `apart` elements before and after. */
-static inline void soften_row(uint16_t *restrict out, const uint16_t *restrict own,
-                              ptrdiff_t apart, uint16_t share)
+static inline void soften_row(uint16_t *restrict out, const uint16_t *restrict own, ptrdiff_t apart,
+                              uint16_t share)
 {
     const uint16_t *before = own - apart, *after = own + apart;
 
@@ -169,8 +172,8 @@ static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_VEIL_CELLS][4]
         const int at = 2 * x + 5, i = at >> 3, part = at & 7; /* eighths of a cell */
 
         for (int c = 0; c < 4; c++)
-            out[c][x] = (cell[i][c] * (8 - part) + cell[i + 1][c] * part) >>
-                        (RF_VEIL_SHIFT + 3 - 8);
+            out[c][x] =
+                (cell[i][c] * (8 - part) + cell[i + 1][c] * part) >> (RF_VEIL_SHIFT + 3 - 8);
     }
 }
 
@@ -188,8 +191,7 @@ static void lay_row(uint16_t *restrict out, const int32_t *restrict light,
     for (int x = 0; x < RF_TILE; x++) {
         const int32_t some = cover[x] < 0 ? 0 : cover[x];
         const uint32_t part = (uint32_t)(some > 32768 ? 32768 : some);
-        const int32_t v =
-            out[x] + (light[x] >> 1) - (int32_t)((out[x] * part + 16384) >> 15);
+        const int32_t v = out[x] + (light[x] >> 1) - (int32_t)((out[x] * part + 16384) >> 15);
 
         out[x] = (uint16_t)(v < 0 ? 0 : v > 65535 ? 65535 : v);
     }
@@ -217,8 +219,7 @@ static inline uint16_t max16(uint16_t a, uint16_t b)
     return a > b ? a : b;
 }
 
-static uint16_t RF_VEC(rf_brightest)(const uint16_t *restrict red,
-                                     const uint16_t *restrict green,
+static uint16_t RF_VEC(rf_brightest)(const uint16_t *restrict red, const uint16_t *restrict green,
                                      const uint16_t *restrict blue, int n)
 {
     uint16_t most = 0;

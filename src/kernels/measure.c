@@ -17,7 +17,7 @@ struct rows {
     uint64_t wide[2][RF_TILE * RF_TILE];
     float floats[FLOATS][ROW];
     uint16_t plane[4 * RF_TILE][4 * ROW]; /* blur and light of a strip, one after the other */
-    uint8_t unsure[ROW]; /* all 0 */
+    uint8_t unsure[ROW];                  /* all 0 */
     uint32_t strip_sum[3][RF_STRIP_LANES];
     struct rf_sorted_rays rays;
 };
@@ -147,7 +147,7 @@ static const struct {
     measured_fn *run;
     double count; /* of units a run */
 } measured[] = {
-    {"sweep", "ray sample", sweep, RF_RAY_CHUNK * RF_STRIP_LANES},
+    {"sweep", "ray sample", sweep, RF_RAY_CHUNK *RF_STRIP_LANES},
     {"signed_blur", "pixel", signed_blur, N},
     {"smooth3", "pixel", smooth3, N},
     {"spread_row", "pixel", spread_row, N},

@@ -12,20 +12,18 @@ enum { TAPS = RF_TAP_COUNT };
 /* Batcher's odd-even merges of runs of 1, 2, 4 and 8. */
 enum { EXCHANGES = 63 };
 static const uint8_t exchange[EXCHANGES][2] = {
-    {0, 1},  {2, 3},  {4, 5},   {6, 7},   {8, 9},   {10, 11}, {12, 13}, {14, 15},
-    {0, 2},  {1, 3},  {4, 6},   {5, 7},   {8, 10},  {9, 11},  {12, 14}, {13, 15},
-    {1, 2},  {5, 6},  {9, 10},  {13, 14}, {0, 4},   {1, 5},   {2, 6},   {3, 7},
-    {8, 12}, {9, 13}, {10, 14}, {11, 15}, {2, 4},   {3, 5},   {10, 12}, {11, 13},
-    {1, 2},  {3, 4},  {5, 6},   {9, 10},  {11, 12}, {13, 14}, {0, 8},   {1, 9},
-    {2, 10}, {3, 11}, {4, 12},  {5, 13},  {6, 14},  {7, 15},  {4, 8},   {5, 9},
-    {6, 10}, {7, 11}, {2, 4},   {3, 5},   {6, 8},   {7, 9},   {10, 12}, {11, 13},
-    {1, 2},  {3, 4},  {5, 6},   {7, 8},   {9, 10},  {11, 12}, {13, 14}};
+    {0, 1},   {2, 3},   {4, 5}, {6, 7},   {8, 9},   {10, 11}, {12, 13}, {14, 15}, {0, 2},
+    {1, 3},   {4, 6},   {5, 7}, {8, 10},  {9, 11},  {12, 14}, {13, 15}, {1, 2},   {5, 6},
+    {9, 10},  {13, 14}, {0, 4}, {1, 5},   {2, 6},   {3, 7},   {8, 12},  {9, 13},  {10, 14},
+    {11, 15}, {2, 4},   {3, 5}, {10, 12}, {11, 13}, {1, 2},   {3, 4},   {5, 6},   {9, 10},
+    {11, 12}, {13, 14}, {0, 8}, {1, 9},   {2, 10},  {3, 11},  {4, 12},  {5, 13},  {6, 14},
+    {7, 15},  {4, 8},   {5, 9}, {6, 10},  {7, 11},  {2, 4},   {3, 5},   {6, 8},   {7, 9},
+    {10, 12}, {11, 13}, {1, 2}, {3, 4},   {5, 6},   {7, 8},   {9, 10},  {11, 12}, {13, 14}};
 
 #if defined(RF_VECTORS)
 
 /* VEC_U16 cells from column i on. */
-static inline void part_some(struct rf_parts *parts, const uint16_t *const row[RF_TAPS],
-                             int i)
+static inline void part_some(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int i)
 {
     const vec_u16 gap = vec_u16_set(RF_GAP), widest = vec_u16_set(RF_WIDEST);
     vec_u16 v[TAPS], low, starts = vec_u16_set(1);
@@ -44,9 +42,8 @@ static inline void part_some(struct rf_parts *parts, const uint16_t *const row[R
     low = v[0];
     for (int t = 1; t < TAPS; t++) {
         const vec_u16 bit = vec_u16_set((uint16_t)(1 << t));
-        const vec_u16 goes_on =
-            vec_u16_and(vec_u16_at_most(vec_u16_sub(v[t], v[t - 1]), gap),
-                        vec_u16_at_most(vec_u16_sub(v[t], low), widest));
+        const vec_u16 goes_on = vec_u16_and(vec_u16_at_most(vec_u16_sub(v[t], v[t - 1]), gap),
+                                            vec_u16_at_most(vec_u16_sub(v[t], low), widest));
 
         vec_u16_store(parts->sorted[t] + i, v[t]);
         starts = vec_u16_or(starts, vec_u16_without(bit, goes_on));
@@ -55,8 +52,7 @@ static inline void part_some(struct rf_parts *parts, const uint16_t *const row[R
     vec_u16_store(parts->starts + i, starts);
 }
 
-static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS],
-                            int n)
+static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
 {
     uint16_t spare[RF_TAPS][RF_CELLS + RF_TAPS];
     const uint16_t *whole[RF_TAPS];
@@ -101,15 +97,13 @@ static void sort(uint16_t sorted[TAPS][RF_CELLS])
         order(sorted[exchange[i][0]], sorted[exchange[i][1]]);
 }
 
-static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS],
-                            int n)
+static void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
 {
     uint16_t low[RF_CELLS], starts[RF_CELLS];
 
     for (int t = 0; t < TAPS; t++) {
         memset(parts->sorted[t], 0, sizeof parts->sorted[t]);
-        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS,
-               (size_t)n * sizeof(uint16_t));
+        memcpy(parts->sorted[t], row[t / RF_TAPS] + t % RF_TAPS, (size_t)n * sizeof(uint16_t));
     }
     sort(parts->sorted);
     for (int i = 0; i < RF_CELLS; i++) {

@@ -19,7 +19,7 @@ static inline uint16_t less(uint16_t a, uint16_t b) /* a - b, not below 0 */
 }
 
 static void RF_VEC(rf_signed_blur)(int16_t *restrict blur, const uint16_t *restrict disparity,
-                            struct rf_focus focus, int n)
+                                   struct rf_focus focus, int n)
 {
     const uint16_t df = focus.disparity, radius = focus.radius;
 
@@ -66,7 +66,7 @@ static void RF_VEC(rf_dilate_from)(uint16_t *restrict row, const uint16_t *restr
 }
 
 static void RF_VEC(rf_mark)(int16_t *restrict behind, const int16_t *restrict blur,
-                     const uint16_t *restrict dilated, int n)
+                            const uint16_t *restrict dilated, int n)
 {
     for (int x = 0; x < n; x++) {
         const uint16_t s = (uint16_t)((uint16_t)blur[x] ^ 0x8000);
@@ -77,16 +77,15 @@ static void RF_VEC(rf_mark)(int16_t *restrict behind, const int16_t *restrict bl
 }
 
 /* (4 sum + N / 2) / N by a multiplication; see rf_mean_scale(). */
-static void means_by_scale(uint16_t *restrict mean, const uint32_t *restrict sum,
-                           uint32_t scale, int n)
+static void means_by_scale(uint16_t *restrict mean, const uint32_t *restrict sum, uint32_t scale,
+                           int n)
 {
     for (int i = 0; i < n; i++)
         mean[i] = (uint16_t)(((uint64_t)sum[i] * scale + (UINT64_C(1) << 29)) >> 30);
 }
 
 /* The same for scale = 2^(30 - shift), without 64-bit products. */
-static void means_by_shift(uint16_t *restrict mean, const uint32_t *restrict sum, int shift,
-                           int n)
+static void means_by_shift(uint16_t *restrict mean, const uint32_t *restrict sum, int shift, int n)
 {
     const uint32_t half = UINT32_C(1) << (shift - 1);
 
@@ -94,8 +93,8 @@ static void means_by_shift(uint16_t *restrict mean, const uint32_t *restrict sum
         mean[i] = (uint16_t)((sum[i] + half) >> shift);
 }
 
-static void RF_VEC(rf_means)(uint16_t *restrict mean, const uint32_t *restrict sum,
-                             uint32_t scale, int n)
+static void RF_VEC(rf_means)(uint16_t *restrict mean, const uint32_t *restrict sum, uint32_t scale,
+                             int n)
 {
     if ((scale & (scale - 1)) == 0 && scale < 1u << 30)
         means_by_shift(mean, sum, 30 - __builtin_ctz(scale), n);

@@ -14,8 +14,7 @@ static int32_t search(const struct rf_search_job *job, int n, const int16_t *blu
 
     for (int test = 1;; test++) {
         const int guess = seen;
-        const int32_t q =
-            offset_of(rays->u[n], rays->v[n], guess, (int32_t)job->stride);
+        const int32_t q = offset_of(rays->u[n], rays->v[n], guess, (int32_t)job->stride);
 
         seen = blur[q];
         if (seen - guess <= within && guess - seen <= within)

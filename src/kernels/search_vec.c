@@ -63,8 +63,8 @@ static ALWAYS_INLINE vec_u16 first_guess(const struct span *s, int n)
 }
 
 /* The lanes of `mask` that what they see does not settle. */
-static ALWAYS_INLINE vec_mask unsettled(const struct span *s, int n, vec_mask mask,
-                                        vec_u16 guess, vec_u16 seen, const bool last)
+static ALWAYS_INLINE vec_mask unsettled(const struct span *s, int n, vec_mask mask, vec_u16 guess,
+                                        vec_u16 seen, const bool last)
 {
     const vec_u16 within = vec_u16_set((uint16_t)s->rays->within[n]);
 
@@ -73,8 +73,8 @@ static ALWAYS_INLINE vec_mask unsettled(const struct span *s, int n, vec_mask ma
     return vec_mask_less(mask, within, vec_s16_apart(seen, guess));
 }
 
-static ALWAYS_INLINE void add_light(struct sums *sums, const struct span *s,
-                                    ptrdiff_t q, vec_mask mask)
+static ALWAYS_INLINE void add_light(struct sums *sums, const struct span *s, ptrdiff_t q,
+                                    vec_mask mask)
 {
     for (int c = 0; c < 3; c++)
         sums->light[c] =
@@ -103,14 +103,13 @@ static ALWAYS_INLINE void aim(struct aims *aims, const struct span *s)
     }
     for (int k = 0; k < 2; k++)
         for (int n = 0; n < (rays + 7) / 8 * 8; n++) /* no remainder */
-            aims->at[k][n] = (int8_t)(aims->key[k][n] & 0xff) +
-                             ((int16_t)aims->key[k][n] >> 8) * stride;
+            aims->at[k][n] =
+                (int8_t)(aims->key[k][n] & 0xff) + ((int16_t)aims->key[k][n] >> 8) * stride;
 }
 
 /* The first test of rays n to end, two ways. */
-static ALWAYS_INLINE void test_two(struct sums *sums, struct rest *rest,
-                                   const struct aims *aims, const struct span *s, int n,
-                                   int end, const bool once)
+static ALWAYS_INLINE void test_two(struct sums *sums, struct rest *rest, const struct aims *aims,
+                                   const struct span *s, int n, int end, const bool once)
 {
     const vec_mask all = vec_mask_all();
     int left = 0;
@@ -119,14 +118,12 @@ static ALWAYS_INLINE void test_two(struct sums *sums, struct rest *rest,
         const vec_u16 guess = first_guess(s, n), key = vec_u16_load(aims->keys[n]);
         const vec_mask first = vec_mask_equal(all, key, vec_u16_set(aims->key[0][n]));
         const vec_mask not_first = vec_mask_without(all, first);
-        const vec_mask second =
-            vec_mask_equal(not_first, key, vec_u16_set(aims->key[1][n]));
+        const vec_mask second = vec_mask_equal(not_first, key, vec_u16_set(aims->key[1][n]));
         const vec_mask others = vec_mask_without(not_first, second);
         const ptrdiff_t q0 = s->at + aims->at[0][n], q1 = s->at + aims->at[1][n];
-        const vec_u16 seen = vec_u16_choose(first, vec_u16_load(s->job->blur + q0),
-                                            vec_u16_load(s->job->blur + q1));
-        const vec_mask pending =
-            unsettled(s, n, vec_mask_or(first, second), guess, seen, once);
+        const vec_u16 seen =
+            vec_u16_choose(first, vec_u16_load(s->job->blur + q0), vec_u16_load(s->job->blur + q1));
+        const vec_mask pending = unsettled(s, n, vec_mask_or(first, second), guess, seen, once);
 
         add_light(sums, s, q0, vec_mask_without(first, pending));
         add_light(sums, s, q1, vec_mask_without(second, pending));
@@ -227,11 +224,8 @@ static void RF_VEC(rf_search)(uint32_t *const sum[3], const struct rf_search_job
 {
     for (int i = 0; i < RF_STRIP_LANES; i += LANES) {
         const ptrdiff_t at = i / RF_TILE * job->stride + i % RF_TILE;
-        const struct span span = {job,
-                                  job->rays,
-                                  at,
-                                  vec_u16_load(job->blur + at),
-                                  {sum[0] + i, sum[1] + i, sum[2] + i}};
+        const struct span span = {
+            job, job->rays, at, vec_u16_load(job->blur + at), {sum[0] + i, sum[1] + i, sum[2] + i}};
 
         if (job->tests == 1)
             search_span(&span, true);

@@ -38,9 +38,8 @@ static bool has(uint32_t cpu)
 
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
 {
-    static const uint32_t best_first[] = {REFOCUS_CPU_AVX512, REFOCUS_CPU_AVX2,
-                                          REFOCUS_CPU_SSE41, REFOCUS_CPU_NEON,
-                                          REFOCUS_CPU_C};
+    static const uint32_t best_first[] = {REFOCUS_CPU_AVX512, REFOCUS_CPU_AVX2, REFOCUS_CPU_SSE41,
+                                          REFOCUS_CPU_NEON, REFOCUS_CPU_C};
 
     for (int i = 0; *cpu == REFOCUS_CPU_AUTO; i++)
         if (has(best_first[i]))

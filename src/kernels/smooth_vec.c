@@ -23,9 +23,9 @@ static inline struct fade fade_of(int least, int over)
 /* |s| / 8, from one pixel to two. */
 static inline vec_u16 tolerance(vec_u16 size)
 {
-    return vec_u16_min(vec_u16_max(vec_u16_half(vec_u16_half(vec_u16_half(size))),
-                                   vec_u16_set(PIXEL)),
-                       vec_u16_set(TWO_PIXELS));
+    return vec_u16_min(
+        vec_u16_max(vec_u16_half(vec_u16_half(vec_u16_half(size))), vec_u16_set(PIXEL)),
+        vec_u16_set(TWO_PIXELS));
 }
 
 static inline struct use use_of(const int16_t *blur, ptrdiff_t apart, const struct fade *fade)

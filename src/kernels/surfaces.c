@@ -66,16 +66,14 @@ static uint64_t high_bits(const uint8_t *byte)
 static int count(uint64_t bits)
 {
     bits -= bits >> 1 & UINT64_C(0x5555555555555555);
-    bits = (bits & UINT64_C(0x3333333333333333)) +
-           (bits >> 2 & UINT64_C(0x3333333333333333));
+    bits = (bits & UINT64_C(0x3333333333333333)) + (bits >> 2 & UINT64_C(0x3333333333333333));
     bits = (bits + (bits >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
     return (int)(bits * UINT64_C(0x0101010101010101) >> 56);
 }
 
 /* The samples that show what a surface looks like; of many, every other one is enough.
  * How many. */
-static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
-                        uint64_t trusted)
+static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES], uint64_t trusted)
 {
     const int under = s->low > RF_GAP / 2 ? s->low - RF_GAP / 2 : 0;
     const int high = s->low + s->range;
@@ -94,17 +92,14 @@ static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
 /* clang-format off */
 #define GROW(n, grow) {65536 * 64 / ((n) * (grow)) * (65536 / 6 + 1), grow}
 /* clang-format on */
-#define GROW4(n, grow)                                                                 \
-    GROW(n, grow), GROW(n + 1, grow), GROW(n + 2, grow), GROW(n + 3, grow)
-#define GROW16(n, grow)                                                                \
-    GROW4(n, grow), GROW4(n + 4, grow), GROW4(n + 8, grow), GROW4(n + 12, grow)
+#define GROW4(n, grow)  GROW(n, grow), GROW(n + 1, grow), GROW(n + 2, grow), GROW(n + 3, grow)
+#define GROW16(n, grow) GROW4(n, grow), GROW4(n + 4, grow), GROW4(n + 8, grow), GROW4(n + 12, grow)
 static const struct {
     uint32_t share;
     uint16_t grow;
 } growth[SAMPLES + 1] = {
-    {0, 0},        GROW(1, 64),   GROW(2, 32),  GROW(3, 32),
-    GROW4(4, 16),  GROW4(8, 8),   GROW4(12, 8), GROW16(16, 4),
-    GROW16(32, 2), GROW16(48, 2), GROW(64, 1),
+    {0, 0},       GROW(1, 64),   GROW(2, 32),   GROW(3, 32),   GROW4(4, 16), GROW4(8, 8),
+    GROW4(12, 8), GROW16(16, 4), GROW16(32, 2), GROW16(48, 2), GROW(64, 1),
 };
 
 /* Of equal evidence the nearer surface is up to a fifth better: what is thin is in
@@ -139,32 +134,28 @@ static int slope(int along, int spread, int weight)
 
 /* Twice how far a tap is from the middle, and how much it counts there. */
 static const int16_t one[TAPS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-static const int16_t across[TAPS] = {-3, -3, -3, -3, -1, -1, -1, -1,
-                                     1,  1,  1,  1,  3,  3,  3,  3};
-static const int16_t down[TAPS] = {-3, -1, 1, 3, -3, -1, 1, 3,
-                                   -3, -1, 1, 3, -3, -1, 1, 3};
+static const int16_t across[TAPS] = {-3, -3, -3, -3, -1, -1, -1, -1, 1, 1, 1, 1, 3, 3, 3, 3};
+static const int16_t down[TAPS] = {-3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3, -3, -1, 1, 3};
 static const int16_t middle[TAPS] = {256, 768,  768,  256, 768, 2304, 2304, 768,
                                      768, 2304, 2304, 768, 256, 768,  768,  256};
 
 /* middle[] times across[] and down[]. */
-static const int16_t middle_across[TAPS] = {-768,  -2304, -2304, -768, -768, -2304,
-                                            -2304, -768,  768,   2304, 2304, 768,
-                                            768,   2304,  2304,  768};
-static const int16_t middle_down[TAPS] = {-768, -768, 768,   768,   -2304, -2304,
-                                          2304, 2304, -2304, -2304, 2304,  2304,
-                                          -768, -768, 768,   768};
+static const int16_t middle_across[TAPS] = {-768, -2304, -2304, -768, -768, -2304, -2304, -768,
+                                            768,  2304,  2304,  768,  768,  2304,  2304,  768};
+static const int16_t middle_down[TAPS] = {-768,  -768,  768,  768,  -2304, -2304, 2304, 2304,
+                                          -2304, -2304, 2304, 2304, -768,  -768,  768,  768};
 
 /* Sums over the taps of a surface: weights q, and with e heights above its low, at most
  * RF_WIDEST. Weights add up to 64 * 256 at the most: all fit 32 bits. */
 struct sums {
-    uint32_t part; /* where q is 256 m: 2^31 / m, of which n / m is found; else 0 */
+    uint32_t part;           /* where q is 256 m: 2^31 / m, of which n / m is found; else 0 */
     int q, qx, qy, qxx, qyy; /* x = across, y = down */
     int qe, qxe, qye;
 };
 
 /* The heights of a surface's taps, 0 of the others, and which those are. */
-static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS],
-                             const struct rf_surface *s, const uint16_t tap[TAPS])
+static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS], const struct rf_surface *s,
+                             const uint16_t tap[TAPS])
 {
 #if defined(RF_VECTORS)
     for (int i = 0; i < TAPS; i += VEC_U16) {
@@ -186,9 +177,8 @@ static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS],
 
 /* By rows of a column: bits 0 to 7 the sum of (1, 3, 3, 1), bits 8 to 15 of those times
  * (-3, -1, 1, 3) and 8, bits 16 to 23 of those times their squares. */
-#define COLUMN(a, b, c, d)                                                             \
-    (((a) + 3 * (b) + 3 * (c) + (d)) +                                                 \
-     ((8 - 3 * (a)-3 * (b) + 3 * (c) + 3 * (d)) << 8) +                                \
+#define COLUMN(a, b, c, d)                                                                         \
+    (((a) + 3 * (b) + 3 * (c) + (d)) + ((8 - 3 * (a)-3 * (b) + 3 * (c) + 3 * (d)) << 8) +          \
      ((9 * (a) + 3 * (b) + 3 * (c) + 9 * (d)) << 16))
 static const uint32_t column[16] = {
     COLUMN(0, 0, 0, 0), COLUMN(1, 0, 0, 0), COLUMN(0, 1, 0, 0), COLUMN(1, 1, 0, 0),
@@ -200,16 +190,15 @@ static const uint32_t column[16] = {
  * n m < 2^31. */
 #define PART(m)  ((1u << 31) / (m) + 1)
 #define PART4(m) PART(m), PART((m) + 1), PART((m) + 2), PART((m) + 3)
-static const uint32_t part[SAMPLES + 1] = {
-    0,         PART4(1),  PART4(5),  PART4(9),  PART4(13), PART4(17),
-    PART4(21), PART4(25), PART4(29), PART4(33), PART4(37), PART4(41),
-    PART4(45), PART4(49), PART4(53), PART4(57), PART4(61)};
+static const uint32_t part[SAMPLES + 1] = {0,         PART4(1),  PART4(5),  PART4(9),  PART4(13),
+                                           PART4(17), PART4(21), PART4(25), PART4(29), PART4(33),
+                                           PART4(37), PART4(41), PART4(45), PART4(49), PART4(53),
+                                           PART4(57), PART4(61)};
 
 /* n / q; for q = 256 m that is n / 256 / m. */
 static inline int over(uint32_t n, const struct sums *sum)
 {
-    return (int)(sum->part ? (uint64_t)(n >> 8) * sum->part >> 31
-                           : n / (uint32_t)sum->q);
+    return (int)(sum->part ? (uint64_t)(n >> 8) * sum->part >> 31 : n / (uint32_t)sum->q);
 }
 
 static inline uint32_t magnitude(int v)
@@ -279,17 +268,15 @@ static void fit(struct rf_surface *s, const uint16_t tap[TAPS], const int16_t *w
     const int off = gx * x + gy * y, back = over(magnitude(off) / 2, &sum);
 
     mean += off < 0 ? back : -back;
-    s->mean = (int16_t)(mean < -STEEPEST  ? -STEEPEST
-                        : mean > STEEPEST ? STEEPEST
-                                          : mean);
+    s->mean = (int16_t)(mean < -STEEPEST ? -STEEPEST : mean > STEEPEST ? STEEPEST : mean);
     s->right = (int16_t)gx;
     s->below = (int16_t)gy;
 }
 
 /* Trust of the taps, their weights in a plane, and of all samples whether they are
  * trusted. */
-static uint64_t take_trust(struct rf_cell *cell, int16_t spare[TAPS],
-                           const int16_t **weight, const struct rf_window *window)
+static uint64_t take_trust(struct rf_cell *cell, int16_t spare[TAPS], const int16_t **weight,
+                           const struct rf_window *window)
 {
     uint64_t trusted;
     uint8_t trust[TAPS];
@@ -316,8 +303,7 @@ static uint64_t take_trust(struct rf_cell *cell, int16_t spare[TAPS],
     return trusted;
 }
 
-static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell,
-                                     const struct rf_window *window,
+static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell, const struct rf_window *window,
                                      const struct rf_parts *parts, int at)
 {
     int16_t spare[TAPS];
@@ -328,8 +314,7 @@ static void RF_VEC(rf_find_surfaces)(struct rf_cell *cell,
     int most_taps = 0, greatest = 0, n = 0;
 
     for (int i = 0; i < RF_TAPS; i++)
-        memcpy(tap + i * RF_TAPS, window->disparity + FIRST + i * RF_AROUND,
-               RF_TAPS * sizeof *tap);
+        memcpy(tap + i * RF_TAPS, window->disparity + FIRST + i * RF_AROUND, RF_TAPS * sizeof *tap);
     while (starts) {
         struct rf_surface *s = &cell->surface[n];
         const int first = __builtin_ctz(starts);

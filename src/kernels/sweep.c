@@ -42,8 +42,7 @@ void rf_sweep_c(uint32_t *const sum[4], const struct rf_sweep_job *job)
 
     for (int n = 0; n < rays->rays; n++) {
         const uint16_t *weight = sum[3] ? rays->last_weight[n] : NULL;
-        const ptrdiff_t stride =
-            sum[3] && !rays->last_behind[n] ? job->weight_stride : job->stride;
+        const ptrdiff_t stride = sum[3] && !rays->last_behind[n] ? job->weight_stride : job->stride;
 
         memset(is_free, 0xff, sizeof is_free);
         for (int t = 0; t < rays->tests[n]; t++)

@@ -6,8 +6,7 @@ static ptrdiff_t at(const struct rf_sweep1_job *job, int i)
 {
     const int y = i / RF_TILE, half = job->rows / 2;
 
-    return (y < half ? y * job->apart : job->half + (y - half) * job->apart) +
-           i % RF_TILE;
+    return (y < half ? y * job->apart : job->half + (y - half) * job->apart) + i % RF_TILE;
 }
 
 /* End of the rays of a class of tests that count. */
@@ -19,8 +18,7 @@ static int end_of(const struct rf_sweep1_job *job, int class)
 }
 
 /* Light, and weight if not NULL, that ray n meets at lane i. */
-static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light,
-                 uint16_t *weight)
+static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light, uint16_t *weight)
 {
     const struct rf_sorted_rays *rays = job->rays;
     const int32_t(*const offset)[RF_RAY_CHUNK] =
@@ -48,8 +46,7 @@ static void meet(const struct rf_sweep1_job *job, int n, int i, uint16_t *light,
         *weight = (job->chroma ? rays->chroma_last_weight : rays->last_weight)[n][own];
 }
 
-static void sweep_ray(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job,
-                      int n)
+static void sweep_ray(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job, int n)
 {
     for (int i = 0; i < job->rows * RF_TILE; i++) {
         uint16_t light, weight;
@@ -70,8 +67,7 @@ void rf_sweep1_c(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job
             sweep_ray(sum, weight_sum, job, n);
 }
 
-void rf_sweep1_weighted_c(uint64_t *sum, uint64_t *weight_sum,
-                          const struct rf_sweep1_job *job)
+void rf_sweep1_weighted_c(uint64_t *sum, uint64_t *weight_sum, const struct rf_sweep1_job *job)
 {
     const struct rf_sorted_rays *rays = job->rays;
 

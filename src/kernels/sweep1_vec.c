@@ -38,8 +38,8 @@ struct sums {
 };
 
 /* Vector j from `first` on, of `rows` rows of each half. */
-static ALWAYS_INLINE const uint16_t *
-vector_at(const uint16_t *first, const struct layout *layout, int j, const int rows)
+static ALWAYS_INLINE const uint16_t *vector_at(const uint16_t *first, const struct layout *layout,
+                                               int j, const int rows)
 {
     const uint16_t *at = j < rows * EACH ? first : first + layout->half;
 
@@ -48,8 +48,7 @@ vector_at(const uint16_t *first, const struct layout *layout, int j, const int r
 
 /* What ray n of `tests` tests sees, added. */
 static ALWAYS_INLINE void sweep_ray(struct sums *sums, const struct state *s, int n,
-                                    const int tests, const int rows,
-                                    const bool weighted)
+                                    const int tests, const int rows, const bool weighted)
 {
     const struct rf_sorted_rays *rays = s->job->rays;
     const uint16_t *const blur = (const uint16_t *)s->job->blur + s->light.first;
@@ -59,11 +58,10 @@ static ALWAYS_INLINE void sweep_ray(struct sums *sums, const struct state *s, in
     vec_u16 value[MOST_VECS], times[MOST_VECS];
 
     for (int j = 0; j < vecs; j++)
-        value[j] =
-            vec_u16_load(vector_at(s->last[n] + s->light.first, &s->light, j, rows));
+        value[j] = vec_u16_load(vector_at(s->last[n] + s->light.first, &s->light, j, rows));
     for (int j = 0; weighted && j < vecs; j++)
-        times[j] = vec_u16_load(
-            vector_at(s->last_weight[n] + s->weight.first, &s->weight, j, rows));
+        times[j] =
+            vec_u16_load(vector_at(s->last_weight[n] + s->weight.first, &s->weight, j, rows));
     for (int t = tests - 1; t >= 0; t--) {
         const struct rf_limits limits = rf_limits_of(rays, t, n);
         const ptrdiff_t q = s->offset[t][n], p = weighted ? s->pixel[t][n] : 0;
@@ -72,11 +70,10 @@ static ALWAYS_INLINE void sweep_ray(struct sums *sums, const struct state *s, in
             const vec_u16 seen = vec_u16_load(vector_at(blur + q, &s->light, j, rows));
             const vec_mask hit = rf_in_limits(vec_mask_all(), limits, seen);
 
-            value[j] = vec_u16_load_where(hit, value[j],
-                                          vector_at(light + q, &s->light, j, rows));
+            value[j] = vec_u16_load_where(hit, value[j], vector_at(light + q, &s->light, j, rows));
             if (weighted)
-                times[j] = vec_u16_load_where(
-                    hit, times[j], vector_at(weight + p, &s->weight, j, rows));
+                times[j] =
+                    vec_u16_load_where(hit, times[j], vector_at(weight + p, &s->weight, j, rows));
         }
     }
     for (int j = 0; j < vecs; j++) {
@@ -86,19 +83,17 @@ static ALWAYS_INLINE void sweep_ray(struct sums *sums, const struct state *s, in
     }
 }
 
-static ALWAYS_INLINE void sweep_some(struct sums *sums, const struct state *s,
-                                     int first, int end, const int tests,
-                                     const int rows, const bool weighted)
+static ALWAYS_INLINE void sweep_some(struct sums *sums, const struct state *s, int first, int end,
+                                     const int tests, const int rows, const bool weighted)
 {
     for (int n = first; n < end; n++)
-        sweep_ray(sums, s, n, tests < FEW ? tests : s->job->rays->tests[n], rows,
-                  weighted);
+        sweep_ray(sums, s, n, tests < FEW ? tests : s->job->rays->tests[n], rows, weighted);
 }
 
 /* Adds sums to those of 32 bits, whose second half begins at `half`, and clears them.
  */
-static ALWAYS_INLINE void flush(uint32_t *first, uint32_t *second,
-                                vec_u16 sum[MOST_VECS], const int rows)
+static ALWAYS_INLINE void flush(uint32_t *first, uint32_t *second, vec_u16 sum[MOST_VECS],
+                                const int rows)
 {
     for (int j = 0; j < rows * EACH; j++) {
         vec_u16_add_to(first + j * (int)VEC_U16, sum[j]);
@@ -114,8 +109,7 @@ struct target {
 };
 
 static ALWAYS_INLINE void flush_all(const struct target *to, struct sums *sums,
-                                    const struct state *s, const int rows,
-                                    const bool weighted)
+                                    const struct state *s, const int rows, const bool weighted)
 {
     flush(to->light, to->light + to->half, sums->light, rows);
     if (!weighted)
@@ -126,8 +120,8 @@ static ALWAYS_INLINE void flush_all(const struct target *to, struct sums *sums,
 }
 
 /* All rays, at `rows` rows of each half. */
-static ALWAYS_INLINE void sweep_rows(const struct target *to, const struct state *s,
-                                     const int rows, const bool weighted)
+static ALWAYS_INLINE void sweep_rows(const struct target *to, const struct state *s, const int rows,
+                                     const bool weighted)
 {
     struct sums sums;
     int left = s->job->steps;
@@ -166,12 +160,10 @@ static ALWAYS_INLINE void sweep_rows(const struct target *to, const struct state
         flush_all(to, &sums, s, rows, weighted);
 }
 
-static ALWAYS_INLINE void sweep_from(uint32_t *sum, uint32_t *weight_sum,
-                                     struct state *s, int row, const int rows,
-                                     const bool weighted)
+static ALWAYS_INLINE void sweep_from(uint32_t *sum, uint32_t *weight_sum, struct state *s, int row,
+                                     const int rows, const bool weighted)
 {
-    const struct target to = {sum + row * RF_TILE,
-                              weighted ? weight_sum + row * RF_TILE : NULL,
+    const struct target to = {sum + row * RF_TILE, weighted ? weight_sum + row * RF_TILE : NULL,
                               s->job->rows / 2 * RF_TILE};
 
     s->light.first = row * s->light.apart;
@@ -209,8 +201,7 @@ static ALWAYS_INLINE void sweep_with_weights(uint32_t *sum, uint32_t *weight_sum
         sweep_from(sum, weight_sum, s, row, 1, true);
 }
 
-static void RF_VEC(rf_sweep1)(uint32_t *sum, uint32_t *weight_sum,
-                              const struct rf_sweep1_job *job)
+static void RF_VEC(rf_sweep1)(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job)
 {
     const struct rf_sorted_rays *rays = job->rays;
     const int down = job->down;
@@ -219,18 +210,16 @@ static void RF_VEC(rf_sweep1)(uint32_t *sum, uint32_t *weight_sum,
         .job = job,
         .light = {job->apart, job->half, 0},
         .weight = {job->apart * (1 << down), job->half * (1 << down), 0},
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_offset
-                                                          : rays->offset),
-        .pixel = (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_weight_offset
-                                                         : rays->offset),
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_offset : rays->offset),
+        .pixel =
+            (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_weight_offset : rays->offset),
         .last = (const uint16_t *const *)(chroma ? rays->chroma_last : rays->last),
-        .last_weight = (const uint16_t *const *)(chroma ? rays->chroma_last_weight
-                                                        : rays->last_weight),
+        .last_weight =
+            (const uint16_t *const *)(chroma ? rays->chroma_last_weight : rays->last_weight),
     };
 
     for (int tests = 0; tests < RF_SORTED_TESTS; tests++)
-        s.end[tests] =
-            chroma ? rays->begin[tests] + rays->shared[tests] : rays->begin[tests + 1];
+        s.end[tests] = chroma ? rays->begin[tests] + rays->shared[tests] : rays->begin[tests + 1];
     if (weight_sum)
         sweep_with_weights(sum, weight_sum, &s);
     else

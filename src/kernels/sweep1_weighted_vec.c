@@ -14,8 +14,7 @@ struct state {
     const uint16_t *const *last, *const *last_weight;
     uint8_t ray[RF_RAY_CHUNK]; /* those that count */
     int rays;
-    ptrdiff_t at[VECS],
-        pixel_at[VECS]; /* elements from the first, of light and of weights */
+    ptrdiff_t at[VECS], pixel_at[VECS]; /* elements from the first, of light and of weights */
 };
 
 /* What one ray of each lane meets. */
@@ -23,8 +22,7 @@ struct met {
     vec_u16 light[VECS], weight[VECS];
 };
 
-static ALWAYS_INLINE void follow(struct met *met, const struct state *s, int n,
-                                 const bool chroma)
+static ALWAYS_INLINE void follow(struct met *met, const struct state *s, int n, const bool chroma)
 {
     const struct rf_sorted_rays *rays = s->job->rays;
 
@@ -41,8 +39,8 @@ static ALWAYS_INLINE void follow(struct met *met, const struct state *s, int n,
                 rf_in_limits(vec_mask_all(), limits, vec_u16_load(s->job->blur + q));
 
             met->light[j] = vec_u16_load_where(hit, met->light[j], s->job->light + q);
-            met->weight[j] = vec_u16_load_where(
-                hit, met->weight[j], s->job->weight + s->pixel[t][n] + s->pixel_at[j]);
+            met->weight[j] = vec_u16_load_where(hit, met->weight[j],
+                                                s->job->weight + s->pixel[t][n] + s->pixel_at[j]);
         }
     }
     for (int j = 0; chroma && j < VECS; j++)
@@ -51,8 +49,8 @@ static ALWAYS_INLINE void follow(struct met *met, const struct state *s, int n,
 
 /* 32-bit sums hold twice as many products with weights as 16-bit ones hold values;
  * products of two are added signed: 2 * 16380 * 32767 < 2^31. */
-static ALWAYS_INLINE void sweep_vectors(uint64_t *sum, uint64_t *weight_sum,
-                                        const struct state *s, const bool chroma)
+static ALWAYS_INLINE void sweep_vectors(uint64_t *sum, uint64_t *weight_sum, const struct state *s,
+                                        const bool chroma)
 {
     const vec_u16 one = vec_u16_set(1);
 
@@ -71,10 +69,9 @@ static ALWAYS_INLINE void sweep_vectors(uint64_t *sum, uint64_t *weight_sum,
             if (n + 1 < end)
                 follow(&b, s, s->ray[n + 1], chroma);
             for (int j = 0; j < VECS; j++) {
-                light[j] = vec_u32_add_products(light[j], a.light[j], a.weight[j],
-                                                b.light[j], b.weight[j]);
-                weight[j] =
-                    vec_u32_add_products(weight[j], a.weight[j], one, b.weight[j], one);
+                light[j] = vec_u32_add_products(light[j], a.light[j], a.weight[j], b.light[j],
+                                                b.weight[j]);
+                weight[j] = vec_u32_add_products(weight[j], a.weight[j], one, b.weight[j], one);
             }
         }
         for (int j = 0; j < VECS; j++) {
@@ -90,13 +87,11 @@ static void set_rays(struct state *s, const struct rf_sweep1_job *job)
     const bool chroma = job->chroma;
 
     s->job = job;
-    s->offset =
-        (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_offset : rays->offset);
-    s->pixel = (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_weight_offset
-                                                       : rays->offset);
+    s->offset = (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_offset : rays->offset);
+    s->pixel = (const int32_t(*)[RF_RAY_CHUNK])(chroma ? rays->chroma_weight_offset : rays->offset);
     s->last = (const uint16_t *const *)(chroma ? rays->chroma_last : rays->last);
-    s->last_weight = (const uint16_t *const *)(chroma ? rays->chroma_last_weight
-                                                      : rays->last_weight);
+    s->last_weight =
+        (const uint16_t *const *)(chroma ? rays->chroma_last_weight : rays->last_weight);
     s->rays = 0;
     for (int tests = 0; tests < RF_SORTED_TESTS; tests++) {
         const int begin = rays->begin[tests];
@@ -116,10 +111,8 @@ static void RF_VEC(rf_sweep1_weighted)(uint64_t *sum, uint64_t *weight,
     set_rays(&s, job);
     for (int i = 0; i < job->rows * RF_TILE; i += VECS * (int)VEC_U16) {
         for (int j = 0; j < VECS; j++) {
-            const int lane = i + j * (int)VEC_U16, x = lane % RF_TILE,
-                      y = lane / RF_TILE;
-            const ptrdiff_t row =
-                y < half ? y * job->apart : job->half + (y - half) * job->apart;
+            const int lane = i + j * (int)VEC_U16, x = lane % RF_TILE, y = lane / RF_TILE;
+            const ptrdiff_t row = y < half ? y * job->apart : job->half + (y - half) * job->apart;
 
             s.at[j] = row + x;
             s.pixel_at[j] = row * (1 << job->down) + x;

@@ -6,9 +6,9 @@
 #include <string.h>
 
 enum {
-    MOST_VECS = 4,  /* together: */
-    ALONE_VECS = 4, /* of rays without tests, */
-    TEST_VECS = 2,  /* with them, or with weights */
+    MOST_VECS = 4,                      /* together: */
+    ALONE_VECS = 4,                     /* of rays without tests, */
+    TEST_VECS = 2,                      /* with them, or with weights */
     EACH = (int)RF_TILE / (int)VEC_U16, /* vectors of a row */
 };
 
@@ -88,8 +88,7 @@ static ALWAYS_INLINE void sweep_ray(vec_u16 sum[4][MOST_VECS], const struct rf_s
     if (weighted) {
         const bool behind = rays->last_behind[n];
 
-        add_plane(sum[3],
-                  (const char *)rays->last_weight[n] + (behind ? p.at : p.weight_at),
+        add_plane(sum[3], (const char *)rays->last_weight[n] + (behind ? p.at : p.weight_at),
                   behind ? stride : 2 * job->weight_stride, left, vecs);
     }
 }

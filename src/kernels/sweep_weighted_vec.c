@@ -45,8 +45,7 @@ static ALWAYS_INLINE struct place place_of(const struct rf_sweep_job *job, int i
     return (struct place){2 * (y * job->stride + x), 2 * (y * job->weight_stride + x)};
 }
 
-static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct place p,
-                                       int n)
+static ALWAYS_INLINE struct met follow(const struct rf_sweep_job *job, struct place p, int n)
 {
     const struct rf_sorted_rays *rays = job->rays;
     const ptrdiff_t plane = 2 * job->pitch;
@@ -89,8 +88,8 @@ static ALWAYS_INLINE void sweep_vector(uint64_t *const sum[4], int i,
             if (n + 1 < end)
                 b = follow(job, p, n + 1);
             for (int c = 0; c < 3; c++)
-                light[c] = vec_u32_add_products(light[c], a.light[c], a.weight, b.light[c],
-                                                b.weight);
+                light[c] =
+                    vec_u32_add_products(light[c], a.light[c], a.weight, b.light[c], b.weight);
             weight = vec_u32_add_products(weight, a.weight, one, b.weight, one);
         }
         n = end;

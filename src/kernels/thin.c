@@ -4,10 +4,9 @@
 #include <string.h>
 
 /* By steps less one of the two kinds of directions: weights, */
-#define SQUARES(of)                                                                    \
-    {                                                                                  \
-        of(1), of(4), of(9), of(16), of(25), of(36), of(49), of(64), of(81), of(100),  \
-            0                                                                          \
+#define SQUARES(of)                                                                                \
+    {                                                                                              \
+        of(1), of(4), of(9), of(16), of(25), of(36), of(49), of(64), of(81), of(100), 0            \
     }
 #define STRAIGHT(square) 1440 / (square)
 #define SLANTED(square)  1440 / (2 * (square))
@@ -56,8 +55,7 @@ static void add_pixel(struct rf_thin_batch *b, const struct rf_thin_row *row,
     }
 }
 
-static bool shines(const struct rf_thin_batch *b, const struct rf_thin_mixture *m,
-                   int k)
+static bool shines(const struct rf_thin_batch *b, const struct rf_thin_mixture *m, int k)
 {
     for (int c = 0; c < 3; c++)
         if (b->light[c][k] > SHINES || m->before[c][k] > SHINES)
@@ -84,8 +82,7 @@ static int take_apart(struct rf_thin *out, int most, struct rf_thin_batch *b,
             continue;
         out[count++] = (struct rf_thin){
             .at = b->at[k],
-            .alpha = (uint8_t)(mixed && m.alpha[k] ? m.alpha[k]
-                                                   : 255), /* it may be anything */
+            .alpha = (uint8_t)(mixed && m.alpha[k] ? m.alpha[k] : 255), /* it may be anything */
             .near_disparity = kept ? b->own[k] : m.near[k],
             .far_disparity = m.far[k],
             .light = {(uint16_t)m.behind[0][k], (uint16_t)m.behind[1][k],
@@ -96,11 +93,9 @@ static int take_apart(struct rf_thin *out, int most, struct rf_thin_batch *b,
     return count;
 }
 
-static int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *tile,
-                                int most)
+static int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *tile, int most)
 {
-    const int rows = clamp(tile->below, 0, RF_TILE),
-              columns = clamp(tile->right, 0, RF_TILE);
+    const int rows = clamp(tile->below, 0, RF_TILE), columns = clamp(tile->right, 0, RF_TILE);
     struct rf_thin_window w;
     struct places places;
     struct rf_thin_batch batch;

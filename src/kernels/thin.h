@@ -64,7 +64,6 @@ struct rf_thin_tile {
  * alpha of 255. The near disparity is its own of what is kept, else the greatest of
  * N's; the far one is d.
  */
-typedef int rf_find_thin_fn(struct rf_thin *out, const struct rf_thin_tile *tile,
-                            int most);
+typedef int rf_find_thin_fn(struct rf_thin *out, const struct rf_thin_tile *tile, int most);
 
 #endif

@@ -16,8 +16,7 @@ static void gather(struct taps *taps, const struct rf_thin_batch *b, int k,
     const int x = b->at[k] % RF_TILE, y = b->at[k] / RF_TILE;
 
     for (int j = 0; j < ACROSS; j++) { /* each a little longer than it is */
-        const uint16_t *const map =
-            &w->before[y + j - BEFORE + MARGIN][x - BEFORE + MARGIN];
+        const uint16_t *const map = &w->before[y + j - BEFORE + MARGIN][x - BEFORE + MARGIN];
         const ptrdiff_t at = (y + j - BEFORE) * t->stride + x - BEFORE;
 
         memcpy(taps->near + ACROSS * j, map, 16);
@@ -26,8 +25,7 @@ static void gather(struct taps *taps, const struct rf_thin_batch *b, int k,
     }
     memset(taps->near + ACROSS * ACROSS, 0, sizeof taps->near - ACROSS * ACROSS * 2);
     for (int c = 0; c < 3; c++)
-        memset(taps->light[c] + ACROSS * ACROSS, 0,
-               sizeof taps->light[c] - ACROSS * ACROSS * 2);
+        memset(taps->light[c] + ACROSS * ACROSS, 0, sizeof taps->light[c] - ACROSS * ACROSS * 2);
 }
 
 struct sums {
@@ -35,8 +33,7 @@ struct sums {
     uint32_t weights[BATCH], high[3][BATCH], low[3][BATCH];
 };
 
-static inline int32_t dot(const int16_t *restrict weight,
-                          const uint16_t *restrict light)
+static inline int32_t dot(const int16_t *restrict weight, const uint16_t *restrict light)
 {
     int32_t sum = 0;
 
@@ -45,9 +42,8 @@ static inline int32_t dot(const int16_t *restrict weight,
     return sum;
 }
 
-static void add_taps(struct sums *restrict sums, int k,
-                     const struct taps *restrict taps, uint16_t level,
-                     const uint16_t behind[3])
+static void add_taps(struct sums *restrict sums, int k, const struct taps *restrict taps,
+                     uint16_t level, const uint16_t behind[3])
 {
     const uint16_t red = behind[0], green = behind[1], blue = behind[2];
     int16_t high[TAPS], low[TAPS]; /* weights, 10 bits each */
@@ -61,9 +57,9 @@ static void add_taps(struct sums *restrict sums, int k,
         const int16_t g = (int16_t)(taps->light[1][i] - green);
         const int16_t b = (int16_t)(taps->light[2][i] - blue);
         const uint32_t near = taps->near[i] > level ? UINT32_MAX : 0;
-        const uint32_t weight = (((uint32_t)(r * r) >> 6) + ((uint32_t)(g * g) >> 6) +
-                                 ((uint32_t)(b * b) >> 6) + 1) &
-                                near;
+        const uint32_t weight =
+            (((uint32_t)(r * r) >> 6) + ((uint32_t)(g * g) >> 6) + ((uint32_t)(b * b) >> 6) + 1) &
+            near;
 
         weights += weight;
         high[i] = (int16_t)(weight >> 10);
@@ -83,8 +79,7 @@ static bool may_shine(const struct taps *taps)
     uint16_t most = 0;
 
     for (int i = 0; i < TAPS; i++)
-        most = max16(most, max16(taps->light[0][i],
-                                 max16(taps->light[1][i], taps->light[2][i])));
+        most = max16(most, max16(taps->light[0][i], max16(taps->light[1][i], taps->light[2][i])));
     return most > SHINES;
 }
 
@@ -111,16 +106,15 @@ static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
 
         if (m->mixed[k] || may_shine(&taps[i]))
             add_taps(&sums, k, &taps[i], b->level[k],
-                     (const uint16_t[3]){(uint16_t)m->behind[0][k],
-                                         (uint16_t)m->behind[1][k],
+                     (const uint16_t[3]){(uint16_t)m->behind[0][k], (uint16_t)m->behind[1][k],
                                          (uint16_t)m->behind[2][k]});
     }
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < BATCH; k++) {
             const uint32_t by = sums.weights[k] + (sums.weights[k] == 0);
             const uint32_t high = sums.high[c][k], low = sums.low[c][k];
-            const float real = (float)(int32_t)high * 1024 + (float)(int32_t)low +
-                               (float)(int32_t)(by / 2);
+            const float real =
+                (float)(int32_t)high * 1024 + (float)(int32_t)low + (float)(int32_t)(by / 2);
 
             m->before[c][k] = quotient(real, (high << 10) + low + by / 2, by);
         }
@@ -147,8 +141,7 @@ static void divide_share(int32_t *restrict alpha, const int32_t *restrict along,
         const int32_t all = square[x], some = along[x] & ~(along[x] >> 31);
         const int32_t part = some < all ? some : all;
 
-        alpha[x] = quotient(255 * (float)part, 255 * (uint32_t)part,
-                            (uint32_t)(all + (all == 0)));
+        alpha[x] = quotient(255 * (float)part, 255 * (uint32_t)part, (uint32_t)(all + (all == 0)));
     }
 }
 

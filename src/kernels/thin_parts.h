@@ -16,8 +16,8 @@ enum {
     THIN = 2 * AROUND + 1,
     WIDE = 2 * THIN,     /* not thin */
     FAR = RF_THIN_REACH, /* how far what is behind is looked for, */
-    CLEAN = 4,  /* and how near it must be not to be taken from the edge itself */
-    BEFORE = 2, /* how far N is looked for */
+    CLEAN = 4,           /* and how near it must be not to be taken from the edge itself */
+    BEFORE = 2,          /* how far N is looked for */
     ACROSS = 2 * BEFORE + 1,
     FAINT = 12 * 12, /* squared distance of light that is none */
     SHINES = 4000,   /* lamps, which highlights are for, and what is clipped */
@@ -29,7 +29,7 @@ enum {
     ROW = 40,         /* elements of a row of them */
     INNER = SPAN - 2, /* without the first and the last */
     WAYS = 8,
-    BATCH = 32, /* pixels that are looked at together */
+    BATCH = 32,          /* pixels that are looked at together */
     WIDER = RF_TILE + 8, /* loops of 16 are unrolled, and then not vectorised */
 };
 
@@ -106,8 +106,8 @@ struct rf_thin_mixture {
 bool RF_VEC(rf_thin_window)(struct rf_thin_window *w, const struct rf_thin_tile *t);
 
 /* A bit for each pixel of row y of a tile that is to be looked at more closely. */
-unsigned RF_VEC(rf_thin_row)(struct rf_thin_row *row, const struct rf_thin_window *w,
-                             int y, int columns);
+unsigned RF_VEC(rf_thin_row)(struct rf_thin_row *row, const struct rf_thin_window *w, int y,
+                             int columns);
 
 /* F, and what is mixed; weights are left of what is of F's surface. */
 void RF_VEC(rf_thin_far)(struct rf_thin_mixture *m, struct rf_thin_batch *b);

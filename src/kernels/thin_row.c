@@ -10,8 +10,8 @@ static ptrdiff_t step_of(int i)
 /* A bit for each pixel of a row. */
 static unsigned bits_of(const uint16_t mask[RF_TILE])
 {
-    static const uint16_t bit[RF_TILE] = {
-        1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+    static const uint16_t bit[RF_TILE] = {1,   2,   4,    8,    16,   32,   64,    128,
+                                          256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
     uint16_t bits = 0;
 
     for (int x = 0; x < RF_TILE; x++)
@@ -20,8 +20,8 @@ static unsigned bits_of(const uint16_t mask[RF_TILE])
 }
 
 /* Which are looked at. */
-static unsigned find_level(struct rf_thin_row *row, const struct rf_thin_window *w,
-                           int y, int columns)
+static unsigned find_level(struct rf_thin_row *row, const struct rf_thin_window *w, int y,
+                           int columns)
 {
     const uint16_t *restrict own = &w->map[y + MARGIN][MARGIN];
 
@@ -42,13 +42,11 @@ static unsigned find_level(struct rf_thin_row *row, const struct rf_thin_window 
 /* Steps before the first that is at most the level; the same but for the first step, up
  * to THIN + 1 of them. */
 static void count_near(uint16_t *restrict near, uint16_t *restrict beside,
-                       const uint16_t *restrict at, ptrdiff_t step,
-                       const uint16_t *restrict level)
+                       const uint16_t *restrict at, ptrdiff_t step, const uint16_t *restrict level)
 {
 #define COUNT(k) all &= IS_NEAR(k), n = (uint16_t)(n - all)
-#define COUNT_BOTH(k)                                                                  \
-    is = IS_NEAR(k), all &= is, later &= is, n = (uint16_t)(n - all),                  \
-    m = (uint16_t)(m - later)
+#define COUNT_BOTH(k)                                                                              \
+    is = IS_NEAR(k), all &= is, later &= is, n = (uint16_t)(n - all), m = (uint16_t)(m - later)
     for (int x = 0; x < RF_TILE; x++) {
         const uint16_t l = level[x];
         uint16_t is, all = 0xffff, later = 0xffff, n = 0, m = 0;
@@ -68,8 +66,8 @@ static void count_near(uint16_t *restrict near, uint16_t *restrict beside,
     }
 }
 
-static void count_unclean(uint16_t *restrict unclean, const uint16_t *restrict at,
-                          ptrdiff_t step, const uint16_t *restrict level)
+static void count_unclean(uint16_t *restrict unclean, const uint16_t *restrict at, ptrdiff_t step,
+                          const uint16_t *restrict level)
 {
     for (int x = 0; x < RF_TILE; x++) {
         const uint16_t l = level[x];
@@ -120,27 +118,25 @@ static void choose_steps(struct rf_thin_row *row)
             nearest = min16(nearest, row->met[i][x]);
         plain = row->width[x] == 1 || nearest >= CLEAN ? 0xffff : 0;
         for (int i = 0; i < WAYS; i++)
-            row->met[i][x] =
-                (uint16_t)((row->near[i][x] & plain) | (row->met[i][x] & ~plain));
+            row->met[i][x] = (uint16_t)((row->near[i][x] & plain) | (row->met[i][x] & ~plain));
     }
 }
 
-unsigned RF_VEC(rf_thin_row)(struct rf_thin_row *row, const struct rf_thin_window *w,
-                             int y, int columns)
+unsigned RF_VEC(rf_thin_row)(struct rf_thin_row *row, const struct rf_thin_window *w, int y,
+                             int columns)
 {
     unsigned look = find_level(row, w, y, columns);
 
     if (!look)
         return 0;
     for (int i = 0; i < WAYS; i++)
-        count_near(row->near[i], row->beside[i], &w->map[y + MARGIN][MARGIN],
-                   step_of(i), row->level);
+        count_near(row->near[i], row->beside[i], &w->map[y + MARGIN][MARGIN], step_of(i),
+                   row->level);
     look &= find_width(row);
     if (!look)
         return 0;
     for (int i = 0; i < WAYS; i++)
-        count_unclean(row->met[i], &w->clean[y + MARGIN][MARGIN], step_of(i),
-                      row->level);
+        count_unclean(row->met[i], &w->clean[y + MARGIN][MARGIN], step_of(i), row->level);
     choose_steps(row);
     return look;
 }

@@ -7,10 +7,8 @@
  * little farther are looked at where that is simpler. */
 static bool has_jump(const struct rf_thin_tile *t)
 {
-    const int x0 = -clamp(t->left, 0, AROUND),
-              x1 = clamp(t->right, 0, RF_TILE + AROUND);
-    const int y0 = -clamp(t->above, 0, AROUND),
-              y1 = clamp(t->below, 0, RF_TILE + AROUND);
+    const int x0 = -clamp(t->left, 0, AROUND), x1 = clamp(t->right, 0, RF_TILE + AROUND);
+    const int y0 = -clamp(t->above, 0, AROUND), y1 = clamp(t->below, 0, RF_TILE + AROUND);
     enum { TWICE = 2 * RF_TILE };
     uint16_t least[TWICE], most[TWICE], low = 65535, high = 0;
 
@@ -45,9 +43,8 @@ struct part {
 
 static struct part part_of(const struct rf_thin_tile *t)
 {
-    return (struct part){
-        clamp(MARGIN - t->left, 0, MARGIN), clamp(MARGIN + t->right, 0, ROW),
-        clamp(MARGIN - t->above, 0, MARGIN), clamp(MARGIN + t->below, 0, SPAN)};
+    return (struct part){clamp(MARGIN - t->left, 0, MARGIN), clamp(MARGIN + t->right, 0, ROW),
+                         clamp(MARGIN - t->above, 0, MARGIN), clamp(MARGIN + t->below, 0, SPAN)};
 }
 
 static void fill(uint16_t *row, uint16_t with, int first, int end)
@@ -57,8 +54,7 @@ static void fill(uint16_t *row, uint16_t with, int first, int end)
 }
 
 /* What is beyond the photo repeats its last row or column. */
-static void copy_around(struct rf_thin_window *w, const struct rf_thin_tile *t,
-                        struct part p)
+static void copy_around(struct rf_thin_window *w, const struct rf_thin_tile *t, struct part p)
 {
     for (int j = p.y0; j < p.y1; j++) {
         uint16_t *const row = w->map[j];

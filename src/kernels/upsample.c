@@ -20,8 +20,7 @@ static inline uint16_t apart(uint16_t a, uint16_t b)
     return (uint16_t)(most(a, b) - least(a, b));
 }
 
-static void RF_VEC(rf_blend4)(uint16_t *restrict out,
-                              const uint16_t *const row[RF_TAPS],
+static void RF_VEC(rf_blend4)(uint16_t *restrict out, const uint16_t *const row[RF_TAPS],
                               const int16_t share[RF_TAPS], int n)
 {
     const uint16_t *restrict a = row[0], *restrict b = row[1];
@@ -32,9 +31,8 @@ static void RF_VEC(rf_blend4)(uint16_t *restrict out,
 
 #if defined(RF_VECTORS)
     for (; x + (int)VEC_U16 <= n; x += VEC_U16)
-        vec_u16_store(out + x,
-                      vec_u16_mix4(vec_u16_load(a + x), vec_u16_load(b + x),
-                                   vec_u16_load(c + x), vec_u16_load(d + x), share));
+        vec_u16_store(out + x, vec_u16_mix4(vec_u16_load(a + x), vec_u16_load(b + x),
+                                            vec_u16_load(c + x), vec_u16_load(d + x), share));
 #endif
     for (; x < n; x++) {
         const uint32_t sum = a[x] * sa + b[x] * sb + c[x] * sc + d[x] * sd;
@@ -60,10 +58,9 @@ static void RF_VEC(rf_widen4)(uint16_t *restrict out, const uint16_t *restrict i
 #if defined(RF_VECTORS)
     for (; x + 4 <= n; x += 4) {
         const struct rf_taps *at = taps + x;
-        const uint16_t *const d[4] = {in + at[0].first, in + at[1].first,
-                                      in + at[2].first, in + at[3].first};
-        const int16_t *const share[4] = {at[0].share, at[1].share, at[2].share,
-                                         at[3].share};
+        const uint16_t *const d[4] = {in + at[0].first, in + at[1].first, in + at[2].first,
+                                      in + at[3].first};
+        const int16_t *const share[4] = {at[0].share, at[1].share, at[2].share, at[3].share};
 
         vec_dots4(out + x, d, share);
     }
@@ -72,8 +69,7 @@ static void RF_VEC(rf_widen4)(uint16_t *restrict out, const uint16_t *restrict i
         out[x] = widen(in + taps[x].first, taps[x].share);
 }
 
-static unsigned RF_VEC(rf_rough)(uint8_t rough[RF_CELLS],
-                                 const uint16_t *const row[RF_TAPS],
+static unsigned RF_VEC(rf_rough)(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
                                  const uint8_t *const trust[RF_TAPS], int step, int n)
 {
     const uint16_t *restrict a = row[0], *restrict b = row[1];
@@ -88,8 +84,7 @@ static unsigned RF_VEC(rf_rough)(uint8_t rough[RF_CELLS],
     }
     for (int x = 0; x < n + RF_TAPS - 2; x++) {
         across_inner[x] = most(apart(b[x], b[x + 1]), apart(c[x], c[x + 1]));
-        across[x] =
-            most(most(apart(a[x], a[x + 1]), across_inner[x]), apart(d[x], d[x + 1]));
+        across[x] = most(most(apart(a[x], a[x + 1]), across_inner[x]), apart(d[x], d[x + 1]));
     }
     if (trust[0])
         for (int x = 0; x < n + RF_TAPS - 1; x++) {
@@ -99,26 +94,22 @@ static unsigned RF_VEC(rf_rough)(uint8_t rough[RF_CELLS],
             down[x] = (inner & trust[0][x] & trust[3][x]) != 255 ? 65535 : down[x];
         }
     for (int x = 0; x < n; x++) {
-        const uint16_t right =
-            most(most(across_inner[x], across[x + 1]), across_inner[x + 2]);
-        const uint16_t below = most(most(down_inner[x], down[x + 1]),
-                                    most(down[x + 2], down_inner[x + 3]));
+        const uint16_t right = most(most(across_inner[x], across[x + 1]), across_inner[x + 2]);
+        const uint16_t below =
+            most(most(down_inner[x], down[x + 1]), most(down[x + 2], down_inner[x + 3]));
 
         const uint16_t right_all = most(most(across[x], across[x + 1]), across[x + 2]);
-        const uint16_t below_all =
-            most(most(down[x], down[x + 1]), most(down[x + 2], down[x + 3]));
+        const uint16_t below_all = most(most(down[x], down[x + 1]), most(down[x + 2], down[x + 3]));
         const uint8_t is_rough = most(right, below) > step;
 
-        rough[x] = is_rough                            ? RF_ROUGH
-                   : most(right_all, below_all) > step ? RF_ROUGH_CORNER
-                                                       : 0;
+        rough[x] = is_rough ? RF_ROUGH : most(right_all, below_all) > step ? RF_ROUGH_CORNER : 0;
         any |= rough[x];
     }
     return any;
 }
 
-static void RF_VEC(rf_quarter)(uint8_t *const out[3], const uint8_t *restrict pixels,
-                               int bytes, int n)
+static void RF_VEC(rf_quarter)(uint8_t *const out[3], const uint8_t *restrict pixels, int bytes,
+                               int n)
 {
     uint8_t *restrict first = out[0], *restrict second = out[1];
     uint8_t *restrict third = out[2];
@@ -143,10 +134,10 @@ static inline uint16_t key(uint16_t d, uint8_t sure)
     return (uint16_t)((d & ~1) | (sure & 1));
 }
 
-static const uint8_t exchange[25][2] = {
-    {0, 3}, {1, 7}, {2, 5}, {4, 8}, {0, 7}, {2, 4}, {3, 8}, {5, 6}, {0, 2},
-    {1, 3}, {4, 5}, {7, 8}, {1, 4}, {3, 6}, {5, 7}, {0, 1}, {2, 4}, {3, 5},
-    {6, 8}, {2, 3}, {4, 5}, {6, 7}, {1, 2}, {3, 4}, {5, 6}};
+static const uint8_t exchange[25][2] = {{0, 3}, {1, 7}, {2, 5}, {4, 8}, {0, 7}, {2, 4}, {3, 8},
+                                        {5, 6}, {0, 2}, {1, 3}, {4, 5}, {7, 8}, {1, 4}, {3, 6},
+                                        {5, 7}, {0, 1}, {2, 4}, {3, 5}, {6, 8}, {2, 3}, {4, 5},
+                                        {6, 7}, {1, 2}, {3, 4}, {5, 6}};
 
 static uint16_t leaning(uint16_t v[9])
 {
@@ -177,8 +168,7 @@ static uint16_t leaning(uint16_t v[9])
  *     5 (9 - c + 3 (sures - t)) > 3 (9 + 3 sures)
  *
  * and three never are. */
-static inline vec_u16 lean(const uint16_t *const row[3], const uint8_t *const sure[3],
-                           int x)
+static inline vec_u16 lean(const uint16_t *const row[3], const uint8_t *const sure[3], int x)
 {
     const vec_u16 one = vec_u16_set(1), even = vec_u16_set(65534);
     const vec_u16 fifteen = vec_u16_set(15);

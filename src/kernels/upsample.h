@@ -32,8 +32,14 @@ typedef void rf_widen4_fn(uint16_t *out, const uint16_t *in, const struct rf_tap
  * Element i of row[j] is a tap of cells i - 3 to i; elements to n + 2 are read. trust[0] == NULL:
  * all are sure.
  */
-enum { RF_TAP_COUNT = RF_TAPS * RF_TAPS, RF_AROUND = 8, RF_CELLS = 32,
-       RF_UNLIKE = 32, RF_BATCH = 64, RF_BATCH_SPARE = 32 };
+enum {
+    RF_TAP_COUNT = RF_TAPS * RF_TAPS,
+    RF_AROUND = 8,
+    RF_CELLS = 32,
+    RF_UNLIKE = 32,
+    RF_BATCH = 64,
+    RF_BATCH_SPARE = 32
+};
 enum { RF_ROUGH = 1, RF_ROUGH_CORNER = 2 };
 typedef unsigned rf_rough_fn(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
                              const uint8_t *const trust[RF_TAPS], int step, int n);
@@ -122,8 +128,8 @@ struct rf_lie {
 static const uint8_t rf_likeness[16] = {225, 155, 103, 65, 39, 21, 10, 4, 1};
 typedef void rf_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
                            const struct rf_cell *cell, const struct rf_window *window,
-                           const struct rf_lie *lie,
-                           uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n);
+                           const struct rf_lie *lie, uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE],
+                           int n);
 
 /* quarter: colours of n pixels of 3 or 4 bytes, of which the first three, in steps of
  * four codes. */
@@ -135,7 +141,7 @@ typedef void rf_quarter_fn(uint8_t *const out[3], const uint8_t *pixels, int byt
  * below, in even steps. A median that leans to the near: what is thin is in front. Elements -1 to n
  * of the rows are read.
  */
-typedef void rf_lean3_fn(uint16_t *out, const uint16_t *const row[3],
-                          const uint8_t *const sure[3], int n);
+typedef void rf_lean3_fn(uint16_t *out, const uint16_t *const row[3], const uint8_t *const sure[3],
+                         int n);
 
 #endif

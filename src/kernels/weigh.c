@@ -5,8 +5,7 @@ enum { LARGE = 16384 }; /* twice that is no signed 16-bit number */
 
 static int weigh_light(int light, int weight)
 {
-    return light < LARGE ? (2 * light * weight + 2048) / 4096
-                         : (light * weight + 2048) / 4096 * 2;
+    return light < LARGE ? (2 * light * weight + 2048) / 4096 : (light * weight + 2048) / 4096 * 2;
 }
 
 /* Pixel x of a layer. */

@@ -8,8 +8,7 @@ enum { TILES = RF_WEIGH_TILES };
 static void look(uint16_t *at, const uint16_t *light)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16)
-        vec_u16_store(at + x,
-                      vec_u16_min(vec_u16_load(light + x), vec_u16_set(RF_LIGHT_MAX)));
+        vec_u16_store(at + x, vec_u16_min(vec_u16_load(light + x), vec_u16_set(RF_LIGHT_MAX)));
 }
 
 static bool are_same(const uint16_t *near, const uint16_t *far)
@@ -17,15 +16,13 @@ static bool are_same(const uint16_t *near, const uint16_t *far)
     vec_u16 differ = vec_u16_set(0);
 
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16)
-        differ = vec_u16_or(differ,
-                            vec_u16_xor(vec_u16_load(near + x), vec_u16_load(far + x)));
+        differ = vec_u16_or(differ, vec_u16_xor(vec_u16_load(near + x), vec_u16_load(far + x)));
     return !vec_u16_any(differ);
 }
 
 /* Light of a tile's row by weights in Q15, which become those of the plane. Returns the greater of
  * `brightest` and that light. */
-static vec_u16 multiply(uint16_t *light, uint16_t *weight, const uint16_t *fine,
-                        vec_u16 brightest)
+static vec_u16 multiply(uint16_t *light, uint16_t *weight, const uint16_t *fine, vec_u16 brightest)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
         const vec_u16 v = vec_u16_load(light + x), w = vec_u16_load(fine + x);
@@ -59,15 +56,14 @@ static void weigh_tiles(const struct rf_weigh1_job *job, int first, int tiles)
     for (int i = 0, x = first; i < tiles; i++, x += RF_TILE) {
         uint16_t *most = &job->brightest[x / RF_TILE], here;
         vec_u16 brightest =
-            multiply(job->near + x, job->near_weight + x, run.near + i * RF_TILE,
-                     vec_u16_set(0));
+            multiply(job->near + x, job->near_weight + x, run.near + i * RF_TILE, vec_u16_set(0));
 
         if (run.same[i]) {
             copy(job->far_weight + x, job->near_weight + x);
             copy(job->far + x, job->near + x);
         } else {
-            brightest = multiply(job->far + x, job->far_weight + x, run.far + i * RF_TILE,
-                                 brightest);
+            brightest =
+                multiply(job->far + x, job->far_weight + x, run.far + i * RF_TILE, brightest);
         }
         here = vec_u16_greatest(brightest);
         *most = here > *most ? here : *most;
@@ -77,9 +73,9 @@ static void weigh_tiles(const struct rf_weigh1_job *job, int first, int tiles)
 static void RF_VEC(rf_weigh1)(const struct rf_weigh1_job *job, int n)
 {
     const int tiles = n / RF_TILE, whole = tiles * RF_TILE;
-    const struct rf_weigh1_job rest = {
-        job->near + whole,       job->far + whole,       job->near_weight + whole,
-        job->far_weight + whole, job->brightest + tiles, job->light_weight};
+    const struct rf_weigh1_job rest = {job->near + whole,        job->far + whole,
+                                       job->near_weight + whole, job->far_weight + whole,
+                                       job->brightest + tiles,   job->light_weight};
 
     for (int i = 0; i < tiles; i += TILES)
         weigh_tiles(job, i * RF_TILE, tiles - i < TILES ? tiles - i : TILES);
@@ -91,10 +87,9 @@ static void RF_VEC(rf_weigh_chroma)(uint16_t *chroma, const uint16_t *weight, in
     int i = 0;
 
     for (; i + (int)VEC_U16 <= 2 * n; i += (int)VEC_U16)
-        vec_u16_store(
-            chroma + i,
-            vec_s16_scale(vec_u16_load(chroma + i),
-                          rf_eight_times(vec_u16_twice(vec_u16_load(weight + i)))));
+        vec_u16_store(chroma + i,
+                      vec_s16_scale(vec_u16_load(chroma + i),
+                                    rf_eight_times(vec_u16_twice(vec_u16_load(weight + i)))));
     rf_weigh_chroma_c(chroma + i, weight + i, n - i / 2);
 }
 

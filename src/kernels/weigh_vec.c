@@ -26,8 +26,8 @@ static bool are_same(const struct rf_weigh_job *job, int x)
 
     for (int c = 0; c < 3; c++)
         for (int i = x; i < x + RF_TILE; i += (int)VEC_U16)
-            differ = vec_u16_or(differ, vec_u16_xor(vec_u16_load(job->near[c] + i),
-                                                    vec_u16_load(job->far[c] + i)));
+            differ = vec_u16_or(
+                differ, vec_u16_xor(vec_u16_load(job->near[c] + i), vec_u16_load(job->far[c] + i)));
     return !vec_u16_any(differ);
 }
 

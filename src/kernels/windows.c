@@ -6,12 +6,12 @@
 enum { RUN = 64 }; /* cells at a time */
 
 /* Columns first; then the least of four beside each other, of which every fourth counts. */
-static void cells_run(int16_t *restrict least, int16_t *restrict most,
-                      const int16_t *restrict blur, ptrdiff_t stride, int n)
+static void cells_run(int16_t *restrict least, int16_t *restrict most, const int16_t *restrict blur,
+                      ptrdiff_t stride, int n)
 {
     int16_t low[RF_CELL * RUN + 4], high[RF_CELL * RUN + 4];
     const int16_t *restrict a = blur, *restrict b = a + stride, *restrict c = b + stride,
-                  *restrict d = c + stride;
+                            *restrict d = c + stride;
 
     for (int x = 0; x < RF_CELL * n; x++) {
         low[x] = rf_lesser(rf_lesser(a[x], b[x]), rf_lesser(c[x], d[x]));
@@ -25,8 +25,8 @@ static void cells_run(int16_t *restrict least, int16_t *restrict most,
     }
 }
 
-static void RF_VEC(rf_cells)(int16_t *least, int16_t *most, const int16_t *blur,
-                             ptrdiff_t stride, int n)
+static void RF_VEC(rf_cells)(int16_t *least, int16_t *most, const int16_t *blur, ptrdiff_t stride,
+                             int n)
 {
     for (int i = 0; i < n; i += RUN)
         cells_run(least + i, most + i, blur + RF_CELL * i, stride, n - i < RUN ? n - i : RUN);
@@ -54,10 +54,9 @@ static inline int16_t greatest_from(const int16_t *high, int x)
         high[x + 4]);
 }
 
-static void RF_VEC(rf_windows)(uint32_t *restrict range,
-                               const int16_t *const least[RF_WINDOW_Y],
-                               const int16_t *const most[RF_WINDOW_Y],
-                               int16_t *restrict scratch, int n, int border)
+static void RF_VEC(rf_windows)(uint32_t *restrict range, const int16_t *const least[RF_WINDOW_Y],
+                               const int16_t *const most[RF_WINDOW_Y], int16_t *restrict scratch,
+                               int n, int border)
 {
     const int windows = n + 2 * border, beyond = border + RF_WINDOW_X - 1;
     int16_t *restrict low = scratch, *restrict high = scratch + n + border + beyond;
@@ -112,8 +111,7 @@ static void RF_VEC(rf_foreground)(int16_t *most, const int16_t *blur, const int1
                        n - i < RUN ? n - i : RUN);
 }
 
-static void RF_VEC(rf_bare)(uint32_t *restrict range,
-                            const int16_t *const foreground[RF_WINDOW_Y],
+static void RF_VEC(rf_bare)(uint32_t *restrict range, const int16_t *const foreground[RF_WINDOW_Y],
                             int16_t *restrict scratch, int n, int border)
 {
     const int16_t *restrict f0 = foreground[0], *restrict f1 = foreground[1];

@@ -41,13 +41,12 @@ static inline int16_t farther(int16_t a, int16_t b)
 
 static void RF_VEC(rf_push1)(uint16_t *restrict out, int16_t *restrict out_blur,
                              const uint16_t *restrict upper, const uint16_t *restrict lower,
-                             const int16_t *restrict blur0, const int16_t *restrict blur1,
-                             int n)
+                             const int16_t *restrict blur0, const int16_t *restrict blur1, int n)
 {
     for (int x = 0; x < n; x++) {
         const uint16_t k0 = known(blur0[2 * x]), k1 = known(blur0[2 * x + 1]);
         const uint16_t k2 = known(blur1[2 * x]), k3 = known(blur1[2 * x + 1]);
-        const uint16_t count = (uint16_t)-(uint16_t)(k0 + k1 + k2 + k3);
+        const uint16_t count = (uint16_t) - (uint16_t)(k0 + k1 + k2 + k3);
         const uint16_t sum = (uint16_t)((upper[2 * x] & k0) + (upper[2 * x + 1] & k1) +
                                         (lower[2 * x] & k2) + (lower[2 * x + 1] & k3));
         const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
@@ -84,8 +83,8 @@ static void RF_VEC(rf_keep2)(uint16_t *restrict out, const uint16_t *restrict ow
                              const int16_t *restrict blur, const int16_t *restrict behind, int n)
 {
     for (int x = 0; x < n; x++) {
-        const uint16_t known = (uint16_t)-((blur[2 * x] == behind[2 * x]) |
-                                           (blur[2 * x + 1] == behind[2 * x + 1]));
+        const uint16_t known =
+            (uint16_t) - ((blur[2 * x] == behind[2 * x]) | (blur[2 * x + 1] == behind[2 * x + 1]));
 
         out[2 * x] = (uint16_t)((own[2 * x] & known) | (out[2 * x] & ~known));
         out[2 * x + 1] = (uint16_t)((own[2 * x + 1] & known) | (out[2 * x + 1] & ~known));
@@ -97,10 +96,14 @@ static void RF_VEC(rf_between_chroma)(uint16_t *restrict mean, const uint16_t *r
 {
     enum { ROWS = 8 };
     static const int8_t before[ROWS] = {0, 0, 1, 1, 1, 2, 2, 2};
-    static const int16_t share[ROWS][4] = {
-        {16384, 0, 0, 0},           {5617, 13108, -3277, 936}, {0, 16384, 0, 0},
-        {-1872, 13107, 6553, -1404}, {-1404, 6553, 13107, -1872}, {0, 0, 16384, 0},
-        {936, -3277, 13108, 5617},  {0, 0, 0, 16384}};
+    static const int16_t share[ROWS][4] = {{16384, 0, 0, 0},
+                                           {5617, 13108, -3277, 936},
+                                           {0, 16384, 0, 0},
+                                           {-1872, 13107, 6553, -1404},
+                                           {-1404, 6553, 13107, -1872},
+                                           {0, 0, 16384, 0},
+                                           {936, -3277, 13108, 5617},
+                                           {0, 0, 0, 16384}};
 
     for (int y = 0; y < ROWS; y++)
         rf_cubic_row(mean + y * RF_TILE, computed, computed + before[y] * RF_TILE, share[y]);
@@ -113,8 +116,8 @@ static inline int16_t rounded(int16_t u, int16_t blur, int shift)
 }
 
 static void RF_VEC(rf_aim_chroma)(int32_t *restrict offset, int32_t *restrict pixel,
-                                  const int16_t *restrict u, const int16_t *restrict v,
-                                  int blur, int down, int32_t stride, int n)
+                                  const int16_t *restrict u, const int16_t *restrict v, int blur,
+                                  int down, int32_t stride, int n)
 {
     const int16_t s = (int16_t)blur;
 

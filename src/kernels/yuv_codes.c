@@ -60,8 +60,8 @@ static inline uint16_t white_at_most(uint16_t mean)
 }
 
 /* L' of each sample; means are at most RF_MEAN_MAX, so two of them fit 16 bits. */
-static ALWAYS_INLINE void mean_light(int32_t *restrict light,
-                                     const uint16_t *restrict luma, int down)
+static ALWAYS_INLINE void mean_light(int32_t *restrict light, const uint16_t *restrict luma,
+                                     int down)
 {
     for (int y = 0; y < RF_TILE; y += 1 << down) {
         const uint16_t *a = luma + y * RF_TILE, *b = a + down * RF_TILE;
@@ -79,8 +79,9 @@ static ALWAYS_INLINE void mean_light(int32_t *restrict light,
 
 /* rf_chroma_code() of n samples, a multiple of 4; of the excess, pairs of the same. */
 static ALWAYS_INLINE void decode_chroma(uint16_t *restrict uv, uint32_t *restrict excess,
-                          const int32_t *restrict light, const uint32_t *restrict chroma,
-                          const struct rf_yuv_curve *restrict curve, int n)
+                                        const int32_t *restrict light,
+                                        const uint32_t *restrict chroma,
+                                        const struct rf_yuv_curve *restrict curve, int n)
 {
     const int32_t red = curve->red, blue = curve->blue;
     const int32_t kr = curve->kr, kg = curve->kg, kb = curve->kb;
@@ -104,8 +105,14 @@ static ALWAYS_INLINE void decode_chroma(uint16_t *restrict uv, uint32_t *restric
         const int32_t v = 128 + (((r[i] - y) * per_v + (1 << 15)) >> 16);
 
         own[i] = y;
-        uv[i] = (uint16_t)((u < 0 ? 0 : u > 255 ? 255 : u) << FIRST8 |
-                           (v < 0 ? 0 : v > 255 ? 255 : v) << SECOND8);
+        uv[i] = (uint16_t)((u < 0     ? 0
+                            : u > 255 ? 255
+                                      : u)
+                               << FIRST8 |
+                           (v < 0     ? 0
+                            : v > 255 ? 255
+                                      : v)
+                               << SECOND8);
     }
     look_up(own, (const int16_t *)curve->light, n);
     for (int i = 0; i < n; i++) {
@@ -117,8 +124,8 @@ static ALWAYS_INLINE void decode_chroma(uint16_t *restrict uv, uint32_t *restric
 
 /* L - E lies within -RF_MEAN_MAX .. 2 RF_MEAN_MAX. */
 static ALWAYS_INLINE void decode_luma(uint8_t *restrict y, const uint16_t *restrict luma,
-                        const uint32_t *restrict excess, const uint8_t *restrict to_code,
-                        int down)
+                                      const uint32_t *restrict excess,
+                                      const uint8_t *restrict to_code, int down)
 {
     uint16_t at[RF_TILE * RF_TILE];
 
@@ -143,7 +150,8 @@ static ALWAYS_INLINE void decode_luma(uint8_t *restrict y, const uint16_t *restr
 /* Where rows of a tile are not `within` of 4 times what they were: not 0. Modulo 2^16, as both are
  * 65520 at most: 16 short of what could be taken for near. */
 static ALWAYS_INLINE void differences(uint16_t *restrict differs, const uint16_t *restrict mean,
-                        const uint16_t *own, ptrdiff_t stride, uint16_t within, int rows)
+                                      const uint16_t *own, ptrdiff_t stride, uint16_t within,
+                                      int rows)
 {
     const uint16_t most = (uint16_t)(2 * within);
 
@@ -156,7 +164,7 @@ static ALWAYS_INLINE void differences(uint16_t *restrict differs, const uint16_t
 }
 
 static ALWAYS_INLINE void choose(uint8_t *restrict to, const uint16_t *restrict differs,
-                   const uint8_t *restrict code, int n)
+                                 const uint8_t *restrict code, int n)
 {
     for (int i = 0; i < n; i++) {
         const uint8_t keep = (uint8_t)(differs[i] == 0 ? 0xff : 0);
@@ -173,8 +181,8 @@ static ALWAYS_INLINE void widen(uint32_t *pair, int n)
 }
 
 /* Codes in place of those that are not to be kept. */
-static ALWAYS_INLINE void put_codes(struct rf_decode_job *job, const uint8_t *y,
-                                    const uint8_t *uv, const int down)
+static ALWAYS_INLINE void put_codes(struct rf_decode_job *job, const uint8_t *y, const uint8_t *uv,
+                                    const int down)
 {
     const int rows = RF_TILE >> down, n = rows * RF_TILE;
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE];

@@ -16,7 +16,7 @@ enum { RF_BLURRINESS_SIZE = 1024 }; /* a 1D texture of 1 KB */
  *
  * @middle, last: r1 c0 and r2 c0 in pixels of radius, c0 < middle < last
  */
-void rf_blurriness_table(uint8_t table[RF_BLURRINESS_SIZE], double focus, double blur,
-                         double c0, double middle, double last);
+void rf_blurriness_table(uint8_t table[RF_BLURRINESS_SIZE], double focus, double blur, double c0,
+                         double middle, double last);
 
 #endif

@@ -24,11 +24,11 @@ struct work {
     uint8_t *member;
     float *weight; /* W of the layer's pixels; of the series, `across` */
     float *own, *radius;
-    float *plane[CHANNELS];  /* the layer */
+    float *plane[CHANNELS]; /* the layer */
     float *scratch[2][CHANNELS];
-    float *below[CHANNELS];  /* what has been composited */
+    float *below[CHANNELS]; /* what has been composited */
     ptrdiff_t stride;
-    uint64_t planes_size;    /* floats of a plane */
+    uint64_t planes_size;                 /* floats of a plane */
     float most_radius, weight_per_square; /* W = weight_per_square radius^2 */
     int steps;
 };
@@ -44,7 +44,7 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
 
     if (!work)
         work = counted;
-#define PLANE(to)                                                                      \
+#define PLANE(to)                                                                                  \
     ((to) = (plane = rf_arena_take(arena, size, sizeof(float))) ? plane + origin : NULL)
     for (int c = 0; c < CHANNELS; c++) {
         PLANE(work->plane[c]);
@@ -63,9 +63,9 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
     work->layer.span = rf_arena_take(arena, h, sizeof *work->layer.span);
     work->layer.tiles_x = (int)((w + RF_EDGE_TILE - 1) / RF_EDGE_TILE);
     work->layer.tiles_y = (int)((h + RF_EDGE_TILE - 1) / RF_EDGE_TILE);
-    work->layer.tile = rf_arena_take(
-        arena, (uint64_t)work->layer.tiles_x * (uint64_t)work->layer.tiles_y,
-        sizeof *work->layer.tile);
+    work->layer.tile =
+        rf_arena_take(arena, (uint64_t)work->layer.tiles_x * (uint64_t)work->layer.tiles_y,
+                      sizeof *work->layer.tile);
     return work;
 }
 
@@ -190,16 +190,16 @@ static void diffuse_channel(void *context, int c, int worker)
 {
     const struct work *work = context;
     const struct rf_frame *f = work->f;
-    const struct rf_heat heat = {f->r, work->layer.box, work->layer.span, work->weight,
-                                 work->own, f->r->kernels.series_row};
+    const struct rf_heat heat = {f->r,         work->layer.box, work->layer.span,
+                                 work->weight, work->own,       f->r->kernels.series_row};
 
     (void)worker;
     if (c == 3 && !f->weighted) { /* then weight and alpha are the same */
         return;
     }
     if (f->params->solver == REFOCUS_SOLVER_ITERATED)
-        rf_diffuse_steps(f->r, &work->layer.box, work->weight, work->plane[c],
-                         work->scratch[0][c], work->steps);
+        rf_diffuse_steps(f->r, &work->layer.box, work->weight, work->plane[c], work->scratch[0][c],
+                         work->steps);
     else
         rf_diffuse_series(&heat, &work->series, work->plane[c], work->scratch[0][c],
                           work->scratch[1][c]);

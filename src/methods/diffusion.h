@@ -67,14 +67,14 @@ struct rf_diffusion_layer {
     const struct refocus_renderer *r;
     const uint8_t *member; /* layer number of each pixel, width a row */
     int number;
-    const float *radius; /* blur radius of each pixel */
-    float *outside;      /* the same, extrapolated to where the layer has no pixel */
-    uint16_t *rings;   /* to the nearest member: 0 = one itself; width a row */
-    int reach;         /* rings that belong to the region */
-    float most;        /* largest radius of a member */
+    const float *radius;  /* blur radius of each pixel */
+    float *outside;       /* the same, extrapolated to where the layer has no pixel */
+    uint16_t *rings;      /* to the nearest member: 0 = one itself; width a row */
+    int reach;            /* rings that belong to the region */
+    float most;           /* largest radius of a member */
     struct rf_span *span; /* of each row: the region and a pixel about it */
     struct rf_box box;
-    ptrdiff_t stride;  /* of radius */
+    ptrdiff_t stride; /* of radius */
     float *edge_x, *edge_y, *edge_radius;
     struct rf_edge_tile *tile; /* tiles_x a row */
     int tiles_x, tiles_y;

@@ -47,13 +47,14 @@ static void number_rings(struct rf_diffusion_layer *layer)
             return;
         for (int x = 0; x < w && !up; x++)
             row[x] = layer->member[(size_t)y * (size_t)w + (size_t)x] == layer->number
-                         ? 0 : UINT16_MAX - 1;
+                         ? 0
+                         : UINT16_MAX - 1;
         if (j % h > 0) {
             if (w > 2)
                 from_row_before(row + 1, before + 1, w - 2);
             row[0] = (uint16_t)lesser(row[0], lesser(before[0], before[w > 1]) + 1);
-            row[w - 1] = (uint16_t)lesser(row[w - 1],
-                                          lesser(before[w - 1], before[w - 1 - (w > 1)]) + 1);
+            row[w - 1] =
+                (uint16_t)lesser(row[w - 1], lesser(before[w - 1], before[w - 1 - (w > 1)]) + 1);
         }
         for (int x = up ? w - 1 : 0; x >= 0 && x < w; x += step)
             row[x] = (uint16_t)(ring = lesser(row[x], ring + 1));
@@ -186,12 +187,10 @@ static void interpolate(const struct sums node[NODES], int y, struct sums *out)
         const int i = x / NODE_STEP;
         const float ax = (float)(x % NODE_STEP) / NODE_STEP;
 
-        out->weight[x] =
-            (1 - ay) * ((1 - ax) * node[j].weight[i] + ax * node[j].weight[i + 1]) +
-            ay * ((1 - ax) * node[j + 1].weight[i] + ax * node[j + 1].weight[i + 1]);
-        out->radius[x] =
-            (1 - ay) * ((1 - ax) * node[j].radius[i] + ax * node[j].radius[i + 1]) +
-            ay * ((1 - ax) * node[j + 1].radius[i] + ax * node[j + 1].radius[i + 1]);
+        out->weight[x] = (1 - ay) * ((1 - ax) * node[j].weight[i] + ax * node[j].weight[i + 1]) +
+                         ay * ((1 - ax) * node[j + 1].weight[i] + ax * node[j + 1].weight[i + 1]);
+        out->radius[x] = (1 - ay) * ((1 - ax) * node[j].radius[i] + ax * node[j].radius[i + 1]) +
+                         ay * ((1 - ax) * node[j + 1].radius[i] + ax * node[j + 1].radius[i + 1]);
     }
 }
 
@@ -207,8 +206,7 @@ static void add_near(const struct rf_diffusion_layer *layer, int tx, int ty, int
             tile = &layer->tile[j * layer->tiles_x + i];
             for (int k = tile->first; k < tile->first + tile->count; k++)
                 add_edge(sums, layer->edge_x[k] - (float)(tx * RF_EDGE_TILE),
-                         layer->edge_y[k] - (float)y, 1, 1, layer->edge_radius[k],
-                         RF_EDGE_TILE);
+                         layer->edge_y[k] - (float)y, 1, 1, layer->edge_radius[k], RF_EDGE_TILE);
         }
     }
 }
@@ -242,7 +240,6 @@ void rf_layer_extrapolate_tile(const struct rf_diffusion_layer *layer, int tile)
         add_near(layer, tx, ty, y, &sums);
         for (int x = x0; x < x1; x++)
             if (is_outside(layer, x, y))
-                layer->outside[y * layer->stride + x] =
-                    sums.radius[x - x0] / sums.weight[x - x0];
+                layer->outside[y * layer->stride + x] = sums.radius[x - x0] / sums.weight[x - x0];
     }
 }

@@ -21,9 +21,9 @@
 static const float LIFT = 1 / 1024.0f;
 
 /* Sum over the neighbours of W(q) (C(q) - C(p)): nothing flows where all is the same. */
-#define FLOW(c, w, x, stride)                                                               \
-    ((w)[(x) - 1] * ((c)[(x) - 1] - (c)[x]) + (w)[(x) + 1] * ((c)[(x) + 1] - (c)[x]) +       \
-     (w)[(x) - (stride)] * ((c)[(x) - (stride)] - (c)[x]) +                                 \
+#define FLOW(c, w, x, stride)                                                                      \
+    ((w)[(x)-1] * ((c)[(x)-1] - (c)[x]) + (w)[(x) + 1] * ((c)[(x) + 1] - (c)[x]) +                 \
+     (w)[(x) - (stride)] * ((c)[(x) - (stride)] - (c)[x]) +                                        \
      (w)[(x) + (stride)] * ((c)[(x) + (stride)] - (c)[x]))
 
 void rf_diffuse_steps(const struct refocus_renderer *r, const struct rf_box *box,
@@ -135,7 +135,8 @@ void rf_diffuse_series(const struct rf_heat *heat, const struct rf_series *serie
 
     for (int y = box->y0; y < box->y1; y++)
         for (ptrdiff_t at = y * box->stride + heat->span[y].x0,
-                       end = y * box->stride + heat->span[y].x1; at < end; at++)
+                       end = y * box->stride + heat->span[y].x1;
+             at < end; at++)
             plane[at] = heat->across[at] * (plane[at] + LIFT);
     /* Some terms at once, each two rows behind the one before it, so that what they share is
      * still in the cache: B_k needs rows y - 1 .. y + 1 of B_(k+1), and takes the place of

@@ -49,8 +49,8 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
 
 /* One channel of a row of n pixels, each a constant number of bytes. */
 static inline void encode_channel(uint8_t *restrict out, const int bytes,
-                                  const uint16_t *restrict mean,
-                                  const uint8_t *restrict to_code, int n)
+                                  const uint16_t *restrict mean, const uint8_t *restrict to_code,
+                                  int n)
 {
     if (n != RF_TILE) {
         for (int x = 0; x < n; x++)
@@ -74,11 +74,11 @@ static void encode(const struct rf_frame *f, struct rf_rect rect, const uint16_t
     for (int c = 0; c < 3; c++)
         for (int y = 0; y < rows; y++)
             if (o.bytes == 3)
-                encode_channel(out + y * f->out->stride[0] + to[c], 3, mean[c] + y * pitch,
-                               to_code, n);
+                encode_channel(out + y * f->out->stride[0] + to[c], 3, mean[c] + y * pitch, to_code,
+                               n);
             else
-                encode_channel(out + y * f->out->stride[0] + to[c], 4, mean[c] + y * pitch,
-                               to_code, n);
+                encode_channel(out + y * f->out->stride[0] + to[c], 4, mean[c] + y * pitch, to_code,
+                               n);
     for (int y = 0; o.a >= 0 && y < rows; y++)
         for (int x = 0; x < n; x++)
             out[y * f->out->stride[0] + x * o.bytes + o.a] = alpha[y * f->r->alpha_stride + x];
@@ -96,8 +96,7 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
 
     if (f->bright) /* means above white come from highlights */
         f->r->kernels.at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
-    encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
-           RF_TILE);
+    encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at}, RF_TILE);
 }
 
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)

@@ -33,8 +33,8 @@ static struct row samples(const struct rf_frame *f, int i, int x, int y)
 }
 
 /* n pixels; that beside an odd row repeats its last. */
-static void put_yuyv(uint8_t *restrict out, const uint8_t *restrict y,
-                     const uint8_t *restrict uv, int n)
+static void put_yuyv(uint8_t *restrict out, const uint8_t *restrict y, const uint8_t *restrict uv,
+                     int n)
 {
     const int even = n & ~1;
 
@@ -158,6 +158,6 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
     r->kernels.decode(job);
     put(f, rect,
         &(struct codes){job->y + (rect.y0 - y0) * RF_TILE + rect.x0 - x0,
-                        job->uv + ((rect.y0 - y0) >> yuv->down) * RF_TILE + rect.x0 - x0,
-                        RF_TILE, RF_TILE});
+                        job->uv + ((rect.y0 - y0) >> yuv->down) * RF_TILE + rect.x0 - x0, RF_TILE,
+                        RF_TILE});
 }

@@ -21,8 +21,8 @@
 #include <string.h>
 
 enum {
-    CHANNELS = 5,  /* light times weight, weight, coverage; premultiplied by coverage */
-    LEVELS = 8,    /* level 7 is as wide as a disc of radius 181 */
+    CHANNELS = 5, /* light times weight, weight, coverage; premultiplied by coverage */
+    LEVELS = 8,   /* level 7 is as wide as a disc of radius 181 */
     BORDERS = REFOCUS_MAX_BLUR_RADIUS + 2,
     ONE = 1 << 24, /* alpha */
     ROWS = 8,
@@ -90,8 +90,7 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
             }
     for (int c = 0; c < CHANNELS; c++)
         work->half[c] = rf_arena_take(
-            arena, (uint64_t)((limits->width + 1) / 2) * (uint64_t)limits->height,
-            sizeof(float));
+            arena, (uint64_t)((limits->width + 1) / 2) * (uint64_t)limits->height, sizeof(float));
     work->offset = rf_arena_take(arena, disc_pixels((int)ceilf(limits->max_blur_radius) + 1),
                                  sizeof *work->offset);
     return work;
@@ -152,8 +151,7 @@ static void blend(const struct rf_frame *f, ptrdiff_t q, uint32_t alpha, struct 
 }
 
 /* Border b: samples whose disc reaches from there to p, before (sign -1) or behind (1). */
-static void blend_border(const struct work *work, ptrdiff_t p, int b, int sign,
-                         struct sums *sums)
+static void blend_border(const struct work *work, ptrdiff_t p, int b, int sign, struct sums *sums)
 {
     const struct refocus_renderer *r = work->f->r;
 
@@ -243,8 +241,7 @@ static void halve_y_row(void *context, int y, int worker)
     (void)worker;
     for (int c = 0; c < CHANNELS; c++)
         for (size_t x = 0; x < width; x++)
-            to->plane[c][(size_t)y * width + x] =
-                reduce(work->half[c] + x, y, from->height, width);
+            to->plane[c][(size_t)y * width + x] = reduce(work->half[c] + x, y, from->height, width);
 }
 
 static void make_pyramids(struct work *work)
@@ -387,6 +384,5 @@ void rf_foveated_frame(struct rf_frame *f)
                                                                 : work->back_borders);
     make_volume(work);
     make_pyramids(work);
-    rf_pool_run(&f->r->pool, write_rows, work,
-                (f->region.y1 - f->region.y0 + ROWS - 1) / ROWS);
+    rf_pool_run(&f->r->pool, write_rows, work, (f->region.y1 - f->region.y0 + ROWS - 1) / ROWS);
 }

@@ -33,8 +33,8 @@ static inline struct rf_limits rf_limits_of(const struct refocus_renderer *r)
 }
 
 /* Pixel (x, y) of the region from Q12 light times weights, and the weights. */
-static inline void rf_write_mean(const struct rf_frame *f, int x, int y,
-                                 const uint64_t light[3], uint64_t weight)
+static inline void rf_write_mean(const struct rf_frame *f, int x, int y, const uint64_t light[3],
+                                 uint64_t weight)
 {
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
     uint8_t rgb[3];
@@ -46,8 +46,8 @@ static inline void rf_write_mean(const struct rf_frame *f, int x, int y,
 
 /* The same from real numbers. Sums of one colour may be off by rounding, as long as it is
  * less than half a step of the mean. */
-static inline void rf_write_real(const struct rf_frame *f, int x, int y,
-                                 const double light[3], double weight)
+static inline void rf_write_real(const struct rf_frame *f, int x, int y, const double light[3],
+                                 double weight)
 {
     const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
     uint8_t rgb[3];

@@ -52,16 +52,15 @@ uint64_t rf_interpolated_work(const struct rf_limits *limits)
     return arena.used;
 }
 
-void rf_blurriness_table(uint8_t table[RF_BLURRINESS_SIZE], double focus, double blur,
-                         double c0, double middle, double last)
+void rf_blurriness_table(uint8_t table[RF_BLURRINESS_SIZE], double focus, double blur, double c0,
+                         double middle, double last)
 {
     for (int i = 0; i < RF_BLURRINESS_SIZE; i++) {
         const double circle = blur * fabs(i / (RF_BLURRINESS_SIZE - 1.0) - focus);
-        const double blurriness =
-            circle <= c0       ? 0
-            : circle <= middle ? 0.5 * (circle - c0) / (middle - c0)
-            : circle < last    ? 0.5 + 0.5 * (circle - middle) / (last - middle)
-                               : 1;
+        const double blurriness = circle <= c0       ? 0
+                                  : circle <= middle ? 0.5 * (circle - c0) / (middle - c0)
+                                  : circle < last ? 0.5 + 0.5 * (circle - middle) / (last - middle)
+                                                  : 1;
 
         table[i] = (uint8_t)(blurriness * 255 + 0.5);
     }
@@ -73,16 +72,16 @@ static inline int16_t between(int16_t a, int16_t b, int16_t share)
     return (int16_t)(a + (int16_t)((2 * (b - a) * share) >> 16));
 }
 
-static void mix_rows(int16_t *restrict out, const int16_t *restrict a,
-                     const int16_t *restrict b, int16_t share, int n)
+static void mix_rows(int16_t *restrict out, const int16_t *restrict a, const int16_t *restrict b,
+                     int16_t share, int n)
 {
     for (int x = 0; x < n; x++)
         out[x] = between(a[x], b[x], share);
 }
 
 /* From the middle of each pixel to that of the next. */
-static inline void lines(int16_t *restrict out, const int16_t *restrict row,
-                         const int16_t *share, int n, const int side)
+static inline void lines(int16_t *restrict out, const int16_t *restrict row, const int16_t *share,
+                         int n, const int side)
 {
     for (int x = 0; x < n; x++)
         for (int i = 0; i < side; i++)
@@ -170,8 +169,8 @@ static void write_row(void *context, int item, int worker)
     for (int c = 0; c < 3; c++) {
         enlarged_row(&work->target[0], c, y, row + 1, middle);
         enlarged_row(&work->target[1], c, y, row + 1, last);
-        interpolate(means + (size_t)c * length, r->front.light[c] + y * r->stride + x0,
-                    middle + x0, last + x0, share, n);
+        interpolate(means + (size_t)c * length, r->front.light[c] + y * r->stride + x0, middle + x0,
+                    last + x0, share, n);
         mean[c] = means + (size_t)c * length;
     }
     rf_encode_row(f, x0, y, n, mean);
@@ -183,8 +182,7 @@ static void make_shares(struct work *work)
     for (int i = 0; i < RF_BLURRINESS_SIZE; i++) {
         const int b = 2 * work->table[i];
 
-        work->share[i] = (uint16_t)(b <= 255 ? b * 32767 / 255
-                                             : SECOND + (b - 255) * 32767 / 255);
+        work->share[i] = (uint16_t)(b <= 255 ? b * 32767 / 255 : SECOND + (b - 255) * 32767 / 255);
     }
 }
 

@@ -34,8 +34,7 @@ struct draws {
     uint8_t pixel[RF_TILE * RF_TILE];
 };
 
-static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell,
-                     struct draws *draws)
+static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell, struct draws *draws)
 {
     const uint32_t members = (uint32_t)(f->params->cell * f->params->cell);
     uint8_t drawn[RF_TILE * RF_TILE];
@@ -64,9 +63,9 @@ static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell,
 }
 
 /* Follow the ray through mask pixel (mx, my) for the pixels that drew it. */
-static void follow(const struct rf_frame *f, struct rf_rect rect,
-                   struct rf_blur_range reach, int mx, int my,
-                   const struct draws *draws, int member, struct rf_exact_sums *sums)
+static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_blur_range reach,
+                   int mx, int my, const struct draws *draws, int member,
+                   struct rf_exact_sums *sums)
 {
     const double K = f->params->max_blur_radius;
     const int open = rf_aperture_open(f->aperture, mx / K, my / K);
@@ -77,8 +76,8 @@ static void follow(const struct rf_frame *f, struct rf_rect rect,
         return;
     rf_path_of(f, reach, -mx / K, -my / K, &path); /* seen from behind: aperture.h */
     for (int i = draws->first[member]; i < draws->first[member + 1]; i++)
-        rf_path_add(f, &path, x0 + draws->pixel[i] % RF_TILE, y0 + draws->pixel[i] / RF_TILE,
-                    open, sums);
+        rf_path_add(f, &path, x0 + draws->pixel[i] % RF_TILE, y0 + draws->pixel[i] / RF_TILE, open,
+                    sums);
 }
 
 void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)

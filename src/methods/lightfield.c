@@ -148,8 +148,7 @@ static void do_band(void *context, int item, int worker)
     for (int y = y0; y < y1; y++) {
         for (int x = f->region.x0; x < f->region.x1; x++) {
             const int at = (y - y0) * r->width + x;
-            const uint64_t light[3] = {band.light[0][at], band.light[1][at],
-                                       band.light[2][at]};
+            const uint64_t light[3] = {band.light[0][at], band.light[1][at], band.light[2][at]};
 
             rf_write_mean(f, x, y, light, band.weight[at]);
         }

@@ -57,6 +57,5 @@ double rf_lommel(double u, double v)
             V[k % 2] += (k / 2 % 2 ? -1 : 1) * power * j[k];
     }
     rf_sincos_turns((u + v * v / u) / 2 / two_pi, &sine, &cosine);
-    return 4 / (u * u) *
-           (1 + V[0] * V[0] + V[1] * V[1] - 2 * V[0] * cosine - 2 * V[1] * sine);
+    return 4 / (u * u) * (1 + V[0] * V[0] + V[1] * V[1] - 2 * V[0] * cosine - 2 * V[1] * sine);
 }

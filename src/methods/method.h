@@ -28,24 +28,24 @@ struct rf_frame {
     struct rf_focus focus;
     struct rf_focus_plan plan;
     struct rf_bin_scale scale;
-    struct rf_rect region;  /* of the window (renderer.h); out covers just this */
+    struct rf_rect region; /* of the window (renderer.h); out covers just this */
     struct rf_reach reach;
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
-    int prefilter_above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
-    bool prefilter_fades;   /* they come in gradually: rf_prefilter_rows() */
-    int veils;              /* thin things may be taken apart, thin/thin.h, and drawn with discs
-                               of this part of their blur, Q8; 0: they are not */
-    int veil_blur;          /* from this blur before the focus on, Q7.8, more and more of them */
-    bool holds;             /* what is thin and in focus may be laid over what is not */
+    int prefilter_above[RF_PREFILTER_STEPS];    /* |s| that each step begins at, Q7.8 */
+    bool prefilter_fades;                       /* they come in gradually: rf_prefilter_rows() */
+    int veils;     /* thin things may be taken apart, thin/thin.h, and drawn with discs
+                      of this part of their blur, Q8; 0: they are not */
+    int veil_blur; /* from this blur before the focus on, Q7.8, more and more of them */
+    bool holds;    /* what is thin and in focus may be laid over what is not */
     struct rf_thin_bounds thin_bounds[RF_THIN_LEVELS]; /* rf_set_thin_bounds() */
-    bool weighted;          /* eq. 5 weights differ from 1, */
-    bool premultiplied;     /* and little enough for light times weight in 16 bits */
-    bool fine;              /* the opening is: rf_aperture_is_fine() */
-    int row_gap;            /* see methods/tile_rows.h */
-    bool stars, grain;      /* lamps have spikes; blur has grain */
-    bool finish_ready;      /* both are found out */
-    bool draws;             /* lamps are drawn, highlights/draw.h; or else */
-    enum rf_bright bright;  /* light was given back to them: it exceeds RF_LIGHT_MAX */
+    bool weighted;                                     /* eq. 5 weights differ from 1, */
+    bool premultiplied;           /* and little enough for light times weight in 16 bits */
+    bool fine;                    /* the opening is: rf_aperture_is_fine() */
+    int row_gap;                  /* see methods/tile_rows.h */
+    bool stars, grain;            /* lamps have spikes; blur has grain */
+    bool finish_ready;            /* both are found out */
+    bool draws;                   /* lamps are drawn, highlights/draw.h; or else */
+    enum rf_bright bright;        /* light was given back to them: it exceeds RF_LIGHT_MAX */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
 
@@ -140,9 +140,8 @@ void rf_pixel_codes(const struct rf_frame *f, int x, int y, uint8_t *code[3]);
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
 
 /* rect: at most RF_TILE x RF_TILE, inside one tile. */
-typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
-                        int worker);
-rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile,
-    rf_jittered_tile, rf_gather_tile;
+typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker);
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile,
+    rf_gather_tile;
 
 #endif

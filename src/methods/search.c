@@ -21,8 +21,7 @@ struct hit {
 };
 
 static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
-                         const struct refocus_ray *ray, ptrdiff_t start, int within,
-                         int tests)
+                         const struct refocus_ray *ray, ptrdiff_t start, int within, int tests)
 {
     const int16_t *s = r->front.blur;
     struct hit hit = {p, s[p + start], false};
@@ -32,8 +31,7 @@ static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
         int apart;
 
         hit.blur = next;
-        hit.at =
-            p + rf_offset(ray->v, hit.blur) * r->stride + rf_offset(ray->u, hit.blur);
+        hit.at = p + rf_offset(ray->v, hit.blur) * r->stride + rf_offset(ray->u, hit.blur);
         next = s[hit.at];
         apart = next - hit.blur;
         hit.valid = apart <= within && -apart <= within;
@@ -42,9 +40,8 @@ static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
 }
 
 /* Where the light of a ray comes from: a pixel of *light. */
-static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p,
-                         const struct refocus_ray *ray, struct hit hit,
-                         uint16_t *const **light)
+static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p, const struct refocus_ray *ray,
+                         struct hit hit, uint16_t *const **light)
 {
     const struct refocus_renderer *r = f->r;
 
@@ -58,8 +55,7 @@ static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p,
         return p + rf_offset(ray->v, s) * r->stride + rf_offset(ray->u, s);
     }
     if (f->params->mirror)
-        return p - rf_offset(ray->v, hit.blur) * r->stride -
-               rf_offset(ray->u, hit.blur);
+        return p - rf_offset(ray->v, hit.blur) * r->stride - rf_offset(ray->u, hit.blur);
     return p;
 }
 
@@ -69,8 +65,8 @@ struct chunk {
     int32_t cell[RF_RAY_CHUNK];
 };
 
-static void set_chunk(struct chunk *chunk, const struct rf_frame *f,
-                      const struct refocus_ray *ray, int n)
+static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struct refocus_ray *ray,
+                      int n)
 {
     const struct refocus_renderer *r = f->r;
     struct rf_search_rays *rays = &chunk->rays;
@@ -87,8 +83,8 @@ static void set_chunk(struct chunk *chunk, const struct rf_frame *f,
 
 /* The paper's own rule, by kernels: rays that are settled for the strip as a whole are
  * added as those of the sweep that need no test, the others are searched. */
-static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx,
-                         int y, uint32_t *const sum[3])
+static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx, int y,
+                         uint32_t *const sum[3])
 {
     const struct refocus_renderer *r = f->r;
     const struct rf_search_rays *rays = &chunk->rays;
@@ -107,19 +103,16 @@ static void search_strip(const struct rf_frame *f, const struct chunk *chunk, in
     };
     const struct rf_search_job search = {
         .blur = r->front.blur + at,
-        .light = {r->front.light[0] + at, r->front.light[1] + at,
-                  r->front.light[2] + at},
+        .light = {r->front.light[0] + at, r->front.light[1] + at, r->front.light[2] + at},
         .stride = r->stride,
         .tests = f->params->iterations,
         .rays = &left,
     };
     int add = 0, test = 0;
 
-    r->kernels.settle(settled, offset,
-                      r->range + y / RF_CELL * r->range_stride +
-                          tx * (RF_TILE / RF_CELL),
-                      chunk->cell, rays, f->params->iterations, (int32_t)r->stride,
-                      (int32_t)r->range_stride);
+    r->kernels.settle(
+        settled, offset, r->range + y / RF_CELL * r->range_stride + tx * (RF_TILE / RF_CELL),
+        chunk->cell, rays, f->params->iterations, (int32_t)r->stride, (int32_t)r->range_stride);
     for (int n = 0; n < rays->rays; n++) {
         left.start[test] = rays->start[n];
         left.u[test] = rays->u[n];
@@ -138,8 +131,8 @@ static void search_strip(const struct rf_frame *f, const struct chunk *chunk, in
         r->kernels.search(sum, &search);
 }
 
-static void search_runs(const struct rf_frame *f, int tx, int ty,
-                        const struct rf_ray_set *set, struct rf_sums *sums)
+static void search_runs(const struct rf_frame *f, int tx, int ty, const struct rf_ray_set *set,
+                        struct rf_sums *sums)
 {
     uint32_t run[3][RF_TILE * RF_TILE];
     struct chunk chunk;
@@ -175,8 +168,7 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
 
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
-        const ptrdiff_t start =
-            rf_offset(ray->v, nearest) * r->stride + rf_offset(ray->u, nearest);
+        const ptrdiff_t start = rf_offset(ray->v, nearest) * r->stride + rf_offset(ray->u, nearest);
         int32_t within;
 
         if (rf_cancelled(f->r))
@@ -186,8 +178,7 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
             for (int x = rect.x0; x < rect.x1; x++) {
                 const ptrdiff_t p = y * r->stride + x;
                 const int i = y % RF_TILE * RF_TILE + x % RF_TILE;
-                const struct hit hit =
-                    search(r, p, ray, start, within, f->params->iterations);
+                const struct hit hit = search(r, p, ray, start, within, f->params->iterations);
                 uint16_t *const *light;
                 const ptrdiff_t q = resolve(f, p, ray, hit, &light);
                 const uint64_t w = (uint64_t)rf_weight_of(f, light, q) * ray->weight;
@@ -200,8 +191,7 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
     }
 }
 
-void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
-                    int worker)
+void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct rf_ray_set *set = &f->r->set[f->r->preset];
     struct rf_sums sums;

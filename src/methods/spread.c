@@ -64,8 +64,8 @@ void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_
                     struct rf_run *run)
 {
     const int reach = table->reach, width = 2 * reach + 1;
-    const int most = (int)ceil(table->radius - 0.5) < reach ? (int)ceil(table->radius - 0.5)
-                                                            : reach;
+    const int most =
+        (int)ceil(table->radius - 0.5) < reach ? (int)ceil(table->radius - 0.5) : reach;
     double profile[PROFILE + 1], sum = 0;
     int64_t left = RF_SPREAD_ONE;
     int count;

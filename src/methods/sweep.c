@@ -54,8 +54,8 @@ static void set_aims(struct aims *aims, const struct rf_ray_set *set, int first,
 }
 
 static void set_sight(struct sight *sight, const struct rf_frame *f,
-                      const struct rf_tile_plan *plan, const struct rf_tile_rays *rays,
-                      int first, int behind)
+                      const struct rf_tile_plan *plan, const struct rf_tile_rays *rays, int first,
+                      int behind)
 {
     const struct refocus_renderer *r = f->r;
     struct rf_ray_sides sides;
@@ -73,8 +73,8 @@ static void set_sight(struct sight *sight, const struct rf_frame *f,
         if (f->weighted && k < plan->slabs)
             r->kernels.aim(sight->weight_offset[k], sight->cell[k], aims->u, aims->v, seen,
                            (int32_t)r->weight_stride, (int32_t)r->range_stride, sight->rays);
-        r->kernels.aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen,
-                       (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
+        r->kernels.aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen, (int32_t)r->stride,
+                       (int32_t)r->range_stride, sight->rays);
     }
 }
 
@@ -152,7 +152,8 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     else
         r->kernels.sweep((uint32_t *const[4]){run->sum[0] + first, run->sum[1] + first,
                                               run->sum[2] + first,
-                                              f->weighted ? run->sum[3] + first : NULL}, &job);
+                                              f->weighted ? run->sum[3] + first : NULL},
+                         &job);
 }
 
 /* All computed rows of a tile. */
@@ -275,8 +276,8 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
 
 /* The same from rays that do not weigh the same. */
 static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_tile_rays *rays, int tx, int ty,
-                       uint16_t mean[3][LANES], int from, int to)
+                       const struct rf_tile_rays *rays, int tx, int ty, uint16_t mean[3][LANES],
+                       int from, int to)
 {
     const uint64_t most = 4 * RF_MOST_MEAN;
     const uint64_t unit = f->premultiplied ? 8192 : 4; /* of Q13 times Q12, or Q12 */

@@ -72,8 +72,8 @@ static bool has_wide_sums(const struct tile *tile)
     return tile->weight && !tile->f->premultiplied;
 }
 
-static void sweep_plane(const struct tile *tile, bool chroma,
-                        const struct rf_sorted_rays *rays, struct sums *sums)
+static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_sorted_rays *rays,
+                        struct sums *sums)
 {
     const struct refocus_renderer *r = tile->f->r;
     const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
@@ -91,11 +91,9 @@ static void sweep_plane(const struct tile *tile, bool chroma,
     };
 
     if (has_wide_sums(tile))
-        r->kernels.sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma],
-                                   &job);
+        r->kernels.sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma], &job);
     else
-        r->kernels.sweep1(sums->run[chroma],
-                          tile->weight ? sums->run_weight[chroma] : NULL, &job);
+        r->kernels.sweep1(sums->run[chroma], tile->weight ? sums->run_weight[chroma] : NULL, &job);
 }
 
 /* Rays, of which chroma shares the first so many. Strips of a tile together: of one
@@ -125,14 +123,12 @@ static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
     };
 
     for (int k = 0; k <= tile->plan.slabs; k++) {
-        const int blur =
-            k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
+        const int blur = k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
 
         r->kernels.aim(sight->offset[k], sight->cell[k], sight->u, sight->v, blur,
                        (int32_t)r->stride, (int32_t)r->range_stride, sight->rays);
-        r->kernels.aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k], sight->u,
-                              sight->v, blur, tile->chroma.down, (int32_t)r->stride,
-                              shared);
+        r->kernels.aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k], sight->u, sight->v,
+                              blur, tile->chroma.down, (int32_t)r->stride, shared);
     }
     r->kernels.sort_rays(&sight->sorted, &job);
 }
@@ -156,8 +152,7 @@ static void clear_run(const struct tile *tile, struct sums *sums)
 }
 
 /* A run of rays of a weight, of `rays[p]` of them. */
-static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
-                    const int rays[2])
+static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight, const int rays[2])
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
 
@@ -165,8 +160,7 @@ static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
         for (int i = 0; i < lanes[p]; i++) {
             const bool wide = has_wide_sums(tile);
 
-            sums->sum[p][i] +=
-                weight * (wide ? sums->weighted_run[p][i] : sums->run[p][i]);
+            sums->sum[p][i] += weight * (wide ? sums->weighted_run[p][i] : sums->run[p][i]);
             sums->weight[p][i] += weight * (wide           ? sums->weight_run[p][i]
                                             : tile->weight ? sums->run_weight[p][i]
                                                            : (uint64_t)rays[p]);
@@ -218,14 +212,12 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
     if (!tile->weight && !chroma && rf_exceeds_means(&tile->plan))
         rf_limit_sums(sums->run[0], (uint32_t)rays, lanes);
     if (tile->f->premultiplied)
-        kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma],
-                               lanes);
+        kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma], lanes);
     else if (tile->weight)
-        kernels->weighted_means(computed, sums->weighted_run[chroma],
-                                sums->weight_run[chroma], lanes);
+        kernels->weighted_means(computed, sums->weighted_run[chroma], sums->weight_run[chroma],
+                                lanes);
     else
-        kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays),
-                       lanes);
+        kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays), lanes);
     if (softness)
         kernels->soften(computed, plane->computed.count, chroma ? 2 : 1,
                         plane->computed.count == plane->rows, softness);
@@ -235,23 +227,20 @@ static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
         kernels->between_chroma(mean, computed);
 }
 
-static void sweep_means(struct tile *tile, struct sums *sums,
-                        struct rf_decode_job *means)
+static void sweep_means(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
 {
     const struct rf_frame *f = tile->f;
 
     tile->luma.computed = rf_tile_rows(f, &tile->plan, tile->behind);
-    tile->chroma.computed = tile->chroma.down
-                                ? rf_chroma_rows(f, &tile->plan, tile->behind)
-                                : tile->luma.computed;
+    tile->chroma.computed =
+        tile->chroma.down ? rf_chroma_rows(f, &tile->plan, tile->behind) : tile->luma.computed;
     sweep_rays(tile, sums);
     take_means(tile, false, sums, means->luma);
     take_means(tile, true, sums, means->chroma);
 }
 
 /* The same from rays that do not weigh the same. */
-static void sweep_sums(struct tile *tile, struct sums *sums,
-                       struct rf_decode_job *means)
+static void sweep_sums(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
     /* of Q12; of Q13, or Q12 of chroma, times Q12 */
@@ -299,8 +288,7 @@ static void set_planes(struct tile *tile, int tx, int ty)
     };
 }
 
-void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
-                       int worker)
+void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct refocus_renderer *r = f->r;
     struct rf_decode_job means;

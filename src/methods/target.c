@@ -105,8 +105,8 @@ static void reduce_weighted(const struct rf_target_work *work, int y,
 }
 
 /* One pair of taps: nothing changes where all is the same. */
-static void add_tap(float *restrict out, const float *restrict middle,
-                    const float *restrict before, const float *restrict after, float tap, int n)
+static void add_tap(float *restrict out, const float *restrict middle, const float *restrict before,
+                    const float *restrict after, float tap, int n)
 {
     for (int x = 0; x < n; x++)
         out[x] += tap * ((before[x] + after[x]) - 2 * middle[x]);
@@ -156,8 +156,8 @@ static void down_row(void *context, int y, int worker)
             add_tap(sum, middle, plane + (size_t)rf_clamp(y - k, t->height - 1) * width,
                     plane + (size_t)rf_clamp(y + k, t->height - 1) * width, work->tap[k], n);
         for (int x = 0; x < n && c < 3; x++)
-            t->light[c][(size_t)y * width + (size_t)x] = (int16_t)(
-                4 * (work->f->weighted ? sum[x] / weight[x] : sum[x]) + 0.5f);
+            t->light[c][(size_t)y * width + (size_t)x] =
+                (int16_t)(4 * (work->f->weighted ? sum[x] / weight[x] : sum[x]) + 0.5f);
     }
 }
 

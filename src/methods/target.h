@@ -12,7 +12,7 @@ struct rf_target {
 
 enum {
     RF_TARGET_SHIFTS = 4,
-    RF_TARGET_TAPS = 12,    /* to either side, at the most */
+    RF_TARGET_TAPS = 12, /* to either side, at the most */
     RF_TARGET_SPARE = 64,
     RF_TARGET_ROWS = 5,     /* of floats, scratch of a thread */
     RF_TARGET_CHANNELS = 4, /* light times weight in R, G, B, and the weight of eq. 5 */
@@ -24,7 +24,7 @@ struct rf_target_work {
     float *row;                        /* scratch of each thread */
     int row_length;                    /* the picture's width and RF_TARGET_SPARE */
     const struct rf_target *target;
-    float tap[RF_TARGET_TAPS + 1];     /* of the filter */
+    float tap[RF_TARGET_TAPS + 1]; /* of the filter */
     int taps;
 };
 

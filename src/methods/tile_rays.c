@@ -41,9 +41,8 @@ void rf_use_green_rays(struct rf_tile_rays *rays, float fringe)
     set_fringe(rays, -fringe);
 }
 
-static const struct refocus_ray *get(const struct rf_tile_rays *rays,
-                                     const struct refocus_ray *ray, int count,
-                                     struct refocus_ray memory[RF_RAY_CHUNK])
+static const struct refocus_ray *get(const struct rf_tile_rays *rays, const struct refocus_ray *ray,
+                                     int count, struct refocus_ray memory[RF_RAY_CHUNK])
 {
     if (!rays->has_eye)
         return ray;
@@ -53,13 +52,11 @@ static const struct refocus_ray *get(const struct rf_tile_rays *rays,
     return memory;
 }
 
-void rf_tile_rays_get(const struct rf_tile_rays *rays, int n, int count,
-                      struct rf_ray_sides *sides)
+void rf_tile_rays_get(const struct rf_tile_rays *rays, int n, int count, struct rf_ray_sides *sides)
 {
     const struct rf_ray_set *set = rays->set;
 
     sides->behind = get(rays, set->ray + n, count, sides->memory[0]);
-    sides->before = set->before == set->ray
-                        ? sides->behind
-                        : get(rays, set->before + n, count, sides->memory[1]);
+    sides->before = set->before == set->ray ? sides->behind
+                                            : get(rays, set->before + n, count, sides->memory[1]);
 }

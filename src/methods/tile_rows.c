@@ -6,7 +6,7 @@
 enum {
     ROW_BLUR = 40, /* times the root of the rays: 1.25 pixels of blur, Q7.8, of 64 of them, */
     LEAST_ROW_BLUR = 256, /* for rows a pixel apart */
-    SOFT_BLUR = 640, /* 2.5 pixels */
+    SOFT_BLUR = 640,      /* 2.5 pixels */
 };
 
 int rf_row_gap(const struct rf_frame *f)

@@ -141,15 +141,14 @@ static bool trace(const struct refocus_renderer *r, const struct rf_path *path, 
                   int *qx, int *qy)
 {
     const uint16_t *p = r->disparity + y * r->stride + x;
-    const bool inside = x >= r->pad && y >= r->pad && x < r->width - r->pad &&
-                        y < r->height - r->pad;
+    const bool inside =
+        x >= r->pad && y >= r->pad && x < r->width - r->pad && y < r->height - r->pad;
 
     for (int i = 0; i < path->steps; i++) {
         const struct rf_step *step = &path->step[i];
         const int tx = inside ? x + step->dx : clamp(x + step->dx, r->width - 1);
         const int ty = inside ? y + step->dy : clamp(y + step->dy, r->height - 1);
-        const uint16_t d = inside ? p[step->offset]
-                                  : r->disparity[ty * r->stride + tx];
+        const uint16_t d = inside ? p[step->offset] : r->disparity[ty * r->stride + tx];
 
         if ((uint16_t)(d - step->low) <= step->width) {
             *qx = tx;
@@ -161,8 +160,8 @@ static bool trace(const struct refocus_renderer *r, const struct rf_path *path, 
 }
 
 /* The pixel that stands for one hidden from the ray. */
-static void mirror(const struct rf_frame *f, const struct rf_path *path, int x, int y,
-                   int *qx, int *qy)
+static void mirror(const struct rf_frame *f, const struct rf_path *path, int x, int y, int *qx,
+                   int *qy)
 {
     const double d = f->r->disparity[y * f->r->stride + x] / 65535.0;
     const double s = f->params->max_blur_radius * (f->params->focus_disparity - d);
@@ -171,8 +170,8 @@ static void mirror(const struct rf_frame *f, const struct rf_path *path, int x, 
     *qy = clamp((int)floor(y - path->v * s + 0.5), f->r->height - 1);
 }
 
-void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, int y,
-                 double weight, struct rf_exact_sums *sums)
+void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, int y, double weight,
+                 struct rf_exact_sums *sums)
 {
     const struct refocus_renderer *r = f->r;
     const uint8_t *to_code = r->transfer[r->blend].to_code;
@@ -193,8 +192,7 @@ void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, in
         sums->light[i][c] += weight * f->exact->light[code[c]];
 }
 
-void rf_exact_write(const struct rf_frame *f, struct rf_rect rect,
-                    const struct rf_exact_sums *sums)
+void rf_exact_write(const struct rf_frame *f, struct rf_rect rect, const struct rf_exact_sums *sums)
 {
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {

@@ -40,8 +40,8 @@ struct rf_exact_sums {
 
 /* Adds what the ray sees at (x, y) to the sums: the front-most hit, or where there is none
  * the pixel mirrored about (x, y). */
-void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, int y,
-                 double weight, struct rf_exact_sums *sums);
+void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, int y, double weight,
+                 struct rf_exact_sums *sums);
 
 /* Means into the output picture. */
 void rf_exact_write(const struct rf_frame *f, struct rf_rect rect,

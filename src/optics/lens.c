@@ -47,16 +47,14 @@ double refocus_focal_length_px(const struct refocus_lens *lens, double picture_w
     return lens->focal_length_mm / lens->sensor_width_mm * picture_width_px;
 }
 
-double refocus_disparity_of_depth(const struct refocus_depth_range *range,
-                                  double depth_m)
+double refocus_disparity_of_depth(const struct refocus_depth_range *range, double depth_m)
 {
     if (!is_range(range) || !is_depth(depth_m))
         return NAN;
     return (1 / depth_m - 1 / range->far_m) / dioptres(range);
 }
 
-double refocus_depth_of_disparity(const struct refocus_depth_range *range,
-                                  double disparity)
+double refocus_depth_of_disparity(const struct refocus_depth_range *range, double disparity)
 {
     if (!is_range(range) || !isfinite(disparity))
         return NAN;
@@ -66,33 +64,30 @@ double refocus_depth_of_disparity(const struct refocus_depth_range *range,
 }
 
 double refocus_max_blur_radius(const struct refocus_lens *lens,
-                               const struct refocus_depth_range *range,
-                               double picture_width_px)
+                               const struct refocus_depth_range *range, double picture_width_px)
 {
     if (!is_range(range))
         return NAN;
-    return refocus_focal_length_px(lens, picture_width_px) *
-           refocus_aperture_radius_m(lens) * dioptres(range);
+    return refocus_focal_length_px(lens, picture_width_px) * refocus_aperture_radius_m(lens) *
+           dioptres(range);
 }
 
 double refocus_f_number_of_blur(const struct refocus_lens *lens,
-                                const struct refocus_depth_range *range,
-                                double picture_width_px, double max_blur_radius_px)
+                                const struct refocus_depth_range *range, double picture_width_px,
+                                double max_blur_radius_px)
 {
     if (!is_positive(max_blur_radius_px))
         return NAN;
     /* K is inversely proportional to N. */
-    return lens ? lens->f_number *
-                      refocus_max_blur_radius(lens, range, picture_width_px) /
+    return lens ? lens->f_number * refocus_max_blur_radius(lens, range, picture_width_px) /
                       max_blur_radius_px
                 : NAN;
 }
 
-double refocus_blur_radius(double max_blur_radius_px, double disparity,
-                           double focus_disparity)
+double refocus_blur_radius(double max_blur_radius_px, double disparity, double focus_disparity)
 {
-    if (!(max_blur_radius_px >= 0) || !isfinite(max_blur_radius_px) ||
-        !isfinite(disparity) || !isfinite(focus_disparity))
+    if (!(max_blur_radius_px >= 0) || !isfinite(max_blur_radius_px) || !isfinite(disparity) ||
+        !isfinite(focus_disparity))
         return NAN;
     return max_blur_radius_px * fabs(disparity - focus_disparity);
 }
@@ -116,8 +111,7 @@ double refocus_circle_of_confusion_m(const struct refocus_lens *lens, double foc
     const double f = lens->focal_length_mm / 1000;
     if (!(focus_m > f) || !(depth_m > f))
         return NAN;
-    return f / lens->f_number * fabs(1 / focus_m - 1 / depth_m) *
-           (f / (1 - f / focus_m));
+    return f / lens->f_number * fabs(1 / focus_m - 1 / depth_m) * (f / (1 - f / focus_m));
 }
 
 double refocus_hyperfocal_m(const struct refocus_lens *lens, double acuity)
@@ -127,8 +121,7 @@ double refocus_hyperfocal_m(const struct refocus_lens *lens, double acuity)
     return acuity * (lens->focal_length_mm / 1000) / lens->f_number;
 }
 
-struct refocus_depth_of_field refocus_depth_of_field_m(double focus_m,
-                                                       double hyperfocal_m)
+struct refocus_depth_of_field refocus_depth_of_field_m(double focus_m, double hyperfocal_m)
 {
     struct refocus_depth_of_field field = {NAN, NAN};
 
@@ -136,8 +129,7 @@ struct refocus_depth_of_field refocus_depth_of_field_m(double focus_m,
         return field;
     /* U- = 1 / (1/U + 1/H): H U / (H + U) for an infinite U too. */
     field.near_m = 1 / (1 / focus_m + 1 / hyperfocal_m);
-    field.far_m = hyperfocal_m > focus_m
-                      ? hyperfocal_m * focus_m / (hyperfocal_m - focus_m)
-                      : INFINITY;
+    field.far_m =
+        hyperfocal_m > focus_m ? hyperfocal_m * focus_m / (hyperfocal_m - focus_m) : INFINITY;
     return field;
 }

@@ -38,8 +38,7 @@ enum { RUN = 256, MARGIN = 1 << (RF_PREFILTER_STEPS - 1) }; /* columns at a time
 
 /* n columns of a row, from `at` on, n at most RUN: three rows to one, then columns. */
 static void smooth_run(const struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], ptrdiff_t at, int step, int least, int over,
-                       int n)
+                       uint16_t *const in[3], ptrdiff_t at, int step, int least, int over, int n)
 {
     const ptrdiff_t from = at - step;
     const int16_t *s = r->front.blur;
@@ -57,8 +56,7 @@ static bool is_wide_near(const struct refocus_renderer *r, int tx, int ty, int l
 {
     for (int y = ty - 1; y <= ty + 1; y++)
         for (int x = tx - 1; x <= tx + 1; x++)
-            if (x >= 0 && x < r->tiles_x && y >= 0 && y < r->tiles_y &&
-                is_wide(r, x, y, least))
+            if (x >= 0 && x < r->tiles_x && y >= 0 && y < r->tiles_y && is_wide(r, x, y, least))
                 return true;
     return false;
 }
@@ -76,9 +74,8 @@ enum rf_task rf_prefilter_task(const struct refocus_renderer *r, const int above
     return RF_SKIP;
 }
 
-static void do_task(const struct refocus_renderer *r, enum rf_task task,
-                    uint16_t *const out[3], uint16_t *const in[3], ptrdiff_t at, int step,
-                    int least, int over, int n)
+static void do_task(const struct refocus_renderer *r, enum rf_task task, uint16_t *const out[3],
+                    uint16_t *const in[3], ptrdiff_t at, int step, int least, int over, int n)
 {
     for (int x = 0; task == RF_FILTER && x < n; x += RUN)
         smooth_run(r, out, in, at + x, 1 << step, least, over, n - x < RUN ? n - x : RUN);
@@ -86,9 +83,8 @@ static void do_task(const struct refocus_renderer *r, enum rf_task task,
         memcpy(out[c] + at, in[c] + at, (size_t)n * 2);
 }
 
-void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], const int above[RF_PREFILTER_STEPS],
-                       bool fades, int step, int ty)
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3], uint16_t *const in[3],
+                       const int above[RF_PREFILTER_STEPS], bool fades, int step, int ty)
 {
     const int over = rf_prefilter_over(above[step], fades);
     const struct rf_bins *bins = r->bins + (size_t)ty * r->tiles_x;
@@ -100,13 +96,13 @@ void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
         const int x0 = tx * RF_TILE;
         int n;
 
-        for (end = tx + 1;
-             end < r->tiles_x && rf_prefilter_task(r, above, step, end, ty) == task &&
-             taken == (step == 0 && bins[end].taken);)
+        for (end = tx + 1; end < r->tiles_x && rf_prefilter_task(r, above, step, end, ty) == task &&
+                           taken == (step == 0 && bins[end].taken);)
             end++;
         n = (end * RF_TILE < r->width ? end * RF_TILE : r->width) - x0;
         for (int y = y0; y < y1; y++)
-            do_task(r, task, out, taken ? r->behind.light : in, y * r->stride + x0, step, above[step], over, n);
+            do_task(r, task, out, taken ? r->behind.light : in, y * r->stride + x0, step,
+                    above[step], over, n);
     }
     for (int c = 0; c < 3; c++)
         rf_extend_rows(r, out[c], y0, y1);

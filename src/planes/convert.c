@@ -20,8 +20,7 @@ static inline void convert_row(uint16_t *restrict red, uint16_t *restrict green,
     }
 }
 
-void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0,
-                     int y1)
+void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0, int y1)
 {
     const struct rf_order o = rf_order_of(photo->format);
     const uint16_t *to_light = r->transfer[r->blend].to_light;

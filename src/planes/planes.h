@@ -9,8 +9,7 @@
 #include "renderer/renderer.h"
 
 /* Photo rows to light planes and alpha. */
-void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0,
-                     int y1);
+void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *photo, int y0, int y1);
 
 /* Change light planes from one blend to another. */
 void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int y0, int y1);
@@ -38,9 +37,8 @@ void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan 
  * If it fades, a step comes in over rf_prefilter_over() more of |s|, so that nothing jumps while
  * the focus moves.
  */
-void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3],
-                       uint16_t *const in[3], const int above[RF_PREFILTER_STEPS], bool fades,
-                       int step, int ty);
+void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3], uint16_t *const in[3],
+                       const int above[RF_PREFILTER_STEPS], bool fades, int step, int ty);
 
 static inline int rf_prefilter_over(int above, bool fades)
 {

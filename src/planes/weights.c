@@ -63,8 +63,7 @@ static int brightest(uint16_t *const light[3], ptrdiff_t at)
 void rf_note_behind(struct refocus_renderer *r, int ty)
 {
     for (int tx = 0; tx < r->tiles_x; tx++)
-        r->bins[(size_t)ty * r->tiles_x + tx].behind =
-            r->behind.blur[rf_tile_middle(r, tx, ty)];
+        r->bins[(size_t)ty * r->tiles_x + tx].behind = r->behind.blur[rf_tile_middle(r, tx, ty)];
 }
 
 void rf_weigh_rows(struct refocus_renderer *r, int ty)

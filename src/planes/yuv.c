@@ -23,8 +23,7 @@ void rf_yuv_begin(struct refocus_renderer *r, const struct refocus_image *photo)
     if (!yuv->on)
         return;
     yuv->down = rf_chroma_down(photo->format);
-    yuv->curve_made =
-        yuv->curve_made && yuv->matrix == photo->matrix && yuv->range == photo->range;
+    yuv->curve_made = yuv->curve_made && yuv->matrix == photo->matrix && yuv->range == photo->range;
     yuv->matrix = photo->matrix;
     yuv->range = photo->range;
     rf_yuv_set_blend(r, r->blend);
@@ -61,8 +60,8 @@ struct refocus_image rf_yuv_guide(const struct refocus_renderer *r)
 {
     const struct rf_yuv *yuv = &r->yuv;
 
-    return refocus_image_packed(REFOCUS_FORMAT_RGB8, yuv->uv + 2 * yuv->width, r->width,
-                                r->height, yuv->uv_stride);
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, yuv->uv + 2 * yuv->width, r->width, r->height,
+                                yuv->uv_stride);
 }
 
 /* A sample's two values n times. */
@@ -97,8 +96,8 @@ void rf_extend_chroma(const struct refocus_renderer *r, void *plane, int c0, int
             memcpy(first - y * r->stride, first, bytes);
     if (c1 == r->yuv.height)
         for (int y = 0; y < below; y++)
-            memcpy(first + (r->yuv.height + y) * r->stride,
-                   first + (r->yuv.height - 1) * r->stride, bytes);
+            memcpy(first + (r->yuv.height + y) * r->stride, first + (r->yuv.height - 1) * r->stride,
+                   bytes);
 }
 
 /* Row cy of chroma and the rows that share it, from the codes that are kept. The pixel beside
@@ -187,8 +186,8 @@ static void keep_420(const struct refocus_renderer *r, const struct refocus_imag
     }
 }
 
-static void split(uint8_t *restrict first, uint8_t *restrict second,
-                  const uint8_t *restrict pairs, int n)
+static void split(uint8_t *restrict first, uint8_t *restrict second, const uint8_t *restrict pairs,
+                  int n)
 {
     for (int x = 0; x < n; x++) {
         first[x] = pairs[2 * x];
@@ -275,8 +274,8 @@ struct filter {
 };
 
 /* n elements of a row, from `at` on. */
-static void smooth_run(const struct refocus_renderer *r, const struct filter *f,
-                       const uint16_t *in, ptrdiff_t at, int n)
+static void smooth_run(const struct refocus_renderer *r, const struct filter *f, const uint16_t *in,
+                       ptrdiff_t at, int n)
 {
     const int step = f->across, least = f->above[f->number];
     const int over = rf_prefilter_over(least, f->fades);
@@ -322,9 +321,9 @@ void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint
                            const int above[RF_PREFILTER_STEPS], bool fades, int step,
                            uint16_t *scratch, int ty)
 {
-    const struct filter filter = {
-        out,   in,   step == 0 ? r->behind.light[0] : NULL, r->front.blur, above,
-        fades, step, 1 << step,                             scratch};
+    const struct filter filter = {out,           in,        step == 0 ? r->behind.light[0] : NULL,
+                                  r->front.blur, above,     fades,
+                                  step,          1 << step, scratch};
 
     smooth_rows(r, &filter, ty, rf_band_start(ty), rf_band_end(r, ty), r->width);
     rf_extend_rows(r, out, rf_band_start(ty), rf_band_end(r, ty));

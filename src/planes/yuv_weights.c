@@ -28,16 +28,14 @@ void rf_yuv_weigh_rows(struct refocus_renderer *r, int ty)
         for (int x = part.x0; x < part.x1; x++)
             near[x] = of_light[seen[x] < RF_LIGHT_MAX ? seen[x] : RF_LIGHT_MAX];
         for (int x = part.x0; x < part.x1; x++)
-            far[x] =
-                behind[x] == seen[x]
-                    ? near[x]
-                    : of_light[behind[x] < RF_LIGHT_MAX ? behind[x] : RF_LIGHT_MAX];
+            far[x] = behind[x] == seen[x]
+                         ? near[x]
+                         : of_light[behind[x] < RF_LIGHT_MAX ? behind[x] : RF_LIGHT_MAX];
     }
 }
 
 /* n pixels of a row of both layers. */
-static void weigh_luma(const struct refocus_renderer *r, int x, int y,
-                       uint16_t *brightest, int n)
+static void weigh_luma(const struct refocus_renderer *r, int x, int y, uint16_t *brightest, int n)
 {
     const ptrdiff_t at = y * r->stride + x;
 
@@ -62,8 +60,7 @@ static void weigh_chroma(const struct refocus_renderer *r, struct rf_rect part)
     for (int y = part.y0 / (1 << down); y < (part.y1 + down) >> down; y++) {
         const ptrdiff_t at = y * r->stride + x, from = y * (1 << down) * r->stride + x;
 
-        r->kernels.weigh_chroma(r->yuv.smooth + at, r->yuv.weight + from,
-                                (part.x1 - x) / 2);
+        r->kernels.weigh_chroma(r->yuv.smooth + at, r->yuv.weight + from, (part.x1 - x) / 2);
         r->kernels.weigh_chroma(r->yuv.behind + at, (uint16_t *)r->behind.blur + from,
                                 (part.x1 - x) / 2);
     }
@@ -81,8 +78,7 @@ void rf_yuv_premultiply_rows(struct refocus_renderer *r, uint16_t *scratch, int 
 {
     const struct rf_rect part = around_tiles(r, ty);
     const int left = r->border.x0, right = r->border.x1, width = r->tiles_x * RF_TILE;
-    const int tiles = r->tiles_x, before = left / RF_TILE + 1,
-              after = right / RF_TILE + 1;
+    const int tiles = r->tiles_x, before = left / RF_TILE + 1, after = right / RF_TILE + 1;
     uint16_t *brightest = scratch + before;
 
     memset(scratch, 0, (size_t)(before + tiles + after) * sizeof scratch[0]);

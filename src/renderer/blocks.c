@@ -36,8 +36,7 @@ static int blocks(const struct refocus_renderer *r, int block)
 }
 
 /* A block with its margin, but for what of that lies beyond the photo. */
-static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block,
-                             int margin)
+static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block, int margin)
 {
     const struct rf_rect all = rf_whole(r, 0);
 
@@ -49,20 +48,19 @@ static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect bl
 
 static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
 {
-    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y,
-                            part.x1 - r->origin_x, part.y1 - r->origin_y};
+    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y, part.x1 - r->origin_x,
+                            part.y1 - r->origin_y};
 }
 
 /* A part of a picture as a picture. */
-static struct refocus_image image_part(const struct refocus_image *image,
-                                       struct rf_rect part)
+static struct refocus_image image_part(const struct refocus_image *image, struct rf_rect part)
 {
     struct refocus_image out = *image;
 
     out.width = part.x1 - part.x0;
     out.height = part.y1 - part.y0;
-    out.plane[0] += part.y0 * image->stride[0] +
-                    (ptrdiff_t)part.x0 * refocus_format_bytes(image->format);
+    out.plane[0] +=
+        part.y0 * image->stride[0] + (ptrdiff_t)part.x0 * refocus_format_bytes(image->format);
     return out;
 }
 
@@ -81,13 +79,14 @@ static struct refocus_disparity map_part(const struct refocus_disparity *map, st
 static void load(struct refocus_renderer *r, struct rf_rect block, int margin)
 {
     const struct rf_rect window = around(r, block, margin);
-    const struct rf_rect mapped = around(r, window, r->in_place.code_step ? RF_DEQUANTISE_REACH : 0);
+    const struct rf_rect mapped =
+        around(r, window, r->in_place.code_step ? RF_DEQUANTISE_REACH : 0);
     const struct refocus_image photo = image_part(&r->in_place.photo, window);
     const struct refocus_disparity map = map_part(&r->in_place.map, mapped);
 
-    r->in_place.beyond = (struct rf_rect){
-        margin - (block.x0 - window.x0), margin - (block.y0 - window.y0),
-        margin - (window.x1 - block.x1), margin - (window.y1 - block.y1)};
+    r->in_place.beyond =
+        (struct rf_rect){margin - (block.x0 - window.x0), margin - (block.y0 - window.y0),
+                         margin - (window.x1 - block.x1), margin - (window.y1 - block.y1)};
     rf_use(r, 0, window);
     rf_load_light(r, &photo, NULL);
     rf_load_disparity(r, &map, r->in_place.code_step, window.x0 - mapped.x0, window.y0 - mapped.y0);
@@ -107,8 +106,7 @@ void rf_find_rims_in_blocks(struct refocus_renderer *r)
 }
 
 /* Light, blur and smooth light of a block and its margin. */
-static void make_window(struct rf_frame *f, struct rf_rect block, int margin,
-                        enum rf_need need)
+static void make_window(struct rf_frame *f, struct rf_rect block, int margin, enum rf_need need)
 {
     struct refocus_renderer *r = f->r;
 
@@ -128,8 +126,7 @@ static void keep_known(struct refocus_renderer *r, struct rf_rect block)
     const struct rf_in_place *in_place = &r->in_place;
 
     for (int y = block.y0; y < block.y1; y++) {
-        const int16_t *blur =
-            r->behind.blur + (y - r->origin_y) * r->stride - r->origin_x;
+        const int16_t *blur = r->behind.blur + (y - r->origin_y) * r->stride - r->origin_x;
         uint8_t *known = in_place->known + y * in_place->known_stride;
 
         for (int x = block.x0; x < block.x1; x += 8) {
@@ -153,8 +150,7 @@ static void keep_level(struct refocus_renderer *r, struct rf_rect block)
     const ptrdiff_t dy = (block.y0 - r->origin_y) >> RF_KEPT;
 
     for (int y = 0; y < rf_reduced(block.y1 - block.y0, RF_KEPT); y++) {
-        const ptrdiff_t in = (dy + y) * from->stride + dx,
-                        out = (y0 + y) * to->stride + x0;
+        const ptrdiff_t in = (dy + y) * from->stride + dx, out = (y0 + y) * to->stride + x0;
 
         for (int c = 0; c < 3; c++)
             memcpy(to->light[c] + out, from->light[c] + in, (size_t)n * 2);
@@ -171,8 +167,7 @@ static void mark(struct rf_frame *f)
     struct rf_in_place *in_place = &r->in_place;
     struct rf_level own[RF_LEVELS];
 
-    in_place->levels =
-        rf_pyramid(in_place->kept, r->photo[0].width, r->photo[0].height);
+    in_place->levels = rf_pyramid(in_place->kept, r->photo[0].width, r->photo[0].height);
     for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(r); i++) {
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
@@ -197,8 +192,7 @@ static void known_band(void *context, int band, int worker)
     (void)worker;
     for (int y = rf_band_start(band); y < rf_band_end(r, band); y++) {
         const ptrdiff_t at = y * r->stride;
-        const uint8_t *known =
-            in_place->known + (y + r->origin_y) * in_place->known_stride;
+        const uint8_t *known = in_place->known + (y + r->origin_y) * in_place->known_stride;
         const int16_t *blur = r->front.blur + at;
         int16_t *out = r->behind.blur + at;
 
@@ -252,8 +246,7 @@ static void mark_once(struct rf_frame *f)
         return;
     m->behind = false;
     mark(f);
-    *m = (struct rf_made){
-        .blur = true, .smooth = true, .plan = f->plan, .shift = f->scale.shift};
+    *m = (struct rf_made){.blur = true, .smooth = true, .plan = f->plan, .shift = f->scale.shift};
     rf_note_light(f);
     m->behind = !rf_cancelled(f->r);
 }
@@ -289,9 +282,8 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
             rf_pass_bright(f);
         if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(r))
             rf_pass_weights(f);
-        image =
-            image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
-                                             part.x1 - region.x0, part.y1 - region.y0});
+        image = image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
+                                                 part.x1 - region.x0, part.y1 - region.y0});
         f->out = &image;
         f->region = in_window(r, part);
         if (!rf_cancelled(r))

@@ -7,11 +7,10 @@
 #include "renderer/layout.h"
 
 /* Methods that need the whole photo. */
-#define FRAME_METHODS                                                                  \
-    (REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) |                                   \
-     REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |                                      \
-     REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |                                     \
-     REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |                                 \
+#define FRAME_METHODS                                                                              \
+    (REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |  \
+     REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |                                                 \
+     REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |                                             \
      REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION))
 
 static void *default_allocate(void *user, size_t size)
@@ -33,13 +32,12 @@ static bool read_params(struct refocus_renderer_params *own,
     if (!params || params->struct_size != sizeof *params)
         return false;
     *own = *params;
-    return own->max_width >= 1 && own->max_width <= REFOCUS_MAX_SIDE &&
-           own->max_height >= 1 && own->max_height <= REFOCUS_MAX_SIDE &&
-           own->max_blur_radius >= 0 &&
+    return own->max_width >= 1 && own->max_width <= REFOCUS_MAX_SIDE && own->max_height >= 1 &&
+           own->max_height <= REFOCUS_MAX_SIDE && own->max_blur_radius >= 0 &&
            own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
            own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX512 &&
-           (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 &&
-           own->previews <= 1 && own->in_place <= 1 && own->thin <= 1 &&
+           (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 && own->previews <= 1 &&
+           own->in_place <= 1 && own->thin <= 1 &&
            !(own->in_place && (own->previews || (own->methods & FRAME_METHODS))) &&
            !own->allocator.allocate == !own->allocator.release;
 }
@@ -72,8 +70,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     if (size > PTRDIFF_MAX || (own.max_memory && size > own.max_memory))
         return REFOCUS_ERR_SIZE;
     if (!own.allocator.allocate)
-        own.allocator =
-            (struct refocus_allocator){default_allocate, default_release, NULL};
+        own.allocator = (struct refocus_allocator){default_allocate, default_release, NULL};
     block = own.allocator.allocate(own.allocator.user, (size_t)size);
     if (!block)
         return REFOCUS_ERR_MEMORY;
@@ -87,11 +84,10 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->max_width = own.max_width;
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;
-    r->methods = own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
-                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
-                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
-                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
-                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    r->methods =
+        own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
+        REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
+        REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
     r->work_owner = RF_NO_METHOD;
     r->previews = own.previews;
     r->in_place.on = own.in_place;
@@ -124,8 +120,7 @@ void refocus_cancel(struct refocus_renderer *renderer)
     int running = RF_RUN_RUNNING;
 
     if (renderer)
-        atomic_compare_exchange_strong(&renderer->run.state, &running,
-                                       RF_RUN_CANCELLED);
+        atomic_compare_exchange_strong(&renderer->run.state, &running, RF_RUN_CANCELLED);
 }
 
 void refocus_renderer_get_info(const struct refocus_renderer *renderer,
@@ -143,8 +138,7 @@ void refocus_renderer_get_info(const struct refocus_renderer *renderer,
 
 const char *refocus_cpu_name(uint32_t cpu)
 {
-    static const char *const name[] = {"auto", "c", "neon", "sse41", "avx2",
-                                       "avx512"};
+    static const char *const name[] = {"auto", "c", "neon", "sse41", "avx2", "avx512"};
 
     return cpu < sizeof name / sizeof *name ? name[cpu] : NULL;
 }

@@ -35,8 +35,7 @@ int rf_threads_for(const struct refocus_renderer_params *params)
     return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
 }
 
-static void take_level(struct rf_arena *arena, struct rf_level *level, int width,
-                       int height)
+static void take_level(struct rf_arena *arena, struct rf_level *level, int width, int height)
 {
     const uint64_t pixels = (uint64_t)(width + 1) * height;
 
@@ -49,23 +48,20 @@ static void take_level(struct rf_arena *arena, struct rf_level *level, int width
  * pitch, so that what is read together lies together. */
 static uint64_t group_size(const struct rf_photo *photo, int height)
 {
-    return (uint64_t)photo->stride *
-           ((uint64_t)height + 2 * (uint64_t)photo->pad + RF_TILE);
+    return (uint64_t)photo->stride * ((uint64_t)height + 2 * (uint64_t)photo->pad + RF_TILE);
 }
 
 /* What a photo of at most this size has beside its planes. */
-static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width,
-                       int height)
+static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
 {
     photo->capacity = rf_rim_capacity(width, height);
     photo->rim = rf_arena_take(arena, photo->capacity, sizeof *photo->rim);
     for (int i = 0; i < rf_lamp_parts(height); i++) {
         photo->highlights[i].capacity = rf_lamp_capacity(width);
-        photo->highlights[i].lamp = rf_arena_take(arena, photo->highlights[i].capacity,
-                                                  sizeof(struct rf_highlight));
+        photo->highlights[i].lamp =
+            rf_arena_take(arena, photo->highlights[i].capacity, sizeof(struct rf_highlight));
     }
-    photo->band_blend =
-        rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
+    photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
 /* Thin things of a photo of this size. */
@@ -106,13 +102,11 @@ static void place_photo(struct rf_photo *photo, uint16_t *group, uint8_t *alpha)
 }
 
 /* A photo of at most this size with memory of its own. */
-static void take_photo(struct rf_arena *arena, struct rf_photo *photo, int width,
-                       int height)
+static void take_photo(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
 {
     uint16_t *group = rf_arena_take(arena, group_size(photo, height), 2);
 
-    place_photo(photo, group,
-                rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 1));
+    place_photo(photo, group, rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 1));
     take_lists(arena, photo, width, height);
 }
 
@@ -129,16 +123,14 @@ static void shape_photo(struct rf_photo *photo, int width, float max_blur_radius
  * whole photo's background layer overwrites it; those reduced further have memory of
  * their own.
  */
-static void take_whole(struct refocus_renderer *r,
-                       const struct refocus_renderer_params *params,
+static void take_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                        struct rf_arena *arena)
 {
     const int w = params->max_width, h = params->max_height;
     uint64_t behind, half, used;
 
     for (int i = 0; i < RF_PHOTOS; i++)
-        shape_photo(&r->photo[i], rf_reduced(w, i),
-                    params->max_blur_radius / (float)(1 << i));
+        shape_photo(&r->photo[i], rf_reduced(w, i), params->max_blur_radius / (float)(1 << i));
     take_photo(arena, &r->photo[0], w, h);
     behind = group_size(&r->photo[0], h);
     r->seen_group = rf_arena_take(arena, behind, 2);
@@ -150,8 +142,7 @@ static void take_whole(struct refocus_renderer *r,
     if (!params->previews)
         return;
     if (r->behind_group)
-        place_photo(&r->photo[1], r->behind_group + half,
-                    (uint8_t *)(r->behind_group + 2 * half));
+        place_photo(&r->photo[1], r->behind_group + half, (uint8_t *)(r->behind_group + 2 * half));
     take_lists(arena, &r->photo[1], rf_reduced(w, 1), rf_reduced(h, 1));
     for (int i = 2; i < RF_PHOTOS; i++)
         take_photo(arena, &r->photo[i], rf_reduced(w, i), rf_reduced(h, i));
@@ -196,8 +187,7 @@ static void shape_blocks(struct rf_in_place *in_place, int pad)
 }
 
 /* Planes for the window of a block, and what is kept of the whole photo. */
-static void take_blocks(struct refocus_renderer *r,
-                        const struct refocus_renderer_params *params,
+static void take_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                         struct rf_arena *arena)
 {
     const int w = params->max_width, h = params->max_height;
@@ -218,12 +208,10 @@ static void take_blocks(struct refocus_renderer *r,
     photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
     take_lists(arena, photo, w, h);
     in_place->known_stride = (w + 7) / 8;
-    in_place->known =
-        rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
+    in_place->known = rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
     in_place->levels = rf_pyramid(in_place->kept, w, h);
     for (int i = RF_KEPT - 1; i < in_place->levels; i++)
-        take_level(arena, &in_place->kept[i], in_place->kept[i].width,
-                   in_place->kept[i].height);
+        take_level(arena, &in_place->kept[i], in_place->kept[i].width, in_place->kept[i].height);
 }
 
 /* Bytes for the greediest of the methods that work on whole frames. */
@@ -243,9 +231,8 @@ static uint64_t work_bytes(const struct refocus_renderer_params *params)
     uint64_t most = 0;
 
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++) {
-        const uint64_t bytes = params->methods & REFOCUS_METHOD_BIT(needs[i].method)
-                                   ? needs[i].size(&limits)
-                                   : 0;
+        const uint64_t bytes =
+            params->methods & REFOCUS_METHOD_BIT(needs[i].method) ? needs[i].size(&limits) : 0;
 
         most = bytes > most ? bytes : most;
     }
@@ -270,20 +257,18 @@ static uint64_t few_rays(const struct refocus_renderer_params *params)
 }
 
 /* Sets the pointers of r, or with arena->base == NULL only counts. */
-static void lay_out(struct refocus_renderer *r,
-                    const struct refocus_renderer_params *params,
+static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                     struct rf_arena *arena)
 {
     const int side = params->in_place ? block_side(params) : INT32_MAX;
     const int w = params->max_width, h = params->max_height;
     /* of the largest window */
     const int across = w < side ? w : side, down = h < side ? h : side;
-    const uint64_t tiles = (uint64_t)((across + RF_TILE - 1) / RF_TILE) *
-                           (uint64_t)((down + RF_TILE - 1) / RF_TILE);
+    const uint64_t tiles =
+        (uint64_t)((across + RF_TILE - 1) / RF_TILE) * (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
     const int levels = rf_pyramid(level, across, down);
-    const int threads = rf_threads_for(params),
-              pad = rf_padding_for(params->max_blur_radius);
+    const int threads = rf_threads_for(params), pad = rf_padding_for(params->max_blur_radius);
     uint64_t before, after;
 
     if (params->in_place)
@@ -298,8 +283,8 @@ static void lay_out(struct refocus_renderer *r,
     after = arena->used;
     arena->used = before; /* the pyramid is done with before there are weights */
     r->weight_stride = rf_pitch_for(across, pad);
-    r->weight = rf_arena_take(
-        arena, (uint64_t)r->weight_stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
+    r->weight =
+        rf_arena_take(arena, (uint64_t)r->weight_stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
     r->weight = r->weight ? r->weight + pad * (r->weight_stride + 1) : NULL;
     after = arena->used > after ? arena->used : after;
     r->has_thin = params->thin && !params->in_place;
@@ -315,16 +300,15 @@ static void lay_out(struct refocus_renderer *r,
             take_thin(arena, &r->photo[i].thin, rf_reduced(w, i), rf_reduced(h, i));
     }
     r->range_stride = rf_range_width(across, pad);
-    r->range = rf_arena_take(
-        arena, (uint64_t)r->range_stride * (uint64_t)rf_range_width(down, pad),
-        sizeof *r->range);
+    r->range = rf_arena_take(arena, (uint64_t)r->range_stride * (uint64_t)rf_range_width(down, pad),
+                             sizeof *r->range);
     if (r->range)
         r->range += rf_range_border(pad) * (r->range_stride + 1);
     r->star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->star);
     r->grain = rf_arena_take(arena, 1, sizeof *r->grain);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
-    r->rays = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
-                            sizeof *r->rays);
+    r->rays =
+        rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS, sizeof *r->rays);
     r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
     if (params->in_place)
@@ -344,8 +328,7 @@ uint64_t rf_layout_size(const struct refocus_renderer_params *params)
     return arena.used;
 }
 
-struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *params,
-                                         void *block)
+struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *params, void *block)
 {
     const uintptr_t at = (uintptr_t)block;
     struct rf_arena arena = {(uint8_t *)block + (-at & (RF_ARENA_ALIGN - 1)), 0};

@@ -21,7 +21,6 @@ static inline int rf_block_side(const struct rf_in_place *in_place)
 uint64_t rf_layout_size(const struct refocus_renderer_params *params);
 
 /* A renderer in a block of that size, its pointers set and all else 0. */
-struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *params,
-                                         void *block);
+struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *params, void *block);
 
 #endif

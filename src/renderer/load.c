@@ -19,9 +19,8 @@ static void convert_band(void *context, int band, int worker)
     const struct job *job = context;
 
     if (job->r->yuv.on)
-        rf_yuv_convert_rows(job->r, job->photo, job->guide,
-                            (uint8_t *)rf_scratch(job->r, worker), rf_band_start(band),
-                            rf_band_end(job->r, band));
+        rf_yuv_convert_rows(job->r, job->photo, job->guide, (uint8_t *)rf_scratch(job->r, worker),
+                            rf_band_start(band), rf_band_end(job->r, band));
     else
         rf_convert_rows(job->r, job->photo, rf_band_start(band), rf_band_end(job->r, band));
 }

@@ -23,8 +23,7 @@ static void reblend_band(void *context, int band, int worker)
         rf_yuv_reblend_rows(r, (uint8_t *)rf_scratch(r, worker), rf_band_start(band),
                             rf_band_end(r, band));
     else
-        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
-                        rf_band_end(r, band));
+        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band), rf_band_end(r, band));
     *blend = (uint8_t)f->params->blend;
 }
 
@@ -45,9 +44,8 @@ bool rf_same_light(const struct rf_frame *f)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->smooth && m->blend == f->params->blend &&
-           m->gain == rf_lamp_gain(f) && m->drawn == f->draws &&
-           (!m->lamps || m->rays == f->params->rays) &&
+    return m->smooth && m->blend == f->params->blend && m->gain == rf_lamp_gain(f) &&
+           m->drawn == f->draws && (!m->lamps || m->rays == f->params->rays) &&
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
@@ -73,9 +71,8 @@ struct parts {
 /* What r->made.thin is for this frame: 0, or the size of discs and the blend. */
 static uint32_t made_thin(const struct rf_frame *f)
 {
-    return rf_takes_apart(f)
-               ? (uint32_t)f->veils << 8 | (uint32_t)f->holds << 7 | (1 + f->r->blend)
-               : 0;
+    return rf_takes_apart(f) ? (uint32_t)f->veils << 8 | (uint32_t)f->holds << 7 | (1 + f->r->blend)
+                             : 0;
 }
 
 static bool has_same_thin(const struct rf_frame *f)
@@ -86,15 +83,13 @@ static bool has_same_thin(const struct rf_frame *f)
 }
 
 /* Whether all of that is there. */
-static bool is_there(const struct rf_frame *f, int number, const struct parts *parts,
-                     bool layers)
+static bool is_there(const struct rf_frame *f, int number, const struct parts *parts, bool layers)
 {
     const struct rf_made *m = &f->r->made;
 
     if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
         return false;
-    return rf_same_lens(f, number) && contains(m->window, parts->bins) &&
-           has_same_thin(f) &&
+    return rf_same_lens(f, number) && contains(m->window, parts->bins) && has_same_thin(f) &&
            (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
                          (!m->weighed || rf_is_sweep(f))
                    : !m->rims);
@@ -108,8 +103,8 @@ static void make_blur(struct rf_frame *f, bool layers)
     const struct rf_rect window = {r->origin_x, r->origin_y, r->origin_x + r->width,
                                    r->origin_y + r->height};
 
-    if (!rf_same_lens(f, r->used) || !contains(m->window, window) ||
-        !contains(window, m->window) || !has_same_thin(f) || (m->rims && !layers) ||
+    if (!rf_same_lens(f, r->used) || !contains(m->window, window) || !contains(window, m->window) ||
+        !has_same_thin(f) || (m->rims && !layers) ||
         (layers && !rf_same_light(f) && (m->lamps || m->drawn || f->params->highlight_gain > 1))) {
         *m = (struct rf_made){.half = m->half && r->used,
                               .photo = r->used,
@@ -159,8 +154,8 @@ static void make_smooth(struct rf_frame *f)
 /* `part` of the photo in the window. */
 static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
 {
-    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y,
-                            part.x1 - r->origin_x, part.y1 - r->origin_y};
+    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y, part.x1 - r->origin_x,
+                            part.y1 - r->origin_y};
 }
 
 /* How far beyond a tile something thick decides what becomes of what is thin in it. */
@@ -222,8 +217,8 @@ static int ceil_to(int v, int step, int most)
 }
 
 /* A part of the photo, grown by so many pixels each way and on to whole `step`s. */
-static struct rf_rect grown(const struct refocus_renderer *r, int number,
-                            struct rf_rect part, int by, int step)
+static struct rf_rect grown(const struct refocus_renderer *r, int number, struct rf_rect part,
+                            int by, int step)
 {
     const struct rf_photo *photo = &r->photo[number];
 
@@ -233,8 +228,7 @@ static struct rf_rect grown(const struct refocus_renderer *r, int number,
 }
 
 /* Large windows save nothing. */
-static bool is_large(const struct refocus_renderer *r, int number,
-                     struct rf_rect window)
+static bool is_large(const struct refocus_renderer *r, int number, struct rf_rect window)
 {
     const struct rf_rect all = rf_whole(r, number);
     const int64_t part = (int64_t)(window.x1 - window.x0) * (window.y1 - window.y0);
@@ -248,8 +242,7 @@ static struct rf_rect around_both(struct rf_rect a, struct rf_rect b)
                             a.x1 > b.x1 ? a.x1 : b.x1, a.y1 > b.y1 ? a.y1 : b.y1};
 }
 
-static void make_in_window(struct rf_frame *f, int number, const struct parts *parts,
-                           bool layers)
+static void make_in_window(struct rf_frame *f, int number, const struct parts *parts, bool layers)
 {
     struct refocus_renderer *r = f->r;
     const struct rf_rect all = rf_whole(r, number);
@@ -262,8 +255,7 @@ static void make_in_window(struct rf_frame *f, int number, const struct parts *p
         if (layers && !contains(window, all)) {
             while (step < around / 2)
                 step *= 2;
-            window = grown(r, number, parts->seen,
-                           2 * r->pad + 8 + thin_margin(f) + around, step);
+            window = grown(r, number, parts->seen, 2 * r->pad + 8 + thin_margin(f) + around, step);
             window = around_both(window, grown(r, number, parts->bins, 0, step));
         }
         if (is_large(r, number, window))
@@ -284,8 +276,8 @@ static void make_weights(struct rf_frame *f)
 {
     struct rf_made *m = &f->r->made;
 
-    if (rf_cancelled(f->r) || (m->weighed && m->sigma == f->params->sigma &&
-                               m->premultiplied == f->premultiplied))
+    if (rf_cancelled(f->r) ||
+        (m->weighed && m->sigma == f->params->sigma && m->premultiplied == f->premultiplied))
         return;
     m->weighed = true;
     m->premultiplied = f->premultiplied;
@@ -305,8 +297,8 @@ static void find_thin(struct rf_frame *f)
     rf_find_thin(r);
 }
 
-void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
-                   enum rf_need need, bool whole)
+void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
+                   bool whole)
 {
     struct refocus_renderer *r = f->r;
     const bool layers = need == RF_NEED_LAYERS;
@@ -330,8 +322,7 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
     if (!whole) {
-        parts.seen =
-            grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad + RF_CELL, 1);
+        parts.seen = grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad + RF_CELL, 1);
         parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
     if (is_there(f, number, &parts, layers)) {

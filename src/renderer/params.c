@@ -16,14 +16,12 @@ static bool has_round_aperture(const struct refocus_render_params *p)
 
 static bool good_rays(const struct refocus_renderer *r, const struct refocus_render_params *p)
 {
-    return in(p->focus_disparity, 0, 1) &&
-           in(p->max_blur_radius, 0, r->max_blur_radius) &&
-           (p->rays == REFOCUS_RAYS_FULL ||
-            (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
+    return in(p->focus_disparity, 0, 1) && in(p->max_blur_radius, 0, r->max_blur_radius) &&
+           (p->rays == REFOCUS_RAYS_FULL || (p->rays >= 1 && p->rays <= REFOCUS_MAX_RAYS)) &&
            p->blend < RF_BLEND_COUNT && p->sigma >= 1 && p->iterations >= 1 &&
-           p->iterations <= 64 && in(p->highlight_gain, 1, RF_MOST_GAIN) &&
-           p->mirror <= 1 && p->background <= 1 && p->thin <= 1 && p->prefilter <= 1 &&
-           p->reserved == 0 && p->cell >= 1 && p->cell <= 16;
+           p->iterations <= 64 && in(p->highlight_gain, 1, RF_MOST_GAIN) && p->mirror <= 1 &&
+           p->background <= 1 && p->thin <= 1 && p->prefilter <= 1 && p->reserved == 0 &&
+           p->cell >= 1 && p->cell <= 16;
 }
 
 static bool good_scatter(const struct refocus_render_params *p)
@@ -47,18 +45,16 @@ static bool good_ratios(const struct refocus_render_params *p)
 
 static bool good_attention(const struct refocus_render_params *p)
 {
-    return in(p->attention_x, 0, 1) && in(p->attention_y, 0, 1) &&
-           in(p->attention_angle, 0, 170) && in(p->picture_angle, 1, 170) &&
-           in(p->attention_depth, 0, 1);
+    return in(p->attention_x, 0, 1) && in(p->attention_y, 0, 1) && in(p->attention_angle, 0, 170) &&
+           in(p->picture_angle, 1, 170) && in(p->attention_depth, 0, 1);
 }
 
 static bool good_field(const struct refocus_render_params *p)
 {
     return p->field <= REFOCUS_FIELD_PICTURE && in(p->field_x, 0, 1) && in(p->field_y, 0, 1) &&
            in(p->field_disparity, 0, 1) && in(p->field_radius, 0, 4) &&
-           in(p->field_falloff, 1e-3, 4) && in(p->field_angle, -3600, 3600) &&
-           p->layers >= 1 && p->layers <= 8 && p->solver <= REFOCUS_SOLVER_ITERATED &&
-           in(p->conductivity, 0.01, 1) &&
+           in(p->field_falloff, 1e-3, 4) && in(p->field_angle, -3600, 3600) && p->layers >= 1 &&
+           p->layers <= 8 && p->solver <= REFOCUS_SOLVER_ITERATED && in(p->conductivity, 0.01, 1) &&
            (!p->field_map || rf_good_map(p->field_map)) &&
            (p->field != REFOCUS_FIELD_PICTURE || p->field_map);
 }
@@ -96,20 +92,17 @@ static bool takes_any_focus(uint32_t method)
 /* What only sweep can render. */
 static bool has_own_look(const struct refocus_render_params *p)
 {
-    return p->cat_eye > 0 || p->fringe != 0 ||
-           (p->aperture && rf_aperture_has_sides(p->aperture));
+    return p->cat_eye > 0 || p->fringe != 0 || (p->aperture && rf_aperture_has_sides(p->aperture));
 }
 
 static bool good_look(const struct refocus_render_params *p)
 {
     return in(p->grain, 0, 4) && in(p->cat_eye, 0, 0.9f) && in(p->fringe, -0.5, 0.5) &&
            (!has_own_look(p) || p->method == REFOCUS_METHOD_SWEEP) &&
-           !(p->aperture && rf_aperture_has_sides(p->aperture) &&
-             p->rays == REFOCUS_RAYS_FULL);
+           !(p->aperture && rf_aperture_has_sides(p->aperture) && p->rays == REFOCUS_RAYS_FULL);
 }
 
-static bool is_plain_focus(const struct refocus_renderer *r,
-                           const struct refocus_render_params *p)
+static bool is_plain_focus(const struct refocus_renderer *r, const struct refocus_render_params *p)
 {
     struct rf_focus_plan plan;
 
@@ -121,8 +114,7 @@ static bool is_plain_focus(const struct refocus_renderer *r,
 bool rf_good_map(const struct refocus_disparity *map)
 {
     return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
-           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE &&
-           map->height <= REFOCUS_MAX_SIDE &&
+           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE && map->height <= REFOCUS_MAX_SIDE &&
            rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
            (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
 }

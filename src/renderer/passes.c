@@ -122,9 +122,7 @@ static void smooth_rows(const struct rf_frame *f, int step, int band, int worker
     struct refocus_renderer *r = f->r;
     /* from the photo to r->smooth, and from there by way of the background's planes,
      * which are not in use yet */
-    uint16_t *const *in = step == 0   ? r->front.light
-                          : step == 1 ? r->smooth
-                                      : r->behind.light;
+    uint16_t *const *in = step == 0 ? r->front.light : step == 1 ? r->smooth : r->behind.light;
     uint16_t *const *out = step == 1 ? r->behind.light : r->smooth;
 
     if (r->yuv.on)
@@ -154,8 +152,8 @@ static void smooth_band(void *context, int band, int worker)
 static void prefilter(struct rf_frame *f)
 {
     const int largest = f->focus.radius;
-    struct smooth smooth = {
-        .f = f, .steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1};
+    struct smooth smooth = {.f = f,
+                            .steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1};
 
     rf_pool_run(&f->r->pool, smooth_band, &smooth, rf_bands(f->r));
 }

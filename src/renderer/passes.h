@@ -26,16 +26,17 @@ enum rf_need {
 
 /* Make what rendering `region` of photo `number` needs and set the window and
  * f->region; `whole`: of the whole photo. Ends early when cancelled. */
-void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region,
-                   enum rf_need need, bool whole);
+void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
+                   bool whole);
 
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
-float rf_lamp_gain(const struct rf_frame *f); /* once there are: none if they are drawn; of luma what fits */
+float rf_lamp_gain(
+    const struct rf_frame *f); /* once there are: none if they are drawn; of luma what fits */
 void rf_pass_lamps(struct rf_frame *f); /* finds them, in all of the photo in use, once */
 void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
 void rf_pass_smooth(struct rf_frame *f);
-void rf_pass_prefilter(struct rf_frame *f); /* of rf_pass_smooth() the smooth light alone */
+void rf_pass_prefilter(struct rf_frame *f);        /* of rf_pass_smooth() the smooth light alone */
 void rf_pass_mark(struct rf_frame *f, int levels); /* and up the pyramid, but of Y, U and V */
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
 void rf_pass_bright(struct rf_frame *f); /* the light that lamps lost, after the background */

@@ -32,8 +32,7 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
         .settled_stride = r->stride,
         .across = r->taps,
         .down = r->taps + r->width,
-        .colour = {(uint8_t *)r->smooth[0], (uint8_t *)r->smooth[1],
-                   (uint8_t *)r->smooth[2]},
+        .colour = {(uint8_t *)r->smooth[0], (uint8_t *)r->smooth[1], (uint8_t *)r->smooth[2]},
         .colour_stride = r->stride * (ptrdiff_t)sizeof *r->smooth[0],
         .sure = (uint8_t *)r->front.blur,
         .sure_stride = r->stride * (ptrdiff_t)sizeof *r->front.blur,
@@ -77,9 +76,8 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)
         return REFOCUS_ERR_SIZE;
-    if (r->in_place.on &&
-        (disparity->width != photo->width || disparity->height != photo->height ||
-         refocus_format_is_yuv(photo->format)))
+    if (r->in_place.on && (disparity->width != photo->width || disparity->height != photo->height ||
+                           refocus_format_is_yuv(photo->format)))
         return REFOCUS_ERR_UNSUPPORTED;
     own = &r->photo[0];
     own->width = photo->width;

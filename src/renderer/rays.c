@@ -84,16 +84,14 @@ static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
         const int shared = rf_shared_rays(set, n, end = chunk_end(set, n));
 
         memcpy(ray + n, spare + chosen, (size_t)shared * sizeof *ray);
-        memcpy(ray + n + shared, spare + others,
-               (size_t)(end - n - shared) * sizeof *ray);
+        memcpy(ray + n + shared, spare + others, (size_t)(end - n - shared) * sizeof *ray);
         chosen += shared;
         others += end - n - shared;
     }
 }
 
 /* Coordinates of a set's rays apart from each other; returns where memory goes on. */
-static struct refocus_ray *part_coordinates(struct rf_ray_set *set,
-                                            struct refocus_ray *next)
+static struct refocus_ray *part_coordinates(struct rf_ray_set *set, struct refocus_ray *next)
 {
     enum { EACH = sizeof *next / sizeof(int16_t) };
     int16_t *const u = (int16_t *)(void *)next, *const v = u + set->count;
@@ -107,8 +105,8 @@ static struct refocus_ray *part_coordinates(struct rf_ray_set *set,
     return next + (2 * set->count + EACH - 1) / EACH;
 }
 
-void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture,
-                  int rays, bool denser, float max_blur_radius)
+void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *aperture, int rays,
+                  bool denser, float max_blur_radius)
 {
     struct refocus_ray *next = r->rays;
     int sets = 0;
@@ -116,8 +114,7 @@ void rf_make_rays(struct refocus_renderer *r, const struct refocus_aperture *ape
     if (rays != REFOCUS_RAYS_FULL)
         max_blur_radius = 0; /* sets of N do not depend on it */
     if (r->sets && r->set_aperture == aperture->id && r->set_rays == rays &&
-        r->set_denser == denser && r->set_blur == max_blur_radius &&
-        r->set_shared == r->yuv.on)
+        r->set_denser == denser && r->set_blur == max_blur_radius && r->set_shared == r->yuv.on)
         return;
     r->sets = 0;
     if (rays == REFOCUS_RAYS_FULL) {

@@ -35,8 +35,8 @@ static void reduce_row(const struct job *job, int y)
         const int x0 = 2 * x, x1 = x0 + 1 < from->width ? x0 + 1 : x0;
         const ptrdiff_t at[4] = {y0 * from->stride + x0, y0 * from->stride + x1,
                                  y1 * from->stride + x0, y1 * from->stride + x1};
-        const int d[4] = {from->disparity[at[0]], from->disparity[at[1]],
-                          from->disparity[at[2]], from->disparity[at[3]]};
+        const int d[4] = {from->disparity[at[0]], from->disparity[at[1]], from->disparity[at[2]],
+                          from->disparity[at[3]]};
         const ptrdiff_t out = y * to->stride + x;
         const int own = second(d);
         uint32_t light[3] = {0, 0, 0}, disparity = 0, n = 0;
@@ -49,15 +49,12 @@ static void reduce_row(const struct job *job, int y)
             for (int c = 0; c < 3; c++) {
                 const uint16_t v = from->light[c][at[i]];
 
-                light[c] += blend == REFOCUS_BLEND_LINEAR
-                                ? v
-                                : linear->to_light[to_code[4 * v]];
+                light[c] += blend == REFOCUS_BLEND_LINEAR ? v : linear->to_light[to_code[4 * v]];
             }
         }
         to->disparity[out] = (uint16_t)((2 * disparity + n) / (2 * n));
         for (int c = 0; c < 3; c++)
-            to->light[c][out] =
-                linear->to_light[linear->to_code[(8 * light[c] + n) / (2 * n)]];
+            to->light[c][out] = linear->to_light[linear->to_code[(8 * light[c] + n) / (2 * n)]];
         to->alpha[(ptrdiff_t)y * to->width + x] =
             (uint8_t)((from->alpha[(ptrdiff_t)y0 * from->width + x0] +
                        from->alpha[(ptrdiff_t)y0 * from->width + x1] +

@@ -19,40 +19,32 @@ struct method {
     const char *name, *summary;
     rf_tile_fn *tile;   /* called for each tile, or */
     rf_frame_fn *frame; /* once for the whole frame */
-    bool layers; /* it needs the pre-filter, the bins of tiles and the background */
-    bool exact;  /* it works in double precision */
+    bool layers;        /* it needs the pre-filter, the bins of tiles and the background */
+    bool exact;         /* it works in double precision */
 };
 
 static const struct method methods[REFOCUS_METHOD_COUNT] = {
-    [REFOCUS_METHOD_SWEEP] = {"sweep",
-                              "two layers, front-most hit, swept over disparities",
+    [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
                               .tile = rf_sweep_tile, .layers = true},
-    [REFOCUS_METHOD_SEARCH] = {"search",
-                               "randomized intersection search, Yang et al. 2016",
+    [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
                                .tile = rf_search_tile},
-    [REFOCUS_METHOD_RAYTRACE] = {"raytrace",
-                                 "full image-space ray tracing, Yang et al. 2016; slow",
+    [REFOCUS_METHOD_RAYTRACE] = {"raytrace", "full image-space ray tracing, Yang et al. 2016; slow",
                                  .tile = rf_raytrace_tile, .exact = true},
-    [REFOCUS_METHOD_JITTERED] =
-        {"jittered", "the same for a ray of each cell of the mask; slow, grainy",
-         .tile = rf_jittered_tile, .exact = true},
-    [REFOCUS_METHOD_LIGHTFIELD] =
-        {"lightfield", "views from all over the aperture, warped and added up",
-         .frame = rf_lightfield_frame},
-    [REFOCUS_METHOD_BLUR] = {"blur",
-                             "each pixel blurred by its own circle of confusion",
+    [REFOCUS_METHOD_JITTERED] = {"jittered",
+                                 "the same for a ray of each cell of the mask; slow, grainy",
+                                 .tile = rf_jittered_tile, .exact = true},
+    [REFOCUS_METHOD_LIGHTFIELD] = {"lightfield",
+                                   "views from all over the aperture, warped and added up",
+                                   .frame = rf_lightfield_frame},
+    [REFOCUS_METHOD_BLUR] = {"blur", "each pixel blurred by its own circle of confusion",
                              .tile = rf_gather_tile},
-    [REFOCUS_METHOD_SCATTER] = {"scatter",
-                                "each pixel spread over its circle, Potmesil 1981",
+    [REFOCUS_METHOD_SCATTER] = {"scatter", "each pixel spread over its circle, Potmesil 1981",
                                 .frame = rf_scatter_frame},
-    [REFOCUS_METHOD_FOVEATED] = {"foveated",
-                                 "exact at the centre of attention, Mulder 2000",
+    [REFOCUS_METHOD_FOVEATED] = {"foveated", "exact at the centre of attention, Mulder 2000",
                                  .frame = rf_foveated_frame},
-    [REFOCUS_METHOD_INTERPOLATED] = {"interpolated",
-                                     "between three pictures, NVIDIA 2004; quick",
+    [REFOCUS_METHOD_INTERPOLATED] = {"interpolated", "between three pictures, NVIDIA 2004; quick",
                                      .frame = rf_interpolated_frame},
-    [REFOCUS_METHOD_DIFFUSION] = {"diffusion",
-                                  "heat through a field of blur, Kosloff 2007",
+    [REFOCUS_METHOD_DIFFUSION] = {"diffusion", "heat through a field of blur, Kosloff 2007",
                                   .frame = rf_diffusion_frame},
 };
 
@@ -67,20 +59,18 @@ const char *refocus_method_summary(uint32_t method)
 }
 
 /* The part of a photo to render; false if it is not inside. */
-static bool region_of(const struct refocus_renderer *r,
-                      const struct refocus_render_params *p, int number,
-                      struct rf_rect *region)
+static bool region_of(const struct refocus_renderer *r, const struct refocus_render_params *p,
+                      int number, struct rf_rect *region)
 {
     const int width = rf_reduced(r->photo[0].width, number);
     const int height = rf_reduced(r->photo[0].height, number);
-    const bool whole =
-        !p->region_x && !p->region_y && !p->region_width && !p->region_height;
+    const bool whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
     const int w = whole ? width : p->region_width;
     const int h = whole ? height : p->region_height;
 
     *region = (struct rf_rect){p->region_x, p->region_y, 0, 0};
-    if (p->region_x < 0 || p->region_y < 0 || w < 1 || h < 1 ||
-        w > width - p->region_x || h > height - p->region_y)
+    if (p->region_x < 0 || p->region_y < 0 || w < 1 || h < 1 || w > width - p->region_x ||
+        h > height - p->region_y)
         return false;
     region->x1 = region->x0 + w;
     region->y1 = region->y0 + h;
@@ -90,8 +80,7 @@ static bool region_of(const struct refocus_renderer *r,
 static void tile_item(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
-    const int tx = f->first_tx + item % f->count_tx,
-              ty = f->first_ty + item / f->count_tx;
+    const int tx = f->first_tx + item % f->count_tx, ty = f->first_ty + item / f->count_tx;
     const struct rf_rect rect = {
         rf_larger(tx * RF_TILE, f->region.x0),
         rf_larger(ty * RF_TILE, f->region.y0),
@@ -147,9 +136,7 @@ static int veil_blur(const struct refocus_render_params *p)
     const int rays = p->rays == REFOCUS_RAYS_FULL ? 64 : p->rays;
     const double blur = 256 * 1.8 * sqrt(rays / 3.14159265358979);
 
-    return blur > INT16_MAX      ? INT16_MAX
-           : blur < RF_VEIL_BLUR ? RF_VEIL_BLUR
-                                 : (int)blur;
+    return blur > INT16_MAX ? INT16_MAX : blur < RF_VEIL_BLUR ? RF_VEIL_BLUR : (int)blur;
 }
 
 /* Whether what is thin is found. */
@@ -207,9 +194,7 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     const struct method *method = &methods[f->params->method];
     const bool pinhole = f->params->max_blur_radius <= 0;
     const bool layers = method->layers || f->params->background;
-    const enum rf_need need = pinhole  ? RF_NEED_LIGHT
-                              : layers ? RF_NEED_LAYERS
-                                       : RF_NEED_BLUR;
+    const enum rf_need need = pinhole ? RF_NEED_LIGHT : layers ? RF_NEED_LAYERS : RF_NEED_BLUR;
 
     r->last_rims = layers;
     if (!pinhole)
@@ -259,8 +244,7 @@ static struct refocus_render_params reduced(const struct refocus_render_params *
     return own;
 }
 
-int refocus_render(struct refocus_renderer *r,
-                   const struct refocus_render_params *params,
+int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *params,
                    const struct refocus_image *out)
 {
     struct rf_frame f = {.r = r, .out = out};

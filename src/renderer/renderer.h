@@ -23,8 +23,8 @@
 #include "thin/veil.h"
 
 enum {
-    RF_GROUP = 4,     /* planes that lie together */
-    RF_LEVELS = 18,   /* of the pyramid that fills the background, level 0 not counted */
+    RF_GROUP = 4,        /* planes that lie together */
+    RF_LEVELS = 18,      /* of the pyramid that fills the background, level 0 not counted */
     RF_RAY_CLASSES = 12, /* a preset's own set and smaller ones; denser ones for lamps */
     RF_FULL_RAYS = 255 * 255,
 };
@@ -35,7 +35,7 @@ enum {
 struct rf_ray_set {
     struct refocus_ray *ray;
     struct refocus_ray *before; /* those before the focus: the same, or as many others */
-    const int16_t *u, *v; /* of those behind, by themselves; NULL of a full mask */
+    const int16_t *u, *v;       /* of those behind, by themselves; NULL of a full mask */
     int count;
     int shared; /* by chroma; see rf_shared_rays() */
     uint64_t total_weight;
@@ -61,15 +61,15 @@ enum { RF_PHOTOS = 4 };
 #define RF_NO_BLEND UINT32_MAX
 
 struct rf_photo {
-    int width, height; /* pixels; 0: none prepared */
-    int pad;           /* pixels beyond each side that may be read */
-    ptrdiff_t stride;  /* elements from row to row, of all padded planes */
-    ptrdiff_t pitch;   /* elements between the planes of a group; see layout.c */
-    uint16_t *group;     /* of four planes: R, G, B, disparity */
+    int width, height;              /* pixels; 0: none prepared */
+    int pad;                        /* pixels beyond each side that may be read */
+    ptrdiff_t stride;               /* elements from row to row, of all padded planes */
+    ptrdiff_t pitch;                /* elements between the planes of a group; see layout.c */
+    uint16_t *group;                /* of four planes: R, G, B, disparity */
     uint16_t *light[3], *disparity; /* pixel (0, 0); not in strip mode */
-    uint8_t *alpha;      /* unpadded, width a row */
-    uint8_t *band_blend; /* enum refocus_blend that the light of a band of rows is in */
-    uint32_t capacity;   /* of rims */
+    uint8_t *alpha;                 /* unpadded, width a row */
+    uint8_t *band_blend;            /* enum refocus_blend that the light of a band of rows is in */
+    uint32_t capacity;              /* of rims */
     struct rf_rim *rim;
     uint32_t rims;
     struct rf_highlights highlights[RF_LAMP_PARTS];
@@ -86,18 +86,18 @@ struct rf_made {
     bool ranges; /* its ranges; before, its cells are where the background's blur will be */
     bool smooth; /* the pre-filtered light */
     enum rf_bright bright; /* with light given back to lamps, */
-    bool spread; /* the light of lamps is in it */
-    bool behind; /* the background layer, */
-    bool weighed; /* but with weights of `sigma` in place of its blur, */
-    bool premultiplied; /* and the light of both layers times them */
+    bool spread;           /* the light of lamps is in it */
+    bool behind;           /* the background layer, */
+    bool weighed;          /* but with weights of `sigma` in place of its blur, */
+    bool premultiplied;    /* and the light of both layers times them */
     float sigma;
-    int rays;    /* that lamps were widened for */
-    bool half;   /* photo[1], which lies in memory of the background layer of photo[0] */
+    int rays;  /* that lamps were widened for */
+    bool half; /* photo[1], which lies in memory of the background layer of photo[0] */
     int photo;
     struct rf_rect window; /* of that photo, to which all of it is limited */
     struct rf_rect exact;  /* where it is as if made for the whole photo */
     struct rf_focus_plan plan;
-    int shift; /* of the bins */
+    int shift;     /* of the bins */
     uint32_t thin; /* as what thin things were taken apart, made_thin(), */
     int veil_blur; /* and from where on */
     uint32_t blend;
@@ -161,21 +161,21 @@ struct rf_bins {
  * front.light[1] and [2] are luminance, too, for those who ask for the brightest.
  */
 struct rf_yuv {
-    bool on;            /* else it is of R, G and B, and the rest is not valid */
-    int down;           /* rows of the photo to one of chroma: 1 << down */
+    bool on;                       /* else it is of R, G and B, and the rest is not valid */
+    int down;                      /* rows of the photo to one of chroma: 1 << down */
     uint32_t matrix, range, blend; /* that curve is for */
     bool curve_made;
     struct rf_yuv_curve curve;
 
     /* Of the window, by rf_yuv_use(). */
-    int width, height;  /* samples of chroma */
-    uint16_t *light;    /* of the photo, */
-    uint16_t *smooth;   /* pre-filtered */
-    uint16_t *behind;   /* and of the background */
+    int width, height; /* samples of chroma */
+    uint16_t *light;   /* of the photo, */
+    uint16_t *smooth;  /* pre-filtered */
+    uint16_t *behind;  /* and of the background */
     int16_t *blur;
-    uint16_t *weight;   /* eq. 5, of luma; in the background's light[2] */
-    uint8_t *y;         /* y_stride a row */
-    uint8_t *uv;        /* 2 width a row, rows uv_stride apart */
+    uint16_t *weight; /* eq. 5, of luma; in the background's light[2] */
+    uint8_t *y;       /* y_stride a row */
+    uint8_t *uv;      /* 2 width a row, rows uv_stride apart */
     ptrdiff_t y_stride, uv_stride;
 };
 
@@ -200,8 +200,8 @@ struct refocus_renderer {
     struct rf_made made;
     struct rf_in_place in_place;
     struct rf_focus_plan last_plan; /* of the last render, in pixels of photo[0], */
-    bool last_rims;             /* with the rims, */
-    bool blurred;               /* if there was one */
+    bool last_rims;                 /* with the rims, */
+    bool blurred;                   /* if there was one */
 
     /*
      * The window: the part of one of the photos that passes work on, set by rf_use(). What
@@ -211,13 +211,13 @@ struct refocus_renderer {
     int used; /* of r->photo */
     int origin_x, origin_y;
     int width, height;
-    int pad;             /* pixels beyond each side that may be read */
+    int pad;               /* pixels beyond each side that may be read */
     struct rf_rect border; /* pixels beyond each side that rf_extend_rows() sets */
-    ptrdiff_t stride;    /* elements from row to row, of all padded planes */
-    ptrdiff_t pitch;     /* elements between the planes of a group; see layout.c */
-    uint32_t blend;      /* that the light planes are in */
-    uint16_t *disparity; /* padded, its border is not set */
-    uint8_t *alpha;      /* alpha_stride a row */
+    ptrdiff_t stride;      /* elements from row to row, of all padded planes */
+    ptrdiff_t pitch;       /* elements between the planes of a group; see layout.c */
+    uint32_t blend;        /* that the light planes are in */
+    uint16_t *disparity;   /* padded, its border is not set */
+    uint8_t *alpha;        /* alpha_stride a row */
     ptrdiff_t alpha_stride;
     struct rf_layer front;
     struct rf_yuv yuv;
@@ -232,13 +232,13 @@ struct refocus_renderer {
     int tiles_x, tiles_y;
     struct rf_bins *bins; /* of each tile */
 
-    struct rf_taps *taps; /* of the depth upsampler: of columns, then of rows */
+    struct rf_taps *taps;  /* of the depth upsampler: of columns, then of rows */
     struct rf_span *spans; /* and its spans */
-    uint16_t *scratch;    /* rows of each worker; see rf_scratch() */
+    uint16_t *scratch;     /* rows of each worker; see rf_scratch() */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
-    bool keep_codes;           /* which may be used */
+    bool keep_codes;        /* which may be used */
     float weight_sigma;     /* that it was made for, in weight_blend */
     uint32_t weight_blend;
 
@@ -253,16 +253,16 @@ struct refocus_renderer {
     uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
     uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
 
-    struct refocus_ray *rays;    /* memory of all sets */
+    struct refocus_ray *rays; /* memory of all sets */
     struct rf_ray_set set[RF_RAY_CLASSES];
-    int sets;               /* how many are filled, 0: none yet */
-    int preset;             /* the one that has as many rays as were asked for */
-    uint64_t set_aperture;  /* what they were made for */
+    int sets;              /* how many are filled, 0: none yet */
+    int preset;            /* the one that has as many rays as were asked for */
+    uint64_t set_aperture; /* what they were made for */
     int set_rays;
     bool set_denser;
     bool set_shared; /* chroma's rays come first */
     float set_blur;
-    struct rf_cat_eye cat_eye; /* made when it is first asked for; */
+    struct rf_cat_eye cat_eye;     /* made when it is first asked for; */
     struct rf_cat_shape cat_shape; /* that of the last aperture with one */
 };
 

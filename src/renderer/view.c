@@ -51,16 +51,15 @@ static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t p
     for (uint32_t i = 0; i < rims; i++) {
         const struct rf_rim *rim = &photo->rim[i];
 
-        rf_focus_row(&r->last_plan, blur + rim->y * pitch + rim->x, &rim->disparity, rim->x,
-                     rim->y, 1);
+        rf_focus_row(&r->last_plan, blur + rim->y * pitch + rim->x, &rim->disparity, rim->x, rim->y,
+                     1);
     }
     for (int y = 0; y < photo->height; y++)
         for (int x = 0; x < photo->width; x++)
             out[y * pitch + x] = (uint16_t)abs(blur[y * pitch + x]);
 }
 
-int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out,
-                     ptrdiff_t stride)
+int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out, ptrdiff_t stride)
 {
     const struct rf_photo *photo;
 

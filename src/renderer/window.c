@@ -7,11 +7,9 @@
 static uint16_t *origin(const struct refocus_renderer *r, const struct rf_photo *photo,
                         uint16_t *group)
 {
-    if (r->in_place
-            .on) /* the border, or where the photo goes on nothing but spare rows */
+    if (r->in_place.on) /* the border, or where the photo goes on nothing but spare rows */
         return group + (RF_SPARE_ROWS + r->border.y0) * photo->stride + r->border.x0;
-    return group + (photo->pad + r->origin_y) * photo->stride + photo->pad +
-           r->origin_x;
+    return group + (photo->pad + r->origin_y) * photo->stride + photo->pad + r->origin_x;
 }
 
 static void place_planes(struct refocus_renderer *r, const struct rf_photo *photo)

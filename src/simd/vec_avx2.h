@@ -107,8 +107,7 @@ static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
 
 static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
 {
-    return _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi16(0xff)),
-                           _mm256_slli_epi16(b, 8));
+    return _mm256_or_si256(_mm256_and_si256(a, _mm256_set1_epi16(0xff)), _mm256_slli_epi16(b, 8));
 }
 
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
@@ -123,8 +122,7 @@ static inline int vec_u16_any(vec_u16 a)
 
 static inline uint16_t vec_u16_greatest(vec_u16 a)
 {
-    const __m128i all =
-        _mm_max_epu16(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
+    const __m128i all = _mm_max_epu16(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
 
     return (uint16_t)~_mm_extract_epi16(_mm_minpos_epu16(_mm_xor_si128(all, _mm_set1_epi8(-1))), 0);
 }
@@ -202,8 +200,8 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
 }
 
 /* Both halves of registers unpack and pack alike: lanes stay where they were. */
-static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                 const int16_t share[4], const int shift)
+static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d, const int16_t share[4],
+                                 const int shift)
 {
     const __m256i sign = _mm256_set1_epi16(-32768), half = _mm256_set1_epi32(1 << (shift - 1));
     const __m256i ab = _mm256_set1_epi32(vec_pair(share[0], share[1]));
@@ -229,8 +227,8 @@ static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t wi
     const __m256i within =
         _mm256_cmpeq_epi16(_mm256_subs_epu16(above, vec_u16_set(width)), _mm256_setzero_si256());
 
-    return (uint32_t)_mm_movemask_epi8(_mm_packs_epi16(_mm256_castsi256_si128(within),
-                                                       _mm256_extracti128_si256(within, 1)));
+    return (uint32_t)_mm_movemask_epi8(
+        _mm_packs_epi16(_mm256_castsi256_si128(within), _mm256_extracti128_si256(within, 1)));
 }
 
 static inline uint32_t vec_within32(const uint16_t *p, __m256i low, __m256i width)
@@ -379,13 +377,11 @@ static inline __m256i vec_s32_add_pairs(__m256i sum, __m256i a, __m256i b)
 #endif
 }
 
-static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
-                                           vec_u16 d)
+static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d)
 {
-    sum.low = vec_s32_add_pairs(sum.low, _mm256_unpacklo_epi16(a, c),
-                                _mm256_unpacklo_epi16(b, d));
-    sum.high = vec_s32_add_pairs(sum.high, _mm256_unpackhi_epi16(a, c),
-                                 _mm256_unpackhi_epi16(b, d));
+    sum.low = vec_s32_add_pairs(sum.low, _mm256_unpacklo_epi16(a, c), _mm256_unpacklo_epi16(b, d));
+    sum.high =
+        vec_s32_add_pairs(sum.high, _mm256_unpackhi_epi16(a, c), _mm256_unpackhi_epi16(b, d));
     return sum;
 }
 

@@ -183,8 +183,7 @@ static inline vec_u16 vec_s16_apart(vec_u16 a, vec_u16 b)
 
 static inline vec_u16 vec_s16_scale(vec_u16 a, vec_u16 b)
 {
-    return vreinterpretq_u16_s16(
-        vqrdmulhq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b)));
+    return vreinterpretq_u16_s16(vqrdmulhq_s16(vreinterpretq_s16_u16(a), vreinterpretq_s16_u16(b)));
 }
 
 static inline vec_u16 vec_s16_max(vec_u16 a, vec_u16 b)
@@ -246,10 +245,9 @@ static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
                                      const int16_t share[4])
 {
     const uint16x8_t sign = vdupq_n_u16(0x8000);
-    const int16x8_t p[4] = {vreinterpretq_s16_u16(veorq_u16(a, sign)),
-                            vreinterpretq_s16_u16(veorq_u16(b, sign)),
-                            vreinterpretq_s16_u16(veorq_u16(c, sign)),
-                            vreinterpretq_s16_u16(veorq_u16(d, sign))};
+    const int16x8_t p[4] = {
+        vreinterpretq_s16_u16(veorq_u16(a, sign)), vreinterpretq_s16_u16(veorq_u16(b, sign)),
+        vreinterpretq_s16_u16(veorq_u16(c, sign)), vreinterpretq_s16_u16(veorq_u16(d, sign))};
     int32x4_t low = vmull_n_s16(vget_low_s16(p[0]), share[0]);
     int32x4_t high = vmull_n_s16(vget_high_s16(p[0]), share[0]);
 
@@ -257,8 +255,8 @@ static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
         low = vmlal_n_s16(low, vget_low_s16(p[k]), share[k]);
         high = vmlal_n_s16(high, vget_high_s16(p[k]), share[k]);
     }
-    return veorq_u16(vreinterpretq_u16_s16(vcombine_s16(vqrshrn_n_s32(low, 14),
-                                                        vqrshrn_n_s32(high, 14))), sign);
+    return veorq_u16(
+        vreinterpretq_u16_s16(vcombine_s16(vqrshrn_n_s32(low, 14), vqrshrn_n_s32(high, 14))), sign);
 }
 
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
@@ -412,8 +410,7 @@ static inline vec_u32 vec_u32_zero(void)
     return (vec_u32){vdupq_n_u32(0), vdupq_n_u32(0)};
 }
 
-static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
-                                           vec_u16 d)
+static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d)
 {
     sum.low = vmlal_u16(sum.low, vget_low_u16(a), vget_low_u16(b));
     sum.high = vmlal_u16(sum.high, vget_high_u16(a), vget_high_u16(b));

@@ -107,8 +107,7 @@ static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
 
 static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
 {
-    return _mm_or_si128(_mm_and_si128(a, _mm_set1_epi16(0xff)),
-                           _mm_slli_epi16(b, 8));
+    return _mm_or_si128(_mm_and_si128(a, _mm_set1_epi16(0xff)), _mm_slli_epi16(b, 8));
 }
 
 static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
@@ -191,8 +190,8 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
     return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
 }
 
-static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                 const int16_t share[4], const int shift)
+static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d, const int16_t share[4],
+                                 const int shift)
 {
     const __m128i sign = _mm_set1_epi16(-32768), half = _mm_set1_epi32(1 << (shift - 1));
     const __m128i ab = _mm_set1_epi32(vec_pair(share[0], share[1]));
@@ -345,13 +344,12 @@ static inline vec_u32 vec_u32_zero(void)
     return (vec_u32){_mm_setzero_si128(), _mm_setzero_si128()};
 }
 
-static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c,
-                                           vec_u16 d)
+static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d)
 {
-    sum.low = _mm_add_epi32(
-        sum.low, _mm_madd_epi16(_mm_unpacklo_epi16(a, c), _mm_unpacklo_epi16(b, d)));
-    sum.high = _mm_add_epi32(
-        sum.high, _mm_madd_epi16(_mm_unpackhi_epi16(a, c), _mm_unpackhi_epi16(b, d)));
+    sum.low =
+        _mm_add_epi32(sum.low, _mm_madd_epi16(_mm_unpacklo_epi16(a, c), _mm_unpacklo_epi16(b, d)));
+    sum.high =
+        _mm_add_epi32(sum.high, _mm_madd_epi16(_mm_unpackhi_epi16(a, c), _mm_unpackhi_epi16(b, d)));
     return sum;
 }
 

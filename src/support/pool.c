@@ -31,8 +31,8 @@ static int take_run(struct rf_pool *pool, int *end)
         if (left <= 0)
             return *end = pool->count;
         n = left > shares ? left / shares : 1;
-    } while (!atomic_compare_exchange_weak_explicit(
-        &pool->next, &first, first + n, memory_order_relaxed, memory_order_relaxed));
+    } while (!atomic_compare_exchange_weak_explicit(&pool->next, &first, first + n,
+                                                    memory_order_relaxed, memory_order_relaxed));
     *end = first + n;
     return first;
 }
@@ -87,8 +87,8 @@ static bool nobody_in(unsigned state)
 
 /* To be woken takes 50 us and more, about as long as a small loop: stay awake for a
  * while. */
-static bool spin(struct rf_pool *pool,
-                 bool (*is_over)(struct rf_pool *pool, unsigned seen), unsigned seen)
+static bool spin(struct rf_pool *pool, bool (*is_over)(struct rf_pool *pool, unsigned seen),
+                 unsigned seen)
 {
     int64_t end;
 
@@ -147,8 +147,7 @@ static bool join_loop(struct rf_pool *pool, unsigned *seen)
 
 static void leave_loop(struct rf_pool *pool)
 {
-    if ((atomic_fetch_sub(&pool->state, 1) & (WORKERS | OPEN)) == 1 &&
-        atomic_load(&pool->waits)) {
+    if ((atomic_fetch_sub(&pool->state, 1) & (WORKERS | OPEN)) == 1 && atomic_load(&pool->waits)) {
         pthread_mutex_lock(&pool->lock);
         pthread_cond_signal(&pool->done);
         pthread_mutex_unlock(&pool->lock);
@@ -173,8 +172,7 @@ static void *thread_main(void *argument)
 
 static void open_loop(struct rf_pool *pool)
 {
-    atomic_exchange(&pool->state,
-                    ((atomic_load(&pool->state) & ~OPEN) + LOOP) | OPEN);
+    atomic_exchange(&pool->state, ((atomic_load(&pool->state) & ~OPEN) + LOOP) | OPEN);
     if (atomic_load(&pool->sleepers) > 0) {
         pthread_mutex_lock(&pool->lock);
         pthread_cond_broadcast(&pool->wake);
@@ -184,8 +182,7 @@ static void open_loop(struct rf_pool *pool)
 
 static void close_loop(struct rf_pool *pool)
 {
-    if (nobody_in(atomic_fetch_and(&pool->state, ~(unsigned)OPEN)) ||
-        spin(pool, is_left, 0))
+    if (nobody_in(atomic_fetch_and(&pool->state, ~(unsigned)OPEN)) || spin(pool, is_left, 0))
         return;
     pthread_mutex_lock(&pool->lock);
     atomic_exchange(&pool->waits, true); /* as with sleepers */
@@ -208,8 +205,8 @@ static void join(struct rf_pool *pool, int created)
     pthread_mutex_destroy(&pool->lock);
 }
 
-int rf_pool_start(struct rf_pool *pool, int threads,
-                  const struct refocus_parallel *parallel, struct rf_run *run)
+int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parallel *parallel,
+                  struct rf_run *run)
 {
     int created = 0;
 

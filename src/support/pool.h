@@ -65,8 +65,8 @@ struct rf_pool {
 /* Starts threads of its own, or none where the caller's parallel_for is to be used
  * (NULL or empty: it is not). Returns REFOCUS_OK or REFOCUS_ERR_THREAD, then with
  * nothing left behind. */
-int rf_pool_start(struct rf_pool *pool, int threads,
-                  const struct refocus_parallel *parallel, struct rf_run *run);
+int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parallel *parallel,
+                  struct rf_run *run);
 void rf_pool_end(struct rf_pool *pool);
 
 /* Returns when all items are done, or those under way once the run is cancelled. */

@@ -32,8 +32,7 @@ static void find_band(void *context, int band, int worker)
         const ptrdiff_t at = y * r->stride + x;
         const struct rf_thin_tile tile = {
             .disparity = r->disparity + at,
-            .light = {r->front.light[0] + at, r->front.light[1] + at,
-                      r->front.light[2] + at},
+            .light = {r->front.light[0] + at, r->front.light[1] + at, r->front.light[2] + at},
             .stride = r->stride,
             .left = x,
             .above = y,
@@ -41,8 +40,7 @@ static void find_band(void *context, int band, int worker)
             .below = r->height - y,
         };
         const uint64_t room = capacity - count;
-        const int found =
-            r->kernels.find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
+        const int found = r->kernels.find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
 
         for (int i = 0; i < found; i++)
             rf_tell_strand(r, &thin[count + (uint32_t)i], tx, band);

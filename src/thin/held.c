@@ -49,8 +49,7 @@ void rf_choose_held(const struct rf_frame *f, int tx, int ty, struct rf_apart *a
 }
 
 /* The light in the list is F, that in the planes the photo's: alpha N = C - (1 - alpha) F. */
-void rf_lay_held(const struct rf_frame *f, int tx, int ty,
-                 uint16_t mean[3][RF_TILE * RF_TILE])
+void rf_lay_held(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][RF_TILE * RF_TILE])
 {
     const struct refocus_renderer *r = f->r;
     const ptrdiff_t tile = ty * RF_TILE * r->stride + tx * RF_TILE;
@@ -70,8 +69,7 @@ void rf_lay_held(const struct rf_frame *f, int tx, int ty,
             const int light = 4 * r->front.light[c][at] +
                               (left * (mean[c][thin->at] - 4 * thin->light[c]) + 127) / 255;
 
-            mean[c][thin->at] =
-                (uint16_t)(light < 0 ? 0 : light < UINT16_MAX ? light : UINT16_MAX);
+            mean[c][thin->at] = (uint16_t)(light < 0 ? 0 : light < UINT16_MAX ? light : UINT16_MAX);
         }
     }
 }

@@ -22,8 +22,7 @@ int rf_thin_blur(const struct rf_frame *f, uint16_t disparity, int x, int y)
 
     if (f->plan.plain)
         return plain_blur(f->plan.focus, disparity);
-    rf_focus_row(&f->plan, &blur, &disparity, f->r->origin_x + x, f->r->origin_y + y,
-                 1);
+    rf_focus_row(&f->plan, &blur, &disparity, f->r->origin_x + x, f->r->origin_y + y, 1);
     return blur;
 }
 

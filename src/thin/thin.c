@@ -12,8 +12,7 @@
 
 enum { CELLS = RF_TILE / RF_CELL };
 
-const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx,
-                                         int ty)
+const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty)
 {
     const struct rf_photo *photo = &r->photo[r->used];
     const int row = ty + r->origin_y / RF_TILE, column = tx + r->origin_x / RF_TILE;
@@ -22,16 +21,14 @@ const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int t
     return &photo->thin.run[(size_t)row * across + column];
 }
 
-struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
-                           uint32_t *count)
+struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty, uint32_t *count)
 {
     const struct rf_photo *photo = &r->photo[r->used];
     const struct rf_thin_run *run = rf_thin_run_of(r, tx, ty);
     const int row = ty + r->origin_y / RF_TILE;
 
     *count = run->count;
-    return photo->thin.pixel + (uint64_t)row * rf_thin_capacity(photo->width) +
-           run->first;
+    return photo->thin.pixel + (uint64_t)row * rf_thin_capacity(photo->width) + run->first;
 }
 
 struct rf_apart *rf_apart_of(const struct refocus_renderer *r, int tx, int ty)
@@ -192,8 +189,7 @@ void rf_take_thin_apart(struct rf_frame *f)
         rf_veil_draw(f);
 }
 
-void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
-                    uint16_t mean[3][RF_TILE * RF_TILE])
+void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][RF_TILE * RF_TILE])
 {
     const struct refocus_renderer *r = f->r;
     const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
@@ -203,8 +199,8 @@ void rf_sharp_means(const struct rf_frame *f, int tx, int ty,
 
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < RF_TILE * RF_TILE; i++)
-            mean[c][i] = (uint16_t)(4 * r->front.light[c][at + i / RF_TILE * r->stride +
-                                                          i % RF_TILE]);
+            mean[c][i] =
+                (uint16_t)(4 * r->front.light[c][at + i / RF_TILE * r->stride + i % RF_TILE]);
     for (uint32_t i = 0; i < count; i++) {
         if (!is_apart(apart, i))
             continue;
@@ -217,8 +213,7 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
 {
     const struct refocus_renderer *r = f->r;
     const ptrdiff_t stride = r->stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
-    uint16_t *const red = r->front.light[0] + tile,
-                    *const green = r->front.light[1] + tile,
+    uint16_t *const red = r->front.light[0] + tile, *const green = r->front.light[1] + tile,
                     *const blue = r->front.light[2] + tile;
     const struct rf_apart *apart = rf_apart_of(r, tx, ty);
     uint32_t count;

@@ -43,8 +43,8 @@ static inline uint64_t rf_thin_capacity(int width)
 }
 
 struct rf_thin_list {
-    struct rf_thin *pixel; /* rf_thin_capacity() for each row of tiles; while the planes
-                              have F, the light of each is that of the photo */
+    struct rf_thin *pixel;   /* rf_thin_capacity() for each row of tiles; while the planes
+                                have F, the light of each is that of the photo */
     struct rf_thin_run *run; /* of each tile */
     uint32_t blend;          /* that they were found in, or RF_NO_BLEND */
 };
@@ -65,10 +65,8 @@ void rf_find_thin(struct refocus_renderer *r);
 void rf_tell_strand(const struct refocus_renderer *r, struct rf_thin *thin, int tx, int ty);
 
 /* Those of a tile of the window. */
-const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx,
-                                         int ty);
-struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty,
-                           uint32_t *count);
+const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty);
+struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty, uint32_t *count);
 
 /*
  * What is thin and in focus, hair before something far, is held: its shares of the pixels at its

@@ -15,8 +15,7 @@ struct sum {
 };
 
 /* What is thin in a tile, by cells. */
-static void add_tile(const struct rf_frame *f, int tx, int ty,
-                     struct sum sum[CELLS * CELLS])
+static void add_tile(const struct rf_frame *f, int tx, int ty, struct sum sum[CELLS * CELLS])
 {
     const struct refocus_renderer *r = f->r;
     uint32_t count;
@@ -31,8 +30,8 @@ static void add_tile(const struct rf_frame *f, int tx, int ty,
         if (!rf_has_bit(apart->veil, i))
             continue;
         for (int c = 0; c < 3; c++)
-            cell->light[c] += r->front.light[c][at] -
-                              ((255 - thin->alpha) * thin->light[c] + 127) / 255;
+            cell->light[c] +=
+                r->front.light[c][at] - ((255 - thin->alpha) * thin->light[c] + 127) / 255;
         cell->light[3] += (4096 * thin->alpha + 127) / 255;
         cell->weight += thin->alpha;
         cell->blur -= thin->alpha * rf_near_blur(f, thin, tx, ty);
@@ -67,16 +66,14 @@ static void share(const int32_t light[4], int radius, int32_t each[4])
     for (int y = 1; y <= radius >> 8; y++)
         length += 2 * chord(y << 8, radius);
     for (int c = 0; c < 4; c++) /* sums are of pixels, 16 a cell */
-        each[c] = (int32_t)(((int64_t)light[c] * (1 << (RF_VEIL_SHIFT + 8 - 4))) /
-                            (2 * length));
+        each[c] = (int32_t)(((int64_t)light[c] * (1 << (RF_VEIL_SHIFT + 8 - 4))) / (2 * length));
 }
 
 static void gather_band(void *context, int ty, int worker)
 {
     const struct rf_frame *f = context;
     struct refocus_renderer *r = f->r;
-    struct rf_veil_source *out =
-        r->veil.source + (ptrdiff_t)ty * r->tiles_x * CELLS * CELLS;
+    struct rf_veil_source *out = r->veil.source + (ptrdiff_t)ty * r->tiles_x * CELLS * CELLS;
     uint32_t sources = 0;
 
     (void)worker;
@@ -91,8 +88,7 @@ static void gather_band(void *context, int ty, int worker)
                 continue;
             out[sources].x = (uint16_t)(tx * CELLS + i % CELLS);
             out[sources].y = (uint16_t)(ty * CELLS + i / CELLS);
-            out[sources].radius =
-                (uint16_t)(sum[i].blur / sum[i].weight * f->veils >> 10);
+            out[sources].radius = (uint16_t)(sum[i].blur / sum[i].weight * f->veils >> 10);
             share(sum[i].light, out[sources].radius, out[sources].each);
             sources++;
         }
@@ -116,8 +112,8 @@ static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int32_
 }
 
 /* A disc in rows from `first` to `end` - 1. */
-static void draw(const struct refocus_renderer *r, int cx, int cy, int radius,
-                 const int32_t v[4], int first, int end)
+static void draw(const struct refocus_renderer *r, int cx, int cy, int radius, const int32_t v[4],
+                 int first, int end)
 {
     const int cells = r->tiles_x * CELLS, rows = radius >> 8;
 
@@ -133,8 +129,8 @@ static void draw(const struct refocus_renderer *r, int cx, int cy, int radius,
 }
 
 /* Beyond the picture's sides it goes on as its reflection. */
-static void draw_reflected(const struct refocus_renderer *r,
-                           const struct rf_veil_source *s, int first, int end)
+static void draw_reflected(const struct refocus_renderer *r, const struct rf_veil_source *s,
+                           int first, int end)
 {
     const int rows = s->radius >> 8;
     const int right = (r->width + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
@@ -206,8 +202,7 @@ static bool get_cells(const struct refocus_renderer *r, int tx, int ty,
             memcpy(part[j], row[tx * CELLS - 1], sizeof part[j]);
         else
             for (int i = 0; i < RF_VEIL_CELLS; i++)
-                memcpy(part[j][i], row[clamp(tx * CELLS + i - 1, across - 1)],
-                       sizeof part[j][i]);
+                memcpy(part[j][i], row[clamp(tx * CELLS + i - 1, across - 1)], sizeof part[j][i]);
         for (int i = 0; i < RF_VEIL_CELLS; i++)
             any |= part[j][i][3];
     }

@@ -43,7 +43,6 @@ void rf_veil_draw(struct rf_frame *f);
 
 /* Whether anything is drawn over a tile; lay it over its means, Q14. */
 bool rf_has_veil(const struct refocus_renderer *r, int tx, int ty);
-void rf_veil_over(const struct refocus_renderer *r, int tx, int ty,
-                  uint16_t mean[3][256]);
+void rf_veil_over(const struct refocus_renderer *r, int tx, int ty, uint16_t mean[3][256]);
 
 #endif

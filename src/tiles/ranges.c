@@ -1,7 +1,7 @@
 #include "tiles/ranges.h"
 
 enum {
-    EACH = RF_TILE / RF_CELL, /* cells of a tile, across and down */
+    EACH = RF_TILE / RF_CELL,                  /* cells of a tile, across and down */
     TALL_Y = RF_WINDOW_Y + RF_STRIP / RF_CELL, /* those that both its strips lie in */
 };
 
@@ -33,15 +33,15 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-static void lesser_row(int16_t *restrict out, const int16_t *restrict a,
-                       const int16_t *restrict b, int n)
+static void lesser_row(int16_t *restrict out, const int16_t *restrict a, const int16_t *restrict b,
+                       int n)
 {
     for (int x = 0; x < n; x++)
         out[x] = rf_lesser(a[x], b[x]);
 }
 
-static void greater_row(int16_t *restrict out, const int16_t *restrict a,
-                        const int16_t *restrict b, int n)
+static void greater_row(int16_t *restrict out, const int16_t *restrict a, const int16_t *restrict b,
+                        int n)
 {
     for (int x = 0; x < n; x++)
         out[x] = rf_greater(a[x], b[x]);
@@ -144,7 +144,7 @@ void rf_bare_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
             cell[j] = foreground_row(r, clamp(y + j, rows.last));
         if (r->yuv.on)
             join_strips(cell, joined_rows(scratch, &rows), rows.cells, greater_row);
-        r->kernels.bare(r->range + y * r->range_stride - rows.border, cell,
-                        (int16_t *)scratch, rows.cells, rows.border);
+        r->kernels.bare(r->range + y * r->range_stride - rows.border, cell, (int16_t *)scratch,
+                        rows.cells, rows.border);
     }
 }

@@ -44,7 +44,8 @@ void rf_add_to_cell(struct refocus_renderer *r, int x, int y, int16_t blur);
 void rf_range_rows(struct refocus_renderer *r, uint16_t *scratch, int ty);
 
 /* Once the background is filled and before there are weights: the foreground in the cells of tile
- * row ty; what else is foreground; and from all cells which ranges of row ty are bare (kernels.h). */
+ * row ty; what else is foreground; and from all cells which ranges of row ty are bare (kernels.h).
+ */
 void rf_foreground_rows(struct refocus_renderer *r, int ty);
 void rf_put_in_front(struct refocus_renderer *r, struct rf_rect pixels); /* all, to the last */
 void rf_bare_rows(struct refocus_renderer *r, uint16_t *scratch, int ty);

@@ -12,7 +12,7 @@ enum {
 
 /* Ray u sees the slab at round(u centre). */
 struct rf_slab {
-    int16_t low;    /* a pixel of blur s is hit if 0 <= s - low <= width */
+    int16_t low; /* a pixel of blur s is hit if 0 <= s - low <= width */
     uint16_t width;
     int16_t centre; /* Q7.8 */
 };

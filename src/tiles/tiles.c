@@ -8,11 +8,11 @@
 enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
 
 enum {
-    HALF = 128, /* Q7.8 pixels, as all of these */
-    OVERLAP = 32,        /* of a slab with each of those beside it */
+    HALF = 128,           /* Q7.8 pixels, as all of these */
+    OVERLAP = 32,         /* of a slab with each of those beside it */
     CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
-    WIDE = 16 * 256,     /* where slabs begin to be wider than a pixel */
-    MOST_SPREAD = 60416, /* of blurs, so that no slab of up to 20 is met modulo 2^16 */
+    WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
+    MOST_SPREAD = 60416,  /* of blurs, so that no slab of up to 20 is met modulo 2^16 */
 };
 
 struct rf_bin_scale rf_bin_scale_of(float largest_blur)
@@ -72,8 +72,8 @@ static void add_cells(struct rf_bins *bins, const struct refocus_renderer *r,
             add_bin(bins, first);
             add_bin(bins, last);
             if (last - first > 1)
-                add_cell(bins, scale, r->front.blur + RF_CELL * (y * r->stride + x),
-                         r->stride, first, last);
+                add_cell(bins, scale, r->front.blur + RF_CELL * (y * r->stride + x), r->stride,
+                         first, last);
         }
     }
 }
@@ -81,8 +81,7 @@ static void add_cells(struct rf_bins *bins, const struct refocus_renderer *r,
 static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
                                    int tx, int ty)
 {
-    struct rf_bins bins = {
-        .least = INT16_MAX, .most = INT16_MIN, .brightest = RF_LIGHT_MAX};
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN, .brightest = RF_LIGHT_MAX};
     int first, last;
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
@@ -109,8 +108,7 @@ void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
         r->bins[(size_t)ty * r->tiles_x + tx] = bins_of_tile(r, scale, tx, ty);
 }
 
-void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
-                int16_t blur)
+void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty, int16_t blur)
 {
     struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
 
@@ -236,8 +234,8 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
     const int k = plan->slabs++;
 
     plan->slab[k] = slab;
-    plan->joined[k] = k > 0 && scale.shift < 8 &&
-                      slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
+    plan->joined[k] =
+        k > 0 && scale.shift < 8 && slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
 }
 
 /* Cover the occupied bins from the near side. Slabs are a pixel wide, half of that where
@@ -245,14 +243,13 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
  * where rays lie farther apart than what is off by half of that.
  *
  * The blurs below half a pixel are a slab of their own with offset 0, so that these pixels stay as
- * they are. No slab before it may take them, as its rays would bring what is beside them. Yet no ray
- * may pass between two slabs where a surface crosses half a pixel of blur. So the sharp one takes
- * what is nearer by up to CLOSED, which the slabs before it have left; and the one after it takes
- * what is sharp, by as much, for rays of pixels that are blurred. With 1/4 pixel that closes surfaces
- * of slope up to 1/4: a ray of a pixel of blur 0.60 looks at its neighbour, of blur 0.45, and meets
- * it, where it missed it before, and at offset 0 itself. */
-static void cover(const struct rf_bins *bins, struct rf_bin_scale scale,
-                  struct rf_tile_plan *plan)
+ * they are. No slab before it may take them, as its rays would bring what is beside them. Yet no
+ * ray may pass between two slabs where a surface crosses half a pixel of blur. So the sharp one
+ * takes what is nearer by up to CLOSED, which the slabs before it have left; and the one after it
+ * takes what is sharp, by as much, for rays of pixels that are blurred. With 1/4 pixel that closes
+ * surfaces of slope up to 1/4: a ray of a pixel of blur 0.60 looks at its neighbour, of blur 0.45,
+ * and meets it, where it missed it before, and at offset 0 itself. */
+static void cover(const struct rf_bins *bins, struct rf_bin_scale scale, struct rf_tile_plan *plan)
 {
     const int pixel = 256 >> scale.shift;
     const int focus_end = scale.focus + scale.focus_bins;

@@ -21,11 +21,11 @@ enum { RF_MAX_SLABS = RF_BINS };
 
 struct rf_tile_plan {
     int slabs;
-    int reach; /* largest |s| that reaches the tile, Q7.8, */
-    int least; /* and the least */
-    bool sharp;   /* nothing here or reaching here is blurred by half a pixel */
-    int lamp;     /* largest |s| of a highlight in reach, Q7.8; 0: none is; */
-    bool dots;    /* one that is small beside the gaps of the rays is */
+    int reach;          /* largest |s| that reaches the tile, Q7.8, */
+    int least;          /* and the least */
+    bool sharp;         /* nothing here or reaching here is blurred by half a pixel */
+    int lamp;           /* largest |s| of a highlight in reach, Q7.8; 0: none is; */
+    bool dots;          /* one that is small beside the gaps of the rays is */
     uint16_t brightest; /* as rf_bins has it, of the tiles in reach */
     struct rf_slab slab[RF_MAX_SLABS];
     bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */
@@ -39,7 +39,7 @@ struct rf_kept {
 };
 enum { RF_REACH_TILES = (127 + RF_TILE - 1) / RF_TILE };
 struct rf_reach {
-    int tiles; /* how far tiles are met at all */
+    int tiles;                                                   /* how far tiles are met at all */
     struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
 };
 /* Of blurs up to the largest there can be in this frame, pixels, and pad - 2. `square`: the

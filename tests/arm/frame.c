@@ -25,8 +25,8 @@ static bool read_scene(struct scene *s, const char *file, int width, int height)
     uint8_t *rgb = NULL;
     uint16_t *disparity = NULL;
     size_t pixels = 0;
-    bool good = in && fread(size, sizeof size, 1, in) == 1 && size[0] - 1 < 65535 &&
-                size[1] - 1 < 65535;
+    bool good =
+        in && fread(size, sizeof size, 1, in) == 1 && size[0] - 1 < 65535 && size[1] - 1 < 65535;
 
     if (good) {
         pixels = (size_t)size[0] * size[1];
@@ -74,10 +74,10 @@ int main(int argc, char **argv)
     }
     const struct refocus_image photo = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, scene.rgb, number[0], number[1], (ptrdiff_t)number[0] * 3);
-    const struct refocus_image out = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, scene.out, number[0], number[1], (ptrdiff_t)number[0] * 3);
-    const struct refocus_disparity disparity = refocus_disparity16(
-        scene.disparity, number[0], number[1], (ptrdiff_t)number[0] * 2);
+    const struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, scene.out, number[0],
+                                                          number[1], (ptrdiff_t)number[0] * 3);
+    const struct refocus_disparity disparity =
+        refocus_disparity16(scene.disparity, number[0], number[1], (ptrdiff_t)number[0] * 2);
     struct refocus_renderer_params params =
         refocus_renderer_params_default(number[0], number[1], (float)number[2]);
     struct refocus_render_params lens = refocus_render_params_default(0, (float)number[2]);

@@ -70,8 +70,8 @@ static void end(plugin_id id, void *user)
     }
     for (const struct block *b = blocks; b; b = b->next)
         if (b->runs > 0)
-            fprintf(out, "%" PRIx64 " %zu %zu %" PRIu64 "\n", b->address, b->bytes,
-                    b->instructions, b->runs);
+            fprintf(out, "%" PRIx64 " %zu %zu %" PRIu64 "\n", b->address, b->bytes, b->instructions,
+                    b->runs);
     fclose(out);
 }
 

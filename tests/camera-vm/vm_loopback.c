@@ -60,8 +60,7 @@ static int open_output(uint32_t fourcc, int width, int height, size_t size)
     format.fmt.pix.height = (uint32_t)height;
     format.fmt.pix.field = V4L2_FIELD_NONE;
     format.fmt.pix.sizeimage = (uint32_t)size;
-    if (fd < 0 || ioctl(fd, VIDIOC_S_FMT, &format) != 0 ||
-        format.fmt.pix.pixelformat != fourcc ||
+    if (fd < 0 || ioctl(fd, VIDIOC_S_FMT, &format) != 0 || format.fmt.pix.pixelformat != fourcc ||
         format.fmt.pix.width != (uint32_t)width) {
         perror(path);
         exit(1);
@@ -86,8 +85,7 @@ static void begin_feed(struct feeder *feeder, uint32_t fourcc, int width, int he
     atomic_init(&feeder->quit, false);
     feeder->period_ms = 40;
     feeder->fd = open_output(fourcc, width, height, feeder->size);
-    assert_true(write(feeder->fd, bytes, feeder->size) >
-                0); /* the node is a camera now */
+    assert_true(write(feeder->fd, bytes, feeder->size) > 0); /* the node is a camera now */
     assert_int_equal(pthread_create(&feeder->thread, NULL, feed, feeder), 0);
 }
 
@@ -145,8 +143,7 @@ static void depth_comes_to_the_last_bit(void **state)
         assert_int_equal(frame->format, REFOCUS_FRAME_Z16);
         assert_int_equal(frame->width, WIDTH);
         assert_int_equal(frame->height, HEIGHT);
-        assert_int_equal(refocus_convert_samples(converter, frame, samples, NULL),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_convert_samples(converter, frame, samples, NULL), REFOCUS_OK);
         for (int i = 0; i < WIDTH * HEIGHT; i++)
             assert_int_equal(samples[i], bytes[2 * i] | bytes[2 * i + 1] << 8);
         refocus_source_release(source, frame);
@@ -180,8 +177,7 @@ static void jpegs_become_pictures(void **state)
     (void)state;
     assert_int_equal(refocus_photo_read(&photo, jpeg, NULL, NULL), REFOCUS_OK);
     row = (size_t)photo->image.width * 3;
-    out = refocus_image_packed(REFOCUS_FORMAT_RGB8,
-                               malloc(row * (size_t)photo->image.height),
+    out = refocus_image_packed(REFOCUS_FORMAT_RGB8, malloc(row * (size_t)photo->image.height),
                                photo->image.width, photo->image.height, (ptrdiff_t)row);
     assert_non_null(out.plane[0]);
     begin_feed(&feeder, V4L2_PIX_FMT_MJPEG, photo->image.width, photo->image.height);
@@ -190,14 +186,11 @@ static void jpegs_become_pictures(void **state)
     for (int n = 0; n < 5; n++) {
         const struct refocus_frame *frame = next(source);
 
-        assert_true(frame->bytes >=
-                    feeder.size); /* this driver says how large its buffer is */
-        assert_int_equal(refocus_convert_rgb8(converter, frame, &out, NULL),
-                         REFOCUS_OK);
+        assert_true(frame->bytes >= feeder.size); /* this driver says how large its buffer is */
+        assert_int_equal(refocus_convert_rgb8(converter, frame, &out, NULL), REFOCUS_OK);
         for (int y = 0; y < out.height; y++)
             assert_memory_equal(out.plane[0] + y * out.stride[0],
-                                photo->image.plane[0] + y * photo->image.stride[0],
-                                row);
+                                photo->image.plane[0] + y * photo->image.stride[0], row);
         refocus_source_release(source, frame);
     }
     printf("captured: MJPEG\n");
@@ -206,8 +199,7 @@ static void jpegs_become_pictures(void **state)
     for (int n = 0, damaged = 0; damaged < 2; n++) {
         const struct refocus_frame *frame = next(source);
 
-        damaged +=
-            refocus_convert_rgb8(converter, frame, &out, NULL) == REFOCUS_ERR_FORMAT;
+        damaged += refocus_convert_rgb8(converter, frame, &out, NULL) == REFOCUS_ERR_FORMAT;
         refocus_source_release(source, frame);
         assert_true(n < 20);
     }
@@ -238,9 +230,9 @@ static int feed_for_ever(int fps, char **argv, int nodes)
         if (!feeds[i].data)
             return 1;
         memcpy(feeds[i].data, bytes, feeds[i].size);
-        feeds[i].fd = open_output(strcmp(argv[1], "MJPEG") == 0 ? V4L2_PIX_FMT_MJPEG
-                                                                : V4L2_PIX_FMT_Z16,
-                                  width, height, feeds[i].size);
+        feeds[i].fd =
+            open_output(strcmp(argv[1], "MJPEG") == 0 ? V4L2_PIX_FMT_MJPEG : V4L2_PIX_FMT_Z16,
+                        width, height, feeds[i].size);
     }
     for (;;) {
         for (int i = 0; i < nodes; i++)
@@ -289,9 +281,7 @@ int main(int argc, char **argv)
     };
 
     if (argc >= 7 && (argc - 3) % 4 == 0 && argc <= 11 && strcmp(argv[1], "feed") == 0)
-        return atoi(argv[2]) > 0
-                   ? feed_for_ever(atoi(argv[2]), argv + 3, (argc - 3) / 4)
-                   : 2;
+        return atoi(argv[2]) > 0 ? feed_for_ever(atoi(argv[2]), argv + 3, (argc - 3) / 4) : 2;
     if (argc == 6 && strcmp(argv[1], "same") == 0)
         return compare(argv[2], argv[3], atoi(argv[4]), atoi(argv[5]));
     if (argc != 4 || strcmp(argv[1], "test") != 0)

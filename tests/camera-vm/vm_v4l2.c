@@ -14,12 +14,12 @@ enum { WIDTH = 320, HEIGHT = 180 };
 static char node[64];
 static uint8_t reference[WIDTH * HEIGHT * 3];
 
-#define assert_gives(expression, status)                                                   \
-    do {                                                                                    \
-        const int got_ = (expression);                                                      \
-        if (got_ != (status))                                                               \
-            fail_msg("%s gives %d (%s): %s", #expression, got_, refocus_strerror(got_),     \
-                     reason.text);                                                          \
+#define assert_gives(expression, status)                                                           \
+    do {                                                                                           \
+        const int got_ = (expression);                                                             \
+        if (got_ != (status))                                                                      \
+            fail_msg("%s gives %d (%s): %s", #expression, got_, refocus_strerror(got_),            \
+                     reason.text);                                                                 \
     } while (0)
 static struct refocus_reason reason;
 
@@ -136,10 +136,9 @@ static void check_refocus(const uint8_t *rgb, const char *name)
 {
     static uint16_t disparity[WIDTH * HEIGHT];
     static uint8_t out[WIDTH * HEIGHT * 3];
-    const struct refocus_disparity map =
-        refocus_disparity16(disparity, WIDTH, HEIGHT, WIDTH * 2);
-    struct refocus_image photo = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, (void *)(uintptr_t)rgb, WIDTH, HEIGHT, WIDTH * 3);
+    const struct refocus_disparity map = refocus_disparity16(disparity, WIDTH, HEIGHT, WIDTH * 2);
+    struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, (void *)(uintptr_t)rgb, WIDTH, HEIGHT, WIDTH * 3);
     struct refocus_image result =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, WIDTH, HEIGHT, WIDTH * 3);
     struct refocus_renderer_params make = refocus_renderer_params_default(WIDTH, HEIGHT, 8);
@@ -225,10 +224,9 @@ static void what_it_has_not_is_refused(void **state)
 
     (void)state;
     config.format = REFOCUS_FRAME_Z16;
-    assert_gives(refocus_source_start(source, &config, NULL, &reason),
-                  REFOCUS_ERR_UNSUPPORTED);
+    assert_gives(refocus_source_start(source, &config, NULL, &reason), REFOCUS_ERR_UNSUPPORTED);
     assert_gives(refocus_source_set_control(source, "no_such_control", 1, &reason),
-                  REFOCUS_ERR_ARGUMENT);
+                 REFOCUS_ERR_ARGUMENT);
     assert_gives(refocus_source_set_control(source, "brightness", 130, &reason), REFOCUS_OK);
     assert_gives(refocus_source_set_control(source, "brightness", 128, &reason), REFOCUS_OK);
     refocus_source_close(&source);
@@ -241,12 +239,10 @@ static void missing_and_wrong_devices(void **state)
     struct refocus_source *source = NULL;
 
     (void)state;
-    assert_gives(refocus_source_open(&source, "v4l2:/dev/video77", &reason),
-                  REFOCUS_ERR_GONE);
-    assert_gives(refocus_source_open(&source, "v4l2:/dev/null", &reason),
-                  REFOCUS_ERR_UNSUPPORTED);
+    assert_gives(refocus_source_open(&source, "v4l2:/dev/video77", &reason), REFOCUS_ERR_GONE);
+    assert_gives(refocus_source_open(&source, "v4l2:/dev/null", &reason), REFOCUS_ERR_UNSUPPORTED);
     assert_gives(refocus_source_open(&source, "v4l2:/etc/passwd", &reason),
-                  REFOCUS_ERR_UNSUPPORTED);
+                 REFOCUS_ERR_UNSUPPORTED);
     assert_gives(refocus_source_open(&source, "v4l2:1", &reason), REFOCUS_ERR_UNSUPPORTED);
     assert_null(source);
 }

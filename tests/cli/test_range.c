@@ -91,8 +91,8 @@ static void begin(double near_m, double far_m)
     live_focus_init(&room.focus, &settings);
     room.focus.blur = 10;
     room.focus.blur_most = 120;
-    room.map = (struct refocus_depth_map){.samples = room.mm, .width = W, .height = H,
-                                          .stride = 2 * W, .sample = REFOCUS_SAMPLE_U16};
+    room.map = (struct refocus_depth_map){
+        .samples = room.mm, .width = W, .height = H, .stride = 2 * W, .sample = REFOCUS_SAMPLE_U16};
     assert_int_equal(refocus_depth_set_unit(&room.map, "mm"), REFOCUS_OK);
     room.now = 77000000000;
 }
@@ -118,8 +118,7 @@ static double mean_at(int x, int y)
 /* What the map says of the distance at a place. */
 static double dioptres_at(int x, int y)
 {
-    return room.ranger.range.far +
-           mean_at(x, y) * (room.ranger.range.near - room.ranger.range.far);
+    return room.ranger.range.far + mean_at(x, y) * (room.ranger.range.near - room.ranger.range.far);
 }
 
 static double in_focus(void)

@@ -60,8 +60,8 @@ static void check_light(const struct refocus_aperture *a, const char *what)
     is = of_rays(rays, RAYS);
     if (fabs(is.x - wanted.x) > 0.006 || fabs(is.y - wanted.y) > 0.006 ||
         fabs(is.xx - wanted.xx) > 0.006 || fabs(is.yy - wanted.yy) > 0.006)
-        fail_msg("%s: mean %g %g, squares %g %g, should be %g %g, %g %g", what, is.x, is.y,
-                 is.xx, is.yy, wanted.x, wanted.y, wanted.xx, wanted.yy);
+        fail_msg("%s: mean %g %g, squares %g %g, should be %g %g, %g %g", what, is.x, is.y, is.xx,
+                 is.yy, wanted.x, wanted.y, wanted.xx, wanted.yy);
 }
 
 static struct refocus_aperture *make(const struct refocus_aperture_params *p)
@@ -235,7 +235,8 @@ static void profiles(void **state)
         assert_true(rf_aperture_has_sides(a) == (e != 0));
         for (int before = 0; before < 2; before++) {
             const double s = before ? -e : e;
-            const double v = s >= 0 ? (before ? 0.5 - e / 3 : bright) : (before ? 0.5 - e / 6 : faint);
+            const double v =
+                s >= 0 ? (before ? 0.5 - e / 3 : bright) : (before ? 0.5 - e / 6 : faint);
             const double wanted = 0.09 + 0.91 * v;
 
             if (fabs(mean_square(a, before) - wanted) > 0.005)
@@ -351,9 +352,12 @@ static void cut_off(void **state)
         int blades;
         double curvature, squeeze;
         uint32_t figure;
-    } cases[] = {{"triangle", 3, 0, 1, 0},   {"hexagon", 6, 0, 1, 0},
-                 {"curved", 5, 0.5, 1, 0},   {"squeezed", 7, 0.2, 0.6, 0},
-                 {"star", 5, 0, 1, REFOCUS_FIGURE_STAR}, {"heart", 0, 0, 1, REFOCUS_FIGURE_HEART}};
+    } cases[] = {{"triangle", 3, 0, 1, 0},
+                 {"hexagon", 6, 0, 1, 0},
+                 {"curved", 5, 0.5, 1, 0},
+                 {"squeezed", 7, 0.2, 0.6, 0},
+                 {"star", 5, 0, 1, REFOCUS_FIGURE_STAR},
+                 {"heart", 0, 0, 1, REFOCUS_FIGURE_HEART}};
     static struct refocus_ray rays[RAYS], left[RAYS];
     static struct rf_cat_shape shape;
 
@@ -388,10 +392,9 @@ static void cut_off(void **state)
                 u = -to->u / 32768.0;
                 v = -to->v / 32768.0;
                 assert_int_equal(to->weight, rays[n].weight);
-                if (!is_open_about(a, u, v, 0.004) ||
-                    !in_lens(a, u, v, d, x / r, y / r, 0.002))
-                    fail_msg("%s at %d,%d: ray %d is outside, at %g,%g", cases[i].name, x, y, n,
-                             u, v);
+                if (!is_open_about(a, u, v, 0.004) || !in_lens(a, u, v, d, x / r, y / r, 0.002))
+                    fail_msg("%s at %d,%d: ray %d is outside, at %g,%g", cases[i].name, x, y, n, u,
+                             v);
             }
             is = of_rays(left, RAYS);
             should = of_common(a, d, x / r, y / r);
@@ -418,9 +421,10 @@ static void cut_off(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(cut_off), cmocka_unit_test(light),    cmocka_unit_test(simple),
-                                       cmocka_unit_test(blades),   cmocka_unit_test(figures),
-                                       cmocka_unit_test(profiles), cmocka_unit_test(refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(cut_off), cmocka_unit_test(light),
+                                       cmocka_unit_test(simple),  cmocka_unit_test(blades),
+                                       cmocka_unit_test(figures), cmocka_unit_test(profiles),
+                                       cmocka_unit_test(refused)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

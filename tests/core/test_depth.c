@@ -10,8 +10,7 @@
 #include <cmocka.h>
 #include <refocus/depth.h>
 
-static struct refocus_depth_map map_of(uint32_t sample, const void *samples, int width,
-                                       int height)
+static struct refocus_depth_map map_of(uint32_t sample, const void *samples, int width, int height)
 {
     static const int bytes[] = {0, 1, 2, 4};
     struct refocus_depth_map map;
@@ -178,8 +177,7 @@ static void test_unknown_samples(void **state)
     /* Nothing but holes. */
     static const uint8_t zeros[12] = {0};
     map = distances_of(REFOCUS_SAMPLE_U8, zeros, 4, 3);
-    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report),
-                     REFOCUS_ERR_NO_DEPTH);
+    assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_ERR_NO_DEPTH);
 }
 
 /* Large maps of whole numbers go by a table: the same as their rows by themselves. */
@@ -397,8 +395,7 @@ static void test_fill_takes_the_farther_side(void **state)
         for (int x = 0; x < W; x++)
             z[y][x] = x >= 20 && x < 32 ? 1.0f : x >= 32 && x < 40 ? 0 : 4.0f;
     struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_F32, z, W, H);
-    assert_int_equal(refocus_depth_to_disparity(&map, out[0], sizeof *out, &report),
-                     REFOCUS_OK);
+    assert_int_equal(refocus_depth_to_disparity(&map, out[0], sizeof *out, &report), REFOCUS_OK);
     assert_int_equal(report.unknown, 8 * H);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)

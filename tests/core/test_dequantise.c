@@ -90,8 +90,8 @@ static void steps_between(const uint16_t *map, double *mean, int *most)
 
     *most = 0;
     for (int i = 0; i < PIXELS - WIDTH; i++) {
-        const int real = abs((int)surface(i % WIDTH, i / WIDTH) -
-                             (int)surface(i % WIDTH, i / WIDTH + 1));
+        const int real =
+            abs((int)surface(i % WIDTH, i / WIDTH) - (int)surface(i % WIDTH, i / WIDTH + 1));
         const int step = abs(map[i] - map[i + WIDTH]);
 
         if (real > 60)
@@ -109,9 +109,14 @@ static void run(uint16_t *map, int step, uint32_t cpu, int threads)
     struct rf_kernels kernels;
     struct rf_pool pool;
     struct rf_run state = {.looked_at = NULL};
-    struct rf_dequantiser d = {.kernels = &kernels, .code = map, .stride = WIDTH,
-                               .spare = {spare[0], spare[1]}, .spare_stride = {WIDTH, WIDTH},
-                               .width = WIDTH, .height = HEIGHT, .step = step};
+    struct rf_dequantiser d = {.kernels = &kernels,
+                               .code = map,
+                               .stride = WIDTH,
+                               .spare = {spare[0], spare[1]},
+                               .spare_stride = {WIDTH, WIDTH},
+                               .width = WIDTH,
+                               .height = HEIGHT,
+                               .step = step};
 
     assert_true(rf_kernels_select(&kernels, &cpu));
     atomic_init(&state.state, RF_RUN_RUNNING);
@@ -161,10 +166,14 @@ static void ends_and_small_maps(void **state)
             struct rf_pool pool;
             struct rf_run run_state = {.looked_at = NULL};
             uint32_t cpu = REFOCUS_CPU_AUTO;
-            struct rf_dequantiser d = {.kernels = &kernels, .code = map, .stride = width,
+            struct rf_dequantiser d = {.kernels = &kernels,
+                                       .code = map,
+                                       .stride = width,
                                        .spare = {spare[0], spare[1]},
-                                       .spare_stride = {width, width}, .width = width,
-                                       .height = height, .step = 257};
+                                       .spare_stride = {width, width},
+                                       .width = width,
+                                       .height = height,
+                                       .step = 257};
 
             for (int i = 0; i < width * height; i++)
                 map[i] = i / 2 % 2 ? 65535 : 65535 - 257;

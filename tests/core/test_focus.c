@@ -87,8 +87,7 @@ static void bad_picks(void **state)
                                             {12, W, H, samples, 2 * W},
                                             {16, 0, H, samples, 2 * W},
                                             {16, W, H, samples, 2 * W - 2}};
-    static const int outside[][4] = {{-1, 0, 1, 1}, {0, -1, 1, 1}, {W, 0, 1, 1},
-                                     {0, H, 1, 1}};
+    static const int outside[][4] = {{-1, 0, 1, 1}, {0, -1, 1, 1}, {W, 0, 1, 1}, {0, H, 1, 1}};
     float focus = 0.25f;
 
     (void)state;
@@ -100,8 +99,7 @@ static void bad_picks(void **state)
     for (size_t i = 0; i < 4; i++) {
         const int *o = outside[i];
 
-        assert_int_equal(refocus_focus_at_point(&map, o[0], o[1], 1, &focus),
-                         REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_focus_at_point(&map, o[0], o[1], 1, &focus), REFOCUS_ERR_ARGUMENT);
         assert_int_equal(refocus_focus_in_rectangle(&map, o[0], o[1], o[2], o[3], &focus),
                          REFOCUS_ERR_ARGUMENT);
     }
@@ -125,8 +123,8 @@ static double at(const struct refocus_focus_plane *p, double x, double y)
 
 static void planes(void **state)
 {
-    const struct refocus_focus_point p[3] = {{0.1f, 0.9f, 0.8f}, {0.8f, 0.7f, 0.6f},
-                                             {0.4f, 0.2f, 0.1f}};
+    const struct refocus_focus_point p[3] = {
+        {0.1f, 0.9f, 0.8f}, {0.8f, 0.7f, 0.6f}, {0.4f, 0.2f, 0.1f}};
     struct refocus_focus_plane plane;
 
     (void)state;
@@ -135,17 +133,17 @@ static void planes(void **state)
         assert_true(fabs(at(&plane, p[i].x, p[i].y) - p[i].disparity) < 1e-6);
 
     /* a level line from left to right: its right is below, 45 degrees are 1 a width */
-    assert_int_equal(refocus_focus_plane_of_line(&plane, &(struct refocus_focus_point){0, 0.5f, 0.3f},
-                                                 &(struct refocus_focus_point){1, 0.5f, 0},
-                                                 0.75, 45),
-                     REFOCUS_OK);
+    assert_int_equal(
+        refocus_focus_plane_of_line(&plane, &(struct refocus_focus_point){0, 0.5f, 0.3f},
+                                    &(struct refocus_focus_point){1, 0.5f, 0}, 0.75, 45),
+        REFOCUS_OK);
     assert_true(fabs(at(&plane, 0.7, 0.5) - 0.3) < 1e-6);
     assert_true(fabs(at(&plane, 0.7, 1) - 0.3 - 0.375) < 1e-6);
     /* downwards: its right is on the left of the photo */
-    assert_int_equal(refocus_focus_plane_of_line(&plane, &(struct refocus_focus_point){0.5f, 0, 0.3f},
-                                                 &(struct refocus_focus_point){0.5f, 1, 0},
-                                                 0.75, -45),
-                     REFOCUS_OK);
+    assert_int_equal(
+        refocus_focus_plane_of_line(&plane, &(struct refocus_focus_point){0.5f, 0, 0.3f},
+                                    &(struct refocus_focus_point){0.5f, 1, 0}, 0.75, -45),
+        REFOCUS_OK);
     assert_true(fabs(at(&plane, 0.25, 0.9) - 0.3 + 0.25) < 1e-6);
     /* a slanted one holds its disparity */
     assert_int_equal(refocus_focus_plane_of_line(&plane, &p[0], &p[1], 0.5, 60), REFOCUS_OK);
@@ -159,16 +157,17 @@ static void bad_planes(void **state)
     struct refocus_focus_plane plane;
 
     (void)state;
-    assert_int_equal(refocus_focus_plane_of_points(
-                         &plane, (struct refocus_focus_point[3]){a, b, c}),
-                     REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_focus_plane_of_points(
-                         &plane, (struct refocus_focus_point[3]){a, b, out}),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(
+        refocus_focus_plane_of_points(&plane, (struct refocus_focus_point[3]){a, b, c}),
+        REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(
+        refocus_focus_plane_of_points(&plane, (struct refocus_focus_point[3]){a, b, out}),
+        REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_focus_plane_of_points(
                          &plane, (struct refocus_focus_point[3]){{0, 0, 0}, {0.001f, 0, 1}, c}),
                      REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_focus_plane_of_points(NULL, (struct refocus_focus_point[3]){a, b, c}), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_focus_plane_of_points(NULL, (struct refocus_focus_point[3]){a, b, c}),
+                     REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_focus_plane_of_points(&plane, NULL), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_focus_plane_of_line(&plane, &a, &a, 1, 0), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_focus_plane_of_line(&plane, &a, &b, 0, 0), REFOCUS_ERR_ARGUMENT);
@@ -181,9 +180,9 @@ static void bad_planes(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(taps),      cmocka_unit_test(eight_bits), cmocka_unit_test(rectangles),
-        cmocka_unit_test(bad_picks), cmocka_unit_test(planes),     cmocka_unit_test(bad_planes)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(taps),       cmocka_unit_test(eight_bits),
+                                       cmocka_unit_test(rectangles), cmocka_unit_test(bad_picks),
+                                       cmocka_unit_test(planes),     cmocka_unit_test(bad_planes)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,12 +17,12 @@ static void assert_close(double value, double expected, double relative)
 static const struct {
     double f_number, diameter_mm, u, far, near, field; /* mm */
 } table1[] = {
-    {5.6, 9.82, 2000, 2511, 1662, 849}, {5.6, 9.82, 980, 1089, 891, 198},
-    {5.6, 9.82, 550, 583, 521, 62},     {5.6, 9.82, 290, 299, 282, 17},
-    {11, 5.00, 2000, 3333, 1429, 1904}, {11, 5.00, 980, 1219, 819, 400},
-    {11, 5.00, 550, 618, 495, 123},     {11, 5.00, 290, 308, 274, 34},
+    {5.6, 9.82, 2000, 2511, 1662, 849},  {5.6, 9.82, 980, 1089, 891, 198},
+    {5.6, 9.82, 550, 583, 521, 62},      {5.6, 9.82, 290, 299, 282, 17},
+    {11, 5.00, 2000, 3333, 1429, 1904},  {11, 5.00, 980, 1219, 819, 400},
+    {11, 5.00, 550, 618, 495, 123},      {11, 5.00, 290, 308, 274, 34},
     {22, 2.50, 2000, 10000, 1111, 8889}, {22, 2.50, 980, 1612, 704, 908},
-    {22, 2.50, 550, 705, 451, 254},     {22, 2.50, 290, 328, 260, 68},
+    {22, 2.50, 550, 705, 451, 254},      {22, 2.50, 290, 328, 260, 68},
 };
 
 /* All 12 rows, as printed: rounded to millimetres, the field from the rounded limits. */
@@ -32,14 +32,12 @@ static void test_potmesil_table(void **state)
     for (size_t i = 0; i < sizeof table1 / sizeof *table1; i++) {
         const struct refocus_lens lens = {55, table1[i].f_number, 36};
         const double h = refocus_hyperfocal_m(&lens, 1000);
-        const struct refocus_depth_of_field field =
-            refocus_depth_of_field_m(table1[i].u / 1000, h);
+        const struct refocus_depth_of_field field = refocus_depth_of_field_m(table1[i].u / 1000, h);
         const double near = floor(field.near_m * 1000 + 0.5);
         const double far = floor(field.far_m * 1000 + 0.5);
 
         /* The table truncates diameters and keeps two places. */
-        assert_true(fabs(2000 * refocus_aperture_radius_m(&lens) - table1[i].diameter_mm) <
-                    0.01);
+        assert_true(fabs(2000 * refocus_aperture_radius_m(&lens) - table1[i].diameter_mm) < 0.01);
         if (near != table1[i].near || far != table1[i].far || far - near != table1[i].field)
             fail_msg("f/%g, U = %g: %g %g %g", table1[i].f_number, table1[i].u, far, near,
                      far - near);
@@ -69,18 +67,18 @@ static const struct {
      0.01392850159797451, 1.7948807934685176},
     {0.6483874917030334, 9.399999618530273, 720, 0.24306415953599203, 2.1958720684051514, 40,
      0.02785700319594902, 0.8974403967342588},
-    {0.6483874917030334, 9.399999618530273, 720, 0.0, 9.399999618530273, 10,
-     0.006964250798987255, 3.589761586937035},
-    {1.1800146102905273, 16.5, 720, 0.2936721894760874, 3.42842173576355, 10,
-     0.012709046761148991, 1.9671026843983237},
+    {0.6483874917030334, 9.399999618530273, 720, 0.0, 9.399999618530273, 10, 0.006964250798987255,
+     3.589761586937035},
+    {1.1800146102905273, 16.5, 720, 0.2936721894760874, 3.42842173576355, 10, 0.012709046761148991,
+     1.9671026843983237},
     {1.1800146102905273, 16.5, 720, 0.9663542422301963, 1.2180664539337158, 20,
      0.025418093522297982, 0.9835513421991618},
     {1.1800146102905273, 16.5, 720, 0.002407016432035792, 16.0, 20, 0.025418093522297982,
      0.9835513421991618},
     {0.7800515294075012, 14.0, 720, 0.6885581720004893, 1.1050280332565308, 40,
      0.033043158786883124, 0.7565862622650971},
-    {0.7800515294075012, 14.0, 720, 0.2573259998390012, 2.611433267593384, 20,
-     0.016521579393441562, 1.5131725245301941},
+    {0.7800515294075012, 14.0, 720, 0.2573259998390012, 2.611433267593384, 20, 0.016521579393441562,
+     1.5131725245301941},
     {0.7794885039329529, 14.0, 1920, 0.6880645202011408, 1.1049797534942627, 20,
      0.006190856755981673, 4.038213285397814},
     {0.8320308327674866, 4.2147979736328125, 720, 0.9159354417855128, 0.8922291994094849, 20,
@@ -104,10 +102,9 @@ static void test_reference_scenes(void **state)
         assert_close(refocus_max_blur_radius(&lens, &range, width), references[i].k, 1e-6);
         assert_close(refocus_f_number_of_blur(&lens, &range, width, references[i].k),
                      references[i].f_number, 1e-6);
-        assert_true(fabs(refocus_disparity_of_depth(&range, references[i].zf) -
-                         references[i].df) < 1e-6);
-        assert_close(refocus_depth_of_disparity(&range, references[i].df), references[i].zf,
-                     1e-6);
+        assert_true(fabs(refocus_disparity_of_depth(&range, references[i].zf) - references[i].df) <
+                    1e-6);
+        assert_close(refocus_depth_of_disparity(&range, references[i].df), references[i].zf, 1e-6);
     }
 }
 
@@ -131,9 +128,8 @@ static void test_circle_of_confusion(void **state)
 
             assert_true(fabs(c - fabs(vu - vp) * f / (2 * vp)) < 1e-15); /* eq. 8 */
             const double radius_px = c / 2 / 0.036 * width;
-            const double r =
-                refocus_blur_radius(k, refocus_disparity_of_depth(&range, p),
-                                    refocus_disparity_of_depth(&range, u));
+            const double r = refocus_blur_radius(k, refocus_disparity_of_depth(&range, p),
+                                                 refocus_disparity_of_depth(&range, u));
             assert_true(fabs(radius_px * (1 - f / u) - r) < 1e-10);
             assert_true((c == 0) == (i == j));
         }
@@ -175,8 +171,7 @@ static void test_bad_arguments(void **state)
     const struct refocus_depth_range range = {1, 5};
 
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        const struct refocus_lens lenses[] = {{bad[i], 2, 36}, {50, bad[i], 36},
-                                              {50, 2, bad[i]}};
+        const struct refocus_lens lenses[] = {{bad[i], 2, 36}, {50, bad[i], 36}, {50, 2, bad[i]}};
         for (int j = 0; j < 3; j++) {
             assert_true(isnan(refocus_aperture_radius_m(lenses + j)));
             assert_true(isnan(refocus_focal_length_px(lenses + j, 100)));
@@ -192,8 +187,8 @@ static void test_bad_arguments(void **state)
         assert_true(isnan(refocus_depth_of_field_m(1, bad[i]).near_m));
         assert_true(isnan(refocus_depth_of_field_m(1, bad[i]).far_m));
 
-        const struct refocus_depth_range ranges[] = {{bad[i], 5}, {1, -bad[i]}, {5, 1},
-                                                     {1, 1}, {1, NAN}};
+        const struct refocus_depth_range ranges[] = {
+            {bad[i], 5}, {1, -bad[i]}, {5, 1}, {1, 1}, {1, NAN}};
         for (int j = 0; j < 5; j++) {
             if (ranges[j].near_m == 1 && ranges[j].far_m > 1)
                 continue; /* that one is good */
@@ -219,12 +214,9 @@ static void test_bad_arguments(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_potmesil_table),
-        cmocka_unit_test(test_hyperfocal),
-        cmocka_unit_test(test_reference_scenes),
-        cmocka_unit_test(test_circle_of_confusion),
-        cmocka_unit_test(test_round_trips),
-        cmocka_unit_test(test_bad_arguments),
+        cmocka_unit_test(test_potmesil_table),   cmocka_unit_test(test_hyperfocal),
+        cmocka_unit_test(test_reference_scenes), cmocka_unit_test(test_circle_of_confusion),
+        cmocka_unit_test(test_round_trips),      cmocka_unit_test(test_bad_arguments),
     };
     return cmocka_run_group_tests_name("lens", tests, NULL, NULL);
 }

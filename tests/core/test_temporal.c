@@ -53,12 +53,12 @@ static struct refocus_temporal *make(void)
 
 static void run(struct refocus_temporal *filter, bool with_photo)
 {
-    const struct refocus_image photo = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, v.rgb, W * SCALE, H * SCALE, 3 * W * SCALE);
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, v.rgb, W * SCALE, H * SCALE, 3 * W * SCALE);
     const struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
 
-    assert_int_equal(
-        refocus_temporal_run(filter, with_photo ? &photo : NULL, &map, v.out, 2 * W), REFOCUS_OK);
+    assert_int_equal(refocus_temporal_run(filter, with_photo ? &photo : NULL, &map, v.out, 2 * W),
+                     REFOCUS_OK);
 }
 
 static double error_of(const uint16_t *map)
@@ -169,8 +169,7 @@ static void any_layout(void **state)
         struct refocus_temporal *a, *b;
         uint8_t bytes[17 * 31], rgb[3 * 25] = {0};
         uint16_t out[17 * 31], other[17 * 31];
-        const struct refocus_image photo =
-            refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 5, 5, 15);
+        const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 5, 5, 15);
 
         assert_int_equal(refocus_temporal_create(&a, &params), REFOCUS_OK);
         assert_int_equal(refocus_temporal_create(&b, &params), REFOCUS_OK);
@@ -191,8 +190,9 @@ static void any_layout(void **state)
             assert_int_equal(refocus_temporal_run(a, t % 2 ? &photo : NULL, &map, out, 2 * w),
                              REFOCUS_OK);
             map = refocus_disparity16(other + (h - 1) * w, w, h, -2 * w);
-            assert_int_equal(refocus_temporal_run(b, t % 2 ? &photo : NULL, &map,
-                                                  other + (h - 1) * w, -2 * w), REFOCUS_OK);
+            assert_int_equal(
+                refocus_temporal_run(b, t % 2 ? &photo : NULL, &map, other + (h - 1) * w, -2 * w),
+                REFOCUS_OK);
             for (int y = 0; y < h; y++)
                 assert_memory_equal(out + y * w, other + (h - 1 - y) * w, 2 * (size_t)w);
         }
@@ -256,8 +256,7 @@ static void follows_the_range(void **state)
             for (int i = 0; i < W * H && t < 4; i++)
                 v.map[i] = (uint16_t)((v.map[i] - 10000) * 2);
             if (t == 4)
-                assert_int_equal(refocus_temporal_rescale(told, 0.5, 10000 / 65535.0),
-                                 REFOCUS_OK);
+                assert_int_equal(refocus_temporal_rescale(told, 0.5, 10000 / 65535.0), REFOCUS_OK);
             run(told, with_photo);
         }
         calm = 0;
@@ -298,13 +297,11 @@ static void bad_arguments(void **state)
     assert_int_equal(refocus_temporal_create(NULL, &params), REFOCUS_ERR_ARGUMENT);
     filter = make();
     memset(v.out, 7, sizeof v.out);
-    assert_int_equal(refocus_temporal_run(filter, NULL, NULL, v.out, 2 * W),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_temporal_run(filter, NULL, NULL, v.out, 2 * W), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_temporal_run(filter, NULL, &map, v.out, 2 * W - 2),
                      REFOCUS_ERR_ARGUMENT);
     map.width = W - 1;
-    assert_int_equal(refocus_temporal_run(filter, NULL, &map, v.out, 2 * W),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_temporal_run(filter, NULL, &map, v.out, 2 * W), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(v.out[0], 0x0707);
     refocus_temporal_destroy(&filter);
 }
@@ -312,10 +309,14 @@ static void bad_arguments(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(calms),      cmocka_unit_test(leaves_no_ghosts),
-        cmocka_unit_test(can_be_off), cmocka_unit_test(waits_for_a_second_look),
-        cmocka_unit_test(any_layout), cmocka_unit_test(any_photo),
-        cmocka_unit_test(follows_the_range), cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(calms),
+        cmocka_unit_test(leaves_no_ghosts),
+        cmocka_unit_test(can_be_off),
+        cmocka_unit_test(waits_for_a_second_look),
+        cmocka_unit_test(any_layout),
+        cmocka_unit_test(any_photo),
+        cmocka_unit_test(follows_the_range),
+        cmocka_unit_test(bad_arguments),
     };
 
     return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);

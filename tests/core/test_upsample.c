@@ -60,17 +60,17 @@ static void end(struct scene *s)
 
 static int run(const struct scene *s, const struct refocus_upsample_params *params, uint16_t *out)
 {
-    const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, s->rgb, s->width,
-                                                            s->height, 3 * s->width);
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->rgb, s->width, s->height, 3 * s->width);
     const struct refocus_disparity map =
         refocus_disparity16(s->map, s->columns, s->rows, 2 * s->columns);
 
     return refocus_upsample(&photo, &map, params, out, 2 * (ptrdiff_t)s->width);
 }
 
-static const int sizes[][4] = {{64, 48, 16, 12}, {97, 61, 13, 29}, {40, 31, 1, 1},  {33, 5, 32, 2},
-                               {5, 64, 2, 63},   {1, 1, 3, 3},     {300, 20, 3, 20}, {16, 16, 40, 9},
-                               {129, 70, 2, 3}};
+static const int sizes[][4] = {{64, 48, 16, 12}, {97, 61, 13, 29}, {40, 31, 1, 1},
+                               {33, 5, 32, 2},   {5, 64, 2, 63},   {1, 1, 3, 3},
+                               {300, 20, 3, 20}, {16, 16, 40, 9},  {129, 70, 2, 3}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
 /* The same bits from every instruction set and any number of threads. */
@@ -234,8 +234,7 @@ static void same_by_other_ways(void **state)
     }
     const struct refocus_image turned =
         refocus_image_packed(REFOCUS_FORMAT_BGRA8, bgra + 4 * 75 * 49, 75, 50, -300);
-    assert_int_equal(refocus_upsample(&turned, &map, &params, s.other + 75 * 49, -150),
-                     REFOCUS_OK);
+    assert_int_equal(refocus_upsample(&turned, &map, &params, s.other + 75 * 49, -150), REFOCUS_OK);
     for (int y = 0; y < 50; y++)
         assert_memory_equal(s.out + 75 * y, s.other + 75 * (49 - y), 150);
 
@@ -259,7 +258,8 @@ static void snaps(void **state)
     enum { W = 120, H = 90, EDGE = 60 };
     struct refocus_snap_params params = refocus_snap_params_default(4);
     struct scene s = make(W, H, W, H);
-    const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, W, H, 3 * W);
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, W, H, 3 * W);
     const struct refocus_disparity map = refocus_disparity16(s.map, W, H, 2 * W);
 
     (void)state;
@@ -292,8 +292,7 @@ static void bad_arguments(void **state)
 {
     struct scene s = make(20, 20, 5, 5);
     struct refocus_upsample_params params = refocus_upsample_params_default(), bad[5];
-    const struct refocus_image photo =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, 20, 20, 60);
+    const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, 20, 20, 60);
     const struct refocus_disparity map = refocus_disparity16(s.map, 5, 5, 10);
 
     (void)state;
@@ -374,10 +373,14 @@ static void repair(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_everywhere),    cmocka_unit_test(invents_nothing),
-        cmocka_unit_test(keeps_planes),       cmocka_unit_test(follows_the_photo),
-        cmocka_unit_test(weighs_confidence),  cmocka_unit_test(same_by_other_ways),
-        cmocka_unit_test(bad_arguments),      cmocka_unit_test(repair),
+        cmocka_unit_test(same_everywhere),
+        cmocka_unit_test(invents_nothing),
+        cmocka_unit_test(keeps_planes),
+        cmocka_unit_test(follows_the_photo),
+        cmocka_unit_test(weighs_confidence),
+        cmocka_unit_test(same_by_other_ways),
+        cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(repair),
         cmocka_unit_test(snaps),
     };
 

@@ -32,8 +32,8 @@ static int next_descriptor(void)
     return fd;
 }
 
-void fuzz_run_failing(void (*run)(const uint8_t *data, size_t size),
-                      const uint8_t *data, size_t size)
+void fuzz_run_failing(void (*run)(const uint8_t *data, size_t size), const uint8_t *data,
+                      size_t size)
 {
     const int descriptor = next_descriptor();
     long all = 0;
@@ -45,8 +45,7 @@ void fuzz_run_failing(void (*run)(const uint8_t *data, size_t size),
         if (k == 0)
             all = failing.calls;
         if (failing.live != 0 || next_descriptor() != descriptor) {
-            fprintf(stderr,
-                    "%ld allocations and %d descriptors are left, the %ld-th failed\n",
+            fprintf(stderr, "%ld allocations and %d descriptors are left, the %ld-th failed\n",
                     failing.live, next_descriptor() - descriptor, k);
             abort();
         }

@@ -9,8 +9,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /* Run it, then again with the first allocation failing, with the second one, and so on
  * up to the 30th. Aborts when one run leaves memory or descriptors behind. */
-void fuzz_run_failing(void (*run)(const uint8_t *data, size_t size),
-                      const uint8_t *data, size_t size);
+void fuzz_run_failing(void (*run)(const uint8_t *data, size_t size), const uint8_t *data,
+                      size_t size);
 
 /* A file in memory: its descriptor, and its name. */
 int fuzz_open(const uint8_t *data, size_t size, char name[64]);

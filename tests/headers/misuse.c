@@ -31,8 +31,8 @@ static const char *spoilt(void)
 void misuse_status(int status, int expected)
 {
     if (status != expected)
-        fail_msg("%s(%s) %s: %d (%s), not %d (%s)", now.function, now.arguments, spoilt(),
-                 status, refocus_strerror(status), expected, refocus_strerror(expected));
+        fail_msg("%s(%s) %s: %d (%s), not %d (%s)", now.function, now.arguments, spoilt(), status,
+                 refocus_strerror(status), expected, refocus_strerror(expected));
     now.function = NULL;
 }
 
@@ -82,26 +82,29 @@ struct refocus_disparity misuse_map(void)
 }
 
 /* Neither a side nor a count of anything. */
-#define SIDES(type, field) \
-    BAD(type, field, 0), BAD(type, field, -1), BAD(type, field, INT32_MIN), \
+#define SIDES(type, field)                                                                         \
+    BAD(type, field, 0), BAD(type, field, -1), BAD(type, field, INT32_MIN),                        \
         BAD(type, field, INT32_MAX), BAD(type, field, REFOCUS_MAX_SIDE + 1)
 /* Even, but for 3 and 4 bytes a pixel too little or, times the rows, too much. */
-#define STRIDES(type, field) \
-    BAD(type, field, 0), BAD(type, field, 2), BAD(type, field, -2), \
-        BAD(type, field, PTRDIFF_MIN), BAD(type, field, PTRDIFF_MIN + 2), \
-        BAD(type, field, PTRDIFF_MIN / 2), BAD(type, field, PTRDIFF_MAX - 1), \
-        BAD(type, field, PTRDIFF_MAX / 2 - 1), \
-        BAD(type, field, PTRDIFF_MAX / H / 2 * 2 + 2), \
+#define STRIDES(type, field)                                                                       \
+    BAD(type, field, 0), BAD(type, field, 2), BAD(type, field, -2), BAD(type, field, PTRDIFF_MIN), \
+        BAD(type, field, PTRDIFF_MIN + 2), BAD(type, field, PTRDIFF_MIN / 2),                      \
+        BAD(type, field, PTRDIFF_MAX - 1), BAD(type, field, PTRDIFF_MAX / 2 - 1),                  \
+        BAD(type, field, PTRDIFF_MAX / H / 2 * 2 + 2),                                             \
         BAD(type, field, -(PTRDIFF_MAX / H / 2 * 2 + 2))
 
 void misuse_images(void (*use)(const struct refocus_image *image))
 {
-    const struct misuse bad[] = {
-        BAD(refocus_image, format, REFOCUS_FORMAT_NONE), BAD(refocus_image, format, 99),
-        BAD(refocus_image, format, UINT32_MAX), SIDES(refocus_image, width),
-        SIDES(refocus_image, height), BAD(refocus_image, plane[0], NULL),
-        STRIDES(refocus_image, stride[0]), BAD(refocus_image, stride[0], 3 * W - 1),
-        BAD(refocus_image, stride[0], 1 - 3 * W), BAD(refocus_image, stride[0], PTRDIFF_MAX)};
+    const struct misuse bad[] = {BAD(refocus_image, format, REFOCUS_FORMAT_NONE),
+                                 BAD(refocus_image, format, 99),
+                                 BAD(refocus_image, format, UINT32_MAX),
+                                 SIDES(refocus_image, width),
+                                 SIDES(refocus_image, height),
+                                 BAD(refocus_image, plane[0], NULL),
+                                 STRIDES(refocus_image, stride[0]),
+                                 BAD(refocus_image, stride[0], 3 * W - 1),
+                                 BAD(refocus_image, stride[0], 1 - 3 * W),
+                                 BAD(refocus_image, stride[0], PTRDIFF_MAX)};
 
     use(NULL);
     for (size_t i = 0; i < COUNT(bad); i++) {
@@ -116,10 +119,10 @@ void misuse_images(void (*use)(const struct refocus_image *image))
 void misuse_maps(void (*use)(const struct refocus_disparity *map))
 {
     const struct misuse bad[] = {
-        BAD(refocus_disparity, bits, 0), BAD(refocus_disparity, bits, 32),
+        BAD(refocus_disparity, bits, 0),          BAD(refocus_disparity, bits, 32),
         BAD(refocus_disparity, bits, UINT32_MAX), SIDES(refocus_disparity, width),
-        SIDES(refocus_disparity, height), BAD(refocus_disparity, samples, NULL),
-        STRIDES(refocus_disparity, stride), BAD(refocus_disparity, stride, 2 * W - 2),
+        SIDES(refocus_disparity, height),         BAD(refocus_disparity, samples, NULL),
+        STRIDES(refocus_disparity, stride),       BAD(refocus_disparity, stride, 2 * W - 2),
         BAD(refocus_disparity, stride, 2 - 2 * W)};
 
     use(NULL);
@@ -190,8 +193,9 @@ static int count_missing(const char *path, const char *text, const char *opening
     for (const char *at = text; (at = strstr(at, opening)); at++) {
         const char *const end = strchr(at, '('), *name = end;
 
-        while (name && name > at && (name[-1] == '_' || (name[-1] >= 'a' && name[-1] <= 'z') ||
-                                     (name[-1] >= '0' && name[-1] <= '9')))
+        while (name && name > at &&
+               (name[-1] == '_' || (name[-1] >= 'a' && name[-1] <= 'z') ||
+                (name[-1] >= '0' && name[-1] <= '9')))
             name--;
         if (!name || strncmp(name, "refocus_", 8) != 0)
             continue; /* the macro's own definition */

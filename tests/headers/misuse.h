@@ -17,19 +17,18 @@
 /* Notes the function as covered, and the call for the message should it not come back. */
 void misuse_calling(const char *function, const char *arguments);
 void misuse_status(int status, int expected);
-void misuse_number(double value, double expected); /* NAN expects NAN */
+void misuse_number(double value, double expected);      /* NAN expects NAN */
 void misuse_pointer(const void *pointer, int expected); /* whether there is to be one */
 
-#define ANSWERS(expected, function, ...) \
-    (misuse_calling(#function, #__VA_ARGS__), \
-     misuse_status(function(__VA_ARGS__), expected))
+#define ANSWERS(expected, function, ...)                                                           \
+    (misuse_calling(#function, #__VA_ARGS__), misuse_status(function(__VA_ARGS__), expected))
 #define REFUSED(...) ANSWERS(REFOCUS_ERR_ARGUMENT, __VA_ARGS__)
-#define GIVES(expected, function, ...) \
-    (misuse_calling(#function, #__VA_ARGS__), \
+#define GIVES(expected, function, ...)                                                             \
+    (misuse_calling(#function, #__VA_ARGS__),                                                      \
      misuse_number((double)function(__VA_ARGS__), expected))
-#define GIVES_NULL(function, ...) \
+#define GIVES_NULL(function, ...)                                                                  \
     (misuse_calling(#function, #__VA_ARGS__), misuse_pointer(function(__VA_ARGS__), 0))
-#define GIVES_POINTER(function, ...) \
+#define GIVES_POINTER(function, ...)                                                               \
     (misuse_calling(#function, #__VA_ARGS__), misuse_pointer(function(__VA_ARGS__), 1))
 /* Of functions without a status: they come back; what comes out is the caller's to look at. */
 #define RETURNS(function, ...) (misuse_calling(#function, #__VA_ARGS__), function(__VA_ARGS__))
@@ -42,10 +41,15 @@ struct misuse {
     size_t offset, size;
     const void *value;
 };
-#define BAD(type, field, value) \
-    {#field " = " #value, offsetof(struct type, field), sizeof ((struct type *)0)->field, \
-     &(__typeof__(((struct type *)0)->field)){value}}
-#define COUNT(list) (sizeof (list) / sizeof *(list))
+#define BAD(type, field, value)                                                                    \
+    {                                                                                              \
+#field " = " #value, offsetof(struct type, field), sizeof((struct type *)0)->field,        \
+            &(__typeof__(((struct type *)0)->field))                                               \
+        {                                                                                          \
+            value                                                                                  \
+        }                                                                                          \
+    }
+#define COUNT(list) (sizeof(list) / sizeof *(list))
 
 /* Spoils one field, and names it in messages until the next one or NULL. */
 void misuse_spoil(void *params, const struct misuse *bad);

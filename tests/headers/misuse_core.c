@@ -102,13 +102,14 @@ static void apertures(void)
     static const int sides[] = {0, -1, INT32_MIN, INT32_MAX, REFOCUS_MAX_APERTURE_SIDE + 1};
     static const double bad[] = {(double)NAN, (double)INFINITY, -1, 0, 128};
     static const uint8_t mask[W * H] = {255}, shut[W * H];
-    const struct misuse spoiled[] = {
-        BAD(refocus_aperture_params, struct_size, 0), BAD(refocus_aperture_params, blades, -1),
-        BAD(refocus_aperture_params, blades, INT32_MAX),
-        BAD(refocus_aperture_params, rotation_deg, (double)NAN),
-        BAD(refocus_aperture_params, squeeze, 0), BAD(refocus_aperture_params, hole, 1),
-        BAD(refocus_aperture_params, figure, UINT32_MAX),
-        BAD(refocus_aperture_params, mask, mask)}; /* of no size */
+    const struct misuse spoiled[] = {BAD(refocus_aperture_params, struct_size, 0),
+                                     BAD(refocus_aperture_params, blades, -1),
+                                     BAD(refocus_aperture_params, blades, INT32_MAX),
+                                     BAD(refocus_aperture_params, rotation_deg, (double)NAN),
+                                     BAD(refocus_aperture_params, squeeze, 0),
+                                     BAD(refocus_aperture_params, hole, 1),
+                                     BAD(refocus_aperture_params, figure, UINT32_MAX),
+                                     BAD(refocus_aperture_params, mask, mask)}; /* of no size */
     const struct refocus_aperture_params good = refocus_aperture_params_default();
     struct refocus_aperture *aperture = NULL;
     struct refocus_ray ray[1];
@@ -159,10 +160,15 @@ static void use_focus_map(const struct refocus_disparity *map)
 
 static void focussing(void)
 {
-    static const int places[][2] = {{-1, 0}, {0, -1}, {W, 0}, {0, H}, {INT32_MIN, INT32_MIN},
-                                    {INT32_MAX, INT32_MAX}};
-    static const int sizes[][2] = {{0, 1}, {1, 0}, {-1, 1}, {W + 1, 1}, {1, H + 1},
-                                   {INT32_MIN, INT32_MIN}, {INT32_MAX, INT32_MAX}};
+    static const int places[][2] = {
+        {-1, 0}, {0, -1}, {W, 0}, {0, H}, {INT32_MIN, INT32_MIN}, {INT32_MAX, INT32_MAX}};
+    static const int sizes[][2] = {{0, 1},
+                                   {1, 0},
+                                   {-1, 1},
+                                   {W + 1, 1},
+                                   {1, H + 1},
+                                   {INT32_MIN, INT32_MIN},
+                                   {INT32_MAX, INT32_MAX}};
     const struct refocus_focus_point line[3] = {{0, 0, 0}, {0.5f, 0.5f, 0}, {1, 1, 0}};
     const struct refocus_focus_point bad[3] = {{0, 0, 0}, {NAN, 1, 0}, {1, 0, INFINITY}};
     const struct refocus_disparity map = misuse_map();

@@ -49,22 +49,30 @@ static void use_confidence_stride(ptrdiff_t stride)
 
 static void bad_depth_maps(void)
 {
-    const struct misuse bad[] = {
-        BAD(refocus_depth_map, samples, NULL), BAD(refocus_depth_map, width, 0),
-        BAD(refocus_depth_map, width, -1), BAD(refocus_depth_map, width, INT32_MIN),
-        BAD(refocus_depth_map, width, INT32_MAX), BAD(refocus_depth_map, height, 0),
-        BAD(refocus_depth_map, height, INT32_MIN), BAD(refocus_depth_map, height, INT32_MAX),
-        BAD(refocus_depth_map, stride, 0), BAD(refocus_depth_map, stride, 1 - W),
-        BAD(refocus_depth_map, stride, PTRDIFF_MIN), BAD(refocus_depth_map, stride, PTRDIFF_MAX),
-        BAD(refocus_depth_map, stride, PTRDIFF_MIN + 1),
-        BAD(refocus_depth_map, stride, PTRDIFF_MAX / H + 1),
-        BAD(refocus_depth_map, sample, 0), BAD(refocus_depth_map, sample, UINT32_MAX),
-        BAD(refocus_depth_map, meaning, 0), BAD(refocus_depth_map, meaning, UINT32_MAX),
-        BAD(refocus_depth_map, flags, UINT32_MAX),
-        BAD(refocus_depth_map, value_near, (double)NAN),
-        BAD(refocus_depth_map, value_far, (double)-INFINITY),
-        BAD(refocus_depth_map, near_m, -1), BAD(refocus_depth_map, near_m, (double)NAN),
-        BAD(refocus_depth_map, far_m, (double)NAN)};
+    const struct misuse bad[] = {BAD(refocus_depth_map, samples, NULL),
+                                 BAD(refocus_depth_map, width, 0),
+                                 BAD(refocus_depth_map, width, -1),
+                                 BAD(refocus_depth_map, width, INT32_MIN),
+                                 BAD(refocus_depth_map, width, INT32_MAX),
+                                 BAD(refocus_depth_map, height, 0),
+                                 BAD(refocus_depth_map, height, INT32_MIN),
+                                 BAD(refocus_depth_map, height, INT32_MAX),
+                                 BAD(refocus_depth_map, stride, 0),
+                                 BAD(refocus_depth_map, stride, 1 - W),
+                                 BAD(refocus_depth_map, stride, PTRDIFF_MIN),
+                                 BAD(refocus_depth_map, stride, PTRDIFF_MAX),
+                                 BAD(refocus_depth_map, stride, PTRDIFF_MIN + 1),
+                                 BAD(refocus_depth_map, stride, PTRDIFF_MAX / H + 1),
+                                 BAD(refocus_depth_map, sample, 0),
+                                 BAD(refocus_depth_map, sample, UINT32_MAX),
+                                 BAD(refocus_depth_map, meaning, 0),
+                                 BAD(refocus_depth_map, meaning, UINT32_MAX),
+                                 BAD(refocus_depth_map, flags, UINT32_MAX),
+                                 BAD(refocus_depth_map, value_near, (double)NAN),
+                                 BAD(refocus_depth_map, value_far, (double)-INFINITY),
+                                 BAD(refocus_depth_map, near_m, -1),
+                                 BAD(refocus_depth_map, near_m, (double)NAN),
+                                 BAD(refocus_depth_map, far_m, (double)NAN)};
     const struct refocus_repair_params repair = refocus_repair_params_default();
 
     REFUSED(refocus_depth_to_disparity, NULL, out, 2 * W, NULL);
@@ -143,12 +151,10 @@ static void upsampling(void)
                                           BAD(refocus_upsample_params, threads, -1),
                                           BAD(refocus_upsample_params, threads, INT32_MAX),
                                           BAD(refocus_upsample_params, cpu, UINT32_MAX)};
-    const struct misuse bad_snap[] = {BAD(refocus_snap_params, struct_size, 0),
-                                      BAD(refocus_snap_params, reach, 0),
-                                      BAD(refocus_snap_params, reach, INT32_MIN),
-                                      BAD(refocus_snap_params, reach, INT32_MAX),
-                                      BAD(refocus_snap_params, threads, INT32_MIN),
-                                      BAD(refocus_snap_params, cpu, UINT32_MAX)};
+    const struct misuse bad_snap[] = {
+        BAD(refocus_snap_params, struct_size, 0),     BAD(refocus_snap_params, reach, 0),
+        BAD(refocus_snap_params, reach, INT32_MIN),   BAD(refocus_snap_params, reach, INT32_MAX),
+        BAD(refocus_snap_params, threads, INT32_MIN), BAD(refocus_snap_params, cpu, UINT32_MAX)};
     const struct refocus_upsample_params upsample = TAKES_NOTHING(refocus_upsample_params_default);
     const struct refocus_snap_params snap = RETURNS(refocus_snap_params_default, 2);
     const struct refocus_image photo = misuse_photo();
@@ -200,12 +206,14 @@ static void filter_stride(ptrdiff_t stride)
 
 static void filtering(void)
 {
-    const struct misuse bad[] = {
-        BAD(refocus_temporal_params, struct_size, 0), BAD(refocus_temporal_params, width, 0),
-        BAD(refocus_temporal_params, width, INT32_MIN),
-        BAD(refocus_temporal_params, height, INT32_MAX),
-        BAD(refocus_temporal_params, height, -1), BAD(refocus_temporal_params, strength, NAN),
-        BAD(refocus_temporal_params, strength, 1), BAD(refocus_temporal_params, noise, -1)};
+    const struct misuse bad[] = {BAD(refocus_temporal_params, struct_size, 0),
+                                 BAD(refocus_temporal_params, width, 0),
+                                 BAD(refocus_temporal_params, width, INT32_MIN),
+                                 BAD(refocus_temporal_params, height, INT32_MAX),
+                                 BAD(refocus_temporal_params, height, -1),
+                                 BAD(refocus_temporal_params, strength, NAN),
+                                 BAD(refocus_temporal_params, strength, 1),
+                                 BAD(refocus_temporal_params, noise, -1)};
     static const double scales[] = {0, -1, NAN, INFINITY};
     const struct refocus_temporal_params good = RETURNS(refocus_temporal_params_default, W, H);
     const struct refocus_disparity map = misuse_map();

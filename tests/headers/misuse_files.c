@@ -5,7 +5,7 @@
 
 #include <refocus/platform/file.h>
 
-#define NAME "misuse-of-files.ppm"
+#define NAME     "misuse-of-files.ppm"
 #define MAP_NAME "misuse-of-files.pgm"
 
 static void write_image(const struct refocus_image *image)
@@ -36,8 +36,7 @@ static void reading(void)
     REFUSED(refocus_photo_read_memory, &photo, NULL, 4, NULL, NULL);
     REFUSED(refocus_photo_read_memory, &photo, NULL, SIZE_MAX, NULL, NULL);
     ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, NULL, 0, NULL, NULL);
-    ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, bytes, sizeof bytes, NULL,
-            NULL);
+    ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, bytes, sizeof bytes, NULL, NULL);
     ANSWERS(REFOCUS_ERR_IO, refocus_photo_read, &photo, "", NULL, NULL);
     ANSWERS(REFOCUS_ERR_SIZE, refocus_photo_read, &photo, "/proc/self/maps", &tiny, NULL);
     assert_null(photo);
@@ -65,9 +64,9 @@ static void reading(void)
 static void units(void)
 {
     const struct misuse bad[] = {
-        BAD(refocus_depth_map, width, 0), BAD(refocus_depth_map, width, INT32_MAX),
-        BAD(refocus_depth_map, height, INT32_MIN), BAD(refocus_depth_map, height, INT32_MAX),
-        BAD(refocus_depth_map, stride, 0), BAD(refocus_depth_map, stride, PTRDIFF_MIN),
+        BAD(refocus_depth_map, width, 0),           BAD(refocus_depth_map, width, INT32_MAX),
+        BAD(refocus_depth_map, height, INT32_MIN),  BAD(refocus_depth_map, height, INT32_MAX),
+        BAD(refocus_depth_map, stride, 0),          BAD(refocus_depth_map, stride, PTRDIFF_MIN),
         BAD(refocus_depth_map, stride, PTRDIFF_MAX)};
     static const float samples[W * H];
     struct refocus_depth_map map;
@@ -127,20 +126,23 @@ static void writing(void)
 
 static void saving_depth(void)
 {
-    const struct misuse bad[] = {
-        BAD(refocus_depth_write, struct_size, 0), BAD(refocus_depth_write, width, 0),
-        BAD(refocus_depth_write, width, INT32_MAX), BAD(refocus_depth_write, height, INT32_MIN),
-        BAD(refocus_depth_write, height, REFOCUS_MAX_SIDE + 1),
-        BAD(refocus_depth_write, disparity, NULL), BAD(refocus_depth_write, stride, 0),
-        BAD(refocus_depth_write, stride, 2 * W + 1),
-        BAD(refocus_depth_write, stride, PTRDIFF_MIN),
-        BAD(refocus_depth_write, stride, PTRDIFF_MAX - 1),
-        BAD(refocus_depth_write, focus_x, (double)NAN), BAD(refocus_depth_write, focus_y, 2),
-        BAD(refocus_depth_write, near_m, (double)NAN),
-        BAD(refocus_depth_write, near_m, (double)INFINITY),
-        BAD(refocus_depth_write, far_m, (double)NAN),
-        BAD(refocus_depth_write, focus_distance, (double)NAN),
-        BAD(refocus_depth_write, blur_at_infinity, (double)INFINITY)};
+    const struct misuse bad[] = {BAD(refocus_depth_write, struct_size, 0),
+                                 BAD(refocus_depth_write, width, 0),
+                                 BAD(refocus_depth_write, width, INT32_MAX),
+                                 BAD(refocus_depth_write, height, INT32_MIN),
+                                 BAD(refocus_depth_write, height, REFOCUS_MAX_SIDE + 1),
+                                 BAD(refocus_depth_write, disparity, NULL),
+                                 BAD(refocus_depth_write, stride, 0),
+                                 BAD(refocus_depth_write, stride, 2 * W + 1),
+                                 BAD(refocus_depth_write, stride, PTRDIFF_MIN),
+                                 BAD(refocus_depth_write, stride, PTRDIFF_MAX - 1),
+                                 BAD(refocus_depth_write, focus_x, (double)NAN),
+                                 BAD(refocus_depth_write, focus_y, 2),
+                                 BAD(refocus_depth_write, near_m, (double)NAN),
+                                 BAD(refocus_depth_write, near_m, (double)INFINITY),
+                                 BAD(refocus_depth_write, far_m, (double)NAN),
+                                 BAD(refocus_depth_write, focus_distance, (double)NAN),
+                                 BAD(refocus_depth_write, blur_at_infinity, (double)INFINITY)};
     static const uint16_t samples[W * H];
     struct refocus_depth_write good = TAKES_NOTHING(refocus_depth_write_default);
 

@@ -40,10 +40,9 @@ static void use_map(const struct refocus_disparity *map)
 
 static void stereo_pairs(void)
 {
-    const struct misuse bad[] = {BAD(refocus_stereo_params, struct_size, 0),
-                                 BAD(refocus_stereo_params, max_side, INT32_MIN),
-                                 BAD(refocus_stereo_params, max_side, 0),
-                                 BAD(refocus_stereo_params, method, UINT32_MAX)};
+    const struct misuse bad[] = {
+        BAD(refocus_stereo_params, struct_size, 0), BAD(refocus_stereo_params, max_side, INT32_MIN),
+        BAD(refocus_stereo_params, max_side, 0), BAD(refocus_stereo_params, method, UINT32_MAX)};
     static uint8_t pixels[3 * 64 * 32];
     const struct refocus_image photo =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 64, 32, 3 * 64);
@@ -63,10 +62,9 @@ static void stereo_pairs(void)
 
 static void networks(void)
 {
-    const struct misuse bad[] = {BAD(refocus_network, width, 0),
-                                 BAD(refocus_network, width, INT32_MAX),
-                                 BAD(refocus_network, height, INT32_MIN),
-                                 BAD(refocus_network, scale, NAN)};
+    const struct misuse bad[] = {
+        BAD(refocus_network, width, 0), BAD(refocus_network, width, INT32_MAX),
+        BAD(refocus_network, height, INT32_MIN), BAD(refocus_network, scale, NAN)};
     struct refocus_network network = network_of();
     const struct refocus_image photo = misuse_photo();
     struct refocus_estimator *estimator = NULL;

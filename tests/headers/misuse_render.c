@@ -47,18 +47,17 @@ static void view_stride(ptrdiff_t stride)
 static void bad_planes(void)
 {
     const struct misuse bad[] = {
-        BAD(refocus_image, plane[0], NULL), BAD(refocus_image, plane[1], NULL),
-        BAD(refocus_image, plane[2], NULL), BAD(refocus_image, stride[0], PTRDIFF_MIN),
+        BAD(refocus_image, plane[0], NULL),         BAD(refocus_image, plane[1], NULL),
+        BAD(refocus_image, plane[2], NULL),         BAD(refocus_image, stride[0], PTRDIFF_MIN),
         BAD(refocus_image, stride[1], PTRDIFF_MIN), BAD(refocus_image, stride[2], PTRDIFF_MIN),
         BAD(refocus_image, stride[0], PTRDIFF_MAX), BAD(refocus_image, stride[1], PTRDIFF_MAX),
         BAD(refocus_image, stride[2], PTRDIFF_MAX), BAD(refocus_image, stride[1], 0),
-        BAD(refocus_image, matrix, UINT32_MAX), BAD(refocus_image, range, UINT32_MAX),
-        BAD(refocus_image, width, INT32_MAX), BAD(refocus_image, height, INT32_MIN)};
+        BAD(refocus_image, matrix, UINT32_MAX),     BAD(refocus_image, range, UINT32_MAX),
+        BAD(refocus_image, width, INT32_MAX),       BAD(refocus_image, height, INT32_MIN)};
     static uint8_t memory[2 * W * H];
 
     for (size_t i = 0; i < COUNT(bad); i++) {
-        struct refocus_image image =
-            refocus_image_planar(REFOCUS_FORMAT_I420, memory, W, H);
+        struct refocus_image image = refocus_image_planar(REFOCUS_FORMAT_I420, memory, W, H);
 
         misuse_spoil(&image, &bad[i]);
         prepare_photo(&image);
@@ -68,20 +67,18 @@ static void bad_planes(void)
 
 static void creating(void)
 {
-    const struct misuse bad[] = {
-        BAD(refocus_renderer_params, struct_size, 0),
-        BAD(refocus_renderer_params, max_width, 0),
-        BAD(refocus_renderer_params, max_width, INT32_MIN),
-        BAD(refocus_renderer_params, max_height, -1),
-        BAD(refocus_renderer_params, max_height, INT32_MAX),
-        BAD(refocus_renderer_params, max_blur_radius, NAN),
-        BAD(refocus_renderer_params, max_blur_radius, -INFINITY),
-        BAD(refocus_renderer_params, threads, INT32_MIN),
-        BAD(refocus_renderer_params, threads, INT32_MAX),
-        BAD(refocus_renderer_params, cpu, UINT32_MAX),
-        BAD(refocus_renderer_params, methods, UINT32_MAX)};
-    const struct refocus_renderer_params good =
-        RETURNS(refocus_renderer_params_default, W, H, 5);
+    const struct misuse bad[] = {BAD(refocus_renderer_params, struct_size, 0),
+                                 BAD(refocus_renderer_params, max_width, 0),
+                                 BAD(refocus_renderer_params, max_width, INT32_MIN),
+                                 BAD(refocus_renderer_params, max_height, -1),
+                                 BAD(refocus_renderer_params, max_height, INT32_MAX),
+                                 BAD(refocus_renderer_params, max_blur_radius, NAN),
+                                 BAD(refocus_renderer_params, max_blur_radius, -INFINITY),
+                                 BAD(refocus_renderer_params, threads, INT32_MIN),
+                                 BAD(refocus_renderer_params, threads, INT32_MAX),
+                                 BAD(refocus_renderer_params, cpu, UINT32_MAX),
+                                 BAD(refocus_renderer_params, methods, UINT32_MAX)};
+    const struct refocus_renderer_params good = RETURNS(refocus_renderer_params_default, W, H, 5);
     struct refocus_renderer_params most = refocus_renderer_params_default(
         REFOCUS_MAX_SIDE, REFOCUS_MAX_SIDE, REFOCUS_MAX_BLUR_RADIUS);
 

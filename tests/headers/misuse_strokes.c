@@ -50,10 +50,10 @@ static void without_painting(void)
 static void bad_strokes(void)
 {
     const struct misuse bad[] = {
-        BAD(refocus_stroke, struct_size, 0), BAD(refocus_stroke, kind, UINT32_MAX),
-        BAD(refocus_stroke, radius, 0), BAD(refocus_stroke, radius, NAN),
+        BAD(refocus_stroke, struct_size, 0),   BAD(refocus_stroke, kind, UINT32_MAX),
+        BAD(refocus_stroke, radius, 0),        BAD(refocus_stroke, radius, NAN),
         BAD(refocus_stroke, radius, INFINITY), BAD(refocus_stroke, reach, -1),
-        BAD(refocus_stroke, reach, NAN), BAD(refocus_stroke, fill.kind, UINT32_MAX)};
+        BAD(refocus_stroke, reach, NAN),       BAD(refocus_stroke, fill.kind, UINT32_MAX)};
 
     REFUSED(refocus_strokes_begin, strokes, NULL, NULL);
     for (size_t i = 0; i < COUNT(bad); i++) {
@@ -114,8 +114,7 @@ static void bad_files(void)
     ANSWERS(expected, refocus_strokes_load, NULL, "{}", 2, NULL);
     ANSWERS(expected, refocus_strokes_load, strokes, NULL, 2, &reason);
     ANSWERS(expected, refocus_strokes_load, strokes, NULL, SIZE_MAX, NULL);
-    ANSWERS(has_json ? REFOCUS_ERR_FORMAT : expected, refocus_strokes_load, strokes, NULL, 0,
-            NULL);
+    ANSWERS(has_json ? REFOCUS_ERR_FORMAT : expected, refocus_strokes_load, strokes, NULL, 0, NULL);
     ANSWERS(expected, refocus_strokes_save, NULL, &text, &size);
     ANSWERS(expected, refocus_strokes_save, strokes, NULL, &size);
     ANSWERS(expected, refocus_strokes_save, strokes, &text, NULL);

@@ -93,8 +93,7 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
             s->chroma_offset[k][i] = noise_between(&seed, 0, 999);
             s->chroma_weight_offset[k][i] = noise_between(&seed, 0, 999);
             if (k < slabs)
-                s->cell[k][i] =
-                    same ? s->cell[k - 1][i] : noise_between(&seed, 0, SIDE * SIDE - 1);
+                s->cell[k][i] = same ? s->cell[k - 1][i] : noise_between(&seed, 0, SIDE * SIDE - 1);
         }
         if (k < slabs) {
             s->slab[k] = (struct rf_slab){(int16_t)(k * 256 - 3000 - (int)(noise(&seed) % 3)),
@@ -134,8 +133,7 @@ static void expect_last(struct sight *s, int n, int m, int k, bool behind)
     s->expected.last[m] = (behind ? s->behind : s->front) + s->offset[k][n];
     s->expected.chroma_last[m] =
         (behind ? s->chroma_behind : s->chroma_front) + s->chroma_offset[k][n];
-    s->expected.last_weight[m] =
-        weight + (behind ? s->offset[k][n] : s->chroma_offset[k][n]);
+    s->expected.last_weight[m] = weight + (behind ? s->offset[k][n] : s->chroma_offset[k][n]);
     s->expected.last_behind[m] = behind;
     s->expected.chroma_last_weight[m] = weight + s->chroma_weight_offset[k][n];
 }
@@ -189,8 +187,8 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
 
         if (seen.high < from || seen.low > to)
             continue;
-        beside = before == k - 1 && k % RF_JOIN_BLOCK && k > 0 &&
-                 s->offset[k][n] == s->offset[k - 1][n];
+        beside =
+            before == k - 1 && k % RF_JOIN_BLOCK && k > 0 && s->offset[k][n] == s->offset[k - 1][n];
         if (seen.low >= from && seen.high <= to) {
             expect_last(s, n, m, k, false);
             tests -= beside;
@@ -224,8 +222,7 @@ static bool check_shared(const struct subject *subject, const struct sight *s, i
     if (is->begin[class] != should->begin[class])
         return fail(subject, "sort_rays", seed, n, class, is->begin[class], should->begin[class]);
     if (is->shared[class] != should->shared[class])
-        return fail(subject, "sort_rays", seed, n, class, is->shared[class],
-                    should->shared[class]);
+        return fail(subject, "sort_rays", seed, n, class, is->shared[class], should->shared[class]);
     for (int i = is->begin[class]; i < is->begin[class] + is->shared[class]; i++) {
         if (is->chroma_last[i] != should->chroma_last[i])
             return fail(subject, "sort_rays", seed, n, i, is->chroma_last[i] - s->chroma_front,
@@ -281,11 +278,9 @@ static bool check_sort(const struct subject *subject, struct sight *s, int n, ui
         return fail(subject, "sort_rays", seed, n, -1, s->sorted.rays, n);
     for (int i = 0; i < n; i++) {
         if (s->sorted.tests[i] != s->expected.tests[i])
-            return fail(subject, "sort_rays", seed, n, i, s->sorted.tests[i],
-                        s->expected.tests[i]);
+            return fail(subject, "sort_rays", seed, n, i, s->sorted.tests[i], s->expected.tests[i]);
         if (s->sorted.last[i] != s->expected.last[i])
-            return fail(subject, "sort_rays", seed, n, i,
-                        (long)(s->sorted.last[i] - s->front),
+            return fail(subject, "sort_rays", seed, n, i, (long)(s->sorted.last[i] - s->front),
                         (long)(s->expected.last[i] - s->front));
         for (int t = 0; t < s->sorted.tests[i]; t++)
             if (s->sorted.from[t][i] != s->expected.from[t][i] ||
@@ -294,7 +289,7 @@ static bool check_sort(const struct subject *subject, struct sight *s, int n, ui
                 return fail(subject, "sort_rays", seed, n, i, s->sorted.from[t][i],
                             s->expected.from[t][i]);
     }
-    for (int class = 0; class < RF_SORTED_TESTS; class++)
+    for (int class = 0; class < RF_SORTED_TESTS; class ++)
         if (!check_shared(subject, s, class, n, seed))
             return false;
     return check_weights(subject, s, n, seed);
@@ -350,8 +345,8 @@ static bool check_settle(const struct subject *subject, int n, uint32_t seed)
         rays.u[i] = (int16_t)noise_between(&seed, -32767, 32767);
         rays.v[i] = (int16_t)noise_between(&seed, -32767, 32767);
         rays.within[i] = noise_between(&seed, 0, 900);
-        start[i] = noise_between(&seed, -REACH, REACH) * CELLS +
-                   noise_between(&seed, -REACH, REACH);
+        start[i] =
+            noise_between(&seed, -REACH, REACH) * CELLS + noise_between(&seed, -REACH, REACH);
     }
     subject->kernels.settle(settled, offset, middle, start, &rays, tests, 1000, CELLS);
     for (int i = 0; i < n; i++) {
@@ -362,8 +357,8 @@ static bool check_settle(const struct subject *subject, int n, uint32_t seed)
                           y == floor_of((int64_t)rays.v[i] * high + (1 << 22), 1 << 23);
         const uint32_t there = middle[floor_of(y, RF_CELL) * CELLS + floor_of(x, RF_CELL)];
         const int most = rf_range_most(there), own = rf_range_least(*middle);
-        const bool confirmed = most - low <= rays.within[i] &&
-                               high - rf_range_least(there) <= rays.within[i];
+        const bool confirmed =
+            most - low <= rays.within[i] && high - rf_range_least(there) <= rays.within[i];
         const bool good = same && (confirmed || (tests == 1 && most <= own));
 
         if (settled[i] != good)
@@ -416,6 +411,5 @@ void bench_aim(const struct subject *subject)
     b.sort_rays = subject->kernels.sort_rays;
     own = best_time(call, &b);
     printf("ok    %-12s %-6s c %.3f  %s %.3f ns/ray\n", "sort_rays, 4", subject->cpu,
-           plain * 1e9 / (100.0 * RF_RAY_CHUNK), subject->cpu,
-           own * 1e9 / (100.0 * RF_RAY_CHUNK));
+           plain * 1e9 / (100.0 * RF_RAY_CHUNK), subject->cpu, own * 1e9 / (100.0 * RF_RAY_CHUNK));
 }

@@ -9,11 +9,10 @@
 
 enum { LANES = RF_TILE * RF_TILE, FAR = 40, SIDE = RF_TILE + 2 * FAR };
 
-static int wrong(const struct subject *subject, const char *kernel, int at, long is,
-                 long should)
+static int wrong(const struct subject *subject, const char *kernel, int at, long is, long should)
 {
-    printf("FAIL  %-12s %-6s element %d is %ld, should be %ld\n", kernel, subject->cpu,
-           at, is, should);
+    printf("FAIL  %-12s %-6s element %d is %ld, should be %ld\n", kernel, subject->cpu, at, is,
+           should);
     return 1;
 }
 
@@ -21,8 +20,7 @@ static int wrong(const struct subject *subject, const char *kernel, int at, long
  * below. */
 static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[2 * LANES])
 {
-    const int count = noise_between(seed, 1, 16),
-              most = noise_between(seed, 0, 127 * 64);
+    const int count = noise_between(seed, 1, 16), most = noise_between(seed, 0, 127 * 64);
     const int x = noise_between(seed, -most / 64 - count, RF_TILE + most / 64);
     struct rf_disc_job job = {
         .first = noise_between(seed, 0, RF_TILE),
@@ -73,19 +71,17 @@ static int check_draw(const struct subject *subject)
 
                 for (int c = 0; c < job.planes; c++) {
                     const int half = v / 2;
-                    const int w = !job.visible ? v
-                                               : (visible[i] ? half : 0) +
-                                                     (visible[LANES + i] ? half : 0);
+                    const int w = !job.visible
+                                      ? v
+                                      : (visible[i] ? half : 0) + (visible[LANES + i] ? half : 0);
                     const long light =
-                        mean[c][i] +
-                        ((w << job.shift) * (long)job.each[c] + 16384) / 32768;
+                        mean[c][i] + ((w << job.shift) * (long)job.each[c] + 16384) / 32768;
 
                     should[c][i] = (uint16_t)(light < 65535 ? light : 65535);
                 }
             }
         }
-        subject->kernels.draw_disc((uint16_t *const[3]){mean[0], mean[1], mean[2]},
-                                   &job);
+        subject->kernels.draw_disc((uint16_t *const[3]){mean[0], mean[1], mean[2]}, &job);
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < LANES; i++)
                 if (mean[c][i] != should[c][i])
@@ -124,8 +120,7 @@ static int check_chords(const struct subject *subject)
             subject->kernels.half_chords(half, radius, first, tall);
             subject->plain.half_chords(plain, radius, first, tall);
             for (int i = 0; i < RF_TILE; i++) {
-                const double should =
-                    64 * mean_half(radius / 256.0, first + 2 * i, tall);
+                const double should = 64 * mean_half(radius / 256.0, first + 2 * i, tall);
 
                 if (half[i] != plain[i] || fabs(half[i] - should) > 0.51)
                     return wrong(subject, "half_chords", i, half[i], lround(should));
@@ -148,11 +143,9 @@ static bool meets(const struct rf_disc_job *job, const struct rf_disc_way *way,
 {
     const long step = (1L << way->shift) * way->times;
     const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
-    const int sum =
-        (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
+    const int sum = (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
     const int sees = seen(job, x, y), is_left = way->mirrored ? k : !k;
-    const int aside =
-        is_left ? -(way->aside * sees / 16) : (16 - way->aside) * sees / 16;
+    const int aside = is_left ? -(way->aside * sees / 16) : (16 - way->aside) * sees / 16;
     const int whole = job->from + job->to - 128 * x;
     const int least = 2 * job->left[y], most = 2 * job->right[y];
     const int limited = whole < least ? least : whole > most ? most : whole;
@@ -173,8 +166,7 @@ static int check_hide(const struct subject *subject)
         const int16_t *const blur = plane + FAR * SIDE + FAR;
         struct rf_disc_job job = make_job(&seed, unused);
         const int low = noise_between(&seed, -600, 400);
-        const struct rf_slab slab = {(int16_t)low,
-                                     (uint16_t)noise_between(&seed, 0, 500), 0};
+        const struct rf_slab slab = {(int16_t)low, (uint16_t)noise_between(&seed, 0, 500), 0};
         const struct rf_disc_way way = {
             .shift = noise_between(&seed, 0, 2),
             .middle = noise_between(&seed, -24, 54),
@@ -182,8 +174,7 @@ static int check_hide(const struct subject *subject)
             .most = FAR,
             .aside = noise_between(&seed, 1, 15),
             .mirrored = noise(&seed) % 2,
-            .times =
-                (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
+            .times = (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
 
         for (int y = 0; y < RF_TILE; y++) {
             job.right[y] = (int16_t)noise_between(&seed, 0, 30 * 64);
@@ -197,8 +188,7 @@ static int check_hide(const struct subject *subject)
             for (int x = 0; x < RF_TILE; x++)
                 for (int k = 0; k < 2; k++)
                     should[k * LANES + y * RF_TILE + x] =
-                        meets(&job, &way, &slab, blur, x,
-                              y - (y - job.first) % way.rows, k)
+                        meets(&job, &way, &slab, blur, x, y - (y - job.first) % way.rows, k)
                             ? 0
                             : 0xffff;
         subject->kernels.hide(visible, blur, SIDE, &slab, &job, &way);
@@ -216,11 +206,9 @@ static int check_meets(const struct subject *subject)
     uint32_t seed = 34;
 
     for (int round = 0; round < 20000; round++) {
-        const int width = noise_between(&seed, RF_TILE, SIDE),
-                  height = noise_between(&seed, 1, 12),
+        const int width = noise_between(&seed, RF_TILE, SIDE), height = noise_between(&seed, 1, 12),
                   low = noise_between(&seed, -32000, 32000);
-        const struct rf_slab slab = {(int16_t)low,
-                                     (uint16_t)noise_between(&seed, 0, 900), 0};
+        const struct rf_slab slab = {(int16_t)low, (uint16_t)noise_between(&seed, 0, 900), 0};
         const int at = noise_between(&seed, 0, SIDE * height - 1);
         const bool inside = at % SIDE < width;
         bool met;
@@ -238,6 +226,5 @@ static int check_meets(const struct subject *subject)
 
 int check_discs(const struct subject *subject)
 {
-    return check_draw(subject) + check_chords(subject) + check_meets(subject) +
-           check_hide(subject);
+    return check_draw(subject) + check_chords(subject) + check_meets(subject) + check_hide(subject);
 }

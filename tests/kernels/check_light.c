@@ -52,8 +52,7 @@ static int check_any(const struct subject *subject)
 
         for (int i = 0; i < n; i++) {
             weight[i] = 1 + ((uint64_t)noise(&seed) << 12 ^ noise(&seed));
-            sum[i] = weight[i] / 4096 * (noise(&seed) % WHITE) +
-                     noise(&seed) % 4096;
+            sum[i] = weight[i] / 4096 * (noise(&seed) % WHITE) + noise(&seed) % 4096;
         }
         mean[n] = 12345;
         subject->kernels.weighted_means(mean, sum, weight, n);
@@ -62,8 +61,7 @@ static int check_any(const struct subject *subject)
         for (int i = 0; i < n; i++) {
             const uint64_t should = (4 * sum[i] + weight[i] / 2) / weight[i];
 
-            if (mean[i] != should &&
-                (4 * sum[i] + weight[i] / 2) % weight[i] > weight[i] >> 30)
+            if (mean[i] != should && (4 * sum[i] + weight[i] / 2) % weight[i] > weight[i] >> 30)
                 return wrong(subject, "weighted_means", "of a sum", mean[i], (double)should);
         }
     }
@@ -335,8 +333,7 @@ static int check_between(const struct subject *subject)
         if (memcmp(mean, plain, sizeof mean))
             return wrong(subject, "between_rows", "not as in C", round, steps[i]);
         for (int k = 0; k < LANES; k++) {
-            const double should =
-                cubic(computed, at[i], rows[i], k % RF_TILE, k / RF_TILE);
+            const double should = cubic(computed, at[i], rows[i], k % RF_TILE, k / RF_TILE);
             const double off = mean[k] - should;
 
             if (k % RF_TILE == 0 ? mean[k] != computed[0] : off > 8 || off < -8)
@@ -400,8 +397,7 @@ static double between_cells(int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4], int c
     const double u = (2 * x + 5) / 8.0, v = (2 * y + 5) / 8.0;
     const int i = (int)u, j = (int)v;
     const double above = cell[j][i][c] + (u - i) * (cell[j][i + 1][c] - cell[j][i][c]);
-    const double below =
-        cell[j + 1][i][c] + (u - i) * (cell[j + 1][i + 1][c] - cell[j + 1][i][c]);
+    const double below = cell[j + 1][i][c] + (u - i) * (cell[j + 1][i + 1][c] - cell[j + 1][i][c]);
 
     return (above + (v - j) * (below - above)) / (1 << RF_VEIL_SHIFT) / 4096;
 }
@@ -421,7 +417,8 @@ static int check_veil(const struct subject *subject)
             for (int k = 0; k < 4; k++) /* a little below 0, and above 1 */
                 cell[i / RF_VEIL_CELLS][i % RF_VEIL_CELLS][k] =
                     (int32_t)((round % 2 ? noise(&seed) : (uint32_t)round << 19) %
-                              (9u << (RF_VEIL_SHIFT + 9))) - (1 << 20);
+                              (9u << (RF_VEIL_SHIFT + 9))) -
+                    (1 << 20);
         for (int i = 0; i < 3 * LANES; i++)
             mean[i / LANES][i % LANES] = (uint16_t)(noise(&seed) >> (round % 3 ? 18 : 16));
         memcpy(out, mean, sizeof out);
@@ -430,8 +427,7 @@ static int check_veil(const struct subject *subject)
         c.lay_veil((uint16_t *const[3]){plain[0], plain[1], plain[2]}, cell);
         for (int i = 0; i < 3 * LANES; i++) {
             const int k = i / LANES, p = i % LANES;
-            const double cover =
-                fmin(fmax(between_cells(cell, 3, p % RF_TILE, p / RF_TILE), 0), 1);
+            const double cover = fmin(fmax(between_cells(cell, 3, p % RF_TILE, p / RF_TILE), 0), 1);
             const double light = 16384 * between_cells(cell, k, p % RF_TILE, p / RF_TILE);
             const double should = fmin(fmax(mean[k][p] * (1 - cover) + light, 0), 65535);
 
@@ -446,8 +442,7 @@ static int check_veil(const struct subject *subject)
 int check_light(const struct subject *subject)
 {
     const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject) +
-                         check_between(subject) +
-                         check_soften(subject) + check_weigh(subject) +
+                         check_between(subject) + check_soften(subject) + check_weigh(subject) +
                          check_weigh1(subject) + check_weigh_chroma(subject) +
                          check_weighed_means(subject) + check_veil(subject);
 

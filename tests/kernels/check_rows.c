@@ -10,8 +10,8 @@
 #include "row_kernels.h"
 
 enum {
-    MOST = 300,          /* of n */
-    PATTERNS = 8,        /* of contents; see value() */
+    MOST = 300,   /* of n */
+    PATTERNS = 8, /* of contents; see value() */
     MOST_BLUR = 127 * 256,
     ROW_BYTES = 4 * (2 * MOST + 2 * RF_SPREAD_MARGIN + 2),
 };
@@ -58,8 +58,7 @@ static void range_of(enum kind kind, int parameter, uint32_t seed, int *least, i
         if (parameter > 0) {
             const int span = parameter * RF_CONE_STEP;
 
-            *least = span < 2 * MOST_BLUR
-                         ? noise_between(&seed, *least, *most - span) : *least;
+            *least = span < 2 * MOST_BLUR ? noise_between(&seed, *least, *most - span) : *least;
             *most = *least + span < *most ? *least + span : *most;
         }
     }
@@ -129,8 +128,8 @@ static void place_rows(struct rows *rows, const struct row_kernel *kernel, int p
         const struct row_spec *spec = &kernel->row[i];
         const size_t size = size_of(spec->kind), bytes = bytes_of(spec, n);
         const size_t margin = (size_t)margin_of(spec) * size;
-        uint8_t *all = guarded_place(&rows->guarded[i], bytes, size, place,
-                                     (seed + 3 * (unsigned)i) % 17);
+        uint8_t *all =
+            guarded_place(&rows->guarded[i], bytes, size, place, (seed + 3 * (unsigned)i) % 17);
 
         rows->row[i] = all + margin;
         rows->expected[i] = rows->memory[i] + margin;
@@ -149,8 +148,8 @@ static int element(enum kind kind, const void *row, int i)
 }
 
 /* Whether every row is as it should be; where not, says the first difference in `why`. */
-static bool same_rows(const struct rows *rows, const struct row_kernel *kernel, int n,
-                      char *why, size_t room)
+static bool same_rows(const struct rows *rows, const struct row_kernel *kernel, int n, char *why,
+                      size_t room)
 {
     for (int i = 0; i < kernel->rows; i++) {
         const struct row_spec *spec = &kernel->row[i];
@@ -166,8 +165,7 @@ static bool same_rows(const struct rows *rows, const struct row_kernel *kernel, 
             const int should = element(spec->kind, rows->expected[i], x);
 
             if (is != should) {
-                snprintf(why, room, "row %d: element %d is %d, should be %d", i, x, is,
-                         should);
+                snprintf(why, room, "row %d: element %d is %d, should be %d", i, x, is, should);
                 return false;
             }
         }
@@ -189,9 +187,11 @@ static bool check_case(const struct subject *subject, const struct row_kernel *k
     kernel->run(&subject->kernels, rows->row, parameter, n);
     if (same_rows(rows, kernel, n, why, sizeof why))
         return true;
-    printf("FAIL  %-12s %-6s seed %u, parameter %d, pattern %d, n = %d, %s: %s\n",
-           kernel->name, subject->cpu, (unsigned)seed, parameter, pattern, n,
-           place == AT_START ? "after a page's end" : place == AT_END ? "before a page" : "inside",
+    printf("FAIL  %-12s %-6s seed %u, parameter %d, pattern %d, n = %d, %s: %s\n", kernel->name,
+           subject->cpu, (unsigned)seed, parameter, pattern, n,
+           place == AT_START ? "after a page's end"
+           : place == AT_END ? "before a page"
+                             : "inside",
            why);
     return false;
 }

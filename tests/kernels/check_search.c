@@ -130,9 +130,9 @@ static bool check_case(const struct subject *subject, struct stage *s, enum plac
             if (s->sum[c][i] == s->expected[c][i])
                 continue;
             printf("FAIL  %-12s %-6s seed %u, %d rays, %d tests: channel %d of (%d, %d) is "
-                   "%u, should be %u\n", "search", subject->cpu, (unsigned)seed, s->rays.rays,
-                   s->job.tests, c, i % RF_TILE, i / RF_TILE, (unsigned)s->sum[c][i],
-                   (unsigned)s->expected[c][i]);
+                   "%u, should be %u\n",
+                   "search", subject->cpu, (unsigned)seed, s->rays.rays, s->job.tests, c,
+                   i % RF_TILE, i / RF_TILE, (unsigned)s->sum[c][i], (unsigned)s->expected[c][i]);
             return false;
         }
     }

@@ -62,8 +62,8 @@ static bool check_case(const struct subject *subject, struct stage *s, enum plac
     subject->kernels.series_row(row, &job, n);
     for (int i = 0; i < 5; i++) {
         if (!guarded_intact(s->all[i])) {
-            printf("FAIL  %-12s %-6s seed %u: wrote beside row %d\n", "series_row",
-                   subject->cpu, (unsigned)seed, i);
+            printf("FAIL  %-12s %-6s seed %u: wrote beside row %d\n", "series_row", subject->cpu,
+                   (unsigned)seed, i);
             return false;
         }
     }
@@ -71,8 +71,8 @@ static bool check_case(const struct subject *subject, struct stage *s, enum plac
         const float right = expected(&job, before[x], x);
 
         if (memcmp(&row[x], &right, sizeof right) != 0) {
-            printf("FAIL  %-12s %-6s n = %d: element %d is %.9g, should be %.9g\n",
-                   "series_row", subject->cpu, n, x, (double)row[x], (double)right);
+            printf("FAIL  %-12s %-6s n = %d: element %d is %.9g, should be %.9g\n", "series_row",
+                   subject->cpu, n, x, (double)row[x], (double)right);
             return false;
         }
     }
@@ -95,8 +95,7 @@ int check_series(const struct subject *subject)
     if (!good)
         printf("FAIL  no memory between pages\n");
     for (; good && seed <= 600; seed++)
-        good = check_case(subject, &s, (enum place)(seed % PLACES), (int)seed % (MOST + 1),
-                          seed);
+        good = check_case(subject, &s, (enum place)(seed % PLACES), (int)seed % (MOST + 1), seed);
     for (int i = 0; i < 5; i++)
         guarded_destroy(s.all[i]);
     if (good)

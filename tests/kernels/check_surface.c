@@ -5,13 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    ROUNDS = 3000,
-    BEYOND = 7,
-    ACROSS = RF_TURNED,
-    GAP = 65535 / 44,
-    WIDEST = 65535 / 8
-};
+enum { ROUNDS = 3000, BEYOND = 7, ACROSS = RF_TURNED, GAP = 65535 / 44, WIDEST = 65535 / 8 };
 
 /* Eight rows of samples, of cells side by side. */
 static struct {
@@ -31,22 +25,20 @@ static uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE];
 /* Of one to five surfaces, with noise, slopes, extremes and holes. */
 static void make_samples(uint32_t *seed)
 {
-    const int surfaces = noise_between(seed, 1, 5),
-              slope = noise_between(seed, -3000, 3000);
+    const int surfaces = noise_between(seed, 1, 5), slope = noise_between(seed, -3000, 3000);
     const int spread = noise_between(seed, 0, 3) * 500;
 
     for (int i = 0; i < RF_AROUND * ACROSS; i++) {
         const int x = i % ACROSS, y = i / ACROSS;
-        int d = (int)(noise(seed) % (uint32_t)surfaces) * 65535 / 4 +
-                slope * (x % RF_AROUND) + noise_between(seed, -spread, spread);
+        int d = (int)(noise(seed) % (uint32_t)surfaces) * 65535 / 4 + slope * (x % RF_AROUND) +
+                noise_between(seed, -spread, spread);
 
         if (noise(seed) % 40 == 0)
             d = noise(seed) % 2 ? 65535 : 0;
         samples.disparity[y][x] = (uint16_t)(d < 0 ? 0 : d > 65535 ? 65535 : d);
         samples.trust[y][x] = noise(seed) % 4 ? 255 : (uint8_t)noise(seed);
         for (int c = 0; c < 3; c++)
-            samples.colour[c][y][x] =
-                (uint8_t)(noise(seed) % (noise(seed) % 3 ? 10 : 64));
+            samples.colour[c][y][x] = (uint8_t)(noise(seed) % (noise(seed) % 3 ? 10 : 64));
     }
 }
 
@@ -157,12 +149,10 @@ static bool is_parted(const struct rf_window *window)
         const struct rf_surface *s = &cell.surface[k];
         const int high = s->low + s->range;
 
-        if (s->range > WIDEST || (k && s->low <= s[-1].low + s[-1].range) ||
-            (taps & s->taps))
+        if (s->range > WIDEST || (k && s->low <= s[-1].low + s[-1].range) || (taps & s->taps))
             return false;
         for (int t = 0; t < RF_TAP_COUNT; t++) {
-            const int d =
-                window->disparity[(t / RF_TAPS + 2) * RF_AROUND + t % RF_TAPS + 2];
+            const int d = window->disparity[(t / RF_TAPS + 2) * RF_AROUND + t % RF_TAPS + 2];
 
             if ((d >= s->low && d <= high) != (s->taps >> t & 1))
                 return false;
@@ -195,8 +185,7 @@ static bool are_parts(int n)
             tap[t] = samples.disparity[t / RF_TAPS + 2][i + t % RF_TAPS + 2];
         qsort(tap, RF_TAP_COUNT, sizeof *tap, compare);
         for (int t = 0; t < RF_TAP_COUNT; t++) {
-            const bool starts =
-                t == 0 || tap[t] - tap[t - 1] > GAP || tap[t] - low > WIDEST;
+            const bool starts = t == 0 || tap[t] - tap[t - 1] > GAP || tap[t] - low > WIDEST;
 
             low = starts ? tap[t] : low;
             if (parts.sorted[t][i] != tap[t] || (parts.starts[i] >> t & 1) != starts)
@@ -213,8 +202,7 @@ static bool is_corner(int i, int j)
 
 static int check_cells(const struct subject *subject, int round, uint32_t *seed)
 {
-    const int n = round % RF_CELLS + 1, at = round % n,
-              step = noise_between(seed, 0, 20000);
+    const int n = round % RF_CELLS + 1, at = round % n, step = noise_between(seed, 0, 20000);
     const bool trusting = round % 3 == 0;
     const struct rf_window window = window_of(at, trusting);
     const uint16_t *row[RF_TAPS];
@@ -239,14 +227,11 @@ static int check_cells(const struct subject *subject, int round, uint32_t *seed)
         for (int j = 0; j < RF_TAPS; j++)
             for (int k = 0; k < RF_TAPS; k++) {
                 const bool here = trusting && trust[j][i + k] != 255;
-                const bool right =
-                    k + 1 < RF_TAPS && abs(row[j][i + k] - row[j][i + k + 1]) > step;
-                const bool below =
-                    j + 1 < RF_TAPS && abs(row[j][i + k] - row[j + 1][i + k]) > step;
+                const bool right = k + 1 < RF_TAPS && abs(row[j][i + k] - row[j][i + k + 1]) > step;
+                const bool below = j + 1 < RF_TAPS && abs(row[j][i + k] - row[j + 1][i + k]) > step;
                 const bool inner = !is_corner(k, j);
 
-                is_rough |= (here && inner) ||
-                                    (right && inner && !is_corner(k + 1, j)) ||
+                is_rough |= (here && inner) || (right && inner && !is_corner(k + 1, j)) ||
                                     (below && inner && !is_corner(k, j + 1))
                                 ? RF_ROUGH
                             : here || right || below ? RF_ROUGH_CORNER
@@ -255,8 +240,7 @@ static int check_cells(const struct subject *subject, int round, uint32_t *seed)
         is_rough = is_rough & RF_ROUGH ? RF_ROUGH : is_rough;
         any |= (unsigned)is_rough;
         if (rough[i] != is_rough) {
-            printf("FAIL  rough %s: round %d, cell %d of %d\n", subject->cpu, round, i,
-                   n);
+            printf("FAIL  rough %s: round %d, cell %d of %d\n", subject->cpu, round, i, n);
             return 1;
         }
     }
@@ -276,8 +260,7 @@ static int check_cells(const struct subject *subject, int round, uint32_t *seed)
 static int check_pixels(const struct subject *subject, int round)
 {
     const int n = round % RF_BATCH + 1, whole = (n + 31) & ~31;
-    const struct rf_window window =
-        window_of(round % (round % RF_CELLS + 1), round % 3 == 0);
+    const struct rf_window window = window_of(round % (round % RF_CELLS + 1), round % 3 == 0);
     uint16_t out[RF_BATCH + BEYOND];
     uint8_t sure[RF_BATCH + BEYOND];
 
@@ -316,9 +299,7 @@ static int check_widen(const struct subject *subject, int round, uint32_t *seed)
         for (int k = 0; k < RF_TAPS; k++) {
             const int share = noise_between(seed, 0, left < 32767 ? left : 32767);
 
-            taps[x].share[k] = (int16_t)(k < RF_TAPS - 1 ? share
-                                         : left < 32767  ? left
-                                                         : 32767);
+            taps[x].share[k] = (int16_t)(k < RF_TAPS - 1 ? share : left < 32767 ? left : 32767);
             left -= taps[x].share[k];
         }
         taps[x].share[0] = (int16_t)(taps[x].share[0] + left);
@@ -333,14 +314,12 @@ static int check_widen(const struct subject *subject, int round, uint32_t *seed)
         for (int k = 0; k < RF_TAPS && x < n; k++)
             sum += (samples.disparity[0][taps[x].first + k] - 32768) * taps[x].share[k];
         if (out[x] != (x < n ? (sum >> 15) + 32768 : 0xa5a5)) {
-            printf("FAIL  widen4 %s: round %d, pixel %d of %d\n", subject->cpu, round,
-                   x, n);
+            printf("FAIL  widen4 %s: round %d, pixel %d of %d\n", subject->cpu, round, x, n);
             return 1;
         }
         for (int c = 0; c < 3; c++)
             if (quarter[c][x] != (x < n ? pixels[bytes * x + c] / 4 : 0xa5)) {
-                printf("FAIL  quarter %s: round %d, pixel %d of %d\n", subject->cpu,
-                       round, x, n);
+                printf("FAIL  quarter %s: round %d, pixel %d of %d\n", subject->cpu, round, x, n);
                 return 1;
             }
     }
@@ -374,8 +353,7 @@ static int check_blend(const struct subject *subject, int round, uint32_t *seed)
         for (int j = 0; j < RF_TAPS && x < n; j++)
             sum += (int64_t)row[j][x] * share[j];
         if (out[x] != (x < n ? sum >> 15 : 0xa5a5)) {
-            printf("FAIL  blend4 %s: round %d, pixel %d of %d\n", subject->cpu, round,
-                   x, n);
+            printf("FAIL  blend4 %s: round %d, pixel %d of %d\n", subject->cpu, round, x, n);
             return 1;
         }
     }
@@ -429,8 +407,7 @@ static int check_lean(const struct subject *subject, int round, uint32_t *seed)
             should = sure[1][x] ? row[1][x] : leaning(nine, nine_sure);
         }
         if (out[x] != should) {
-            printf("FAIL  lean3 %s: round %d, pixel %d of %d\n", subject->cpu, round, x,
-                   n);
+            printf("FAIL  lean3 %s: round %d, pixel %d of %d\n", subject->cpu, round, x, n);
             return 1;
         }
     }

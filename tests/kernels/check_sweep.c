@@ -9,7 +9,7 @@
 enum {
     PAD = 9,
     SIDE = RF_TILE + 2 * PAD, /* strips are as wide as that and not as high */
-    PITCH = SIDE + 5, /* between the rows of a group's planes */
+    PITCH = SIDE + 5,         /* between the rows of a group's planes */
     STRIDE = 4 * PITCH,
     WEIGHT_STRIDE = SIDE + 3,
     MOST_SLABS = 12,
@@ -98,8 +98,8 @@ static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *be
         offset = make_offset(n, &weight_offset, seed);
         rays->last_behind[n] = noise(seed) % 2;
         rays->last[n] = (rays->last_behind[n] ? behind : front + PITCH) + offset;
-        rays->last_weight[n] = rays->last_behind[n] ? behind + 3 * PITCH + offset
-                                                    : s->job.weight + weight_offset;
+        rays->last_weight[n] =
+            rays->last_behind[n] ? behind + 3 * PITCH + offset : s->job.weight + weight_offset;
     }
 }
 
@@ -116,8 +116,8 @@ static void make_slabs(struct stage *s, uint32_t *seed)
 
 /* Light of planes from `first` on of a group of `planes`; no light between their rows. Ends
  * with the last pixel of the last plane. Returns the tile's first pixel. */
-static uint16_t *make_group(struct guarded *guarded, int planes, int first, int most,
-                            bool extreme, enum place place, uint32_t *seed)
+static uint16_t *make_group(struct guarded *guarded, int planes, int first, int most, bool extreme,
+                            enum place place, uint32_t *seed)
 {
     const int count = (SIDE - 1) * STRIDE + (planes - 1) * PITCH + SIDE;
     uint16_t *all = guarded_place(guarded, (size_t)count * 2, 2, place, noise(seed) % 17);
@@ -146,13 +146,11 @@ static void make_blurs(struct stage *s, int16_t *blur, uint32_t *seed)
     }
 }
 
-static void make_weights(uint16_t *weight, ptrdiff_t stride, int most, bool extreme,
-                         uint32_t *seed)
+static void make_weights(uint16_t *weight, ptrdiff_t stride, int most, bool extreme, uint32_t *seed)
 {
     for (int y = -PAD; y < RF_TILE + PAD; y++)
         for (int x = -PAD; x < RF_TILE + PAD; x++)
-            weight[y * stride + x] =
-                (uint16_t)(extreme ? most : noise_between(seed, 1, most));
+            weight[y * stride + x] = (uint16_t)(extreme ? most : noise_between(seed, 1, most));
 }
 
 static void make_stage(struct stage *s, int tests, bool same, enum place place, uint32_t seed)
@@ -202,8 +200,9 @@ static bool is_same(const struct subject *subject, const struct stage *s, const 
     if (is == should)
         return true;
     printf("FAIL  %-12s %-6s seed %u, %d rays: channel %d of (%d, %d) is "
-           "%llu, should be %llu\n", which, subject->cpu, (unsigned)seed, s->rays.rays, c,
-           i % RF_TILE, i / RF_TILE, (unsigned long long)is, (unsigned long long)should);
+           "%llu, should be %llu\n",
+           which, subject->cpu, (unsigned)seed, s->rays.rays, c, i % RF_TILE, i / RF_TILE,
+           (unsigned long long)is, (unsigned long long)should);
     return false;
 }
 
@@ -273,8 +272,7 @@ int check_sweep(const struct subject *subject)
         }
     }
     destroy(&s);
-    printf("ok    %-12s %-6s %d cases, plain and weighted\n", "sweep", subject->cpu,
-           (int)seed - 1);
+    printf("ok    %-12s %-6s %d cases, plain and weighted\n", "sweep", subject->cpu, (int)seed - 1);
     return 0;
 }
 
@@ -312,8 +310,7 @@ static void fill_chunk(struct rf_sorted_rays *rays)
     rays->rays = RF_RAY_CHUNK;
 }
 
-static void bench_case(const struct subject *subject, struct stage *s, int tests,
-                       enum kind kind)
+static void bench_case(const struct subject *subject, struct stage *s, int tests, enum kind kind)
 {
     static const char *const names[] = {"sweep", "with weights", "weighted"};
     const double samples = 50.0 * RF_RAY_CHUNK * LANES;

@@ -48,8 +48,7 @@ static uint16_t limited(int v, int most)
 /* One to three surfaces behind, sloped, with a little noise. */
 static void draw_behind(struct photo *p, uint32_t *seed)
 {
-    const int surfaces = noise_between(seed, 1, 3),
-              slope = noise_between(seed, -40, 40);
+    const int surfaces = noise_between(seed, 1, 3), slope = noise_between(seed, -40, 40);
     const int step = noise_between(seed, 0, 15000), at = noise_between(seed, 0, 8000);
     const int rough = noise(seed) % 3 ? 30 : 3000, grain = noise(seed) % 2 ? 8 : 900;
     const int shade = noise_between(seed, 0, 4095);
@@ -59,11 +58,10 @@ static void draw_behind(struct photo *p, uint32_t *seed)
         const size_t k = (size_t)(SPARE + y) * STRIDE + SPARE + (size_t)x;
         const int which = (x + y / 2) * surfaces / (p->width + p->height);
 
-        disparity[k] = limited(
-            at + which * step + slope * x + noise_between(seed, 0, rough), 65535);
+        disparity[k] =
+            limited(at + which * step + slope * x + noise_between(seed, 0, rough), 65535);
         for (int c = 0; c < 3; c++)
-            light[c][k] =
-                limited(shade + 300 * c * which + noise_between(seed, 0, grain), 4095);
+            light[c][k] = limited(shade + 300 * c * which + noise_between(seed, 0, grain), 4095);
     }
 }
 
@@ -72,8 +70,7 @@ static void draw_line(struct photo *p, uint32_t *seed)
 {
     const double slope = noise_between(seed, -300, 300) / 100.0;
     const double wide = noise_between(seed, 2, 34) / 4.0;
-    const double x0 = noise_between(seed, 0, p->width),
-                 y0 = noise_between(seed, 0, p->height);
+    const double x0 = noise_between(seed, 0, p->width), y0 = noise_between(seed, 0, p->height);
     const int near = noise(seed) % 8 ? noise_between(seed, 8000, 65535) : 65535;
     const int shade[3] = {noise_between(seed, 0, 4095), noise_between(seed, 0, 4095),
                           noise(seed) % 9 ? noise_between(seed, 0, 3900) : 4095};
@@ -88,8 +85,7 @@ static void draw_line(struct photo *p, uint32_t *seed)
         if (part > 0.5)
             disparity[k] = (uint16_t)(near - (int)(noise(seed) % 300));
         for (int c = 0; c < 3; c++)
-            light[c][k] =
-                limited((int)(part * shade[c] + (1 - part) * light[c][k]), 4095);
+            light[c][k] = limited((int)(part * shade[c] + (1 - part) * light[c][k]), 4095);
     }
 }
 
@@ -98,12 +94,10 @@ static void draw_noise(struct photo *p, uint32_t *seed)
     const uint32_t few = 2 + noise(seed) % 60;
 
     for (int i = 0; i < p->width * p->height; i++) {
-        const size_t k =
-            (size_t)(SPARE + i / p->width) * STRIDE + SPARE + (size_t)(i % p->width);
+        const size_t k = (size_t)(SPARE + i / p->width) * STRIDE + SPARE + (size_t)(i % p->width);
 
         if (noise(seed) % few == 0)
-            disparity[k] =
-                (uint16_t)(noise(seed) % 4 ? noise(seed) : 65535 * (noise(seed) % 2));
+            disparity[k] = (uint16_t)(noise(seed) % 4 ? noise(seed) : 65535 * (noise(seed) % 2));
         for (int c = 0; c < 3 && noise(seed) % few == 0; c++)
             light[c][k] = (uint16_t)(noise(seed) % 4096);
     }
@@ -128,10 +122,8 @@ static void find_most(struct photo *p)
 
 static bool same(const struct rf_thin *a, const struct rf_thin *b)
 {
-    return a->at == b->at && a->alpha == b->alpha &&
-           a->near_disparity == b->near_disparity &&
-           a->far_disparity == b->far_disparity &&
-           !memcmp(a->light, b->light, sizeof a->light);
+    return a->at == b->at && a->alpha == b->alpha && a->near_disparity == b->near_disparity &&
+           a->far_disparity == b->far_disparity && !memcmp(a->light, b->light, sizeof a->light);
 }
 
 static struct rf_thin_tile tile_of(const struct photo *p, int tx, int ty)
@@ -150,8 +142,8 @@ static struct rf_thin_tile tile_of(const struct photo *p, int tx, int ty)
 }
 
 /* How many there are, or -1 after a line on standard output. */
-static int check_tile(const struct subject *subject, const struct photo *p, int tx,
-                      int ty, int most)
+static int check_tile(const struct subject *subject, const struct photo *p, int tx, int ty,
+                      int most)
 {
     enum { ALL = RF_TILE * RF_TILE };
     static struct rf_thin out[ALL + 1], plain[ALL];
@@ -168,15 +160,14 @@ static int check_tile(const struct subject *subject, const struct photo *p, int 
                "%u %u %u %u %u, "
                "should be %d %d %u %u %u %u %u\n",
                subject->cpu, tx, ty, p->width, p->height, i, out[i].at, out[i].alpha,
-               out[i].near_disparity, out[i].far_disparity, out[i].light[0],
-               out[i].light[1], out[i].light[2], plain[i].at, plain[i].alpha,
-               plain[i].near_disparity, plain[i].far_disparity, plain[i].light[0],
-               plain[i].light[1], plain[i].light[2]);
+               out[i].near_disparity, out[i].far_disparity, out[i].light[0], out[i].light[1],
+               out[i].light[2], plain[i].at, plain[i].alpha, plain[i].near_disparity,
+               plain[i].far_disparity, plain[i].light[0], plain[i].light[1], plain[i].light[2]);
         return -1;
     }
     if (count != should || ((uint8_t *)&out[should])[0] != 0x5a) {
-        printf("FAIL  find_thin %s: tile %d, %d of %d x %d: %d, should be %d\n",
-               subject->cpu, tx, ty, p->width, p->height, count, should);
+        printf("FAIL  find_thin %s: tile %d, %d of %d x %d: %d, should be %d\n", subject->cpu, tx,
+               ty, p->width, p->height, count, should);
         return -1;
     }
     return count;
@@ -198,8 +189,7 @@ int check_thin(const struct subject *subject)
         find_most(&p);
         for (int ty = 0; ty * RF_TILE < p.height; ty++) {
             for (int tx = 0; tx * RF_TILE < p.width; tx++) {
-                const int most =
-                    round % 3 ? RF_TILE * RF_TILE : noise_between(&seed, 0, 60);
+                const int most = round % 3 ? RF_TILE * RF_TILE : noise_between(&seed, 0, 60);
                 const int count = check_tile(subject, &p, tx, ty, most);
 
                 if (count < 0)
@@ -210,12 +200,11 @@ int check_thin(const struct subject *subject)
         }
     }
     if (found < 5000 || !full) {
-        printf("FAIL  find_thin %s: the scenes hold %d pixels, %d tiles are full\n",
-               subject->cpu, found, full);
+        printf("FAIL  find_thin %s: the scenes hold %d pixels, %d tiles are full\n", subject->cpu,
+               found, full);
         return 1;
     }
-    printf("ok    %-12s %-6s %d pixels of %d scenes\n", "find_thin", subject->cpu,
-           found, ROUNDS);
+    printf("ok    %-12s %-6s %d pixels of %d scenes\n", "find_thin", subject->cpu, found, ROUNDS);
     return 0;
 }
 

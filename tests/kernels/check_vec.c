@@ -200,8 +200,8 @@ static vec_u16 among(vec_u16 a, vec_u16 b)
 {
     const vec_mask mask = mask_of(a, b), all = vec_mask_all();
     const vec_mask equal = vec_mask_equal(all, vec_u16_half(a), vec_u16_half(b));
-    const vec_mask both = vec_mask_or(
-        vec_mask_equal(mask, vec_u16_or(b, vec_u16_set(1)), b), equal);
+    const vec_mask both =
+        vec_mask_or(vec_mask_equal(mask, vec_u16_or(b, vec_u16_set(1)), b), equal);
 
     return vec_u16_choose(both, vec_u16_set(1), vec_u16_set(0));
 }
@@ -240,21 +240,31 @@ static const struct {
     operation *run;
     meaning *expect;
 } operations[] = {
-    {"load, store", first, c_first},         {"add", vec_u16_add, c_add},
-    {"sub", vec_u16_sub, c_sub},             {"and", vec_u16_and, c_and},
-    {"without", vec_u16_without, c_without}, {"at_most", vec_u16_at_most, c_at_most},
-    {"or", vec_u16_or, c_or},                {"xor", vec_u16_xor, c_xor},
-    {"max", vec_u16_max, c_max},             {"min", vec_u16_min, c_min},
-    {"equal", vec_u16_equal, c_equal},       {"offset", vec_u16_offset, c_offset},
+    {"load, store", first, c_first},
+    {"add", vec_u16_add, c_add},
+    {"sub", vec_u16_sub, c_sub},
+    {"and", vec_u16_and, c_and},
+    {"without", vec_u16_without, c_without},
+    {"at_most", vec_u16_at_most, c_at_most},
+    {"or", vec_u16_or, c_or},
+    {"xor", vec_u16_xor, c_xor},
+    {"max", vec_u16_max, c_max},
+    {"min", vec_u16_min, c_min},
+    {"equal", vec_u16_equal, c_equal},
+    {"offset", vec_u16_offset, c_offset},
     {"bytes", vec_u16_bytes, c_bytes},
-    {"half", half, c_half},                  {"mul_high", vec_u16_mul_high, c_mul_high},
-    {"mul", vec_u16_mul, c_mul},             {"s16_max", vec_s16_max, c_s16_max},
+    {"half", half, c_half},
+    {"mul_high", vec_u16_mul_high, c_mul_high},
+    {"mul", vec_u16_mul, c_mul},
+    {"s16_max", vec_s16_max, c_s16_max},
     {"s16_scale", s16_scale, c_s16_scale_bound},
     {"add_where", add_where, c_add_where},
     {"put_where", put_where, c_put_where},
-    {"choose", choose, c_choose},            {"among", among, c_among},
+    {"choose", choose, c_choose},
+    {"among", among, c_among},
     {"load_where", load_where, c_choose},
-    {"first", first_on, c_first_on},         {"less", vec_s16_less, c_less},
+    {"first", first_on, c_first_on},
+    {"less", vec_s16_less, c_less},
     {"apart", vec_s16_apart, c_apart},
 };
 
@@ -339,14 +349,13 @@ static int check_products(void)
                 factor[i][lane] = pick(round, lane, i % 2, &seed) & 0x7fff;
         for (int twice = 0; twice < 2; twice++)
             v = vec_u32_add_products(v, vec_u16_load(factor[0]), vec_u16_load(factor[1]),
-                                     vec_u16_load(factor[2 - 2 * twice]),
-                                     vec_u16_load(factor[1]));
+                                     vec_u16_load(factor[2 - 2 * twice]), vec_u16_load(factor[1]));
         sum[0] = UINT32_MAX;
         vec_u32_add_to(sum, v);
         for (int lane = 0; lane < (int)VEC_U16; lane++) {
-            const uint64_t should = (lane ? 0 : (uint64_t)UINT32_MAX) +
-                                    (uint32_t)((3u * factor[0][lane] + factor[2][lane]) *
-                                               (uint32_t)factor[1][lane]);
+            const uint64_t should =
+                (lane ? 0 : (uint64_t)UINT32_MAX) +
+                (uint32_t)((3u * factor[0][lane] + factor[2][lane]) * (uint32_t)factor[1][lane]);
 
             if (sum[lane] != should) {
                 printf("FAIL  vec_u32_add_products, %s\n", TEXT(RF_VEC_SET));
@@ -360,13 +369,12 @@ static int check_products(void)
 int RF_VEC(check_vec)(void)
 {
     const int count = sizeof operations / sizeof operations[0];
-    int failures = check_set() + check_add_to() + check_products() +
-                   RF_VEC(check_vec_across)();
+    int failures = check_set() + check_add_to() + check_products() + RF_VEC(check_vec_across)();
 
     for (int i = 0; i < count; i++)
         failures += check_operation(i);
     if (failures == 0)
-        printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16",
-               TEXT(RF_VEC_SET), count + 9, (int)VEC_U16);
+        printf("ok    %-12s %-6s %d operations, %d lanes\n", "vec_u16", TEXT(RF_VEC_SET), count + 9,
+               (int)VEC_U16);
     return failures;
 }

@@ -18,8 +18,7 @@ static int check_from_bytes(void)
         vec_u16_store(out, vec_u16_from_bytes(in + round % 2));
         for (int lane = 0; lane < (int)VEC_U16; lane++)
             if (out[lane] != in[round % 2 + lane]) {
-                printf("FAIL  vec_u16_from_bytes, %s: round %d\n", TEXT(RF_VEC_SET),
-                       round);
+                printf("FAIL  vec_u16_from_bytes, %s: round %d\n", TEXT(RF_VEC_SET), round);
                 return 1;
             }
     }
@@ -55,8 +54,8 @@ static int check_order(void)
             return 1;
         }
     }
-    if (vec_u16_lane0(b) != in[N] || vec_u16_any(vec_u16_xor(vec_u16_spread(b),
-                                                             vec_u16_set(in[N])))) {
+    if (vec_u16_lane0(b) != in[N] ||
+        vec_u16_any(vec_u16_xor(vec_u16_spread(b), vec_u16_set(in[N])))) {
         printf("FAIL  vec_u16_lane0 or spread, %s\n", TEXT(RF_VEC_SET));
         return 1;
     }
@@ -81,8 +80,8 @@ static int check_order(void)
 static int check_bytes(void)
 {
     enum { BYTES = 7 };
-    static const char *const names[] = {"absdiff", "adds", "subs", "half", "lookup",
-                                        "lookup_or_0", "apart", "wide"};
+    static const char *const names[] = {"absdiff", "adds",        "subs",  "half",
+                                        "lookup",  "lookup_or_0", "apart", "wide"};
     const uint8_t codes[16] = {7, 255, 0, 128, 1, 2, 3, 4, 90, 91, 92, 93, 250, 251, 252, 253};
     uint8_t a[VEC_U8 + 1], out[BYTES][VEC_U8 + 1];
     uint16_t wide[VEC_U8 + 1];
@@ -94,22 +93,24 @@ static int check_bytes(void)
         for (int i = 0; i < (int)VEC_U8; i++)
             a[1 + i] = (uint8_t)(pair + 37 * i);
         const vec_u8 v = vec_u8_load(a + 1), w = vec_u8_set(y);
-        const vec_u8 result[BYTES] = {vec_u8_absdiff(v, w), vec_u8_adds(v, w), vec_u8_subs(v, w),
-                                  vec_u8_half(v),
-                                  vec_u8_lookup(vec_u8_table(codes),
-                                                vec_u8_half(vec_u8_half(vec_u8_half(
-                                                    vec_u8_half(v))))),
-                                  vec_u8_lookup_or_0(vec_u8_table(codes), v),
-                                  vec_u8_apart(vec_u8_half(v), vec_u8_half(w))};
+        const vec_u8 result[BYTES] = {
+            vec_u8_absdiff(v, w),
+            vec_u8_adds(v, w),
+            vec_u8_subs(v, w),
+            vec_u8_half(v),
+            vec_u8_lookup(vec_u8_table(codes),
+                          vec_u8_half(vec_u8_half(vec_u8_half(vec_u8_half(v))))),
+            vec_u8_lookup_or_0(vec_u8_table(codes), v),
+            vec_u8_apart(vec_u8_half(v), vec_u8_half(w))};
         for (int k = 0; k < BYTES; k++)
             vec_u8_store(out[k], result[k]);
         vec_u8_add_wide(sum, v);
         vec_u8_store_wide(wide + 1, sum);
         for (int i = 0; i < (int)VEC_U8; i++) {
             const int x = a[1 + i];
-            const int should[BYTES + 1] = {abs(x - y), x + y > 255 ? 255 : x + y,
-                                           x > y ? x - y : 0, x / 2, codes[x / 16],
-                                           x < 16 ? codes[x] : 0, abs(x / 2 - y / 2), 0xff00 + x};
+            const int should[BYTES + 1] = {
+                abs(x - y),    x + y > 255 ? 255 : x + y, x > y ? x - y : 0,  x / 2,
+                codes[x / 16], x < 16 ? codes[x] : 0,     abs(x / 2 - y / 2), 0xff00 + x};
 
             for (int k = 0; k <= BYTES; k++)
                 if ((k < BYTES ? out[k][i] : wide[1 + i]) != should[k]) {
@@ -145,8 +146,7 @@ static int check_together(void)
         }
         const vec_u8 v = vec_u8_load(a);
 
-        vec_u8_store(bytes,
-                     vec_u8_of_masks(vec_u16_load(mask), vec_u16_load(mask + VEC_U16)));
+        vec_u8_store(bytes, vec_u8_of_masks(vec_u16_load(mask), vec_u16_load(mask + VEC_U16)));
         for (int i = 0; i < (int)VEC_U8; i++)
             same = same && bytes[i] == (uint8_t)mask[i];
         if (vec_u8_least(v) != least || vec_u8_most(v) != most || !same ||
@@ -182,10 +182,9 @@ static int check_sixteen(void)
         for (int i = 1; i <= 64; i++)
             within |= (uint64_t)((uint16_t)(p[i] - low) <= width) << (i - 1);
         if (vec_within16(p + 1, low, width) != (within & 65535) ||
-            vec_within64(p + 1, low, width) != within ||
-            vec_dot16(a + 1, b + 1) != dot) {
-            printf("FAIL  vec_within16, within64 or dot16, %s: round %d\n",
-                   TEXT(RF_VEC_SET), round);
+            vec_within64(p + 1, low, width) != within || vec_dot16(a + 1, b + 1) != dot) {
+            printf("FAIL  vec_within16, within64 or dot16, %s: round %d\n", TEXT(RF_VEC_SET),
+                   round);
             return 1;
         }
         const uint16_t *const from[4] = {p + 1, p + 4, p + 9, p + 13};
@@ -234,9 +233,8 @@ static int check_mix(void)
         for (int k = 0; k < 4; k++)
             for (int i = 0; i < (int)VEC_U16; i++)
                 in[k][i] = pick(round, i, k % 2, &seed);
-        vec_u16_store(out,
-                      vec_u16_mix4(vec_u16_load(in[0]), vec_u16_load(in[1]),
-                                   vec_u16_load(in[2]), vec_u16_load(in[3]), share));
+        vec_u16_store(out, vec_u16_mix4(vec_u16_load(in[0]), vec_u16_load(in[1]),
+                                        vec_u16_load(in[2]), vec_u16_load(in[3]), share));
         for (int i = 0; i < (int)VEC_U16; i++) {
             int64_t sum = 1 << 14;
 
@@ -289,9 +287,8 @@ static int check_cubic(void)
             for (int i = 0; i < (int)VEC_U16; i++)
                 in[k][i] = pick(round, i, k % 2, &seed);
         }
-        vec_u16_store(out,
-                      vec_u16_cubic4(vec_u16_load(in[0]), vec_u16_load(in[1]),
-                                     vec_u16_load(in[2]), vec_u16_load(in[3]), share));
+        vec_u16_store(out, vec_u16_cubic4(vec_u16_load(in[0]), vec_u16_load(in[1]),
+                                          vec_u16_load(in[2]), vec_u16_load(in[3]), share));
         for (int i = 0; i < (int)VEC_U16; i++) {
             int64_t sum = 1 << 13;
 
@@ -310,6 +307,6 @@ static int check_cubic(void)
 
 int RF_VEC(check_vec_across)(void)
 {
-    return check_from_bytes() + check_order() + check_bytes() + check_together() +
-           check_sixteen() + check_mix() + check_cubic() + check_greatest();
+    return check_from_bytes() + check_order() + check_bytes() + check_together() + check_sixteen() +
+           check_mix() + check_cubic() + check_greatest();
 }

@@ -44,13 +44,12 @@ static bool fail(const struct subject *subject, const char *what, uint32_t seed,
     return false;
 }
 
-static bool check_cells(const struct subject *subject, struct stage *s, int n,
-                        enum place place, uint32_t seed)
+static bool check_cells(const struct subject *subject, struct stage *s, int n, enum place place,
+                        uint32_t seed)
 {
     const uint32_t first = seed;
     const ptrdiff_t stride = RF_CELL * n + noise_between(&seed, 0, 5);
-    const int16_t *blur =
-        make_row(&s->blur, (int)(3 * stride) + RF_CELL * n, place, &seed);
+    const int16_t *blur = make_row(&s->blur, (int)(3 * stride) + RF_CELL * n, place, &seed);
     int16_t *least = make_row(&s->least[0], n, place, &seed);
     int16_t *most = make_row(&s->most[0], n, place, &seed);
 
@@ -77,8 +76,8 @@ static int inside(int x, int n)
     return x < 0 ? 0 : x >= n ? n - 1 : x;
 }
 
-static bool check_ranges(const struct subject *subject, struct stage *s, int n,
-                          enum place place, uint32_t seed)
+static bool check_ranges(const struct subject *subject, struct stage *s, int n, enum place place,
+                         uint32_t seed)
 {
     const uint32_t first = seed;
     const int border = noise_between(&seed, 0, MOST_BORDER), windows = n + 2 * border;

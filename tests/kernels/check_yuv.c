@@ -9,7 +9,13 @@
 
 #include "guarded.h"
 
-enum { MOST = 100, LANES = RF_TILE * RF_TILE, PAD = 9, SIDE = RF_TILE + 2 * PAD, STRIDE = SIDE + 7 };
+enum {
+    MOST = 100,
+    LANES = RF_TILE * RF_TILE,
+    PAD = 9,
+    SIDE = RF_TILE + 2 * PAD,
+    STRIDE = SIDE + 7
+};
 
 static struct rf_yuv_curve curve;
 
@@ -63,8 +69,8 @@ static int check_encode(const struct subject *subject, struct guarded g[6])
                 const int should = rf_luminance(light[k], expected.excess);
 
                 if (to[k / 2][2 * x + k % 2] != should)
-                    return fail(subject, "encode", seed, 2 * x + k % 2,
-                                to[k / 2][2 * x + k % 2], should);
+                    return fail(subject, "encode", seed, 2 * x + k % 2, to[k / 2][2 * x + k % 2],
+                                should);
             }
         }
         for (int i = 0; i < 6; i++)
@@ -81,8 +87,9 @@ static int clipped(int v, int most)
 }
 
 /* Sample c of a job, by the contract. */
-static int check_sample(const struct subject *subject, uint32_t seed, const struct rf_decode_job *in,
-                        const struct rf_decode_job *out, int row, int x)
+static int check_sample(const struct subject *subject, uint32_t seed,
+                        const struct rf_decode_job *in, const struct rf_decode_job *out, int row,
+                        int x)
 {
     const int rows = 1 << in->down, at = row * RF_TILE + 2 * x;
     const uint16_t *own = in->own_chroma + row * in->stride + 2 * x;
@@ -93,14 +100,14 @@ static int check_sample(const struct subject *subject, uint32_t seed, const stru
     int light = 0;
 
     for (int k = 0; k < 4; k++)
-        light += clipped(in->luma[(row * rows + k / 2 % rows) * RF_TILE + 2 * x + k % 2],
-                         RF_MEAN_MAX);
+        light +=
+            clipped(in->luma[(row * rows + k / 2 % rows) * RF_TILE + 2 * x + k % 2], RF_MEAN_MAX);
     expected = rf_chroma_code(in->curve, (light + 2) / 4, in->chroma[at], in->chroma[at + 1]);
     for (int k = 0; k < 2 * rows; k++) {
         const int y = row * rows + k / 2, p = y * RF_TILE + 2 * x + k % 2;
         const bool kept =
-            same_chroma && abs(in->luma[p] - 4 * in->own_luma[y * in->stride + 2 * x + k % 2]) <=
-                               in->within[0];
+            same_chroma &&
+            abs(in->luma[p] - 4 * in->own_luma[y * in->stride + 2 * x + k % 2]) <= in->within[0];
         const int mean = clipped(in->luma[p], RF_MEAN_MAX) - expected.excess;
         const int should = kept ? in->y[p] : in->curve->to_code[clipped(mean, RF_MEAN_MAX)];
 
@@ -124,8 +131,11 @@ static int check_decode(const struct subject *subject)
         const int least = seed % 5 ? 0 : 4 * RF_MEAN_MAX / 4, down = (int)(seed / 2 % 2);
 
         rf_yuv_curve_init(&curve, seed % 2, seed / 4 % 2, seed / 8 % 3);
-        in = (struct rf_decode_job){.curve = &curve, .down = down, .own_luma = own[0],
-                                    .own_chroma = own[1], .stride = STRIDE};
+        in = (struct rf_decode_job){.curve = &curve,
+                                    .down = down,
+                                    .own_luma = own[0],
+                                    .own_chroma = own[1],
+                                    .stride = STRIDE};
         for (int i = 0; i < 2; i++)
             in.within[i] = (uint16_t)(seed % 3 ? noise(&state) % 16 : 0);
         for (int i = 0; i < LANES; i++) {
@@ -174,8 +184,8 @@ static int check_aim_chroma(const struct subject *subject)
     for (uint32_t seed = 1; seed <= 400; seed++) {
         uint32_t state = seed;
         const int n = (int)(seed % (RF_RAY_CHUNK + 1)), down = (int)(seed / 3 % 2);
-        const int blur = seed % 4 ? noise_between(&state, -32512, 32512)
-                                  : (seed % 8 ? 32512 : -32512);
+        const int blur =
+            seed % 4 ? noise_between(&state, -32512, 32512) : (seed % 8 ? 32512 : -32512);
 
         for (int i = 0; i < n; i++) {
             u[i] = (int16_t)(i % 3 ? noise_between(&state, -32767, 32767) : i % 2 ? 32767 : -32767);
@@ -233,7 +243,7 @@ static void set_classes(struct stage *s, const uint16_t *light, uint32_t *state)
     struct rf_sorted_rays *rays = &s->rays;
     int n = 0;
 
-    for (int class = 0; class < RF_SORTED_TESTS; class++) {
+    for (int class = 0; class < RF_SORTED_TESTS; class ++) {
         rays->begin[class] = (uint8_t)n;
         while (n < rays->rays && (rays->tests[n] == class || class == RF_SORTED_TESTS - 1))
             n++;
@@ -374,9 +384,9 @@ static int check_sweep1(const struct subject *subject)
         subject->kernels.sweep1_weighted(s.weighted[0], s.weighted[1], &s.job);
         for (int i = 0; i < 2 * LANES && !failures; i++)
             if (s.weighted[i / LANES][i % LANES] != s.expected_weighted[i / LANES][i % LANES])
-                failures = fail(subject, "sweep1_weighted", seed, i,
-                                (int)s.weighted[i / LANES][i % LANES],
-                                (int)s.expected_weighted[i / LANES][i % LANES]);
+                failures =
+                    fail(subject, "sweep1_weighted", seed, i, (int)s.weighted[i / LANES][i % LANES],
+                         (int)s.expected_weighted[i / LANES][i % LANES]);
     }
     guarded_destroy(&s.blur);
     guarded_destroy(&s.light);
@@ -415,8 +425,8 @@ static int check_between(const struct subject *subject)
         uint16_t computed[4 * RF_TILE], mean[8 * RF_TILE], plain[8 * RF_TILE];
 
         for (int k = 0; k < 4 * RF_TILE; k++)
-            computed[k] = (uint16_t)(k % RF_TILE == 0 ? (int)seed * 327
-                                                      : noise_between(&state, 0, 65535));
+            computed[k] =
+                (uint16_t)(k % RF_TILE == 0 ? (int)seed * 327 : noise_between(&state, 0, 65535));
         subject->kernels.between_chroma(mean, computed);
         subject->plain.between_chroma(plain, computed);
         if (memcmp(mean, plain, sizeof mean))
@@ -451,8 +461,8 @@ static int check_keep(const struct subject *subject)
         subject->kernels.keep2(out, own, blur, behind, n);
         for (int i = 0; i < 2 * n + 2; i++) {
             const int pair = i & ~1;
-            const bool known = i < 2 * n && (blur[pair] == behind[pair] ||
-                                             blur[pair + 1] == behind[pair + 1]);
+            const bool known =
+                i < 2 * n && (blur[pair] == behind[pair] || blur[pair + 1] == behind[pair + 1]);
             const uint16_t should = known ? own[i] : filled[i];
 
             if (out[i] != should)
@@ -466,8 +476,8 @@ static int check_keep(const struct subject *subject)
 int check_yuv(const struct subject *subject)
 {
     struct guarded g[6];
-    int failures = check_decode(subject) + check_aim_chroma(subject) +
-                   check_sweep1(subject) + check_between(subject) + check_keep(subject);
+    int failures = check_decode(subject) + check_aim_chroma(subject) + check_sweep1(subject) +
+                   check_between(subject) + check_keep(subject);
     int made = 0;
 
     while (made < 6 && guarded_create(&g[made], 4 * MOST + 64))

@@ -17,8 +17,8 @@ bool guarded_create(struct guarded *g, size_t bytes)
     uint8_t *map;
 
     g->room = (bytes + 2 * CANARIES + page - 1) / page * page;
-    map = mmap(NULL, g->room + 2 * page, PROT_READ | PROT_WRITE,
-               MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    map =
+        mmap(NULL, g->room + 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (map == MAP_FAILED)
         return false;
     g->first = map + page;
@@ -48,8 +48,7 @@ static uint8_t *after(const struct guarded *g, size_t *count)
     return g->row + g->bytes;
 }
 
-void *guarded_place(struct guarded *g, size_t bytes, size_t size, enum place place,
-                    unsigned shift)
+void *guarded_place(struct guarded *g, size_t bytes, size_t size, enum place place, unsigned shift)
 {
     size_t count;
     uint8_t *canary;

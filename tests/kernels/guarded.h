@@ -22,8 +22,7 @@ void guarded_destroy(struct guarded *g);
 
 /* A row of `bytes` bytes, of elements of `size` bytes, with new canaries around it. `shift`
  * elements are left out before a row that is INSIDE. */
-void *guarded_place(struct guarded *g, size_t bytes, size_t size, enum place place,
-                    unsigned shift);
+void *guarded_place(struct guarded *g, size_t bytes, size_t size, enum place place, unsigned shift);
 
 /* Whether the canaries live. */
 bool guarded_intact(const struct guarded *g);

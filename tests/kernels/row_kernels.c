@@ -37,7 +37,7 @@ static void expect_signed_blur(void *const *row, int parameter, int n)
         if (q24 >= 0)
             blur[x] = (int16_t)((q24 + 32768) / 65536);
         else
-            blur[x] = (int16_t)-((-q24 + 32768) / 65536);
+            blur[x] = (int16_t) - ((-q24 + 32768) / 65536);
     }
 }
 
@@ -88,8 +88,8 @@ static void expect_smooth3(void *const *row, int parameter, int n)
 {
     for (int c = 0; c < 3; c++)
         for (int x = 0; x < n; x++)
-            ((uint16_t *)row[c])[x] = smoothed((const uint16_t *)row[3 + c] + x,
-                                               (const int16_t *)row[6] + x, parameter);
+            ((uint16_t *)row[c])[x] =
+                smoothed((const uint16_t *)row[3 + c] + x, (const int16_t *)row[6] + x, parameter);
 }
 
 /* The result is moved to the first row, whichever it is in. */
@@ -139,8 +139,7 @@ static void expect_dilate_from(void *const *row, int parameter, int n)
     (void)parameter;
     for (int x = 0; x < n; x++) {
         for (int dx = -1; dx <= 1; dx++) {
-            const int value =
-                fallen(before[x + dx], dx == 0 ? RF_CONE_STEP : RF_CONE_DIAGONAL);
+            const int value = fallen(before[x + dx], dx == 0 ? RF_CONE_STEP : RF_CONE_DIAGONAL);
 
             if (value > out[x])
                 out[x] = (uint16_t)value;
@@ -342,8 +341,7 @@ static void expect_push1(void *const *row, int parameter, int n)
             farthest = blur > farthest ? blur : farthest;
             sum += ((const uint16_t *)row[2 + i / 2])[2 * x + i % 2];
         }
-        ((uint16_t *)row[0])[x] =
-            count == 0 ? 0 : (uint16_t)((2 * sum + count) / (2 * count));
+        ((uint16_t *)row[0])[x] = count == 0 ? 0 : (uint16_t)((2 * sum + count) / (2 * count));
         ((int16_t *)row[1])[x] = (int16_t)farthest;
     }
 }
@@ -423,50 +421,135 @@ static void expect_clamp_codes(void *const *row, int parameter, int n)
     for (int x = 0; x < n; x++) {
         const int smooth = ((const uint16_t *)row[1])[x], away = smooth - code[x];
 
-        code[x] = (uint16_t)(abs(away) <= parameter ? smooth
-                                                    : code[x] + (away < 0 ? -1 : 1) * parameter);
+        code[x] =
+            (uint16_t)(abs(away) <= parameter ? smooth : code[x] + (away < 0 ? -1 : 1) * parameter);
     }
 }
 
 const struct row_kernel row_kernels[] = {
-    {"smooth_codes", 4,
+    {"smooth_codes",
+     4,
      {{DISPARITY, 1, 0, 0}, {DISPARITY, 1, 4, 0}, {DISPARITY, 1, 4, 0}, {DISPARITY, 1, 4, 0}},
-     0, RF_MOST_SMOOTHED, run_smooth_codes, expect_smooth_codes},
-    {"clamp_codes", 2, {{DISPARITY, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, UINT16_MAX,
-     run_clamp_codes, expect_clamp_codes},
-    {"smooth1", 3, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 4, 0}, {BLUR, 1, 4, 0}}, 0, INT16_MAX,
-     run_smooth1, expect_smooth1},
-    {"sharpest4", 3, {{BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}}, 0, 0,
-     run_sharpest4, expect_sharpest4},
-    {"push1", 6,
-     {{LIGHT, 1, 0, 0}, {BLUR, 1, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0},
-      {BLUR_OR_NONE, 2, 0, 0}, {BLUR_OR_NONE, 2, 0, 0}}, 0, 0, run_push1, expect_push1},
-    {"split2", 4, {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0}},
-     0, 0, run_split2, expect_split2},
-    {"join2", 3, {{LIGHT, 2, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}}, 0, 0,
-     run_join2, expect_join2},
-    {"signed_blur", 2, {{BLUR, 1, 0, 0}, {DISPARITY, 1, 0, 0}}, 0, 30000,
-     run_signed_blur, expect_signed_blur},
-    {"smooth3", 7,
-     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 4, 0},
-      {LIGHT, 1, 4, 0}, {LIGHT, 1, 4, 0}, {BLUR, 1, 4, 0}}, 0, INT16_MAX,
-     run_smooth3, expect_smooth3},
-    {"spread_row", 2,
-     {{RAISED, 1, 0, RF_SPREAD_MARGIN}, {SCRATCH, 1, 0, RF_SPREAD_MARGIN}}, 1, 258,
-     run_spread_row, expect_spread_row},
-    {"dilate_from", 2, {{RAISED, 1, 0, 0}, {RAISED, 1, 1, 0}}, 0, 0,
-     run_dilate_from, expect_dilate_from},
-    {"mark", 3, {{BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {RAISED, 1, 0, 0}}, 0, 0,
-     run_mark, expect_mark},
-    {"push", 10,
-     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {BLUR, 1, 0, 0},
-      {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0},
-      {BLUR_OR_NONE, 2, 0, 0}, {BLUR_OR_NONE, 2, 0, 0}}, 0, 0, run_push, expect_push},
-    {"pull", 5,
-     {{LIGHT, 2, 0, 0}, {BLUR_OR_NONE, 2, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0},
-      {SCRATCH, 1, 0, 1}}, 0, 0, run_pull, expect_pull},
-    {"pull_blur", 2, {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}}, 0, 0,
-     run_pull_blur, expect_pull_blur},
+     0,
+     RF_MOST_SMOOTHED,
+     run_smooth_codes,
+     expect_smooth_codes},
+    {"clamp_codes",
+     2,
+     {{DISPARITY, 1, 0, 0}, {DISPARITY, 1, 0, 0}},
+     0,
+     UINT16_MAX,
+     run_clamp_codes,
+     expect_clamp_codes},
+    {"smooth1",
+     3,
+     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 4, 0}, {BLUR, 1, 4, 0}},
+     0,
+     INT16_MAX,
+     run_smooth1,
+     expect_smooth1},
+    {"sharpest4",
+     3,
+     {{BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}, {BLUR, 2, 0, 0}},
+     0,
+     0,
+     run_sharpest4,
+     expect_sharpest4},
+    {"push1",
+     6,
+     {{LIGHT, 1, 0, 0},
+      {BLUR, 1, 0, 0},
+      {LIGHT, 2, 0, 0},
+      {LIGHT, 2, 0, 0},
+      {BLUR_OR_NONE, 2, 0, 0},
+      {BLUR_OR_NONE, 2, 0, 0}},
+     0,
+     0,
+     run_push1,
+     expect_push1},
+    {"split2",
+     4,
+     {{LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 2, 0, 0}, {LIGHT, 2, 0, 0}},
+     0,
+     0,
+     run_split2,
+     expect_split2},
+    {"join2",
+     3,
+     {{LIGHT, 2, 0, 0}, {LIGHT, 1, 0, 0}, {LIGHT, 1, 0, 0}},
+     0,
+     0,
+     run_join2,
+     expect_join2},
+    {"signed_blur",
+     2,
+     {{BLUR, 1, 0, 0}, {DISPARITY, 1, 0, 0}},
+     0,
+     30000,
+     run_signed_blur,
+     expect_signed_blur},
+    {"smooth3",
+     7,
+     {{LIGHT, 1, 0, 0},
+      {LIGHT, 1, 0, 0},
+      {LIGHT, 1, 0, 0},
+      {LIGHT, 1, 4, 0},
+      {LIGHT, 1, 4, 0},
+      {LIGHT, 1, 4, 0},
+      {BLUR, 1, 4, 0}},
+     0,
+     INT16_MAX,
+     run_smooth3,
+     expect_smooth3},
+    {"spread_row",
+     2,
+     {{RAISED, 1, 0, RF_SPREAD_MARGIN}, {SCRATCH, 1, 0, RF_SPREAD_MARGIN}},
+     1,
+     258,
+     run_spread_row,
+     expect_spread_row},
+    {"dilate_from",
+     2,
+     {{RAISED, 1, 0, 0}, {RAISED, 1, 1, 0}},
+     0,
+     0,
+     run_dilate_from,
+     expect_dilate_from},
+    {"mark", 3, {{BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {RAISED, 1, 0, 0}}, 0, 0, run_mark, expect_mark},
+    {"push",
+     10,
+     {{LIGHT, 1, 0, 0},
+      {LIGHT, 1, 0, 0},
+      {LIGHT, 1, 0, 0},
+      {BLUR, 1, 0, 0},
+      {LIGHT, 2, 0, 0},
+      {LIGHT, 2, 0, 0},
+      {LIGHT, 2, 0, 0},
+      {LIGHT, 2, 0, 0},
+      {BLUR_OR_NONE, 2, 0, 0},
+      {BLUR_OR_NONE, 2, 0, 0}},
+     0,
+     0,
+     run_push,
+     expect_push},
+    {"pull",
+     5,
+     {{LIGHT, 2, 0, 0},
+      {BLUR_OR_NONE, 2, 0, 0},
+      {LIGHT, 1, 0, 0},
+      {LIGHT, 1, 0, 0},
+      {SCRATCH, 1, 0, 1}},
+     0,
+     0,
+     run_pull,
+     expect_pull},
+    {"pull_blur",
+     2,
+     {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}},
+     0,
+     0,
+     run_pull_blur,
+     expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
     {"at_most", 1, {{LIGHT, 1, 0, 0}}, 0, UINT16_MAX, run_at_most, expect_at_most},
 };

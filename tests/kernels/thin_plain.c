@@ -9,11 +9,11 @@ enum {
     THIN = 2 * AROUND + 1, /* pixels across */
     WIDE = 2 * THIN,       /* not thin */
     FAR = 10,              /* how far what is behind is looked for, */
-    CLEAN = 4,       /* and how near it must be not to be taken from the edge itself */
-    BEFORE = 2,      /* how far N is looked for */
-    FAINT = 12 * 12, /* squared distance of light that is none */
-    SHINES = 4000,   /* lamps, which highlights are for, and what is clipped */
-    LEAST = 12,      /* alpha that a far pixel must have */
+    CLEAN = 4,             /* and how near it must be not to be taken from the edge itself */
+    BEFORE = 2,            /* how far N is looked for */
+    FAINT = 12 * 12,       /* squared distance of light that is none */
+    SHINES = 4000,         /* lamps, which highlights are for, and what is clipped */
+    LEAST = 12,            /* alpha that a far pixel must have */
     WHITE = 4095,
 };
 
@@ -26,7 +26,7 @@ struct look {
     int width;                          /* of what is near, where it is least */
     int far;                            /* disparity of F */
     int light[3], behind[3], before[3]; /* C, F, N */
-    int spread; /* mean squared distance of what F is the mean of */
+    int spread;                         /* mean squared distance of what F is the mean of */
 };
 
 static ptrdiff_t place(const struct look *l, int x, int y)
@@ -105,8 +105,7 @@ static int own_width(const struct look *l)
     int width = WIDE;
 
     for (int i = 0; i < 8; i += 2) {
-        const int a = meet(l, i, false, THIN).steps,
-                  b = meet(l, i + 1, false, THIN).steps;
+        const int a = meet(l, i, false, THIN).steps, b = meet(l, i + 1, false, THIN).steps;
 
         if (a && b && a + b - 1 < width)
             width = a + b - 1;

@@ -76,8 +76,8 @@ static void solvers(void **state)
         float blur;
         uint32_t field;
         int width, height;
-    } cases[] = {{20, REFOCUS_FIELD_LENS, 96, 64},  {40, REFOCUS_FIELD_LENS, 72, 48},
-                 {80, REFOCUS_FIELD_LENS, 40, 28},  {20, REFOCUS_FIELD_CYLINDER, 96, 64},
+    } cases[] = {{20, REFOCUS_FIELD_LENS, 96, 64},   {40, REFOCUS_FIELD_LENS, 72, 48},
+                 {80, REFOCUS_FIELD_LENS, 40, 28},   {20, REFOCUS_FIELD_CYLINDER, 96, 64},
                  {40, REFOCUS_FIELD_SPHERE, 64, 40}, {20, REFOCUS_FIELD_PLUS, 96, 64},
                  {20, REFOCUS_FIELD_PLANE, 96, 64}};
     static uint8_t out[2][3 * MOST];
@@ -96,8 +96,7 @@ static void solvers(void **state)
         p = picture_make(w, h, 60u + i);
         renderer = prepared(&p, cases[i].blur, 1);
         for (uint32_t solver = 0; solver < 2; solver++) {
-            struct refocus_render_params params =
-                refocus_render_params_default(0, cases[i].blur);
+            struct refocus_render_params params = refocus_render_params_default(0, cases[i].blur);
             const struct refocus_image image =
                 refocus_image_packed(REFOCUS_FORMAT_RGB8, out[solver], w, h, 3 * w);
 
@@ -112,8 +111,9 @@ static void solvers(void **state)
         for (int k = 0; k < 3 * w * h; k++)
             worst = abs(out[0][k] - out[1][k]) > worst ? abs(out[0][k] - out[1][k]) : worst;
         printf("diffusion K = %g, field %u: %d grey levels apart, %.3f s by steps, %.3f s by "
-               "series, %.1f times\n", (double)cases[i].blur, (unsigned)cases[i].field, worst,
-               seconds[1], seconds[0], seconds[1] / seconds[0]);
+               "series, %.1f times\n",
+               (double)cases[i].blur, (unsigned)cases[i].field, worst, seconds[1], seconds[0],
+               seconds[1] / seconds[0]);
         if (worst > 1)
             bad++;
         refocus_renderer_destroy(&renderer);
@@ -132,8 +132,8 @@ static void terms(void **state)
         const int steps = (int)ceil(radii[i] * radii[i] / (2 * 0.125));
 
         rf_series_make(&series, steps, 0.125);
-        printf("diffusion r = %g: %d steps or a series of %d terms, %.1f times fewer\n",
-               radii[i], steps, series.terms, (double)steps / series.terms);
+        printf("diffusion r = %g: %d steps or a series of %d terms, %.1f times fewer\n", radii[i],
+               steps, series.terms, (double)steps / series.terms);
         if (radii[i] >= 20)
             assert_true(steps >= 20 * series.terms);
     }

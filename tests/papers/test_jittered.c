@@ -7,8 +7,7 @@ static void render(struct refocus_renderer *renderer, uint32_t method, int cell,
                    uint8_t *out)
 {
     struct refocus_render_params params = refocus_render_params_default(0.3f, 6);
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     params.method = method;
     params.rays = REFOCUS_RAYS_FULL;

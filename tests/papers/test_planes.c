@@ -7,8 +7,7 @@ enum { W = 90, H = 60, K = 7 };
 static void render(struct refocus_renderer *renderer, uint32_t method, uint8_t *out)
 {
     struct refocus_render_params params = refocus_render_params_default(0, K);
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     params.method = method;
     params.rays = REFOCUS_RAYS_FULL;
@@ -80,8 +79,10 @@ static void falls_off(void **state)
     static const struct {
         uint32_t method;
         bool behind;
-    } methods[] = {{REFOCUS_METHOD_LIGHTFIELD, true},  {REFOCUS_METHOD_SWEEP, false},
-                   {REFOCUS_METHOD_RAYTRACE, false},   {REFOCUS_METHOD_JITTERED, false}};
+    } methods[] = {{REFOCUS_METHOD_LIGHTFIELD, true},
+                   {REFOCUS_METHOD_SWEEP, false},
+                   {REFOCUS_METHOD_RAYTRACE, false},
+                   {REFOCUS_METHOD_JITTERED, false}};
     struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, 0);
     static uint8_t out[3 * W * H];
     struct refocus_renderer *renderer;

@@ -103,7 +103,8 @@ static void energy(void **state)
                 rf_spread_fill(&table, spread, 1, NULL);
                 for (int y = 0; y <= table.reach; y++) {
                     for (int x = -table.reach; x <= table.reach; x++) {
-                        const double value = (y ? 2.0 : 1.0) *
+                        const double value =
+                            (y ? 2.0 : 1.0) *
                             table.share[y * (2 * table.reach + 1) + table.reach + x];
                         sum += value;
                         if (hypot(x, y) > table.radius + 0.75)
@@ -111,8 +112,8 @@ static void energy(void **state)
                     }
                 }
                 if (fabs(sum / RF_SPREAD_ONE - 1) > 0.005 || outside > 0)
-                    fail_msg("radius %g: energy %g, %g outside", table.radius,
-                             sum / RF_SPREAD_ONE, outside / RF_SPREAD_ONE);
+                    fail_msg("radius %g: energy %g, %g outside", table.radius, sum / RF_SPREAD_ONE,
+                             outside / RF_SPREAD_ONE);
             }
         }
         free(share);
@@ -174,8 +175,8 @@ static void point(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lommel), cmocka_unit_test(airy), cmocka_unit_test(energy),
-        cmocka_unit_test(uniform_shares), cmocka_unit_test(point)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lommel), cmocka_unit_test(airy),
+                                       cmocka_unit_test(energy), cmocka_unit_test(uniform_shares),
+                                       cmocka_unit_test(point)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

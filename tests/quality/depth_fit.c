@@ -21,8 +21,7 @@ static void find_edges(const uint16_t *d, const uint8_t *known, int w, int h, ui
 
             if (x + 1 < w && both(known, i, i + 1) && abs(d[i] - d[i + 1]) >= EDGE)
                 edge[i] = edge[i + 1] = 1;
-            if (y + 1 < h && both(known, i, i + (size_t)w) &&
-                abs(d[i] - d[i + (size_t)w]) >= EDGE)
+            if (y + 1 < h && both(known, i, i + (size_t)w) && abs(d[i] - d[i + (size_t)w]) >= EDGE)
                 edge[i] = edge[i + (size_t)w] = 1;
         }
     }

@@ -38,8 +38,8 @@ static double noise(void)
     return sum;
 }
 
-static void count(struct flicker *f, const uint16_t *d, const uint16_t *last,
-                  const uint16_t *truth, const uint16_t *last_truth, int w, int h, int moved)
+static void count(struct flicker *f, const uint16_t *d, const uint16_t *last, const uint16_t *truth,
+                  const uint16_t *last_truth, int w, int h, int moved)
 {
     for (int y = 0; y < h; y++) {
         for (int x = 0; x + moved < w; x++) {
@@ -68,8 +68,8 @@ static void print(const char *name, const char *way, const struct flicker *f)
 }
 
 /* What a sensor sees of the window at x: noise of 1 % of the distance, holes as zeros. */
-static void look(const struct quality_scene *s, int from, int w, int h, int step,
-                 uint16_t *truth, uint16_t *mm, uint8_t *rgb)
+static void look(const struct quality_scene *s, int from, int w, int h, int step, uint16_t *truth,
+                 uint16_t *mm, uint8_t *rgb)
 {
     const struct refocus_depth_range range = {s->near_m, s->far_m};
 
@@ -84,7 +84,9 @@ static void look(const struct quality_scene *s, int from, int w, int h, int step
             z = z < 60 ? z : 60;
             seed = seed * 1664525u + 1013904223u;
             z *= 1 + 0.01 * noise();
-            mm[y * w + x] = (uint16_t)((seed >> 8) % 100 < 3 ? 0 : z * 1000 < 65535 ? z * 1000 : 65535);
+            mm[y * w + x] = (uint16_t)((seed >> 8) % 100 < 3 ? 0
+                                       : z * 1000 < 65535    ? z * 1000
+                                                             : 65535);
         }
     }
     for (int y = 0; y < h * step; y++)
@@ -117,8 +119,8 @@ static int play(const struct quality_scene *s, int moved, bool with_photo, struc
                                         .metres_per_unit = 0.001,
                                         .near_m = s->near_m,
                                         .far_m = s->far_m};
-        const struct refocus_image photo = refocus_image_packed(
-            REFOCUS_FORMAT_RGB8, rgb, W * STEP, H * STEP, 3 * W * STEP);
+        const struct refocus_image photo =
+            refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, W * STEP, H * STEP, 3 * W * STEP);
         const struct refocus_disparity disparity = refocus_disparity16(in[t & 1], W, H, 2 * W);
 
         look(s, moved * t, W, H, STEP, truth[t & 1], mm, rgb);

@@ -131,8 +131,7 @@ static int score_scene(const char *folder, unsigned table, const char *pictures)
 
         if (status == REFOCUS_ERR_UNSUPPORTED)
             continue; /* the module of contrib filters is not there */
-        if (status || depth_fit(&scene, NULL, d, &fit) ||
-            refocused(&scene, d, &psnr, &edge))
+        if (status || depth_fit(&scene, NULL, d, &fit) || refocused(&scene, d, &psnr, &edge))
             goto done;
         if (i == 0) {
             exact_psnr = psnr;
@@ -315,8 +314,8 @@ static int run_way(const struct quality_scene *scene, const struct depth_coarse 
     return refocus_upsample(&photo, &map, &params, out, 2 * (ptrdiff_t)scene->width);
 }
 
-static void time_way(const struct quality_scene *scene, const struct depth_coarse *c, const char *name,
-                     int threads, uint32_t cpu, uint32_t filter, uint16_t *out)
+static void time_way(const struct quality_scene *scene, const struct depth_coarse *c,
+                     const char *name, int threads, uint32_t cpu, uint32_t filter, uint16_t *out)
 {
     enum { RUNS = 21, FEW = 5 };
     double cpu_ms[RUNS], wall_ms[RUNS];
@@ -360,7 +359,8 @@ static int time_scene(const char *folder)
         for (int x = 0; x < W; x++)
             memcpy(large.photo + 3 * ((size_t)y * W + (size_t)x),
                    scene.photo + 3 * ((size_t)(y * scene.height / H) * (size_t)scene.width +
-                                      (size_t)(x * scene.width / W)), 3);
+                                      (size_t)(x * scene.width / W)),
+                   3);
     for (int y = 0; y < CH; y++)
         for (int x = 0; x < CW; x++)
             map.disparity[y * CW + x] =
@@ -396,7 +396,8 @@ int main(int argc, char **argv)
 
     if (argc < 2) {
         fputs("usage: refocus-depth-quality [--time | --snap | --out FOLDER] SCENE_FOLDER...\n"
-              "       refocus-depth-quality --truth NAME PHOTO.png TRUTH.png...\n", stderr);
+              "       refocus-depth-quality --truth NAME PHOTO.png TRUTH.png...\n",
+              stderr);
         return 2;
     }
     if (!strcmp(argv[1], "--truth"))
@@ -408,6 +409,7 @@ int main(int argc, char **argv)
                   "PSNR, dB | to exact | edge PSNR, dB | to exact |\n"
                   "| --- | --- | --: | --: | --: | --: | --: | --: | --: | --: |");
     for (int i = timing || snap ? 2 : pictures ? 3 : 1; i < argc && !failed; i++)
-        failed = timing ? time_scene(argv[i]) : score_scene(argv[i], snap ? IN_SNAP : IN_SCENES, pictures);
+        failed = timing ? time_scene(argv[i])
+                        : score_scene(argv[i], snap ? IN_SNAP : IN_SCENES, pictures);
     return failed ? 1 : 0;
 }

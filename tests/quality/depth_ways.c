@@ -16,7 +16,8 @@ static double sample(const struct depth_coarse *c, int x, int y)
     return c->disparity[(size_t)y * (size_t)c->width + (size_t)x];
 }
 
-static int exact(const struct quality_scene *scene, const struct depth_coarse *coarse, uint16_t *out)
+static int exact(const struct quality_scene *scene, const struct depth_coarse *coarse,
+                 uint16_t *out)
 {
     (void)coarse;
     memcpy(out, scene->disparity, (size_t)scene->width * (size_t)scene->height * sizeof *out);
@@ -66,15 +67,16 @@ static int joint_bilateral(const struct quality_scene *scene, const struct depth
                     const int ci = i < 0 ? 0 : i >= c->width ? c->width - 1 : i;
                     const int cj = j < 0 ? 0 : j >= c->height ? c->height - 1 : j;
                     const uint8_t *q =
-                        scene->photo + 3 * ((size_t)((2 * cj + 1) * h / (2 * c->height)) *
-                                                (size_t)w +
-                                            (size_t)((2 * ci + 1) * w / (2 * c->width)));
+                        scene->photo +
+                        3 * ((size_t)((2 * cj + 1) * h / (2 * c->height)) * (size_t)w +
+                             (size_t)((2 * ci + 1) * w / (2 * c->width)));
                     double apart = 0, weight;
 
                     for (int k = 0; k < 3; k++)
                         apart += (p[k] - q[k]) * (p[k] - q[k]);
                     weight = exp(-((u - i) * (u - i) + (v - j) * (v - j)) / 2 -
-                                 apart / (2 * 0.1 * 0.1 * 255 * 255)) + 1e-12;
+                                 apart / (2 * 0.1 * 0.1 * 255 * 255)) +
+                             1e-12;
                     total += weight;
                     sum += weight * sample(c, ci, cj);
                 }
@@ -121,7 +123,8 @@ int depth_by_opencv(uint32_t filter, const struct quality_scene *scene,
     return refocus_cv_upsample_by(filter, &photo, &map, out, NULL);
 }
 
-static int cv_bilinear(const struct quality_scene *scene, const struct depth_coarse *c, uint16_t *out)
+static int cv_bilinear(const struct quality_scene *scene, const struct depth_coarse *c,
+                       uint16_t *out)
 {
     return depth_by_opencv(REFOCUS_CV_BILINEAR, scene, c, out);
 }
@@ -141,7 +144,8 @@ static int cv_fast(const struct quality_scene *scene, const struct depth_coarse 
     return depth_by_opencv(REFOCUS_CV_FAST_GLOBAL, scene, c, out);
 }
 
-static int cv_joint_full(const struct quality_scene *scene, const struct depth_coarse *c, uint16_t *out)
+static int cv_joint_full(const struct quality_scene *scene, const struct depth_coarse *c,
+                         uint16_t *out)
 {
     return depth_by_opencv(REFOCUS_CV_JOINT_BILATERAL_FULL, scene, c, out);
 }

@@ -18,8 +18,7 @@ enum { IN_SCENES = 1, IN_TRUTH = 2, IN_SNAP = 4 };
 /* Makes disparities of the scene's size; 0 or a status of refocus. */
 struct depth_way {
     const char *name;
-    int (*run)(const struct quality_scene *scene, const struct depth_coarse *coarse,
-               uint16_t *out);
+    int (*run)(const struct quality_scene *scene, const struct depth_coarse *coarse, uint16_t *out);
     unsigned tables;
 };
 

@@ -20,8 +20,10 @@ enum { FORMATS = 5 };
 static const struct {
     const char *name;
     uint32_t format;
-} formats[FORMATS] = {{"RGB8", REFOCUS_FORMAT_RGB8}, {"NV12", REFOCUS_FORMAT_NV12},
-                      {"NV21", REFOCUS_FORMAT_NV21}, {"I420", REFOCUS_FORMAT_I420},
+} formats[FORMATS] = {{"RGB8", REFOCUS_FORMAT_RGB8},
+                      {"NV12", REFOCUS_FORMAT_NV12},
+                      {"NV21", REFOCUS_FORMAT_NV21},
+                      {"I420", REFOCUS_FORMAT_I420},
                       {"YUYV", REFOCUS_FORMAT_YUYV}};
 
 struct subject {
@@ -88,8 +90,7 @@ int main(int argc, char **argv)
     if (argc == 7)
         end = first + 1;
     if (argc < 5 || argc > 7 || first == FORMATS) {
-        fputs("usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [SIGMA [FORMAT]]\n",
-              stderr);
+        fputs("usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [SIGMA [FORMAT]]\n", stderr);
         return 2;
     }
     snprintf(path, sizeof path, "%s/allfocus.png", argv[1]);
@@ -98,7 +99,8 @@ int main(int argc, char **argv)
     uint16_t *disparity = png_io_read(path, 1, &w, &h);
     if (!rgb || !disparity)
         return 1;
-    const struct refocus_image photo = refocus_image_planar(REFOCUS_FORMAT_RGB8, rgb, width, height);
+    const struct refocus_image photo =
+        refocus_image_planar(REFOCUS_FORMAT_RGB8, rgb, width, height);
     const struct refocus_disparity map = refocus_disparity16(disparity, w, h, 2 * (ptrdiff_t)w);
 
     params = refocus_render_params_default(0.689f, (float)atof(argv[2]));

@@ -41,18 +41,16 @@ static double seconds(void)
 static int make_aperture(const struct quality_view *view, struct refocus_aperture **aperture)
 {
     *aperture = NULL;
-    return view->blades
-               ? refocus_aperture_create_polygon(aperture, view->blades, view->corner)
-               : REFOCUS_OK;
+    return view->blades ? refocus_aperture_create_polygon(aperture, view->blades, view->corner)
+                        : REFOCUS_OK;
 }
 
 static int render_image(const struct quality_scene *scene, const struct quality_view *view,
-                        const struct quality_settings *settings,
-                        const struct refocus_image *photo, const struct refocus_image *out,
-                        double *ms)
+                        const struct quality_settings *settings, const struct refocus_image *photo,
+                        const struct refocus_image *out, double *ms)
 {
-    struct refocus_renderer_params limits = refocus_renderer_params_default(
-        scene->width, scene->height, (float)view->blur);
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(scene->width, scene->height, (float)view->blur);
     struct refocus_render_params params = settings->render;
     const struct refocus_disparity disparity = refocus_disparity16(
         scene->disparity, scene->width, scene->height, 2 * (ptrdiff_t)scene->width);
@@ -64,9 +62,9 @@ static int render_image(const struct quality_scene *scene, const struct quality_
     limits.methods = REFOCUS_METHOD_BIT(settings->render.method);
     limits.cpu = (uint32_t)settings->cpu;
     limits.thin = settings->render.thin;
-    if ((status = make_aperture(view, &aperture))
-        || (status = refocus_renderer_create(&renderer, &limits))
-        || (status = refocus_prepare(renderer, photo, &disparity)))
+    if ((status = make_aperture(view, &aperture)) ||
+        (status = refocus_renderer_create(&renderer, &limits)) ||
+        (status = refocus_prepare(renderer, photo, &disparity)))
         goto done;
     params.focus_disparity = (float)view->focus;
     params.max_blur_radius = (float)view->blur;
@@ -127,8 +125,8 @@ static int render(const struct quality_scene *scene, const struct quality_view *
 
 /* The picture, and its error: the difference of each channel, times 4, about grey. */
 static int write_pictures(const struct job *job, const char *scene, const char *file,
-                          const char *label, const uint8_t *pixels,
-                          const uint8_t *reference, int width, int height)
+                          const char *label, const uint8_t *pixels, const uint8_t *reference,
+                          int width, int height)
 {
     const size_t size = 3 * (size_t)width * (size_t)height;
     const int stem = (int)(strlen(file) > 4 ? strlen(file) - 4 : 0);
@@ -145,8 +143,7 @@ static int write_pictures(const struct job *job, const char *scene, const char *
     snprintf(path, sizeof path, "%s/%s_%.*s_%s.png", job->out, scene, stem, file, label);
     if (png_io_write(path, pixels, width, height))
         goto done;
-    snprintf(path, sizeof path, "%s/%s_%.*s_%s_error.png", job->out, scene, stem, file,
-             label);
+    snprintf(path, sizeof path, "%s/%s_%.*s_%s_error.png", job->out, scene, stem, file, label);
     result = png_io_write(path, error, width, height);
 done:
     free(error);
@@ -170,11 +167,10 @@ static void report(const struct job *job, const char *scene, const struct qualit
     json_array_append_new(
         job->rows,
         json_pack("{s:s, s:s, s:f, s:f, s:i, s:s, s:o, s:o, s:o, s:o, s:i, s:i, s:f}", "scene",
-                  scene, "file", view->file, "focus", view->focus, "blur", view->blur,
-                  "blades", view->blades, "run", label, "psnr", number(s->psnr), "edge_psnr",
-                  number(s->edge_psnr), "ssim", number(s->ssim), "rmse", number(s->rmse),
-                  "pixels", (int)s->pixels, "edge_pixels", (int)s->edge_pixels, "render_ms",
-                  ms));
+                  scene, "file", view->file, "focus", view->focus, "blur", view->blur, "blades",
+                  view->blades, "run", label, "psnr", number(s->psnr), "edge_psnr",
+                  number(s->edge_psnr), "ssim", number(s->ssim), "rmse", number(s->rmse), "pixels",
+                  (int)s->pixels, "edge_pixels", (int)s->edge_pixels, "render_ms", ms));
 }
 
 /* What to score a run against: an earlier run's picture, or the reference. */
@@ -198,9 +194,9 @@ static int score_view(const struct job *job, const struct quality_scene *scene,
     uint8_t *mask = malloc(pixels);
     int result = -1;
 
-    if (!reference || !mask
-        || quality_edge_mask(scene->disparity, scene->width, scene->height, view->focus,
-                             view->blur, mask))
+    if (!reference || !mask ||
+        quality_edge_mask(scene->disparity, scene->width, scene->height, view->focus, view->blur,
+                          mask))
         goto done;
     for (int i = 0; i < job->runs; i++) {
         const struct quality_settings *run = &job->run[i];
@@ -216,13 +212,11 @@ static int score_view(const struct job *job, const struct quality_scene *scene,
             goto done;
         }
         const uint8_t *against = standard(job, i, picture, reference);
-        if (quality_score(picture[i], against, scene->width, scene->height, border, mask,
-                          &scores))
+        if (quality_score(picture[i], against, scene->width, scene->height, border, mask, &scores))
             goto done;
         report(job, scene->name, view, run->label, &scores, ms);
-        if (job->out
-            && write_pictures(job, scene->name, view->file, run->label, picture[i], against,
-                              scene->width, scene->height))
+        if (job->out && write_pictures(job, scene->name, view->file, run->label, picture[i],
+                                       against, scene->width, scene->height))
             goto done;
     }
     result = 0;
@@ -244,8 +238,8 @@ static int score_scene(const struct job *job, const char *folder)
     for (int i = 0; i < scene.views && !result; i++) {
         const struct quality_view *view = &scene.view[i];
 
-        if ((job->blur < 0 || view->blur == job->blur)
-            && (job->blades < 0 || view->blades == job->blades))
+        if ((job->blur < 0 || view->blur == job->blur) &&
+            (job->blades < 0 || view->blades == job->blades))
             result = score_view(job, &scene, view);
     }
     quality_scene_free(&scene);
@@ -263,12 +257,11 @@ static int score_pair(const struct job *job, const char *path_a, const char *pat
     if (!a || !b)
         goto done;
     if (width != width_b || height != height_b) {
-        fprintf(stderr, "refocus-quality: %s: %d x %d, but %s is %d x %d\n", path_a, width,
-                height, path_b, width_b, height_b);
+        fprintf(stderr, "refocus-quality: %s: %d x %d, but %s is %d x %d\n", path_a, width, height,
+                path_b, width_b, height_b);
         goto done;
     }
-    result = quality_score(a, b, width, height, job->border < 0 ? 0 : job->border, NULL,
-                           &scores);
+    result = quality_score(a, b, width, height, job->border < 0 ? 0 : job->border, NULL, &scores);
     if (!result)
         report(job, "", &view, "", &scores, 0);
     if (!result && job->out)
@@ -297,10 +290,14 @@ static void help(void)
 static int parse(struct job *job, int argc, char **argv, int *pair, int *json)
 {
     static const struct option options[] = {
-        {"run", required_argument, NULL, 'r'},    {"blur", required_argument, NULL, 'k'},
-        {"blades", required_argument, NULL, 'n'}, {"border", required_argument, NULL, 'b'},
-        {"out", required_argument, NULL, 'o'},    {"json", no_argument, NULL, 'j'},
-        {"pair", no_argument, NULL, 'p'},         {"help", no_argument, NULL, 'h'},
+        {"run", required_argument, NULL, 'r'},
+        {"blur", required_argument, NULL, 'k'},
+        {"blades", required_argument, NULL, 'n'},
+        {"border", required_argument, NULL, 'b'},
+        {"out", required_argument, NULL, 'o'},
+        {"json", no_argument, NULL, 'j'},
+        {"pair", no_argument, NULL, 'p'},
+        {"help", no_argument, NULL, 'h'},
         {0},
     };
 
@@ -344,8 +341,8 @@ int main(int argc, char **argv)
     if (json)
         job.rows = json_array();
     else
-        printf("%-11s %-22s %-20s %7s %7s %7s %7s %9s\n", "scene", "view", "run", "PSNR",
-               "edge", "SSIM", "RMSE", "ms");
+        printf("%-11s %-22s %-20s %7s %7s %7s %7s %9s\n", "scene", "view", "run", "PSNR", "edge",
+               "SSIM", "RMSE", "ms");
     if (pair)
         failed = score_pair(&job, argv[optind], argv[optind + 1]);
     for (int i = optind; i < argc && !pair && !failed; i++)

@@ -34,14 +34,15 @@ static int read_views(struct quality_scene *scene, const char *path)
     list = json_object_get(root, "gt");
     if (json_array_size(list) < 1 || json_array_size(list) > QUALITY_MAX_VIEWS)
         goto done;
-    json_array_foreach(list, i, item) {
+    json_array_foreach(list, i, item)
+    {
         struct quality_view *view = &scene->view[scene->views];
         const char *file = json_string_value(json_object_get(item, "file"));
         const json_t *focus = json_object_get(item, "df");
         const json_t *blur = json_object_get(item, "K");
 
-        if (!file || strlen(file) >= sizeof view->file || !json_is_number(focus)
-            || !json_is_number(blur))
+        if (!file || strlen(file) >= sizeof view->file || !json_is_number(focus) ||
+            !json_is_number(blur))
             goto done;
         strcpy(view->file, file);
         view->focus = json_number_value(focus);
@@ -59,8 +60,8 @@ done:
     return result;
 }
 
-static void *read_in(const struct quality_scene *scene, const char *file, int channels,
-                     int *width, int *height)
+static void *read_in(const struct quality_scene *scene, const char *file, int channels, int *width,
+                     int *height)
 {
     char path[1200];
 
@@ -80,8 +81,7 @@ int quality_scene_read(struct quality_scene *scene, const char *folder)
     if (length >= sizeof scene->folder)
         return -1;
     memcpy(scene->folder, folder, length);
-    scene->name = strrchr(scene->folder, '/') ? strrchr(scene->folder, '/') + 1
-                                              : scene->folder;
+    scene->name = strrchr(scene->folder, '/') ? strrchr(scene->folder, '/') + 1 : scene->folder;
 
     scene->photo = read_in(scene, "allfocus.png", 3, &scene->width, &scene->height);
     scene->disparity = read_in(scene, "disparity.png", 1, &width, &height);
@@ -107,8 +107,7 @@ void quality_scene_free(struct quality_scene *scene)
     memset(scene, 0, sizeof *scene);
 }
 
-uint8_t *quality_scene_reference(const struct quality_scene *scene,
-                                 const struct quality_view *view)
+uint8_t *quality_scene_reference(const struct quality_scene *scene, const struct quality_view *view)
 {
     int width, height;
     uint8_t *picture = read_in(scene, view->file, 3, &width, &height);

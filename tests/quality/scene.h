@@ -6,11 +6,11 @@
 #include <stdint.h>
 
 struct quality_view {
-    char file[64];  /* the reference picture */
-    double focus;   /* df */
-    double blur;    /* K in pixels */
-    int blades;     /* 0 = a disc */
-    double corner;  /* degrees: one corner of the polygon */
+    char file[64]; /* the reference picture */
+    double focus;  /* df */
+    double blur;   /* K in pixels */
+    int blades;    /* 0 = a disc */
+    double corner; /* degrees: one corner of the polygon */
 };
 
 enum { QUALITY_MAX_VIEWS = 64 };
@@ -20,9 +20,9 @@ struct quality_scene {
     const char *name; /* last part of folder */
     int width, height;
     double near_m, far_m; /* z0 and z1; 0 when not given */
-    uint8_t *photo;      /* R G B */
+    uint8_t *photo;       /* R G B */
     uint16_t *disparity;
-    int views;           /* ordered by K, blades, df */
+    int views; /* ordered by K, blades, df */
     struct quality_view view[QUALITY_MAX_VIEWS];
 };
 

@@ -139,8 +139,8 @@ int quality_settings_parse(struct quality_settings *settings, const char *text)
 
     memset(settings, 0, sizeof *settings);
     settings->render = refocus_render_params_default(0, 0);
-    if (strlen(text) >= sizeof copy || !(colon = strchr(strcpy(copy, text), ':'))
-        || (size_t)(colon - copy) >= sizeof settings->label) {
+    if (strlen(text) >= sizeof copy || !(colon = strchr(strcpy(copy, text), ':')) ||
+        (size_t)(colon - copy) >= sizeof settings->label) {
         fprintf(stderr, "refocus-quality: '%s' is not LABEL:key=value,...\n", text);
         return -1;
     }

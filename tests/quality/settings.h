@@ -14,8 +14,8 @@ struct quality_settings {
     int input;        /* method=input: the untouched photo, the floor */
     int32_t threads;
     int32_t cpu;
-    int32_t format;   /* of Y, U, V: to prepare and render in; 0: R, G, B */
-    int32_t through;  /* the same, but to convert to and from only, rendered in R, G, B */
+    int32_t format;  /* of Y, U, V: to prepare and render in; 0: R, G, B */
+    int32_t through; /* the same, but to convert to and from only, rendered in R, G, B */
     struct refocus_render_params render;
 };
 

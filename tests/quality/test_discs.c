@@ -78,8 +78,7 @@ static void render(struct view *view, const struct refocus_aperture *aperture)
     params.highlight_gain = 10;
     params.aperture = aperture;
     if (refocus_renderer_create(&renderer, &limits) ||
-        refocus_prepare(renderer, &photo, &disparity) ||
-        refocus_render(renderer, &params, &out))
+        refocus_prepare(renderer, &photo, &disparity) || refocus_render(renderer, &params, &out))
         exit(1);
     refocus_renderer_destroy(&renderer);
 }
@@ -117,8 +116,8 @@ static int six_blades(const char *scenes)
         if (refocus_aperture_create_polygon(&aperture, 6, views[i].corner))
             exit(1);
         for (int six = 0; six < 2; six++) {
-            struct view view = view_read(scenes, views[i].scene,
-                                         six ? views[i].six : views[i].round, views[i].df);
+            struct view view =
+                view_read(scenes, views[i].scene, six ? views[i].six : views[i].round, views[i].df);
 
             render(&view, six ? aperture : NULL);
             score[six] = psnr(&view);
@@ -167,8 +166,8 @@ static struct lamp flood(const struct view *view, uint8_t *seen, int *stack, int
             for (int i = -1; i <= 1; i++) {
                 const int q = p + j * view->width + i;
 
-                if (x + i < 0 || y + j < 0 || x + i >= view->width ||
-                    y + j >= view->height || seen[q] || !is_clipped(view->photo + 3 * q))
+                if (x + i < 0 || y + j < 0 || x + i >= view->width || y + j >= view->height ||
+                    seen[q] || !is_clipped(view->photo + 3 * q))
                     continue;
                 seen[q] = 1;
                 stack[count++] = q;
@@ -198,8 +197,7 @@ static int find_lamps(const struct view *view, struct lamp lamps[MOST_LAMPS])
 
 /* Light in the inner 0.6 of a lamp's disc, ours and the reference's; false: the reference is
  * clipped itself. */
-static bool add_disc(const struct view *view, const struct lamp *lamp, double radius,
-                     double sum[2])
+static bool add_disc(const struct view *view, const struct lamp *lamp, double radius, double sum[2])
 {
     double own[2] = {0, 0};
     int n = 0, clipped = 0;
@@ -244,8 +242,7 @@ static int disc_brightness(const char *scenes)
             measured += add_disc(&view, lamp, radius, sum);
     }
     view_free(&view);
-    printf("nightlights: %d discs, %.3f of the reference's light\n", measured,
-           sum[0] / sum[1]);
+    printf("nightlights: %d discs, %.3f of the reference's light\n", measured, sum[0] / sum[1]);
     return measured < 20 || fabs(sum[0] / sum[1] - 1) > 0.05;
 }
 

@@ -53,7 +53,8 @@ static double blur_at(const struct scene *s, size_t q)
 }
 
 /* The pixel that ray (u, v) of (x, y) meets at blur s. */
-static size_t offset(const struct scene *s, int x, int y, const struct refocus_ray *ray, double blur)
+static size_t offset(const struct scene *s, int x, int y, const struct refocus_ray *ray,
+                     double blur)
 {
     return pixel_at(s, x + (int)floor(ray->u / 32768.0 * blur + 0.5),
                     y + (int)floor(ray->v / 32768.0 * blur + 0.5));
@@ -133,8 +134,8 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++, out += 3) {
             const int tx = x / RF_TILE, ty = y / RF_TILE;
-            const ptrdiff_t middle = (ty * RF_TILE + RF_TILE / 2) * r->stride + tx * RF_TILE
-                                     + RF_TILE / 2;
+            const ptrdiff_t middle =
+                (ty * RF_TILE + RF_TILE / 2) * r->stride + tx * RF_TILE + RF_TILE / 2;
             double sum[3] = {0};
 
             if (x % RF_TILE == 0)
@@ -172,10 +173,9 @@ static struct scene with_rims(const struct scene *s, const struct refocus_render
 static int compare(struct scene *s, struct refocus_renderer *r, uint32_t method, int tests,
                    uint8_t *fixed, uint8_t *exact)
 {
-    struct refocus_render_params params =
-        refocus_render_params_default((float)s->df, (float)s->K);
-    const struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, fixed, s->width,
-                                                          s->height, 3 * s->width);
+    struct refocus_render_params params = refocus_render_params_default((float)s->df, (float)s->K);
+    const struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, fixed, s->width, s->height, 3 * s->width);
     double light[256], psnr;
 
     for (int c = 0; c < 256; c++)
@@ -223,8 +223,8 @@ int main(int argc, char **argv)
     const struct refocus_image photo =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, s.photo, w, h, 3 * w);
     const struct refocus_disparity map = refocus_disparity16(s.disparity, w, h, 2 * w);
-    if (!fixed || !exact || refocus_renderer_create(&r, &limits)
-        || refocus_prepare(r, &photo, &map))
+    if (!fixed || !exact || refocus_renderer_create(&r, &limits) ||
+        refocus_prepare(r, &photo, &map))
         goto done;
     failed = 0;
     for (int i = 0; i < 3; i++) {

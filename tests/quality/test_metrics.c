@@ -43,15 +43,13 @@ static void known_psnr(void **state)
     memset(a, 100, sizeof a);
     memset(b, 103, sizeof b);
     /* 20 log10(255 / 3) */
-    assert_true(fabs(quality_psnr(quality_rmse(a, b, W, H, 0, NULL, &pixels)) - 38.588379)
-                < 1e-5);
+    assert_true(fabs(quality_psnr(quality_rmse(a, b, W, H, 0, NULL, &pixels)) - 38.588379) < 1e-5);
     assert_int_equal(pixels, W * H);
 
     /* One channel of one pixel by 30: mean square 900 / (3 W H). */
     memcpy(b, a, sizeof b);
     b[3 * (5 * W + 5) + 1] = 70;
-    assert_true(fabs(quality_rmse(a, b, W, H, 0, NULL, NULL) - 30 / sqrt(3.0 * W * H))
-                < 1e-12);
+    assert_true(fabs(quality_rmse(a, b, W, H, 0, NULL, NULL) - 30 / sqrt(3.0 * W * H)) < 1e-12);
     /* Inside a border of 5 there are 3 x 2 pixels; (5, 5) is one of them. */
     assert_true(fabs(quality_rmse(a, b, W, H, 5, NULL, &pixels) - 30 / sqrt(18.0)) < 1e-12);
     assert_int_equal(pixels, 6);
@@ -110,9 +108,9 @@ static void one_window_ssim(void **state)
         square += w * value * value;
     }
     const double variance = square - mean_a * mean_a;
-    const double expected = (2 * mean_a * mean_b + 6.5025) * (-2 * variance + 58.5225)
-                            / ((mean_a * mean_a + mean_b * mean_b + 6.5025)
-                               * (2 * variance + 58.5225));
+    const double expected =
+        (2 * mean_a * mean_b + 6.5025) * (-2 * variance + 58.5225) /
+        ((mean_a * mean_a + mean_b * mean_b + 6.5025) * (2 * variance + 58.5225));
     assert_int_equal(quality_ssim(a, b, 11, 11, 0, &ssim), 0);
     assert_true(expected < -0.5);
     assert_true(fabs(ssim - expected) < 1e-9);
@@ -141,8 +139,8 @@ static void straight_edge(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_pictures), cmocka_unit_test(known_psnr),
-        cmocka_unit_test(masked_rmse),    cmocka_unit_test(flat_ssim),
+        cmocka_unit_test(equal_pictures),  cmocka_unit_test(known_psnr),
+        cmocka_unit_test(masked_rmse),     cmocka_unit_test(flat_ssim),
         cmocka_unit_test(one_window_ssim), cmocka_unit_test(straight_edge),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

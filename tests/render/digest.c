@@ -76,8 +76,8 @@ static bool takes(const struct view *view, const struct style *style)
 {
     if (style->method > REFOCUS_METHOD_RAYTRACE)
         return view->all_styles && view->blur < 10; /* the others take long */
-    return view->all_styles || (style->rays != REFOCUS_RAYS_FULL && style->rays <= 64 &&
-                                style->rays >= 32);
+    return view->all_styles ||
+           (style->rays != REFOCUS_RAYS_FULL && style->rays <= 64 && style->rays >= 32);
 }
 
 enum { MOST_BYTES = 4 * 100 * 100 };
@@ -99,15 +99,14 @@ static struct refocus_image photo_of(const struct view *view, const struct pictu
         if (bytes == 4)
             memory[i * 4 + 3] = (uint8_t)(i * 37);
     }
-    return refocus_image_packed(view->in, memory, p->width, p->height,
-                                (ptrdiff_t)p->width * bytes);
+    return refocus_image_packed(view->in, memory, p->width, p->height, (ptrdiff_t)p->width * bytes);
 }
 
 static struct picture depth_of(const struct view *view, const struct picture *p)
 {
     const int n = view->coarse;
-    struct picture depth = picture_flat((p->width + n - 1) / n, (p->height + n - 1) / n,
-                                        (uint8_t[3]){0}, 0);
+    struct picture depth =
+        picture_flat((p->width + n - 1) / n, (p->height + n - 1) / n, (uint8_t[3]){0}, 0);
 
     for (int y = 0; y < depth.height; y++)
         for (int x = 0; x < depth.width; x++)
@@ -116,8 +115,8 @@ static struct picture depth_of(const struct view *view, const struct picture *p)
 }
 
 /* Renders the styles of a view up to a method; false: there is no such instruction set here. */
-static bool hash_view(const struct view *view, const struct picture *p, uint32_t cpu,
-                      int threads, uint32_t last_method, uint64_t *hashes)
+static bool hash_view(const struct view *view, const struct picture *p, uint32_t cpu, int threads,
+                      uint32_t last_method, uint64_t *hashes)
 {
     static uint8_t in[MOST_BYTES], out[MOST_BYTES];
     struct refocus_renderer_params limits =
@@ -139,8 +138,7 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
         assert_int_equal(status, REFOCUS_OK);
         assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
         for (int i = 0; i < style_count; i++) {
-            struct refocus_render_params params =
-                style_params(&styles[i], view->focus, view->blur);
+            struct refocus_render_params params = style_params(&styles[i], view->focus, view->blur);
             struct refocus_aperture *aperture = style_aperture(&styles[i]);
 
             params.aperture = aperture;
@@ -160,16 +158,15 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
 }
 
 /* Another instruction set or number of threads: the same hashes. */
-static void check_same(const struct view *view, const struct picture *p, uint32_t cpu,
-                       int threads, uint32_t last_method, const uint64_t *expected)
+static void check_same(const struct view *view, const struct picture *p, uint32_t cpu, int threads,
+                       uint32_t last_method, const uint64_t *expected)
 {
     uint64_t hashes[64] = {0};
 
     if (!hash_view(view, p, cpu, threads, last_method, hashes))
         return;
     for (int i = 0; i < style_count; i++)
-        if (takes(view, &styles[i]) && styles[i].method <= last_method &&
-            hashes[i] != expected[i])
+        if (takes(view, &styles[i]) && styles[i].method <= last_method && hashes[i] != expected[i])
             fail_msg("%d x %d, K = %g, %s: %s with %d threads differs from plain C with one",
                      view->width, view->height, (double)view->blur, styles[i].name,
                      refocus_cpu_name(cpu), threads);
@@ -201,10 +198,9 @@ static void pictures(void **state)
             if (!takes(view, &styles[i]))
                 continue;
             snprintf(name, sizeof name,
-                     "%d x %d, depth / %d, K = %g, df = %g, gain %g, %d to %d, %s",
-                     p.width, p.height, view->coarse, (double)view->blur,
-                     (double)view->focus, (double)view->gain, (int)view->in,
-                     (int)view->out, styles[i].name);
+                     "%d x %d, depth / %d, K = %g, df = %g, gain %g, %d to %d, %s", p.width,
+                     p.height, view->coarse, (double)view->blur, (double)view->focus,
+                     (double)view->gain, (int)view->in, (int)view->out, styles[i].name);
             check_golden(plain[i], name);
         }
         picture_free(&p);
@@ -259,8 +255,7 @@ static bool hash_yuv_view(const struct yuv_view *view, const struct picture *p, 
     if (status == REFOCUS_OK) {
         assert_int_equal(refocus_prepare(renderer, &photo.image, &map), REFOCUS_OK);
         for (int i = 0; i < style_count; i++) {
-            struct refocus_render_params params =
-                style_params(&styles[i], view->focus, view->blur);
+            struct refocus_render_params params = style_params(&styles[i], view->focus, view->blur);
             struct refocus_aperture *aperture = style_aperture(&styles[i]);
 
             params.aperture = aperture;
@@ -286,8 +281,8 @@ static void yuv_views_same(void **state)
     static const struct {
         uint32_t cpu;
         int threads;
-    } ways[] = {{REFOCUS_CPU_NEON, 1}, {REFOCUS_CPU_SSE41, 2}, {REFOCUS_CPU_AVX2, 1},
-                {REFOCUS_CPU_AVX512, 2}, {REFOCUS_CPU_AUTO, 3}, {REFOCUS_CPU_AUTO, 8}};
+    } ways[] = {{REFOCUS_CPU_NEON, 1},   {REFOCUS_CPU_SSE41, 2}, {REFOCUS_CPU_AVX2, 1},
+                {REFOCUS_CPU_AVX512, 2}, {REFOCUS_CPU_AUTO, 3},  {REFOCUS_CPU_AUTO, 8}};
 
     (void)state;
     for (int v = 0; v < (int)(sizeof yuv_views / sizeof yuv_views[0]); v++) {
@@ -310,10 +305,10 @@ static void yuv_views_same(void **state)
             if (styles[i].method != REFOCUS_METHOD_SWEEP)
                 continue;
             snprintf(name, sizeof name,
-                     "%d x %d, depth / %d, K = %g, df = %g, gain %g, format %d %d %d, %s",
-                     p.width, p.height, view->coarse, (double)view->blur,
-                     (double)view->focus, (double)view->gain, (int)view->format,
-                     (int)view->matrix, (int)view->range, styles[i].name);
+                     "%d x %d, depth / %d, K = %g, df = %g, gain %g, format %d %d %d, %s", p.width,
+                     p.height, view->coarse, (double)view->blur, (double)view->focus,
+                     (double)view->gain, (int)view->format, (int)view->matrix, (int)view->range,
+                     styles[i].name);
             check_golden(plain[i], name);
         }
         picture_free(&p);
@@ -340,8 +335,7 @@ static void effects(void **state)
     enum { W = 83, H = 61 };
     static uint8_t out[3 * W * H];
     const float focus = 0.4f, blur = 11;
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
     struct picture p = night(W, H);
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
@@ -473,8 +467,7 @@ static void ray_sets(void **state)
 
             assert_int_equal(refocus_aperture_rays(aperture, counts[i], rays), 0);
             snprintf(name, sizeof name, "%d rays, %d blades", counts[i], blades);
-            check_golden(hash((const uint8_t *)rays, (size_t)counts[i] * sizeof rays[0]),
-                         name);
+            check_golden(hash((const uint8_t *)rays, (size_t)counts[i] * sizeof rays[0]), name);
         }
         refocus_aperture_destroy(&aperture);
     }
@@ -482,12 +475,9 @@ static void ray_sets(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures),
-                                       cmocka_unit_test(yuv_views_same),
-                                       cmocka_unit_test(effects),
-                                       cmocka_unit_test(thin),
-                                       cmocka_unit_test(upsampled),
-                                       cmocka_unit_test(ray_sets)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures), cmocka_unit_test(yuv_views_same), cmocka_unit_test(effects),
+        cmocka_unit_test(thin),     cmocka_unit_test(upsampled),      cmocka_unit_test(ray_sets)};
     const bool update = argc == 3 && !strcmp(argv[2], "--update");
     int failed;
 

@@ -38,9 +38,8 @@ struct call {
 
 static void run(struct call *call)
 {
-    call->status = call->photo
-                       ? refocus_prepare(call->renderer, call->photo, call->disparity)
-                       : refocus_render(call->renderer, &call->params, &call->out);
+    call->status = call->photo ? refocus_prepare(call->renderer, call->photo, call->disparity)
+                               : refocus_render(call->renderer, &call->params, &call->out);
     call->end_ms = now_ms(CLOCK_MONOTONIC);
 }
 
@@ -81,8 +80,7 @@ static void measure_cancel(struct call call, const char *name, int last)
     printf("    {\"of\": \"%s\", \"cancelled\": %d, \"worst_ms\": %.2f, \"mean_ms\": "
            "%.2f, "
            "\"worst_cpu_ms\": %.2f}%s\n",
-           name, cancelled, worst, cancelled ? sum / cancelled : 0, worst_cpu,
-           last ? "" : ",");
+           name, cancelled, worst, cancelled ? sum / cancelled : 0, worst_cpu, last ? "" : ",");
     fflush(stdout);
 }
 
@@ -99,9 +97,8 @@ static double time_render(struct call call, const struct refocus_render_params *
 
     if (before) {
         first.params = *before;
-        first.out =
-            part(call.out.plane[0], (width + before->reduce - 1) / before->reduce,
-                 (height + before->reduce - 1) / before->reduce);
+        first.out = part(call.out.plane[0], (width + before->reduce - 1) / before->reduce,
+                         (height + before->reduce - 1) / before->reduce);
     }
     for (int i = 0; i < 5; i++) {
         double start;
@@ -129,8 +126,7 @@ static void measure_times(struct call call, uint8_t *out)
     struct refocus_render_params tap, half;
     double start = now_ms(CLOCK_MONOTONIC);
 
-    assert_int_equal(refocus_prepare(call.renderer, call.photo, call.disparity),
-                     REFOCUS_OK);
+    assert_int_equal(refocus_prepare(call.renderer, call.photo, call.disparity), REFOCUS_OK);
     print_time("prepare", now_ms(CLOCK_MONOTONIC) - start);
     call.photo = NULL;
     tap = call.params;
@@ -146,8 +142,7 @@ static void measure_times(struct call call, uint8_t *out)
     call.out = part(out, width < 256 ? width : 256, height < 256 ? height : 256);
     call.params.region_x = (width - call.out.width) / 2 / 16 * 16 + 5;
     call.params.region_y = (height - call.out.height) / 3;
-    call.params.region_x =
-        call.params.region_x > width - call.out.width ? 0 : call.params.region_x;
+    call.params.region_x = call.params.region_x > width - call.out.width ? 0 : call.params.region_x;
     call.params.region_width = call.out.width;
     call.params.region_height = call.out.height;
     print_time("256x256, after another focus", time_render(call, &tap));
@@ -160,8 +155,7 @@ static void measure_times(struct call call, uint8_t *out)
         char name[40];
 
         call.params.reduce = reduce;
-        call.out =
-            part(out, (width + reduce - 1) / reduce, (height + reduce - 1) / reduce);
+        call.out = part(out, (width + reduce - 1) / reduce, (height + reduce - 1) / reduce);
         snprintf(name, sizeof name, "1/%d, after another focus", reduce);
         print_time(name, time_render(call, &tap));
         if (reduce == 2) {
@@ -193,8 +187,7 @@ static void measure(void **state)
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
     const struct refocus_disparity coarse = {8, 8, 6, small, 8};
-    struct refocus_renderer_params limits =
-        refocus_renderer_params_default(width, height, blur);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(width, height, blur);
     struct call call = {NULL,
                         &photo,
                         &disparity,
@@ -216,8 +209,7 @@ static void measure(void **state)
     printf("{\n  \"width\": %d, \"height\": %d, \"blur\": %g, \"threads\": %d, "
            "\"rays\": %d, "
            "\"cpu\": \"%s\",\n  \"times\": [\n",
-           width, height, (double)blur, info.threads, call.params.rays,
-           refocus_cpu_name(info.cpu));
+           width, height, (double)blur, info.threads, call.params.rays, refocus_cpu_name(info.cpu));
     measure_times(call, out);
     printf("    {}\n  ],\n  \"cancel\": [\n");
     measure_cancel(call, "prepare", 0);
@@ -240,8 +232,7 @@ static void measure(void **state)
             call.params.star_length = 127;
             call.params.attention_angle = 90;
             call.params.spread = REFOCUS_SPREAD_LOMMEL;
-            snprintf(name, sizeof name, "%s%s", refocus_method_name(m),
-                     full ? ", every ray" : "");
+            snprintf(name, sizeof name, "%s%s", refocus_method_name(m), full ? ", every ray" : "");
             measure_cancel(call, name, m == REFOCUS_METHOD_COUNT - 1);
         }
     }

@@ -5,31 +5,40 @@ const struct style styles[] = {
     {"sweep 32", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
     {"sweep 1", REFOCUS_METHOD_SWEEP, 1, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
     {"sweep 1024", REFOCUS_METHOD_SWEEP, 1024, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 0, 0, 0, 0},
-    {"sweep full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"sweep full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0,
+     0, 0},
     {"sweep stored", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0, 0, 0},
     {"sweep gamma", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_GAMMA, 40, 0, 0, 0},
-    {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0, 0, 0},
+    {"sweep linear weighted", REFOCUS_METHOD_SWEEP, 48, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 1, 0, 0,
+     0},
     {"sweep 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 0, 0},
-    {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, -1, 0, 0},
+    {"sweep mask full", REFOCUS_METHOD_SWEEP, REFOCUS_RAYS_FULL, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR,
+     0, -1, 0, 0},
     {"sweep lights", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 0, 1, 0},
-    {"sweep lights 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 1, 0},
+    {"sweep lights 5 blades", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 0, 5, 1,
+     0},
     {"sweep 400", REFOCUS_METHOD_SWEEP, 64, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 400, 0, 1, 0},
     {"sweep 400 mask", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 400, -1, 0, 0},
     {"sweep 500 lights", REFOCUS_METHOD_SWEEP, 96, 1, 0, 0, 1, REFOCUS_BLEND_LINEAR, 500, 5, 2, 0},
-    {"sweep lights weighted", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 200, 6, 2, 0},
-    {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 128, 0, 0, 0},
+    {"sweep lights weighted", REFOCUS_METHOD_SWEEP, 32, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 200, 6, 2,
+     0},
+    {"search T=1 full", REFOCUS_METHOD_SEARCH, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED,
+     128, 0, 0, 0},
     {"search T=2", REFOCUS_METHOD_SEARCH, 64, 2, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
     {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6, 0, 0},
     {"search background", REFOCUS_METHOD_SEARCH, 64, 4, 0, 1, 0, REFOCUS_BLEND_GAMMA, 0, 0, 0, 0},
     {"search mask", REFOCUS_METHOD_SEARCH, 24, 64, 1, 1, 0, REFOCUS_BLEND_LINEAR, 2, -1, 0, 0},
-    {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
+    {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR,
+     0, 0, 0, 0},
     {"raytrace plain", REFOCUS_METHOD_RAYTRACE, 32, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 96, 7, 0, 0},
     {"jittered", REFOCUS_METHOD_JITTERED, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
     {"jittered a=4", REFOCUS_METHOD_JITTERED, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 50, -1, 1, 0},
     {"lightfield", REFOCUS_METHOD_LIGHTFIELD, 48, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
-    {"lightfield full", REFOCUS_METHOD_LIGHTFIELD, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 64, -1, 0, 0},
+    {"lightfield full", REFOCUS_METHOD_LIGHTFIELD, REFOCUS_RAYS_FULL, 1, 0, 0, 0,
+     REFOCUS_BLEND_STORED, 64, -1, 0, 0},
     {"blur", REFOCUS_METHOD_BLUR, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
-    {"blur full", REFOCUS_METHOD_BLUR, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 5, 5, 0, 0},
+    {"blur full", REFOCUS_METHOD_BLUR, REFOCUS_RAYS_FULL, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 5, 5, 0,
+     0},
     {"scatter", REFOCUS_METHOD_SCATTER, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 1},
     {"scatter Lommel", REFOCUS_METHOD_SCATTER, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 1, 0, 1, 1},
     {"scatter star", REFOCUS_METHOD_SCATTER, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 30, 0, 2, 2},
@@ -37,9 +46,11 @@ const struct style styles[] = {
     {"foveated exact", REFOCUS_METHOD_FOVEATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 3, 0, 1, 0},
     {"foveated fast", REFOCUS_METHOD_FOVEATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 20, 0, 2, 0},
     {"interpolated", REFOCUS_METHOD_INTERPOLATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
-    {"interpolated 2 4", REFOCUS_METHOD_INTERPOLATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 2, 0, 1, 0},
+    {"interpolated 2 4", REFOCUS_METHOD_INTERPOLATED, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 2, 0, 1,
+     0},
     {"diffusion", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0},
-    {"diffusion iterated", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 100, 0, 1, 0},
+    {"diffusion iterated", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 100, 0,
+     1, 0},
     {"diffusion sphere", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_GAMMA, 0, 0, 2, 2},
     {"diffusion plus", REFOCUS_METHOD_DIFFUSION, 64, 1, 0, 0, 0, REFOCUS_BLEND_LINEAR, 0, 0, 3, 2},
 };
@@ -94,8 +105,7 @@ static void draw_slope(struct picture *p, uint32_t *state)
     }
 }
 
-static void draw_ball(struct picture *p, int cx, int cy, int radius, int disparity,
-                      uint32_t *state)
+static void draw_ball(struct picture *p, int cx, int cy, int radius, int disparity, uint32_t *state)
 {
     const int red = (int)(noise(state) % 256), blue = (int)(noise(state) % 256);
 
@@ -103,8 +113,8 @@ static void draw_ball(struct picture *p, int cx, int cy, int radius, int dispari
         for (int x = cx - radius; x <= cx + radius; x++) {
             const int dx = x - cx, dy = y - cy;
 
-            if (x < 0 || y < 0 || x >= p->width || y >= p->height
-                || dx * dx + dy * dy > radius * radius)
+            if (x < 0 || y < 0 || x >= p->width || y >= p->height ||
+                dx * dx + dy * dy > radius * radius)
                 continue;
             pixel(p, x, y, red, 128 + dx * dy * 100 / (radius * radius + 1), blue,
                   disparity - dx * 300 / (radius + 1));
@@ -314,10 +324,10 @@ static void set_look(struct refocus_render_params *params, int i)
     params->star_strength = 0.5f;
     params->grain = i == IRIS + 9 || all ? 1.5f : 0;
     params->seed = 99;
-    params->highlight_gain = i == IRIS + 8 || all                ? 4
+    params->highlight_gain = i == IRIS + 8 || all                                 ? 4
                              : i == IRIS + 10 || i == IRIS + 17 || i == IRIS + 18 ? 8
-                             : i == IRIS + 11 || i == IRIS + 12 ? 16
-                                                                 : 1;
+                             : i == IRIS + 11 || i == IRIS + 12                   ? 16
+                                                                                  : 1;
 }
 
 bool effect_params(int i, float focus, float blur, struct refocus_render_params *params,
@@ -333,8 +343,8 @@ bool effect_params(int i, float focus, float blur, struct refocus_render_params 
         "cat's eye",       "bubbles",        "rings full",   "squeezed star",
         "heart weighted",  "fringe",         "fringe full",  "star filter",
         "grain",           "lamps 8",        "lamps 16",     "lamps 16 weighted",
-        "mask, sides",     "all of bokeh",   "star cut off",
-        "blades cut off, full", "hearts of lamps", "stars of lamps"};
+        "mask, sides",     "all of bokeh",   "star cut off", "blades cut off, full",
+        "hearts of lamps", "stars of lamps"};
     const int count = sizeof names / sizeof *names;
 
     *params = refocus_render_params_default(focus, blur);
@@ -370,7 +380,7 @@ struct refocus_aperture *effect_aperture(int i)
 
     if (i < FIRST_LOOK)
         return NULL;
-    p.blades = i == IRIS || i == IRIS + 14   ? 6
+    p.blades = i == IRIS || i == IRIS + 14       ? 6
                : i == IRIS + 4 || i == IRIS + 15 ? 7
                : i == IRIS + 16                  ? 5
                                                  : 0;
@@ -427,25 +437,23 @@ void render_style(struct refocus_renderer *renderer, const struct picture *pictu
     struct refocus_render_params params = style_params(style, focus, blur);
     struct refocus_aperture *aperture = style_aperture(style);
     const struct refocus_image image = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, out, picture->width, picture->height,
-        3 * (ptrdiff_t)picture->width);
+        REFOCUS_FORMAT_RGB8, out, picture->width, picture->height, 3 * (ptrdiff_t)picture->width);
     int status;
 
     params.aperture = aperture;
     status = refocus_render(renderer, &params, &image);
     refocus_aperture_destroy(&aperture);
     if (status)
-        fail_msg("%s, %d x %d, focus %g, blur %g: %s", style->name, picture->width,
-                 picture->height, (double)focus, (double)blur, refocus_strerror(status));
+        fail_msg("%s, %d x %d, focus %g, blur %g: %s", style->name, picture->width, picture->height,
+                 (double)focus, (double)blur, refocus_strerror(status));
 }
 
-void assert_same_pixels(const uint8_t *a, const uint8_t *b, int width, int height,
-                        const char *what)
+void assert_same_pixels(const uint8_t *a, const uint8_t *b, int width, int height, const char *what)
 {
     for (size_t i = 0; i < 3 * (size_t)width * (size_t)height; i++) {
         if (a[i] != b[i])
-            fail_msg("%s, %d x %d: channel %d of (%d, %d) is %d, should be %d", what, width,
-                     height, (int)(i % 3), (int)(i / 3 % (size_t)width),
-                     (int)(i / 3 / (size_t)width), a[i], b[i]);
+            fail_msg("%s, %d x %d: channel %d of (%d, %d) is %d, should be %d", what, width, height,
+                     (int)(i % 3), (int)(i / 3 % (size_t)width), (int)(i / 3 / (size_t)width), a[i],
+                     b[i]);
     }
 }

@@ -35,8 +35,7 @@ void picture_line(struct picture *picture, double x0, double y0, double dx, doub
                   int code);
 
 /* All pixels of one colour, all disparities the same. */
-struct picture picture_flat(int width, int height, const uint8_t rgb[3],
-                            uint16_t disparity);
+struct picture picture_flat(int width, int height, const uint8_t rgb[3], uint16_t disparity);
 void picture_free(struct picture *picture);
 
 /* Light of a code of sRGB, 1 = white, and the nearest code of light. */
@@ -54,10 +53,10 @@ struct style {
     int iterations;
     int mirror, background, prefilter;
     uint32_t blend;
-    float sigma;  /* 0: plain average */
-    int blades;   /* 0: disc; -1: a mask with an L in it */
-    int variant;  /* of the method's own settings; see style_params() */
-    int leaks;    /* what is sharp may change beside what is blurred */
+    float sigma; /* 0: plain average */
+    int blades;  /* 0: disc; -1: a mask with an L in it */
+    int variant; /* of the method's own settings; see style_params() */
+    int leaks;   /* what is sharp may change beside what is blurred */
 };
 extern const struct style styles[];
 extern const int style_count;

@@ -4,9 +4,14 @@
 enum { W = 20, H = 12 };
 
 /* Sets one field to a bad value. */
-#define BAD(type, field, value) \
-    {#field " = " #value, offsetof(struct type, field), sizeof((struct type *)0)->field, \
-     &(__typeof__(((struct type *)0)->field)){value}}
+#define BAD(type, field, value)                                                                    \
+    {                                                                                              \
+#field " = " #value, offsetof(struct type, field), sizeof((struct type *)0)->field,        \
+            &(__typeof__(((struct type *)0)->field))                                               \
+        {                                                                                          \
+            value                                                                                  \
+        }                                                                                          \
+    }
 
 struct bad {
     const char *what;
@@ -39,18 +44,27 @@ static void spoil(void *params, const struct bad *bad)
 
 static void bad_limits(void **state)
 {
-    const struct bad bad[] = {
-        BAD(refocus_renderer_params, struct_size, 0), BAD(refocus_renderer_params, struct_size, 4),
-        BAD(refocus_renderer_params, max_width, 0), BAD(refocus_renderer_params, max_width, -1), BAD(refocus_renderer_params, max_width, 65536),
-        BAD(refocus_renderer_params, max_height, 0), BAD(refocus_renderer_params, max_height, INT32_MIN),
-        BAD(refocus_renderer_params, max_height, INT32_MAX), BAD(refocus_renderer_params, max_blur_radius, -0.001f),
-        BAD(refocus_renderer_params, max_blur_radius, 127.001f), BAD(refocus_renderer_params, max_blur_radius, NAN),
-        BAD(refocus_renderer_params, max_blur_radius, INFINITY), BAD(refocus_renderer_params, threads, -1),
-        BAD(refocus_renderer_params, threads, 65), BAD(refocus_renderer_params, cpu, 6), BAD(refocus_renderer_params, cpu, UINT32_MAX),
-        BAD(refocus_renderer_params, methods, 1u << 10), BAD(refocus_renderer_params, reserved, 1),
-        BAD(refocus_renderer_params, allocator.allocate, some_allocate),
-        BAD(refocus_renderer_params, thin, 2),
-        BAD(refocus_renderer_params, allocator.release, some_release)};
+    const struct bad bad[] = {BAD(refocus_renderer_params, struct_size, 0),
+                              BAD(refocus_renderer_params, struct_size, 4),
+                              BAD(refocus_renderer_params, max_width, 0),
+                              BAD(refocus_renderer_params, max_width, -1),
+                              BAD(refocus_renderer_params, max_width, 65536),
+                              BAD(refocus_renderer_params, max_height, 0),
+                              BAD(refocus_renderer_params, max_height, INT32_MIN),
+                              BAD(refocus_renderer_params, max_height, INT32_MAX),
+                              BAD(refocus_renderer_params, max_blur_radius, -0.001f),
+                              BAD(refocus_renderer_params, max_blur_radius, 127.001f),
+                              BAD(refocus_renderer_params, max_blur_radius, NAN),
+                              BAD(refocus_renderer_params, max_blur_radius, INFINITY),
+                              BAD(refocus_renderer_params, threads, -1),
+                              BAD(refocus_renderer_params, threads, 65),
+                              BAD(refocus_renderer_params, cpu, 6),
+                              BAD(refocus_renderer_params, cpu, UINT32_MAX),
+                              BAD(refocus_renderer_params, methods, 1u << 10),
+                              BAD(refocus_renderer_params, reserved, 1),
+                              BAD(refocus_renderer_params, allocator.allocate, some_allocate),
+                              BAD(refocus_renderer_params, thin, 2),
+                              BAD(refocus_renderer_params, allocator.release, some_release)};
 
     (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -80,71 +94,121 @@ static void bad_limits(void **state)
 static void bad_settings(void **state)
 {
     const struct bad bad[] = {
-        BAD(refocus_render_params, struct_size, 0), BAD(refocus_render_params, struct_size, 8), BAD(refocus_render_params, method, 10),
-        BAD(refocus_render_params, method, UINT32_MAX), BAD(refocus_render_params, focus_disparity, -0.01f),
-        BAD(refocus_render_params, focus_disparity, 1.01f), BAD(refocus_render_params, focus_disparity, NAN),
-        BAD(refocus_render_params, max_blur_radius, -1), BAD(refocus_render_params, max_blur_radius, 5.01f),
-        BAD(refocus_render_params, max_blur_radius, NAN), BAD(refocus_render_params, rays, 0), BAD(refocus_render_params, rays, -2),
-        BAD(refocus_render_params, rays, 1025), BAD(refocus_render_params, rays, INT32_MAX), BAD(refocus_render_params, blend, 3),
-        BAD(refocus_render_params, sigma, 0.99f), BAD(refocus_render_params, sigma, -1), BAD(refocus_render_params, sigma, NAN),
+        BAD(refocus_render_params, struct_size, 0),
+        BAD(refocus_render_params, struct_size, 8),
+        BAD(refocus_render_params, method, 10),
+        BAD(refocus_render_params, method, UINT32_MAX),
+        BAD(refocus_render_params, focus_disparity, -0.01f),
+        BAD(refocus_render_params, focus_disparity, 1.01f),
+        BAD(refocus_render_params, focus_disparity, NAN),
+        BAD(refocus_render_params, max_blur_radius, -1),
+        BAD(refocus_render_params, max_blur_radius, 5.01f),
+        BAD(refocus_render_params, max_blur_radius, NAN),
+        BAD(refocus_render_params, rays, 0),
+        BAD(refocus_render_params, rays, -2),
+        BAD(refocus_render_params, rays, 1025),
+        BAD(refocus_render_params, rays, INT32_MAX),
+        BAD(refocus_render_params, blend, 3),
+        BAD(refocus_render_params, sigma, 0.99f),
+        BAD(refocus_render_params, sigma, -1),
+        BAD(refocus_render_params, sigma, NAN),
         BAD(refocus_render_params, highlight_gain, 0.99f),
         BAD(refocus_render_params, highlight_gain, 16.01f),
         BAD(refocus_render_params, highlight_gain, NAN),
-        BAD(refocus_render_params, iterations, 0), BAD(refocus_render_params, iterations, 65), BAD(refocus_render_params, iterations, -1),
-        BAD(refocus_render_params, mirror, 2), BAD(refocus_render_params, background, 2), BAD(refocus_render_params, prefilter, 2),
-        BAD(refocus_render_params, reserved, 1), BAD(refocus_render_params, region_x, -1), BAD(refocus_render_params, region_x, 1),
-        BAD(refocus_render_params, region_y, 1), BAD(refocus_render_params, region_width, W), BAD(refocus_render_params, region_height, H),
+        BAD(refocus_render_params, iterations, 0),
+        BAD(refocus_render_params, iterations, 65),
+        BAD(refocus_render_params, iterations, -1),
+        BAD(refocus_render_params, mirror, 2),
+        BAD(refocus_render_params, background, 2),
+        BAD(refocus_render_params, prefilter, 2),
+        BAD(refocus_render_params, reserved, 1),
+        BAD(refocus_render_params, region_x, -1),
+        BAD(refocus_render_params, region_x, 1),
+        BAD(refocus_render_params, region_y, 1),
+        BAD(refocus_render_params, region_width, W),
+        BAD(refocus_render_params, region_height, H),
         BAD(refocus_render_params, region_width, -1),
-        BAD(refocus_render_params, cell, 0), BAD(refocus_render_params, cell, 17),
-        BAD(refocus_render_params, spread, 2), BAD(refocus_render_params, airy_radius, 0.2f),
-        BAD(refocus_render_params, airy_radius, 17), BAD(refocus_render_params, airy_radius, NAN),
-        BAD(refocus_render_params, depth_ratio, 0.9f), BAD(refocus_render_params, depth_ratio, INFINITY),
-        BAD(refocus_render_params, star_spikes, 1), BAD(refocus_render_params, star_spikes, 17),
-        BAD(refocus_render_params, star_spikes, -2), BAD(refocus_render_params, star_length, -1),
-        BAD(refocus_render_params, star_length, 128), BAD(refocus_render_params, star_angle, NAN),
-        BAD(refocus_render_params, star_strength, 1.1f), BAD(refocus_render_params, star_strength, NAN),
-        BAD(refocus_render_params, sharp_radius, 0.4f), BAD(refocus_render_params, sharp_radius, NAN),
-        BAD(refocus_render_params, middle_ratio, 1), BAD(refocus_render_params, middle_ratio, -2),
-        BAD(refocus_render_params, last_ratio, 0.5f), BAD(refocus_render_params, last_ratio, NAN),
-        BAD(refocus_render_params, attention_x, -0.1f), BAD(refocus_render_params, attention_y, 1.1f),
-        BAD(refocus_render_params, attention_angle, -1), BAD(refocus_render_params, attention_angle, 171),
-        BAD(refocus_render_params, picture_angle, 0), BAD(refocus_render_params, picture_angle, NAN),
-        BAD(refocus_render_params, attention_depth, 1.5f), BAD(refocus_render_params, field, 6),
-        BAD(refocus_render_params, field_x, -1), BAD(refocus_render_params, field_y, NAN),
-        BAD(refocus_render_params, field_disparity, 2), BAD(refocus_render_params, field_radius, -1),
-        BAD(refocus_render_params, field_falloff, 0), BAD(refocus_render_params, field_falloff, 5),
-        BAD(refocus_render_params, field_angle, INFINITY), BAD(refocus_render_params, layers, 0),
-        BAD(refocus_render_params, layers, 9), BAD(refocus_render_params, solver, 2),
-        BAD(refocus_render_params, conductivity, 0), BAD(refocus_render_params, conductivity, 1.1f),
+        BAD(refocus_render_params, cell, 0),
+        BAD(refocus_render_params, cell, 17),
+        BAD(refocus_render_params, spread, 2),
+        BAD(refocus_render_params, airy_radius, 0.2f),
+        BAD(refocus_render_params, airy_radius, 17),
+        BAD(refocus_render_params, airy_radius, NAN),
+        BAD(refocus_render_params, depth_ratio, 0.9f),
+        BAD(refocus_render_params, depth_ratio, INFINITY),
+        BAD(refocus_render_params, star_spikes, 1),
+        BAD(refocus_render_params, star_spikes, 17),
+        BAD(refocus_render_params, star_spikes, -2),
+        BAD(refocus_render_params, star_length, -1),
+        BAD(refocus_render_params, star_length, 128),
+        BAD(refocus_render_params, star_angle, NAN),
+        BAD(refocus_render_params, star_strength, 1.1f),
+        BAD(refocus_render_params, star_strength, NAN),
+        BAD(refocus_render_params, sharp_radius, 0.4f),
+        BAD(refocus_render_params, sharp_radius, NAN),
+        BAD(refocus_render_params, middle_ratio, 1),
+        BAD(refocus_render_params, middle_ratio, -2),
+        BAD(refocus_render_params, last_ratio, 0.5f),
+        BAD(refocus_render_params, last_ratio, NAN),
+        BAD(refocus_render_params, attention_x, -0.1f),
+        BAD(refocus_render_params, attention_y, 1.1f),
+        BAD(refocus_render_params, attention_angle, -1),
+        BAD(refocus_render_params, attention_angle, 171),
+        BAD(refocus_render_params, picture_angle, 0),
+        BAD(refocus_render_params, picture_angle, NAN),
+        BAD(refocus_render_params, attention_depth, 1.5f),
+        BAD(refocus_render_params, field, 6),
+        BAD(refocus_render_params, field_x, -1),
+        BAD(refocus_render_params, field_y, NAN),
+        BAD(refocus_render_params, field_disparity, 2),
+        BAD(refocus_render_params, field_radius, -1),
+        BAD(refocus_render_params, field_falloff, 0),
+        BAD(refocus_render_params, field_falloff, 5),
+        BAD(refocus_render_params, field_angle, INFINITY),
+        BAD(refocus_render_params, layers, 0),
+        BAD(refocus_render_params, layers, 9),
+        BAD(refocus_render_params, solver, 2),
+        BAD(refocus_render_params, conductivity, 0),
+        BAD(refocus_render_params, conductivity, 1.1f),
         BAD(refocus_render_params, field_map, &(struct refocus_disparity){0}),
         BAD(refocus_render_params, field, REFOCUS_FIELD_PICTURE), /* which is missing */
-        BAD(refocus_render_params, tilt_x, -0.1f), BAD(refocus_render_params, tilt_y, 1.1f),
-        BAD(refocus_render_params, tilt_across, 64.1f), BAD(refocus_render_params, tilt_across, NAN),
-        BAD(refocus_render_params, tilt_down, -64.1f), BAD(refocus_render_params, depth_share, 1.01f),
-        BAD(refocus_render_params, depth_share, -0.1f), BAD(refocus_render_params, depth_share, NAN),
+        BAD(refocus_render_params, tilt_x, -0.1f),
+        BAD(refocus_render_params, tilt_y, 1.1f),
+        BAD(refocus_render_params, tilt_across, 64.1f),
+        BAD(refocus_render_params, tilt_across, NAN),
+        BAD(refocus_render_params, tilt_down, -64.1f),
+        BAD(refocus_render_params, depth_share, 1.01f),
+        BAD(refocus_render_params, depth_share, -0.1f),
+        BAD(refocus_render_params, depth_share, NAN),
         BAD(refocus_render_params, focus_half_width, -0.1f),
         BAD(refocus_render_params, focus_half_width, 1.1f),
         BAD(refocus_render_params, focus_transition, NAN),
-        BAD(refocus_render_params, focus_transition, 2), BAD(refocus_render_params, bands, -1),
-        BAD(refocus_render_params, bands, 16), BAD(refocus_render_params, bands, INT32_MAX),
+        BAD(refocus_render_params, focus_transition, 2),
+        BAD(refocus_render_params, bands, -1),
+        BAD(refocus_render_params, bands, 16),
+        BAD(refocus_render_params, bands, INT32_MAX),
         BAD(refocus_render_params, focus_map, &(struct refocus_disparity){0}),
         BAD(refocus_render_params, sharp_map, &(struct refocus_disparity){0}),
         BAD(refocus_render_params, least_disparity, -0.1f),
         BAD(refocus_render_params, least_disparity, 1.1f),
         BAD(refocus_render_params, most_disparity, -0.1f),
         BAD(refocus_render_params, most_disparity, NAN),
-        BAD(refocus_render_params, cat_eye, -0.1f), BAD(refocus_render_params, cat_eye, 0.91f),
-        BAD(refocus_render_params, cat_eye, NAN), BAD(refocus_render_params, fringe, 0.51f),
-        BAD(refocus_render_params, fringe, -0.51f), BAD(refocus_render_params, fringe, NAN),
-        BAD(refocus_render_params, grain, -0.1f), BAD(refocus_render_params, grain, 4.1f),
+        BAD(refocus_render_params, cat_eye, -0.1f),
+        BAD(refocus_render_params, cat_eye, 0.91f),
+        BAD(refocus_render_params, cat_eye, NAN),
+        BAD(refocus_render_params, fringe, 0.51f),
+        BAD(refocus_render_params, fringe, -0.51f),
+        BAD(refocus_render_params, fringe, NAN),
+        BAD(refocus_render_params, grain, -0.1f),
+        BAD(refocus_render_params, grain, 4.1f),
         BAD(refocus_render_params, grain, NAN),
         BAD(refocus_render_params, thin, 2),
-        BAD(refocus_render_params, blur_limit, -1), BAD(refocus_render_params, blur_limit, 127.1f)};
+        BAD(refocus_render_params, blur_limit, -1),
+        BAD(refocus_render_params, blur_limit, 127.1f)};
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = prepared(&p, 5, 1);
     uint8_t out[3 * W * H];
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     (void)state;
     memset(out, 0x5a, sizeof out);
@@ -175,8 +239,8 @@ static void bad_settings(void **state)
     for (int i = 0; i < 3; i++) {
         params = refocus_render_params_default(0.5f, 5);
         params.bands = 4;
-        params.band[3] = (struct refocus_band){i == 0 ? 1.1f : 0.5f, i == 1 ? -1 : 0,
-                                               i == 2 ? NAN : 0};
+        params.band[3] =
+            (struct refocus_band){i == 0 ? 1.1f : 0.5f, i == 1 ? -1 : 0, i == 2 ? NAN : 0};
         assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     }
     assert_int_equal(refocus_aperture_create_polygon(&aperture, 6, 0), REFOCUS_OK);
@@ -201,17 +265,18 @@ static void bad_settings(void **state)
     refocus_renderer_destroy(&plain);
 
     /* Regions that reach over the side. */
-    static const int region[][4] = {{1, 0, W, H},  {0, 1, W, H},           {W, 0, 1, 1},
-                                    {0, H, 1, 1},  {0, 0, W + 1, H},       {0, 0, W, H + 1},
-                                    {0, 0, 0, H},  {INT32_MAX, 0, W, H},   {-1, 0, W, H},
-                                    {5, 5, INT32_MAX, INT32_MAX}};
+    static const int region[][4] = {{1, 0, W, H},     {0, 1, W, H},
+                                    {W, 0, 1, 1},     {0, H, 1, 1},
+                                    {0, 0, W + 1, H}, {0, 0, W, H + 1},
+                                    {0, 0, 0, H},     {INT32_MAX, 0, W, H},
+                                    {-1, 0, W, H},    {5, 5, INT32_MAX, INT32_MAX}};
     for (size_t i = 0; i < sizeof region / sizeof region[0]; i++) {
         params = refocus_render_params_default(0.5f, 5);
         params.region_x = region[i][0], params.region_y = region[i][1];
         params.region_width = region[i][2], params.region_height = region[i][3];
         if (refocus_render(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT)
-            fail_msg("region %d %d %d %d is not refused", region[i][0], region[i][1],
-                     region[i][2], region[i][3]);
+            fail_msg("region %d %d %d %d is not refused", region[i][0], region[i][1], region[i][2],
+                     region[i][3]);
     }
     const struct refocus_render_params good = refocus_render_params_default(0.5f, 5);
     assert_int_equal(refocus_render(renderer, NULL, &image), REFOCUS_ERR_ARGUMENT);
@@ -226,11 +291,16 @@ static void bad_settings(void **state)
 /* Pictures in and out. */
 static void bad_pictures(void **state)
 {
-    const struct bad bad[] = {
-        BAD(refocus_image, format, 0), BAD(refocus_image, format, 99), BAD(refocus_image, width, 0), BAD(refocus_image, width, -W),
-        BAD(refocus_image, height, 0), BAD(refocus_image, height, INT32_MIN), BAD(refocus_image, plane[0], NULL),
-        BAD(refocus_image, stride[0], 3 * W - 1), BAD(refocus_image, stride[0], -(3 * W - 1)),
-        BAD(refocus_image, stride[0], 0)};
+    const struct bad bad[] = {BAD(refocus_image, format, 0),
+                              BAD(refocus_image, format, 99),
+                              BAD(refocus_image, width, 0),
+                              BAD(refocus_image, width, -W),
+                              BAD(refocus_image, height, 0),
+                              BAD(refocus_image, height, INT32_MIN),
+                              BAD(refocus_image, plane[0], NULL),
+                              BAD(refocus_image, stride[0], 3 * W - 1),
+                              BAD(refocus_image, stride[0], -(3 * W - 1)),
+                              BAD(refocus_image, stride[0], 0)};
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = prepared(&p, 5, 1);
     const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
@@ -268,9 +338,10 @@ static void bad_pictures(void **state)
 static void bad_disparities(void **state)
 {
     const struct bad bad[] = {
-        BAD(refocus_disparity, bits, 0), BAD(refocus_disparity, bits, 32), BAD(refocus_disparity, bits, 12),
-        BAD(refocus_disparity, width, 0), BAD(refocus_disparity, height, -1), BAD(refocus_disparity, width, 65536),
-        BAD(refocus_disparity, samples, NULL), BAD(refocus_disparity, samples, odd_address()),
+        BAD(refocus_disparity, bits, 0),           BAD(refocus_disparity, bits, 32),
+        BAD(refocus_disparity, bits, 12),          BAD(refocus_disparity, width, 0),
+        BAD(refocus_disparity, height, -1),        BAD(refocus_disparity, width, 65536),
+        BAD(refocus_disparity, samples, NULL),     BAD(refocus_disparity, samples, odd_address()),
         BAD(refocus_disparity, stride, 2 * W - 2), BAD(refocus_disparity, stride, 2 * W + 1)};
     struct picture p = picture_make(W, H, 1);
     const struct refocus_image photo = picture_image(&p);
@@ -309,8 +380,7 @@ static void order_and_size(void **state)
     refocus_renderer_destroy(&renderer);
 
     renderer = prepared(&p, 5, 1);
-    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, view, 2 * W),
-                     REFOCUS_ERR_STATE);
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, view, 2 * W), REFOCUS_ERR_STATE);
     assert_int_equal(refocus_get_view(renderer, 2, view, 2 * W), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, NULL, 2 * W),
                      REFOCUS_ERR_ARGUMENT);
@@ -350,7 +420,10 @@ static void bad_apertures(void **state)
     struct refocus_ray rays[8];
 
     (void)state;
-#define REFUSED(call) do { assert_int_equal(call, REFOCUS_ERR_ARGUMENT); } while (0)
+#define REFUSED(call)                                                                              \
+    do {                                                                                           \
+        assert_int_equal(call, REFOCUS_ERR_ARGUMENT);                                              \
+    } while (0)
     REFUSED(refocus_aperture_create_disc(NULL));
     REFUSED(refocus_aperture_create_polygon(&a, 2, 0));
     assert_null(a);
@@ -396,9 +469,9 @@ static void kernels(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_limits),      cmocka_unit_test(bad_settings),
-        cmocka_unit_test(bad_pictures),    cmocka_unit_test(bad_disparities),
-        cmocka_unit_test(order_and_size),  cmocka_unit_test(names),
-        cmocka_unit_test(bad_apertures),   cmocka_unit_test(kernels)};
+        cmocka_unit_test(bad_limits),     cmocka_unit_test(bad_settings),
+        cmocka_unit_test(bad_pictures),   cmocka_unit_test(bad_disparities),
+        cmocka_unit_test(order_and_size), cmocka_unit_test(names),
+        cmocka_unit_test(bad_apertures),  cmocka_unit_test(kernels)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -191,8 +191,8 @@ static void stops(void **state)
         for (int weighted = 0; weighted < 2; weighted++) {
             params.highlight_gain = (float)gain;
             params.sigma = weighted ? 1e5f : INFINITY; /* all weights nearly the same */
-            about("light of a lamp", render_lamp(W / 2, H / 2, BEHIND, &params, 1).all,
-                  25 * gain, 0.03);
+            about("light of a lamp", render_lamp(W / 2, H / 2, BEHIND, &params, 1).all, 25 * gain,
+                  0.03);
         }
     }
 }
@@ -324,16 +324,14 @@ static struct picture night(void)
 
     for (int i = 0; i < NIGHT_W * NIGHT_H; i++)
         for (int c = 0; c < 3; c++)
-            p.rgb[3 * i + c] = i % NIGHT_W % 37 < 4 && i / NIGHT_W % 41 < 4
-                                   ? 255
-                                   : p.rgb[3 * i + c] / 5;
+            p.rgb[3 * i + c] =
+                i % NIGHT_W % 37 < 4 && i / NIGHT_W % 41 < 4 ? 255 : p.rgb[3 * i + c] / 5;
     return p;
 }
 
 static struct refocus_renderer *of_night(const struct picture *p, uint32_t in_place)
 {
-    struct refocus_renderer_params limits =
-        refocus_renderer_params_default(NIGHT_W, NIGHT_H, 9);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(NIGHT_W, NIGHT_H, 9);
     const struct refocus_image photo = picture_image(p);
     const struct refocus_disparity disparity = picture_disparity(p);
     struct refocus_renderer *renderer;
@@ -440,12 +438,10 @@ static void refused(void **state)
             params.fringe = i == 1 ? -0.1f : 0;
             params.aperture = i == 2 ? a : NULL;
             assert_int_equal(refocus_render(renderer, &params, &image),
-                             method == REFOCUS_METHOD_SWEEP ? REFOCUS_OK
-                                                            : REFOCUS_ERR_ARGUMENT);
+                             method == REFOCUS_METHOD_SWEEP ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
             params.rays = REFOCUS_RAYS_FULL;
             if (i == 2)
-                assert_int_equal(refocus_render(renderer, &params, &image),
-                                 REFOCUS_ERR_ARGUMENT);
+                assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
         }
     }
     refocus_aperture_destroy(&a);
@@ -455,11 +451,12 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hearts),  cmocka_unit_test(sides),   cmocka_unit_test(squeezed),
-        cmocka_unit_test(cat_eye), cmocka_unit_test(fringes), cmocka_unit_test(stops),
-        cmocka_unit_test(star),    cmocka_unit_test(grain),   cmocka_unit_test(regions),
-        cmocka_unit_test(strips_and_sequences), cmocka_unit_test(changed_map),
-        cmocka_unit_test(refused)};
+        cmocka_unit_test(hearts),      cmocka_unit_test(sides),
+        cmocka_unit_test(squeezed),    cmocka_unit_test(cat_eye),
+        cmocka_unit_test(fringes),     cmocka_unit_test(stops),
+        cmocka_unit_test(star),        cmocka_unit_test(grain),
+        cmocka_unit_test(regions),     cmocka_unit_test(strips_and_sequences),
+        cmocka_unit_test(changed_map), cmocka_unit_test(refused)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,15 +58,13 @@ static void same_as_c(void **state)
         for (int i = 0; i < style_count; i++) {
             if (is_slow(&styles[i], blurs[s]))
                 continue;
-            render_style(renderer[REFOCUS_CPU_C], &p, &styles[i], 0.45f, blurs[s],
-                         expected);
+            render_style(renderer[REFOCUS_CPU_C], &p, &styles[i], 0.45f, blurs[s], expected);
             for (uint32_t cpu = 0; cpu < SETS; cpu++) {
                 char what[100];
 
                 if (!renderer[cpu] || cpu == REFOCUS_CPU_C)
                     continue;
-                snprintf(what, sizeof what, "%s, %s", refocus_cpu_name(cpu),
-                         styles[i].name);
+                snprintf(what, sizeof what, "%s, %s", refocus_cpu_name(cpu), styles[i].name);
                 render_style(renderer[cpu], &p, &styles[i], 0.45f, blurs[s], out);
                 assert_same_pixels(out, expected, p.width, p.height, what);
             }

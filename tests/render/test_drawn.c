@@ -27,13 +27,10 @@ static struct refocus_aperture *make_opening(int opening, bool met)
 }
 
 static void render(struct refocus_renderer *renderer, int blur, int rays, float gain,
-                   bool prefilter, const struct refocus_aperture *aperture,
-                   uint8_t out[3 * W * H])
+                   bool prefilter, const struct refocus_aperture *aperture, uint8_t out[3 * W * H])
 {
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
-    struct refocus_render_params params =
-        refocus_render_params_default(0.5f, (float)blur);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct refocus_render_params params = refocus_render_params_default(0.5f, (float)blur);
 
     params.rays = rays;
     params.prefilter = prefilter;
@@ -43,9 +40,8 @@ static void render(struct refocus_renderer *renderer, int blur, int rays, float 
 }
 
 /* Codes of green alone. */
-static void render_green(struct refocus_renderer *renderer, int blur, int rays,
-                         float gain, const struct refocus_aperture *aperture,
-                         int green[W * H])
+static void render_green(struct refocus_renderer *renderer, int blur, int rays, float gain,
+                         const struct refocus_aperture *aperture, int green[W * H])
 {
     static uint8_t out[3 * W * H];
 
@@ -56,8 +52,7 @@ static void render_green(struct refocus_renderer *renderer, int blur, int rays,
 
 /* A lamp of 2 half + 1 pixels at (x, y) is one even disc: what it adds to codes that
  * are all AROUND differs by an eighth inside, and is nothing outside. */
-static void expect_disc(const int green[W * H], double x, double y, int half,
-                        double radius)
+static void expect_disc(const int green[W * H], double x, double y, int half, double radius)
 {
     int inside = 0, least = 255, most = 0;
 
@@ -74,8 +69,8 @@ static void expect_disc(const int green[W * H], double x, double y, int half,
         most = gained > most ? gained : most;
     }
     if (inside < 3 || least < 4 || most - least > least / 8 + 1)
-        fail_msg("a disc of %g pixels: %d pixels gained %d to %d codes", radius, inside,
-                 least, most);
+        fail_msg("a disc of %g pixels: %d pixels gained %d to %d codes", radius, inside, least,
+                 most);
 }
 
 /* A small lamp before or behind the focus is one even disc with a crisp rim, of few
@@ -86,8 +81,7 @@ static void discs(void **state)
 
     (void)state;
     for (int k = 0; k < 4; k++) {
-        struct picture p =
-            picture_flat(W, H, (uint8_t[3]){AROUND, AROUND, AROUND}, depths[k]);
+        struct picture p = picture_flat(W, H, (uint8_t[3]){AROUND, AROUND, AROUND}, depths[k]);
         const double radius = fabs(30 * (0.5 - depths[k] / 65535.0));
         struct refocus_renderer *renderer;
 
@@ -114,8 +108,7 @@ static void slanted(void **state)
 
     (void)state;
     for (int k = -3; k <= 3; k++) {
-        struct picture p =
-            picture_flat(W, H, (uint8_t[3]){AROUND, AROUND, AROUND}, BEHIND);
+        struct picture p = picture_flat(W, H, (uint8_t[3]){AROUND, AROUND, AROUND}, BEHIND);
         const int x = CX + 9 * k, y = CY + 4 * k;
 
         for (int i = 0; i < W * H; i++)
@@ -144,8 +137,7 @@ static void expect_hidden(uint16_t post, int opening)
 
     for (int i = 0; i < 8; i++)
         for (int j = 0; j < 9; j++)
-            memset(p.rgb + 3 * ((20 + 13 * i + j % 3) * W + 18 + 17 * i + j / 3), 255,
-                   3);
+            memset(p.rgb + 3 * ((20 + 13 * i + j % 3) * W + 18 + 17 * i + j / 3), 255, 3);
     for (int y = 0; y < H; y++)
         for (int x = CX - 9; x < CX + 9; x++) {
             p.disparity[y * W + x] = post;
@@ -164,8 +156,8 @@ static void expect_hidden(uint16_t post, int opening)
         off += (own - of_rays) * (own - of_rays);
     }
     if (off > 0.03 * light || light == 0)
-        fail_msg("opening %d, a post at %u: rays do not meet %.3f of what is drawn",
-                 opening, post, off / light);
+        fail_msg("opening %d, a post at %u: rays do not meet %.3f of what is drawn", opening, post,
+                 off / light);
     refocus_aperture_destroy(&drawn);
     refocus_aperture_destroy(&met);
     refocus_renderer_destroy(&renderer);
@@ -187,8 +179,7 @@ static void hidden(void **state)
 
 /* Light of each channel, at a gain of 4, through such an iris, of what there is
  * without. */
-static void gained(struct refocus_renderer *renderer, int opening, bool met,
-                   double times[3])
+static void gained(struct refocus_renderer *renderer, int opening, bool met, double times[3])
 {
     struct refocus_aperture *aperture = make_opening(opening, met);
     double light[2][3] = {{0}};

@@ -43,10 +43,10 @@ static double shortened(double e, double width, double transition)
 static double lens(const struct refocus_render_params *p, int x, int y, double d)
 {
     const double df = p->focus_map ? map_at(p->focus_map, x, y) : p->focus_disparity;
-    const double tilt = p->tilt_across * ((x + 0.5) / W - p->tilt_x) +
-                        p->tilt_down * ((y + 0.5) / H - p->tilt_y);
-    double least = shortened(p->depth_share * (df - d) + tilt, p->focus_half_width,
-                             p->focus_transition);
+    const double tilt =
+        p->tilt_across * ((x + 0.5) / W - p->tilt_x) + p->tilt_down * ((y + 0.5) / H - p->tilt_y);
+    double least =
+        shortened(p->depth_share * (df - d) + tilt, p->focus_half_width, p->focus_transition);
 
     for (int i = 0; i < p->bands; i++)
         least = fmin(least, shortened(p->depth_share * (p->band[i].disparity - d) + tilt,
@@ -83,8 +83,8 @@ static double expected(const struct refocus_render_params *p, int x, int y, doub
 }
 
 /* One of many ways to focus; false after the last. */
-static bool make_way(int i, struct refocus_render_params *p,
-                     const struct refocus_disparity *small, const struct refocus_disparity *full)
+static bool make_way(int i, struct refocus_render_params *p, const struct refocus_disparity *small,
+                     const struct refocus_disparity *full)
 {
     p->tilt_across = i % 3 ? 0.7f : 0;
     p->tilt_down = i % 2 ? -1.4f : 0;
@@ -94,8 +94,8 @@ static bool make_way(int i, struct refocus_render_params *p,
     p->focus_transition = i == 5 ? 0.1f : 0;
     p->bands = i == 6 ? 3 : i == 7 ? REFOCUS_MAX_BANDS - 1 : 0;
     for (int k = 0; k < p->bands; k++)
-        p->band[k] = (struct refocus_band){(float)(k % 8) / 8, 0.01f * (float)(k + 1),
-                                           k % 2 ? 0 : 0.05f};
+        p->band[k] =
+            (struct refocus_band){(float)(k % 8) / 8, 0.01f * (float)(k + 1), k % 2 ? 0 : 0.05f};
     p->focus_map = i == 8 ? small : i == 9 ? full : NULL;
     p->sharp_map = i == 10 ? small : i == 11 ? full : NULL;
     p->least_disparity = i == 12 ? 0.25f : 0;
@@ -119,8 +119,7 @@ static void formulas(void **state)
     struct refocus_render_params params = refocus_render_params_default(0.37f, 18.5f);
     static uint8_t out[3 * W * H];
     static uint16_t blur[W * H];
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     (void)state;
     params.method = REFOCUS_METHOD_SEARCH; /* sweep moves single rims */
@@ -136,8 +135,8 @@ static void formulas(void **state)
 
             /* a step of a band may fall to either side of a disparity */
             for (int side = -1; side <= 1; side++)
-                off = fmin(off, fabs(blur[k] / 256.0 - expected(&params, k % W, k / W,
-                                                                d + side * 2e-5)));
+                off = fmin(
+                    off, fabs(blur[k] / 256.0 - expected(&params, k % W, k / W, d + side * 2e-5)));
             worst = fmax(worst, off);
         }
         if (worst > 2.5 / 256)
@@ -236,8 +235,7 @@ static void masked(void **state)
     static const uint8_t white = 255;
     static uint8_t out[3 * W * H];
     const struct refocus_disparity all = {8, 1, 1, &white, 1};
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
     struct picture p = picture_make(W, H, 7);
     struct refocus_renderer *renderer = prepared(&p, 20, 1);
     struct refocus_render_params params = refocus_render_params_default(0, 20);
@@ -285,10 +283,10 @@ static void refused(void **state)
 {
     struct picture p = picture_make(W, H, 8);
     struct refocus_renderer *renderer = prepared(&p, 6, 1);
-    const struct refocus_disparity small = grey_map(), full = refocus_disparity16(deep, W, H, 2 * W);
+    const struct refocus_disparity small = grey_map(),
+                                   full = refocus_disparity16(deep, W, H, 2 * W);
     static uint8_t out[3 * W * H];
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_COUNT; method++) {

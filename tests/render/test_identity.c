@@ -41,8 +41,8 @@ static void every_grey(void **state)
 
     (void)state;
     for (int grey = 0; grey < 256; grey++) {
-        struct picture flat = picture_flat(W, H, (uint8_t[3]){(uint8_t)grey, (uint8_t)(255 - grey),
-                                                              (uint8_t)grey}, 0);
+        struct picture flat = picture_flat(
+            W, H, (uint8_t[3]){(uint8_t)grey, (uint8_t)(255 - grey), (uint8_t)grey}, 0);
         struct refocus_renderer *renderer;
 
         memcpy(flat.disparity, deep.disparity, sizeof(uint16_t) * W * H);

@@ -1,8 +1,7 @@
 /* Strip mode: the photo stays with the caller, and the bytes are those of the whole. */
 #include "pictures.h"
 
-static struct refocus_renderer *create(const struct picture *p, float blur,
-                                       int in_place)
+static struct refocus_renderer *create(const struct picture *p, float blur, int in_place)
 {
     struct refocus_renderer_params limits =
         refocus_renderer_params_default(p->width, p->height, blur);
@@ -45,11 +44,10 @@ static void same_bytes(void **state)
         float blur;
         int bars; /* their width, of every other picture; else what picture_make() draws
                    */
-    } views[] = {
-        {203, 190, 6, 0},  {1, 1, 6, 1},       {1, 700, 6, 0},      {700, 1, 6, 11},
-        {160, 160, 6, 0},  {161, 175, 6, 13},  {191, 333, 6, 0},    {193, 17, 6, 9},
-        {640, 480, 20, 0}, {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
-        {70, 50, 127, 0},  {700, 90, 127, 99}, {403, 299, 6, 0},    {601, 290, 33, 61}};
+    } views[] = {{203, 190, 6, 0},  {1, 1, 6, 1},       {1, 700, 6, 0},      {700, 1, 6, 11},
+                 {160, 160, 6, 0},  {161, 175, 6, 13},  {191, 333, 6, 0},    {193, 17, 6, 9},
+                 {640, 480, 20, 0}, {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
+                 {70, 50, 127, 0},  {700, 90, 127, 99}, {403, 299, 6, 0},    {601, 290, 33, 61}};
 
     (void)state;
     for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
@@ -77,11 +75,9 @@ static void same_bytes(void **state)
             for (int f = is_quick(&styles[i]) ? 0 : 2; f < 3; f++) {
                 if (v > 0 && left_out((int)v + i + f, 3))
                     continue;
-                render_style(whole, &p, &styles[i], 0.5f * (float)f, views[v].blur,
-                             expected);
+                render_style(whole, &p, &styles[i], 0.5f * (float)f, views[v].blur, expected);
                 memset(out, 0x5a, size);
-                render_style(strips, &p, &styles[i], 0.5f * (float)f, views[v].blur,
-                             out);
+                render_style(strips, &p, &styles[i], 0.5f * (float)f, views[v].blur, out);
                 assert_same_pixels(out, expected, p.width, p.height, styles[i].name);
             }
         }
@@ -118,13 +114,14 @@ static void few_codes(void **state)
             p.disparity[i] = (uint16_t)(slope / 500 * 500);
         }
         for (int in_place = 0; in_place < 2; in_place++) {
-            const struct refocus_image to = refocus_image_packed(
-                REFOCUS_FORMAT_RGB8, out[in_place], p.width, p.height, 3 * p.width);
+            const struct refocus_image to = refocus_image_packed(REFOCUS_FORMAT_RGB8, out[in_place],
+                                                                 p.width, p.height, 3 * p.width);
             struct refocus_renderer *renderer = create(&p, views[v].blur, in_place);
 
             assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
-            assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, slopes[in_place],
-                                              2 * p.width), REFOCUS_OK);
+            assert_int_equal(
+                refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, slopes[in_place], 2 * p.width),
+                REFOCUS_OK);
             refocus_renderer_destroy(&renderer);
         }
         assert_memory_equal(out[0], out[1], size);
@@ -149,8 +146,8 @@ static void formats(void **state)
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 9);
     const struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
     /* bottom up */
-    struct refocus_image image = refocus_image_packed(
-        REFOCUS_FORMAT_BGRA8, photo + 5 * W * (H - 1), W, H, -5 * W);
+    struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_BGRA8, photo + 5 * W * (H - 1), W, H, -5 * W);
     const struct refocus_disparity disparity = {8, W, H, map, W};
 
     (void)state;
@@ -158,8 +155,7 @@ static void formats(void **state)
     for (int i = 0; i < W * H; i++) {
         map[i] = (uint8_t)(p.disparity[i] >> 8);
         for (int c = 0; c < 4; c++)
-            photo[i / W * 5 * W + i % W * 4 + c] =
-                c < 3 ? p.rgb[3 * i + c] : (uint8_t)i;
+            photo[i / W * 5 * W + i % W * 4 + c] = c < 3 ? p.rgb[3 * i + c] : (uint8_t)i;
     }
     for (int in_place = 0; in_place < 2; in_place++) {
         struct refocus_renderer *renderer;
@@ -171,9 +167,8 @@ static void formats(void **state)
         assert_int_equal(refocus_prepare(renderer, &image, &disparity), REFOCUS_OK);
         assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
         for (uint32_t i = 0; i < 2; i++)
-            assert_int_equal(
-                refocus_get_view(renderer, i, view[in_place] + i * W * H, 2 * W),
-                REFOCUS_OK);
+            assert_int_equal(refocus_get_view(renderer, i, view[in_place] + i * W * H, 2 * W),
+                             REFOCUS_OK);
         refocus_renderer_destroy(&renderer);
     }
     assert_memory_equal(out[0], out[1], 5 * W * H);
@@ -197,8 +192,7 @@ static void refused(void **state)
     struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
     struct refocus_renderer *renderer;
     uint8_t out[3 * 40 * 30];
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 40, 30, 120);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 40, 30, 120);
 
     (void)state;
     limits.in_place = 2;
@@ -211,13 +205,12 @@ static void refused(void **state)
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
     limits.methods = 0;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
-    assert_int_equal(refocus_prepare(renderer, &photo, &coarse),
-                     REFOCUS_ERR_UNSUPPORTED);
+    assert_int_equal(refocus_prepare(renderer, &photo, &coarse), REFOCUS_ERR_UNSUPPORTED);
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
     params.method = REFOCUS_METHOD_SCATTER;
-    assert_int_equal(refocus_prepare(renderer, &photo,
-                                     &(struct refocus_disparity){8, 40, 30, p.rgb, 40}),
-                     REFOCUS_OK);
+    assert_int_equal(
+        refocus_prepare(renderer, &photo, &(struct refocus_disparity){8, 40, 30, p.rgb, 40}),
+        REFOCUS_OK);
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
@@ -225,9 +218,7 @@ static void refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes),
-                                       cmocka_unit_test(few_codes),
-                                       cmocka_unit_test(formats),
-                                       cmocka_unit_test(refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes), cmocka_unit_test(few_codes),
+                                       cmocka_unit_test(formats), cmocka_unit_test(refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

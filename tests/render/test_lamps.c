@@ -253,9 +253,9 @@ static void wires(void **state)
     assert_in_range(wire_blur(32768), 0, 16);
 }
 
-/* A lamp far before the focus, whose rim the map gives to what is sharp behind it. However little of
- * the lamp a pixel of the rim holds, none stays behind as a dot: of each, how much brighter than the
- * pixels around it is counted. */
+/* A lamp far before the focus, whose rim the map gives to what is sharp behind it. However little
+ * of the lamp a pixel of the rim holds, none stays behind as a dot: of each, how much brighter than
+ * the pixels around it is counted. */
 static int brightest_dot(double light)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){40, 40, 40}, 32768);
@@ -307,8 +307,8 @@ static void tubes(void **state)
     expect("an upright tube", 100, times_of(BOX, 2.7, 100, 12), 2, 4.05);
 }
 
-/* What is not clipped has lost nothing, and where one channel alone is clipped neither; the rest is of
- * the colour of the rim. */
+/* What is not clipped has lost nothing, and where one channel alone is clipped neither; the rest is
+ * of the colour of the rim. */
 static void colours(void **state)
 {
     const struct thing green = {ELLIPSE, 7, 7, {0.3, 12, 0.5}};
@@ -449,18 +449,17 @@ static void nights(void **state)
     expect_same_night(10, NIGHT_W, NIGHT_H, 40);
     expect_same_night(11, 290, 700, 90);
     expect_same_night(12, NIGHT_W, NIGHT_H, 4);
-    expect_same_night(109, 333, 619, 120); /* windows from side to side, with all of their margins */
+    expect_same_night(109, 333, 619,
+                      120); /* windows from side to side, with all of their margins */
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),        cmocka_unit_test(paint),
-        cmocka_unit_test(large),        cmocka_unit_test(rims),
-        cmocka_unit_test(tubes),        cmocka_unit_test(colours),
-        cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls),
-        cmocka_unit_test(wires),        cmocka_unit_test(candles),
-        cmocka_unit_test(glows),        cmocka_unit_test(petals),
+        cmocka_unit_test(lamps),        cmocka_unit_test(paint),     cmocka_unit_test(large),
+        cmocka_unit_test(rims),         cmocka_unit_test(tubes),     cmocka_unit_test(colours),
+        cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls), cmocka_unit_test(wires),
+        cmocka_unit_test(candles),      cmocka_unit_test(glows),     cmocka_unit_test(petals),
         cmocka_unit_test(nights),
     };
 

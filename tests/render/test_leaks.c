@@ -71,8 +71,8 @@ static void expect_none(const struct picture *p, const struct refocus_disparity 
             assert_int_equal(refocus_render(renderer, &lens, &out), REFOCUS_OK);
             found = leaks(p, rgb, focus, blurs[i]);
             if (found)
-                fail_msg("%s, K = %g, focus %g: %d pixels", what, (double)blurs[i],
-                         (double)focus, found);
+                fail_msg("%s, K = %g, focus %g: %d pixels", what, (double)blurs[i], (double)focus,
+                         found);
         }
         refocus_renderer_destroy(&renderer);
     }
@@ -112,8 +112,9 @@ static void of_8_bits_and_small(void **state)
     (void)state;
     assert_non_null(small);
     for (int i = 0; i < COLUMNS * ROWS; i++)
-        small[i] = (uint8_t)((p.disparity[(3 * (i / COLUMNS) + 1) * WIDTH +
-                                          3 * (i % COLUMNS) + 1] + 128) / 257);
+        small[i] =
+            (uint8_t)((p.disparity[(3 * (i / COLUMNS) + 1) * WIDTH + 3 * (i % COLUMNS) + 1] + 128) /
+                      257);
     map.bits = 8;
     map.samples = small;
     expect_none(&p, &map, 0, "8 bits, a third of the size");

@@ -51,8 +51,8 @@ int __wrap_posix_memalign(void **memory, size_t align, size_t size)
 struct counter {
     uint64_t bytes; /* ever taken */
     int calls;
-    int held;       /* not yet released */
-    int fail_at;    /* the call that gets NULL; < 0: none */
+    int held;    /* not yet released */
+    int fail_at; /* the call that gets NULL; < 0: none */
 };
 
 static void *count_allocate(void *user, size_t size)
@@ -77,8 +77,7 @@ static void count_release(void *user, void *memory)
 static struct refocus_renderer_params counted(struct counter *counter, int width, int height,
                                               float blur, int threads)
 {
-    struct refocus_renderer_params params =
-        refocus_renderer_params_default(width, height, blur);
+    struct refocus_renderer_params params = refocus_renderer_params_default(width, height, blur);
 
     memset(counter, 0, sizeof *counter);
     counter->fail_at = -1;
@@ -113,7 +112,8 @@ static void every_failure(void **state)
     }
 }
 
-/* render.h: 27 (W + 2P + 79)(H + 2P + 16) + 3 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20 */
+/* render.h: 27 (W + 2P + 79)(H + 2P + 16) + 3 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
+ */
 static double stated(int width, int height, float blur, int threads)
 {
     const double p = 2 * (ceil((double)blur) + 2);
@@ -124,7 +124,7 @@ static double stated(int width, int height, float blur, int threads)
 
 static void formula(void **state)
 {
-    static const int sides[][2] = {{1, 1},     {1, 65535},  {65535, 1},  {16, 16}, {17, 33},
+    static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1}, {16, 16},  {17, 33},
                                    {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
     static const float blurs[] = {0, 0.5f, 1, 20, 40.25f, 127};
     static const int threads[] = {1, 2, 8, 64};
@@ -170,7 +170,7 @@ static double stated_in_place(int width, int height, float blur, int threads)
 /* The figures that strip mode and reduced photos are for. */
 static void formula_of_modes(void **state)
 {
-    static const int sides[][2] = {{1, 1},     {1, 65535},  {65535, 1},  {16, 16}, {17, 33},
+    static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1}, {16, 16},  {17, 33},
                                    {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
     static const float blurs[] = {0, 0.5f, 1, 12, 20, 40, 40.25f, 64, 100, 127};
     struct refocus_renderer_params params = refocus_renderer_params_default(1920, 1080, 40);
@@ -265,8 +265,8 @@ static void says_what_it_takes(void **state)
 
             assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_OK);
             if (counter.bytes > bytes)
-                fail_msg("%d x %d, K = %g: says %llu bytes, takes %llu", sides[s][0],
-                         sides[s][1], (double)blurs[k], (unsigned long long)bytes,
+                fail_msg("%d x %d, K = %g: says %llu bytes, takes %llu", sides[s][0], sides[s][1],
+                         (double)blurs[k], (unsigned long long)bytes,
                          (unsigned long long)counter.bytes);
             refocus_renderer_get_info(renderer, &info);
             assert_int_equal(info.memory, counter.bytes);
@@ -311,8 +311,7 @@ static void nothing_while_rendering(void **state)
     struct refocus_renderer_params limits = counted(&counter, 120, 90, 10, 2);
     struct refocus_renderer *renderer;
     uint8_t *out = malloc(3 * 120 * 90);
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 120, 90, 360);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 120, 90, 360);
 
     (void)state;
     assert_non_null(out);
@@ -353,9 +352,9 @@ static void nothing_while_rendering(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_failure),      cmocka_unit_test(formula),
-        cmocka_unit_test(formula_of_methods), cmocka_unit_test(formula_of_modes),
-        cmocka_unit_test(says_what_it_takes), cmocka_unit_test(largest),
+        cmocka_unit_test(every_failure),          cmocka_unit_test(formula),
+        cmocka_unit_test(formula_of_methods),     cmocka_unit_test(formula_of_modes),
+        cmocka_unit_test(says_what_it_takes),     cmocka_unit_test(largest),
         cmocka_unit_test(nothing_while_rendering)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static void render_point(const struct view *view, float sigma, double share[SIDE
     const int side = 2 * radius + 1 < SIDE ? 2 * radius + 1 : SIDE, corner = MIDDLE - side / 2;
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, 0, 0},
                                     (uint16_t)lround((double)view->disparity * 65535));
-    struct refocus_render_params params =
-        refocus_render_params_default(view->focus, view->blur);
+    struct refocus_render_params params = refocus_render_params_default(view->focus, view->blur);
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out[corner][corner], side, side, sizeof out[0]);
     const double w = exp(-255.0 * 255 / (2 * (double)sigma * (double)sigma));
@@ -88,8 +87,8 @@ static void check_area(const struct view *view, double share[SIDE][SIDE], double
     measured = per_moment * moment / sum;
     if (fabs(measured - area) > 0.005 * area)
         fail_msg("%s, d %g, df %g, K %g: area %.1f, should be %.1f",
-                 refocus_method_name(view->method), (double)view->disparity,
-                 (double)view->focus, (double)view->blur, measured, area);
+                 refocus_method_name(view->method), (double)view->disparity, (double)view->focus,
+                 (double)view->blur, measured, area);
 }
 
 static void check_disc(uint32_t method, float disparity, float focus, float blur)
@@ -118,9 +117,9 @@ static void disc(void **state)
 {
     (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_RAYTRACE; method++) {
-        check_disc(method, 0, 1, 20);      /* behind the plane in focus */
-        check_disc(method, 1, 0, 20);      /* before it */
-        check_disc(method, 0.25f, 1, 40);  /* 30 pixels */
+        check_disc(method, 0, 1, 20);          /* behind the plane in focus */
+        check_disc(method, 1, 0, 20);          /* before it */
+        check_disc(method, 0.25f, 1, 40);      /* 30 pixels */
         check_disc(method, 0.625f, 0.25f, 64); /* 24 pixels */
     }
     /* Of two pixels at exactly half a pixel the nearer surface wins, so K / r = 2 would
@@ -148,8 +147,7 @@ static void energy(void **state)
 
 static int lit_at(double share[SIDE][SIDE], double x, double y)
 {
-    return share[MIDDLE + (int)lround(y)][MIDDLE + (int)lround(x)]
-           >= share[MIDDLE][MIDDLE] / 4;
+    return share[MIDDLE + (int)lround(y)][MIDDLE + (int)lround(x)] >= share[MIDDLE][MIDDLE] / 4;
 }
 
 /* A triangle, one corner up: drawn so behind the plane in focus, turned before it. */
@@ -241,8 +239,8 @@ static void ray_sets(void **state)
             inner += (a * a + b * b < 0.5) / (double)n;
         }
         /* Of a full disc: 0, 0, 1/4, 1/4, 0, 1/2. */
-        if (hypot(u, v) > 0.03 || fabs(uu - 0.25) > 0.02 || fabs(vv - 0.25) > 0.02
-            || fabs(uv) > 0.02 || fabs(inner - 0.5) > 0.06)
+        if (hypot(u, v) > 0.03 || fabs(uu - 0.25) > 0.02 || fabs(vv - 0.25) > 0.02 ||
+            fabs(uv) > 0.02 || fabs(inner - 0.5) > 0.06)
             fail_msg("%d rays: mean %.3f %.3f, moments %.3f %.3f %.3f, inner half %.3f", n, u, v,
                      uu, vv, uv, inner);
     }
@@ -278,8 +276,8 @@ static void every_ray_set(void **state)
         }
         for (int i = 0; i < 8; i++)
             if (fabs(wedge[i] - share) > most || fabs(ring[i] - share) > 1.5)
-                fail_msg("%d rays: %d in wedge %d, %d in ring %d, should be %.1f", n, wedge[i],
-                         i, ring[i], i, share);
+                fail_msg("%d rays: %d in wedge %d, %d in ring %d, should be %.1f", n, wedge[i], i,
+                         ring[i], i, share);
     }
 }
 
@@ -323,8 +321,8 @@ static void full_ray_area(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(disc),     cmocka_unit_test(energy), cmocka_unit_test(polygon),
-        cmocka_unit_test(mask),     cmocka_unit_test(ray_sets), cmocka_unit_test(every_ray_set),
+        cmocka_unit_test(disc),         cmocka_unit_test(energy),   cmocka_unit_test(polygon),
+        cmocka_unit_test(mask),         cmocka_unit_test(ray_sets), cmocka_unit_test(every_ray_set),
         cmocka_unit_test(full_ray_area)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

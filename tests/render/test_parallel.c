@@ -28,8 +28,8 @@ static void serial(void *user, void (*work)(void *context, int32_t item), void *
     ((struct caller *)user)->inside--;
 }
 
-static void backwards(void *user, void (*work)(void *context, int32_t item),
-                      void *context, int32_t count)
+static void backwards(void *user, void (*work)(void *context, int32_t item), void *context,
+                      int32_t count)
 {
     enter(user, count);
     for (int32_t i = count - 1; i >= 0; i--)
@@ -52,8 +52,8 @@ static void *run_item(void *user)
 }
 
 /* A thread an item, as they come. */
-static void threaded(void *user, void (*work)(void *context, int32_t item),
-                     void *context, int32_t count)
+static void threaded(void *user, void (*work)(void *context, int32_t item), void *context,
+                     int32_t count)
 {
     struct item item[MOST];
     pthread_t thread[MOST];
@@ -73,8 +73,8 @@ static void same_bytes(void **state)
 {
     static const struct {
         const char *name;
-        void (*loop)(void *user, void (*work)(void *context, int32_t item),
-                     void *context, int32_t count);
+        void (*loop)(void *user, void (*work)(void *context, int32_t item), void *context,
+                     int32_t count);
         int threads;
     } callers[] = {{"serial", serial, 4},
                    {"backwards", backwards, 5},
@@ -98,8 +98,7 @@ static void same_bytes(void **state)
 
     for (size_t c = 0; c < sizeof callers / sizeof callers[0]; c++) {
         struct caller caller = {0, 0, 0};
-        struct refocus_renderer_params limits =
-            refocus_renderer_params_default(WIDTH, HEIGHT, 8);
+        struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 8);
         struct refocus_renderer_info info;
         int rendered = 0;
 
@@ -116,15 +115,13 @@ static void same_bytes(void **state)
                 continue;
             memset(out, 0x55, size);
             render_style(renderer, &p, &styles[i], 0.4f, 8, out);
-            assert_same_pixels(out, expected + size * (size_t)i, WIDTH, HEIGHT,
-                               callers[c].name);
+            assert_same_pixels(out, expected + size * (size_t)i, WIDTH, HEIGHT, callers[c].name);
             rendered++;
         }
         refocus_renderer_destroy(&renderer);
         assert_int_equal(caller.inside, 0);
         if (callers[c].threads > 1)
-            assert_true(caller.calls > rendered &&
-                        caller.most == callers[c].threads);
+            assert_true(caller.calls > rendered && caller.most == callers[c].threads);
     }
     free(expected);
     free(out);
@@ -137,8 +134,8 @@ struct breaker {
     int left; /* loops until it cancels */
 };
 
-static void cancelling(void *user, void (*work)(void *context, int32_t item),
-                       void *context, int32_t count)
+static void cancelling(void *user, void (*work)(void *context, int32_t item), void *context,
+                       int32_t count)
 {
     struct breaker *breaker = user;
 
@@ -154,8 +151,7 @@ static void cancel_within(void **state)
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
     const struct refocus_render_params params = refocus_render_params_default(0.4f, 8);
-    struct refocus_renderer_params limits =
-        refocus_renderer_params_default(WIDTH, HEIGHT, 8);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 8);
     struct breaker breaker = {NULL, -1};
     uint8_t *expected = malloc(3 * WIDTH * HEIGHT), *out = malloc(3 * WIDTH * HEIGHT);
     const struct refocus_image image =
@@ -172,8 +168,7 @@ static void cancel_within(void **state)
     assert_int_equal(refocus_render(breaker.renderer, &params, &image), REFOCUS_OK);
     memcpy(expected, out, 3 * WIDTH * HEIGHT);
     for (int loop = 0; status != REFOCUS_OK; loop++) {
-        assert_int_equal(refocus_prepare(breaker.renderer, &photo, &disparity),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_prepare(breaker.renderer, &photo, &disparity), REFOCUS_OK);
         breaker.left = loop;
         status = refocus_render(breaker.renderer, &params, &image);
         cancelled += status == REFOCUS_ERR_CANCELLED;

@@ -24,8 +24,8 @@ static struct copy make_copy(int format, int width, int height, int slack, int u
 
     assert_non_null(copy.memory);
     memset(copy.memory, 0xee, (size_t)stride * (size_t)height + 1);
-    copy.image = refocus_image_packed(formats[format].format, copy.memory + 1, width, height,
-                                      stride);
+    copy.image =
+        refocus_image_packed(formats[format].format, copy.memory + 1, width, height, stride);
     if (upward) {
         copy.image.plane[0] += stride * (height - 1);
         copy.image.stride[0] = -stride;
@@ -35,8 +35,8 @@ static struct copy make_copy(int format, int width, int height, int slack, int u
 
 static uint8_t *at(const struct copy *copy, int x, int y)
 {
-    return copy->image.plane[0] + y * copy->image.stride[0]
-           + x * refocus_format_bytes(copy->image.format);
+    return copy->image.plane[0] + y * copy->image.stride[0] +
+           x * refocus_format_bytes(copy->image.format);
 }
 
 static uint8_t alpha_of(int x, int y)
@@ -70,8 +70,8 @@ static void check_copy(const struct copy *copy, int format, int slack, const uin
         for (int x = 0; x < w; x++, rgb += 3) {
             const uint8_t *to = at(copy, x, y);
 
-            if (to[formats[format].r] != rgb[0] || to[formats[format].g] != rgb[1]
-                || to[formats[format].b] != rgb[2])
+            if (to[formats[format].r] != rgb[0] || to[formats[format].g] != rgb[1] ||
+                to[formats[format].b] != rgb[2])
                 fail_msg("%s: (%d, %d) is wrong", what, x, y);
             if (bytes == 4 && to[3] != (has_alpha ? alpha_of(x, y) : 255))
                 fail_msg("%s: alpha of (%d, %d) is %d", what, x, y, to[3]);
@@ -158,9 +158,9 @@ static void disparity_layouts(void **state)
 /* A region is that part of the whole, to the bit. */
 static void regions(void **state)
 {
-    static const int region[][4] = {{0, 0, 1, 1},    {76, 49, 1, 1},   {16, 16, 16, 16},
-                                    {5, 9, 40, 17},  {0, 0, 77, 50},   {30, 0, 47, 50},
-                                    {15, 15, 2, 2},  {0, 31, 77, 2}};
+    static const int region[][4] = {{0, 0, 1, 1},   {76, 49, 1, 1}, {16, 16, 16, 16},
+                                    {5, 9, 40, 17}, {0, 0, 77, 50}, {30, 0, 47, 50},
+                                    {15, 15, 2, 2}, {0, 31, 77, 2}};
     enum { W = 77, H = 50 };
     struct picture p = picture_make(W, H, 8);
     struct refocus_renderer *renderer = prepared(&p, 8, 2), *fresh = prepared(&p, 8, 2);

@@ -19,11 +19,10 @@ struct setting {
 };
 
 /* Not in strip mode. */
-static const uint32_t OF_FRAMES = REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) |
-                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
-                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |
-                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
-                                  REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
+static const uint32_t OF_FRAMES =
+    REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
+    REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
+    REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
 
 static uint32_t pick(uint32_t *state, uint32_t n)
 {
@@ -37,9 +36,8 @@ static const struct style *pick_style(uint32_t *state, int in_place)
 
     do {
         style = &styles[pick(state, (uint32_t)style_count)];
-    } while (style->method == REFOCUS_METHOD_RAYTRACE ||
-             style->rays == REFOCUS_RAYS_FULL || style->rays > 128 ||
-             style->method == REFOCUS_METHOD_DIFFUSION ||
+    } while (style->method == REFOCUS_METHOD_RAYTRACE || style->rays == REFOCUS_RAYS_FULL ||
+             style->rays > 128 || style->method == REFOCUS_METHOD_DIFFUSION ||
              (in_place && (OF_FRAMES & REFOCUS_METHOD_BIT(style->method))));
     return style;
 }
@@ -73,8 +71,7 @@ static void change(struct setting *s, uint32_t *state, enum mode mode)
     }
 }
 
-static int render(struct refocus_renderer *renderer, const struct setting *s,
-                  uint8_t *out)
+static int render(struct refocus_renderer *renderer, const struct setting *s, uint8_t *out)
 {
     struct refocus_render_params params = style_params(s->style, s->focus, s->blur);
     struct refocus_aperture *aperture = style_aperture(s->style);
@@ -99,8 +96,7 @@ static int render(struct refocus_renderer *renderer, const struct setting *s,
 
 static struct refocus_renderer *create(int threads, enum mode mode)
 {
-    struct refocus_renderer_params limits =
-        refocus_renderer_params_default(WIDTH, HEIGHT, 6);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 6);
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
@@ -134,17 +130,15 @@ static void cancel_later(void *user)
         refocus_cancel(canceller->renderer);
 }
 
-static void assert_same(const uint8_t *is, const uint8_t *should,
-                        const struct setting *s, uint32_t seed, int step)
+static void assert_same(const uint8_t *is, const uint8_t *should, const struct setting *s,
+                        uint32_t seed, int step)
 {
     for (size_t i = 0; i < MOST; i++)
         if (is[i] != should[i])
-            fail_msg(
-                "seed %u, step %d, %s, focus %g, blur %g, gain %g, 1/%d, region %d,%d "
-                "%dx%d: byte %zu is %d, should be %d",
-                seed, step, s->style->name, (double)s->focus, (double)s->blur,
-                (double)s->gain, s->reduce, s->x, s->y, s->width, s->height, i, is[i],
-                should[i]);
+            fail_msg("seed %u, step %d, %s, focus %g, blur %g, gain %g, 1/%d, region %d,%d "
+                     "%dx%d: byte %zu is %d, should be %d",
+                     seed, step, s->style->name, (double)s->focus, (double)s->blur, (double)s->gain,
+                     s->reduce, s->x, s->y, s->width, s->height, i, is[i], should[i]);
 }
 
 static void sequence(uint32_t seed, int steps, enum mode mode)
@@ -232,8 +226,8 @@ static void assert_same_background(const struct refocus_renderer *part,
                 differ |= part->behind.light[c][at + p] != whole->behind.light[c][p];
             if (differ)
                 fail_msg("window %d,%d..%d,%d: the background at %d,%d is another",
-                         part->made.window.x0, part->made.window.y0,
-                         part->made.window.x1, part->made.window.y1, x, y);
+                         part->made.window.x0, part->made.window.y0, part->made.window.x1,
+                         part->made.window.y1, x, y);
         }
     }
 }
@@ -264,12 +258,8 @@ static void regions_of(struct picture p)
             s.style = &styles[0];
         prepare(renderer, &p);
         assert_int_equal(render(renderer, &s, whole), REFOCUS_OK);
-        x = i % 6 == 1   ? 0
-            : i % 6 == 2 ? WIDTH - w
-                         : (int)pick(&random, (uint32_t)(WIDTH - w));
-        y = i % 7 == 1   ? 0
-            : i % 7 == 2 ? HEIGHT - h
-                         : (int)pick(&random, (uint32_t)(HEIGHT - h));
+        x = i % 6 == 1 ? 0 : i % 6 == 2 ? WIDTH - w : (int)pick(&random, (uint32_t)(WIDTH - w));
+        y = i % 7 == 1 ? 0 : i % 7 == 2 ? HEIGHT - h : (int)pick(&random, (uint32_t)(HEIGHT - h));
         s.x = x, s.y = y, s.width = w, s.height = h;
         part = create(1, PLAIN);
         prepare(part, &p);
@@ -279,11 +269,9 @@ static void regions_of(struct picture p)
         refocus_renderer_destroy(&renderer);
         refocus_renderer_destroy(&part);
         for (int row = 0; row < h; row++)
-            if (memcmp(out + 3 * row * w, whole + 3 * ((y + row) * WIDTH + x),
-                       3 * (size_t)w))
-                fail_msg("%s, focus %g, blur %g: %dx%d at %d,%d, row %d differs",
-                         s.style->name, (double)s.focus, (double)s.blur, w, h, x, y,
-                         row);
+            if (memcmp(out + 3 * row * w, whole + 3 * ((y + row) * WIDTH + x), 3 * (size_t)w))
+                fail_msg("%s, focus %g, blur %g: %dx%d at %d,%d, row %d differs", s.style->name,
+                         (double)s.focus, (double)s.blur, w, h, x, y, row);
     }
     assert_true(windows > parts / 6);
     free(whole);
@@ -345,8 +333,7 @@ static struct picture half_of(const struct picture *p)
                 most = d[i] > d[most] ? i : most;
             }
             own = -1;
-            for (int i = 0; i < 4;
-                 i++) /* the second nearest: the nearest of the others */
+            for (int i = 0; i < 4; i++) /* the second nearest: the nearest of the others */
                 own = i != most && d[i] > own ? d[i] : own;
             for (int i = 0; i < 4; i++) {
                 if (abs(d[i] - own) > 65535 / 32)
@@ -386,8 +373,7 @@ static void reduced(void **state)
         assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
         for (size_t k = 0; k < size; k++)
             if (abs(out[k] - p[i].rgb[k]) > 1)
-                fail_msg("1/%d: byte %zu is %d, should be %d", s.reduce, k, out[k],
-                         p[i].rgb[k]);
+                fail_msg("1/%d: byte %zu is %d, should be %d", s.reduce, k, out[k], p[i].rgb[k]);
         memcpy(p[i].rgb, out, size);
         limits = refocus_renderer_params_default(p[i].width, p[i].height, 6);
         limits.methods = REFOCUS_METHODS_ALL;
@@ -396,14 +382,12 @@ static void reduced(void **state)
         for (int k = 0; k < style_count; k++) {
             s.style = &styles[k];
             s.blur = 6;
-            if (left_out(k + 2 * i, 6) || s.style->rays == REFOCUS_RAYS_FULL ||
-                s.style->variant ||
+            if (left_out(k + 2 * i, 6) || s.style->rays == REFOCUS_RAYS_FULL || s.style->variant ||
                 s.style->method == REFOCUS_METHOD_SCATTER ||
                 s.style->method == REFOCUS_METHOD_INTERPOLATED)
                 continue; /* these have other lengths that are reduced too */
             assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
-            render_style(small, &p[i], s.style, s.focus, s.blur / (float)s.reduce,
-                         expected);
+            render_style(small, &p[i], s.style, s.focus, s.blur / (float)s.reduce, expected);
             assert_same_pixels(out, expected, p[i].width, p[i].height, s.style->name);
         }
         refocus_renderer_destroy(&small);
@@ -454,8 +438,7 @@ static void cancel_at_every_moment(struct refocus_render_params params)
         /* another photo and another lens before */
         params.focus_disparity = 0.8f;
         params.blend = REFOCUS_BLEND_LINEAR;
-        assert_int_equal(refocus_prepare(renderer, &photo[1], &disparity[1]),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_prepare(renderer, &photo[1], &disparity[1]), REFOCUS_OK);
         assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
         params.focus_disparity = 0.3f;
         params.blend = REFOCUS_BLEND_GAMMA;
@@ -465,13 +448,11 @@ static void cancel_at_every_moment(struct refocus_render_params params)
         if (status == REFOCUS_OK)
             status = refocus_render(renderer, &params, &image);
         else
-            assert_int_equal(refocus_render(renderer, &params, &image),
-                             REFOCUS_ERR_STATE);
+            assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
         renderer->run.looked_at = NULL;
         cancelled += status == REFOCUS_ERR_CANCELLED;
         if (!renderer->prepared)
-            assert_int_equal(refocus_prepare(renderer, &photo[0], &disparity[0]),
-                             REFOCUS_OK);
+            assert_int_equal(refocus_prepare(renderer, &photo[0], &disparity[0]), REFOCUS_OK);
         assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
         assert_same_pixels(out, expected, 97, 83, "after a cancelled one");
     }
@@ -514,8 +495,8 @@ static void refused(void **state)
         prepare(renderer, &p);
         for (int reduce = -1; reduce <= 17; reduce++) {
             const struct setting s = {&styles[0], 0.5f, 2, 1, reduce, 0, 0, 1, 1};
-            const int good = reduce == 1 ||
-                             (previews && (reduce == 2 || reduce == 4 || reduce == 8));
+            const int good =
+                reduce == 1 || (previews && (reduce == 2 || reduce == 4 || reduce == 8));
 
             if (reduce != 0)
                 assert_int_equal(render(renderer, &s, out),
@@ -529,9 +510,8 @@ static void refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sequences), cmocka_unit_test(regions),
-        cmocka_unit_test(every_moment), cmocka_unit_test(reduced),
-        cmocka_unit_test(refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(sequences), cmocka_unit_test(regions),
+                                       cmocka_unit_test(every_moment), cmocka_unit_test(reduced),
+                                       cmocka_unit_test(refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

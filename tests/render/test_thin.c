@@ -3,20 +3,13 @@
 
 #include "renderer/renderer.h"
 
-enum {
-    WIDTH = 339,
-    HEIGHT = 251,
-    MOST = 3 * WIDTH * HEIGHT,
-    FAR = FENCE_FAR,
-    NEAR = FENCE_NEAR
-};
+enum { WIDTH = 339, HEIGHT = 251, MOST = 3 * WIDTH * HEIGHT, FAR = FENCE_FAR, NEAR = FENCE_NEAR };
 static const float K = 15;
 
-static struct refocus_renderer *create(const struct picture *p, uint32_t cpu,
-                                       int threads, bool thin)
+static struct refocus_renderer *create(const struct picture *p, uint32_t cpu, int threads,
+                                       bool thin)
 {
-    struct refocus_renderer_params limits =
-        refocus_renderer_params_default(p->width, p->height, K);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(p->width, p->height, K);
     const struct refocus_image photo = picture_image(p);
     const struct refocus_disparity disparity = picture_disparity(p);
     struct refocus_renderer *renderer;
@@ -44,24 +37,21 @@ static const struct setting plain = {.focus = FAR / 65535.0f,
                                      .blur = 15,
                                      .gain = 1,
                                      .sigma = 400,
-                                     .thin = 1, .rays = 64,
+                                     .thin = 1,
+                                     .rays = 64,
                                      .reduce = 1};
 
-static int render(struct refocus_renderer *renderer, const struct setting *s,
-                  uint8_t *out)
+static int render(struct refocus_renderer *renderer, const struct setting *s, uint8_t *out)
 {
-    struct refocus_render_params params =
-        refocus_render_params_default(s->focus, s->blur);
+    struct refocus_render_params params = refocus_render_params_default(s->focus, s->blur);
     const int w = s->width ? s->width : (WIDTH + s->reduce - 1) / s->reduce;
     const int h = s->height ? s->height : (HEIGHT + s->reduce - 1) / s->reduce;
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
     struct refocus_aperture *aperture = NULL;
     int status;
 
     if (s->blades)
-        assert_int_equal(refocus_aperture_create_polygon(&aperture, s->blades, 10),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_aperture_create_polygon(&aperture, s->blades, 10), REFOCUS_OK);
     params.aperture = aperture;
     params.rays = s->rays;
     params.thin = s->thin;
@@ -114,8 +104,7 @@ static void wire(void **state)
         for (int x = 150; x < 190; x++) {
             const double t = fabs(x - 169.0);
             const double should =
-                t < s ? picture_light(220) * wide * 2 * sqrt(s * s - t * t) / (pi * s * s)
-                      : 0;
+                t < s ? picture_light(220) * wide * 2 * sqrt(s * s - t * t) / (pi * s * s) : 0;
             const double is = picture_light(out[3 * (HEIGHT / 2 * WIDTH + x)]);
             double *most = pass ? &worst_rays : &worst;
 
@@ -125,8 +114,7 @@ static void wire(void **state)
         }
         for (int y = 1; y < HEIGHT && !pass; y++) /* to both ends */
             if (abs(out[3 * (y * WIDTH + 169)] - out[3 * 169]) > 4)
-                fail_msg("row %d is %d, the first %d", y, out[3 * (y * WIDTH + 169)],
-                         out[3 * 169]);
+                fail_msg("row %d is %d, the first %d", y, out[3 * (y * WIDTH + 169)], out[3 * 169]);
     }
     printf("wire: %.4f off where it is %.4f; by rays %.4f\n", worst,
            picture_light(220) * wide * 2 / (pi * s), worst_rays);
@@ -155,8 +143,8 @@ static void strands(void **state)
         const int i = HEIGHT / 2 * WIDTH + x;
 
         for (int c = 0; c < 3; c++)
-            p.rgb[3 * i + c] = picture_code(0.2 * picture_light(200) +
-                                            0.8 * picture_light(p.rgb[3 * i + c]));
+            p.rgb[3 * i + c] =
+                picture_code(0.2 * picture_light(200) + 0.8 * picture_light(p.rgb[3 * i + c]));
         p.disparity[i] = NEAR;
     }
     s.focus = NEAR / 65535.0f;
@@ -305,8 +293,8 @@ static void regions(void **state)
             for (int y = 0; y < s.height; y++)
                 if (memcmp(out + 3 * y * s.width, whole + 3 * ((s.y + y) * WIDTH + s.x),
                            3 * (size_t)s.width))
-                    fail_msg("K = %d, %dx%d at %d,%d: row %d differs", blur, s.width,
-                             s.height, s.x, s.y, y);
+                    fail_msg("K = %d, %dx%d at %d,%d: row %d differs", blur, s.width, s.height, s.x,
+                             s.y, y);
         }
     }
     picture_free(&p);
@@ -386,8 +374,7 @@ static void sequence(void **state)
         render_fresh(&p, true, &s, expected);
         for (int k = 0; k < MOST; k++)
             if (out[k] != expected[k])
-                fail_msg("step %d: byte %d is %d, should be %d", i, k, out[k],
-                         expected[k]);
+                fail_msg("step %d: byte %d is %d, should be %d", i, k, out[k], expected[k]);
     }
     assert_true(cancelled > 0);
     refocus_renderer_destroy(&renderer);
@@ -403,16 +390,14 @@ static void memory(void **state)
     (void)state;
     for (int i = 0; i < 12; i++) {
         const int w = sides[i / 2][0], h = sides[i / 2][1];
-        struct refocus_renderer_params params =
-            refocus_renderer_params_default(w, h, 20);
+        struct refocus_renderer_params params = refocus_renderer_params_default(w, h, 20);
         double bytes;
 
         params.previews = i % 2;
         bytes = -(double)refocus_renderer_memory(&params);
         params.thin = 1;
         bytes += (double)refocus_renderer_memory(&params);
-        if (bytes < 0 ||
-            bytes > (6.0 * (w + 16) * (h + 16) + 4096) * (i % 2 ? 4 / 3.0 : 1))
+        if (bytes < 0 || bytes > (6.0 * (w + 16) * (h + 16) + 4096) * (i % 2 ? 4 / 3.0 : 1))
             fail_msg("%d x %d: %.0f bytes", w, h, bytes);
     }
 }

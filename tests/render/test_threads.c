@@ -32,8 +32,7 @@ static void same_bytes(void **state)
             for (int i = style_count - 1; i >= 0; i--) {
                 memset(many, 0xaa, size);
                 render_style(renderer, &p, &styles[i], 0.4f, 8, many);
-                assert_same_pixels(many, one + size * (size_t)i, p.width, p.height,
-                                   styles[i].name);
+                assert_same_pixels(many, one + size * (size_t)i, p.width, p.height, styles[i].name);
             }
             refocus_renderer_destroy(&renderer);
         }
@@ -78,8 +77,18 @@ static double seconds(void)
 static void cancel_render(void **state)
 {
     struct picture p = picture_make(900, 700, 3);
-    const struct style slow = {"slow", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0,
-                               0, REFOCUS_BLEND_LINEAR, 0, 0, 0, 0};
+    const struct style slow = {"slow",
+                               REFOCUS_METHOD_RAYTRACE,
+                               REFOCUS_RAYS_FULL,
+                               1,
+                               1,
+                               0,
+                               0,
+                               REFOCUS_BLEND_LINEAR,
+                               0,
+                               0,
+                               0,
+                               0};
     struct refocus_render_params params = style_params(&slow, 0.5f, 60);
     struct canceller canceller = {prepared(&p, 60, 3), 0};
     uint8_t *out = malloc(3 * 900 * 700), *before = malloc(3 * 900 * 700);
@@ -93,8 +102,7 @@ static void cancel_render(void **state)
 
     assert_int_equal(pthread_create(&thread, NULL, cancel_all, &canceller), 0);
     const double start = seconds();
-    assert_int_equal(refocus_render(canceller.renderer, &params, &image),
-                     REFOCUS_ERR_CANCELLED);
+    assert_int_equal(refocus_render(canceller.renderer, &params, &image), REFOCUS_ERR_CANCELLED);
     const double taken = seconds() - start;
     atomic_store(&canceller.stop, 1);
     pthread_join(thread, NULL);

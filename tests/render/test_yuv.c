@@ -4,8 +4,7 @@
 
 static struct refocus_renderer *renderer_for(int width, int height, float blur, int threads)
 {
-    struct refocus_renderer_params limits =
-        refocus_renderer_params_default(width, height, blur);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(width, height, blur);
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
@@ -37,8 +36,7 @@ static const struct style *sweep_style(int *at)
 }
 
 static void render_style_yuv(struct refocus_renderer *renderer, const struct style *style,
-                             float focus, float blur, float gain,
-                             const struct yuv_picture *out)
+                             float focus, float blur, float gain, const struct yuv_picture *out)
 {
     struct refocus_render_params params = style_params(style, focus, blur);
     struct refocus_aperture *aperture = style_aperture(style);
@@ -53,9 +51,9 @@ static void render_style_yuv(struct refocus_renderer *renderer, const struct sty
 static void one_colour(void **state)
 {
     static const uint8_t codes[][3] = {
-        {0, 0, 0},      {255, 255, 255}, {16, 128, 128}, {17, 128, 128}, {15, 127, 129},
-        {235, 128, 128}, {254, 1, 254},  {0, 255, 0},    {81, 90, 240},  {41, 240, 110},
-        {145, 54, 34},  {126, 128, 129}, {20, 0, 255},   {240, 16, 16},  {1, 128, 127}};
+        {0, 0, 0},       {255, 255, 255}, {16, 128, 128}, {17, 128, 128}, {15, 127, 129},
+        {235, 128, 128}, {254, 1, 254},   {0, 255, 0},    {81, 90, 240},  {41, 240, 110},
+        {145, 54, 34},   {126, 128, 129}, {20, 0, 255},   {240, 16, 16},  {1, 128, 127}};
     enum { W = 37, H = 21 };
     struct picture deep = picture_make(W, H, 31);
     struct refocus_renderer *renderer = renderer_for(W, H, 11, 2);
@@ -141,13 +139,13 @@ static void columns_stay(float focus, int edge, int from, int to)
             render_style_yuv(renderer, style, focus, K, 1, &out);
             for (int at = 0; at < W * H * 3; at++) {
                 const int x = at / 3 % W, y = at / 3 / W, c = at % 3;
-                const int same = *yuv_sample(&out.image, c, x, y) ==
-                                 *yuv_sample(&photo.image, c, x, y);
+                const int same =
+                    *yuv_sample(&out.image, c, x, y) == *yuv_sample(&photo.image, c, x, y);
                 const int left = c ? x & ~1 : x, right = c ? x | 1 : x;
 
                 if (left >= from && right < to && !same)
-                    fail_msg("%s: %c of (%d, %d) is in focus and changed", style->name,
-                             "YUV"[c], x, y);
+                    fail_msg("%s: %c of (%d, %d) is in focus and changed", style->name, "YUV"[c], x,
+                             y);
                 changed += !same;
             }
             assert_true(changed > W * H / 4 || style->rays == 1);
@@ -257,8 +255,8 @@ static void grey(void **state)
 static void regions(void **state)
 {
     enum { W = 83, H = 61 };
-    static const int good[][4] = {{0, 0, 2, 2}, {10, 6, 40, 32}, {32, 16, 51, 45}, {82, 60, 1, 1},
-                                  {16, 48, 66, 13}};
+    static const int good[][4] = {
+        {0, 0, 2, 2}, {10, 6, 40, 32}, {32, 16, 51, 45}, {82, 60, 1, 1}, {16, 48, 66, 13}};
     static const int bad[][4] = {{1, 0, 4, 4}, {2, 2, 5, 4}};
     struct picture deep = picture_make(W, H, 6);
     struct refocus_renderer *renderer = renderer_for(W, H, 9, 2);
@@ -275,9 +273,9 @@ static void regions(void **state)
         for (int k = 0; k < 7; k++) {
             const int *at = k < 5 ? good[k] : bad[k - 5];
             struct yuv_picture out = yuv_make(yuv_formats[i], at[2], at[3], 7);
-            const int status = (params.region_x = at[0], params.region_y = at[1],
-                                params.region_width = at[2], params.region_height = at[3],
-                                refocus_render(renderer, &params, &out.image));
+            const int status =
+                (params.region_x = at[0], params.region_y = at[1], params.region_width = at[2],
+                 params.region_height = at[3], refocus_render(renderer, &params, &out.image));
 
             assert_int_equal(status, k < 5 ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
             assert_margins(&out, "region");
@@ -294,8 +292,7 @@ static void regions(void **state)
         params.region_width = params.region_height = 2;
         struct yuv_picture out = yuv_make(yuv_formats[i], 2, 2, 0);
         assert_int_equal(refocus_render(renderer, &params, &out.image),
-                         yuv_formats[i] == REFOCUS_FORMAT_YUYV ? REFOCUS_OK
-                                                               : REFOCUS_ERR_ARGUMENT);
+                         yuv_formats[i] == REFOCUS_FORMAT_YUYV ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
         yuv_free(&out);
         yuv_free(&photo);
         yuv_free(&whole);

@@ -34,12 +34,22 @@ static double blur_of(const struct twin *t, int disparity)
 }
 
 void twin_create(struct twin *t, const struct picture *p,
-                 const struct refocus_render_params *params, const struct twin_rim *rim,
-                 int rims)
+                 const struct refocus_render_params *params, const struct twin_rim *rim, int rims)
 {
-    *t = (struct twin){p->width, p->height, params, (double)params->max_blur_radius,
-                       (double)params->focus_disparity, p->disparity, rim, rims,
-                       {0}, {0}, {0}, 0, 0, 0};
+    *t = (struct twin){p->width,
+                       p->height,
+                       params,
+                       (double)params->max_blur_radius,
+                       (double)params->focus_disparity,
+                       p->disparity,
+                       rim,
+                       rims,
+                       {0},
+                       {0},
+                       {0},
+                       0,
+                       0,
+                       0};
     t->map_blur = plane(t);
     t->blur = plane(t);
     t->behind_blur = plane(t);

@@ -22,15 +22,14 @@ struct twin {
     const struct twin_rim *rim;
     int rims;
     double *light[3], *smooth[3], *behind[3]; /* 0 to 1 */
-    double *map_blur;    /* signed blur in pixels, of the map alone */
-    double *blur;        /* and with the rims */
+    double *map_blur;                         /* signed blur in pixels, of the map alone */
+    double *blur;                             /* and with the rims */
     double *behind_blur;
 };
 
 /* The planes of a photo; all NaN or of the photo itself where a method has no use for them. */
 void twin_create(struct twin *twin, const struct picture *picture,
-                 const struct refocus_render_params *params, const struct twin_rim *rim,
-                 int rims);
+                 const struct refocus_render_params *params, const struct twin_rim *rim, int rims);
 void twin_destroy(struct twin *twin);
 
 /* The passes before the rays. */
@@ -46,8 +45,7 @@ static inline int twin_at(const struct twin *t, int x, int y)
 }
 
 /* Where ray (u, v) of (x, y) meets blur s. */
-static inline int twin_meets(const struct twin *t, int x, int y, struct refocus_ray ray,
-                             double s)
+static inline int twin_meets(const struct twin *t, int x, int y, struct refocus_ray ray, double s)
 {
     return twin_at(t, x + (int)floor(ray.u / 32768.0 * s + 0.5),
                    y + (int)floor(ray.v / 32768.0 * s + 0.5));

@@ -14,8 +14,7 @@ static void dilate_rows(const struct twin *t, double *most, int from, int step)
             *m = t->blur[y * t->width + x];
             for (int dx = -1; i > 0 && dx <= 1; dx++)
                 if (x + dx >= 0 && x + dx < t->width)
-                    *m = fmax(*m, most[(y - step) * t->width + x + dx] -
-                                      (dx ? sqrt(2) / 2 : 0.5));
+                    *m = fmax(*m, most[(y - step) * t->width + x + dx] - (dx ? sqrt(2) / 2 : 0.5));
         }
     }
 }
@@ -111,7 +110,8 @@ static void pull(struct level *fine, const struct level *coarse)
                 const double *from = coarse->plane[c];
 
                 fine->plane[c][p] = (9 * from[y0 * w + x0] + 3 * from[y0 * w + x1] +
-                                     3 * from[y1 * w + x0] + from[y1 * w + x1]) / 16;
+                                     3 * from[y1 * w + x0] + from[y1 * w + x1]) /
+                                    16;
             }
             fine->plane[3][p] = coarse->plane[3][y0 * w + x0];
         }
@@ -120,8 +120,8 @@ static void pull(struct level *fine, const struct level *coarse)
 
 void twin_background(struct twin *t)
 {
-    struct level level[32] = {{t->width, t->height,
-                               {t->behind[0], t->behind[1], t->behind[2], t->behind_blur}}};
+    struct level level[32] = {
+        {t->width, t->height, {t->behind[0], t->behind[1], t->behind[2], t->behind_blur}}};
     int levels = 1;
 
     mark(t);

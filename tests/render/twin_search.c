@@ -3,8 +3,8 @@
 #include "twin.h"
 
 /* Adds what ray `ray` of (x, y) sees. */
-static void trace(const struct twin *t, int x, int y, struct refocus_ray ray,
-                  const double *blur, struct twin_sum *sum)
+static void trace(const struct twin *t, int x, int y, struct refocus_ray ray, const double *blur,
+                  struct twin_sum *sum)
 {
     const double length = hypot(ray.u, ray.v) / 32768;
     const int p = twin_at(t, x, y);

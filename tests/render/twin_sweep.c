@@ -87,8 +87,8 @@ static struct bins reach_of_tile(const struct twin *t, const struct bins *tiles,
     for (int y = 0; y < down; y++) {
         for (int x = 0; x < across; x++) {
             const int dx = abs(x - tx), dy = abs(y - ty);
-            const double gap = ceil(hypot(dx ? (dx - 1) * TWIN_TILE + 1 : 0,
-                                          dy ? (dy - 1) * TWIN_TILE + 1 : 0));
+            const double gap =
+                ceil(hypot(dx ? (dx - 1) * TWIN_TILE + 1 : 0, dy ? (dy - 1) * TWIN_TILE + 1 : 0));
             struct bins bins = tiles[y * across + x];
 
             if (gap > ceil(t->K) + 1)
@@ -134,8 +134,7 @@ static struct plan cover(const struct bins *bins, double width)
             continue;
         }
         if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel) {
-            plan.slab[plan.slabs++] = (struct slab){
-                -0.5 - 2 * overlap, nextafter(0.5, 0), 0, 0, 0};
+            plan.slab[plan.slabs++] = (struct slab){-0.5 - 2 * overlap, nextafter(0.5, 0), 0, 0, 0};
             bin = FOCUS_BIN + pixel;
             continue;
         }
@@ -175,10 +174,9 @@ static struct sets make_sets(const struct twin *t)
     struct sets sets = {{0}, {0}, 0};
 
     for (int i = 0; i < SETS && sizes[i] < t->params->rays; i++)
-        sets.ray[sets.sets++] = twin_rays(t->params->aperture, sizes[i], t->K,
-                                          &sets.count[i]);
-    sets.ray[sets.sets] = twin_rays(t->params->aperture, t->params->rays, t->K,
-                                    &sets.count[sets.sets]);
+        sets.ray[sets.sets++] = twin_rays(t->params->aperture, sizes[i], t->K, &sets.count[i]);
+    sets.ray[sets.sets] =
+        twin_rays(t->params->aperture, t->params->rays, t->K, &sets.count[sets.sets]);
     sets.sets++;
     return sets;
 }
@@ -192,8 +190,8 @@ static int set_for(const struct sets *sets, double reach)
 }
 
 /* Slab for which a strip's ray takes the background, or their number. */
-static int deepest_of(const struct twin *t, const struct twin_cells *cells,
-                      const struct plan *plan, struct twin_strip strip, struct refocus_ray ray)
+static int deepest_of(const struct twin *t, const struct twin_cells *cells, const struct plan *plan,
+                      struct twin_strip strip, struct refocus_ray ray)
 {
     int i = 0;
 
@@ -321,7 +319,8 @@ static struct twin_sum moved(const struct twin_sum *sums, ptrdiff_t beside, doub
     for (int c = 0; c < 3; c++) {
         const double own = sums[0].light[c] / sums[0].weight;
         const double average = (sums[-beside].light[c] / sums[-beside].weight +
-                                sums[beside].light[c] / sums[beside].weight) / 2;
+                                sums[beside].light[c] / sums[beside].weight) /
+                               2;
 
         sum.light[c] = own + part / 2 * (average - own);
     }
@@ -365,8 +364,8 @@ static void sweep_strip(const struct twin *t, const struct twin_cells *cells,
         const int deepest = deepest_of(t, cells, plan, strip, ray[n]);
 
         for (int i = first * TWIN_TILE; i < end * TWIN_TILE; i++)
-            trace(t, plan, deepest, strip.x + i % TWIN_TILE, y0 + rows->at[i / TWIN_TILE],
-                  ray[n], behind, &sums[i]);
+            trace(t, plan, deepest, strip.x + i % TWIN_TILE, y0 + rows->at[i / TWIN_TILE], ray[n],
+                  behind, &sums[i]);
     }
 }
 
@@ -382,8 +381,7 @@ static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
     struct twin_sum sums[TWIN_TILE * TWIN_TILE] = {{{0}, 0}};
 
     for (int i = 0; i < strips; i++)
-        sweep_strip(t, cells, plan, &rows, i * rows.count / strips,
-                    (i + 1) * rows.count / strips,
+        sweep_strip(t, cells, plan, &rows, i * rows.count / strips, (i + 1) * rows.count / strips,
                     (struct twin_strip){x0, y0 + i * TWIN_TILE / 2, TWIN_TILE / strips},
                     sets->ray[set], sets->count[set], behind, sums);
     soften(sums, rows.count, softness(t, plan, least));

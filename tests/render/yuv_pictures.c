@@ -13,16 +13,15 @@ struct yuv_picture yuv_make(uint32_t format, int width, int height, int gap)
     p.bytes = MARGIN;
     for (int i = 0; i < refocus_format_planes(format); i++) {
         p.image.stride[i] += gap;
-        p.bytes += (size_t)p.image.stride[i] *
-                       (size_t)refocus_plane_rows(format, i, height) + MARGIN;
+        p.bytes +=
+            (size_t)p.image.stride[i] * (size_t)refocus_plane_rows(format, i, height) + MARGIN;
     }
     p.memory = malloc(p.bytes);
     assert_non_null(p.memory);
     memset(p.memory, FILL, p.bytes);
     for (int i = 0; i < refocus_format_planes(format); i++) {
         p.image.plane[i] = p.memory + at;
-        at += (size_t)p.image.stride[i] * (size_t)refocus_plane_rows(format, i, height) +
-              MARGIN;
+        at += (size_t)p.image.stride[i] * (size_t)refocus_plane_rows(format, i, height) + MARGIN;
     }
     return p;
 }
@@ -38,8 +37,7 @@ uint8_t *yuv_sample(const struct refocus_image *p, int i, int x, int y)
     case REFOCUS_FORMAT_YUYV:
         return p->plane[0] + y * p->stride[0] + (i ? x / 2 * 4 + 2 * i - 1 : 2 * x);
     case REFOCUS_FORMAT_I420:
-        return i ? p->plane[i] + y / 2 * p->stride[i] + x / 2
-                 : p->plane[0] + y * p->stride[0] + x;
+        return i ? p->plane[i] + y / 2 * p->stride[i] + x / 2 : p->plane[0] + y * p->stride[0] + x;
     case REFOCUS_FORMAT_NV21:
         i = i ? 3 - i : 0;
         break;
@@ -55,9 +53,8 @@ static uint8_t rounded(double v)
 
 void yuv_from_picture(const struct yuv_picture *to, const struct picture *from)
 {
-    static const double rows[3][3] = {{65.481, 128.553, 24.966},
-                                      {-37.797, -74.203, 112.0},
-                                      {112.0, -93.786, -18.214}};
+    static const double rows[3][3] = {
+        {65.481, 128.553, 24.966}, {-37.797, -74.203, 112.0}, {112.0, -93.786, -18.214}};
     const int w = from->width, h = from->height;
     const int tall = to->image.format == REFOCUS_FORMAT_YUYV ? 1 : 2;
 
@@ -86,8 +83,7 @@ void yuv_noise(const struct yuv_picture *p, uint32_t seed)
                 *yuv_sample(&p->image, i, x, y) = (uint8_t)(noise(&seed) >> 7);
 }
 
-void assert_same_yuv(const struct refocus_image *a, const struct refocus_image *b,
-                     const char *what)
+void assert_same_yuv(const struct refocus_image *a, const struct refocus_image *b, const char *what)
 {
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++)
@@ -95,8 +91,8 @@ void assert_same_yuv(const struct refocus_image *a, const struct refocus_image *
                 const int is = *yuv_sample(a, i, x, y), should = *yuv_sample(b, i, x, y);
 
                 if (is != should)
-                    fail_msg("%s: %c of (%d, %d) is %d, should be %d", what, "YUV"[i], x, y,
-                             is, should);
+                    fail_msg("%s: %c of (%d, %d) is %d, should be %d", what, "YUV"[i], x, y, is,
+                             should);
             }
 }
 

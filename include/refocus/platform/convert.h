@@ -41,8 +41,7 @@ REFOCUS_API uint32_t refocus_frame_image_format(uint32_t frame_format);
  *         REFOCUS_ERR_MEMORY
  */
 REFOCUS_API int refocus_convert_copy(struct refocus_converter *converter,
-                                     const struct refocus_frame *frame,
-                                     struct refocus_image *out,
+                                     const struct refocus_frame *frame, struct refocus_image *out,
                                      struct refocus_reason *reason);
 
 /**
@@ -69,8 +68,7 @@ REFOCUS_API int refocus_convert_rgb8(struct refocus_converter *converter,
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (a colour format)
  */
 REFOCUS_API int refocus_convert_samples(struct refocus_converter *converter,
-                                        const struct refocus_frame *frame,
-                                        uint16_t *samples,
+                                        const struct refocus_frame *frame, uint16_t *samples,
                                         struct refocus_reason *reason);
 
 /** A pinhole camera: pixel (x, y) of a point (X, Y, Z) is (fx X/Z + cx, fy Y/Z +

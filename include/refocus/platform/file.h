@@ -51,23 +51,23 @@ enum { REFOCUS_INFO_LINES = 24, REFOCUS_INFO_LENGTH = 160 };
 
 /** What a file says of itself. Numbers that it does not say are 0. */
 struct refocus_photo_info {
-    char container[16];     /**< "JPEG", "PNG", "HEIC", "PPM", "PGM", "PFM" */
-    int32_t stored_width;   /**< before orientation */
+    char container[16];   /**< "JPEG", "PNG", "HEIC", "PPM", "PGM", "PFM" */
+    int32_t stored_width; /**< before orientation */
     int32_t stored_height;
-    int32_t orientation;    /**< EXIF 1 to 8, already applied to photo and depth */
-    uint32_t depth_source;  /**< enum refocus_depth_source */
-    int32_t original_used;  /**< 1: the main picture was blurred; the photo is the
-                                 file's own all-in-focus original (GImage) */
-    double focal_length_mm; /**< EXIF */
+    int32_t orientation;      /**< EXIF 1 to 8, already applied to photo and depth */
+    uint32_t depth_source;    /**< enum refocus_depth_source */
+    int32_t original_used;    /**< 1: the main picture was blurred; the photo is the
+                                   file's own all-in-focus original (GImage) */
+    double focal_length_mm;   /**< EXIF */
     double focal_length_35mm; /**< EXIF, equivalent on 36 x 24 mm */
-    double f_number;        /**< EXIF, of the lens that took the photo */
-    double focus_x, focus_y;      /**< GFocus FocalPoint, 0..1 of the upright picture;
-                                       -1: none */
-    double focus_distance;        /**< GFocus FocalDistance: metres, or the file's own
-                                       unit where near_m and far_m of the depth are 0 */
-    double blur_at_infinity;      /**< GFocus BlurAtInfinity, of the larger picture
-                                       side */
-    char camera[96];              /**< EXIF make and model, printable ASCII */
+    double f_number;          /**< EXIF, of the lens that took the photo */
+    double focus_x, focus_y;  /**< GFocus FocalPoint, 0..1 of the upright picture;
+                                   -1: none */
+    double focus_distance;    /**< GFocus FocalDistance: metres, or the file's own
+                                   unit where near_m and far_m of the depth are 0 */
+    double blur_at_infinity;  /**< GFocus BlurAtInfinity, of the larger picture
+                                   side */
+    char camera[96];          /**< EXIF make and model, printable ASCII */
     /** What was found and why it is believed, a line each: containers, parts passed
      *  over (gain map, portrait matte), units, polarity. Printable ASCII, never a
      *  position. */
@@ -80,9 +80,9 @@ struct refocus_photo_info {
      *  It needs no unit: a surface at z is blurred over B |z - zf| / z. */
     double own_blur;
     double simulated_f_number; /**< Apple's portraits: of the blur that the phone shows */
-    int32_t stored_bits; /**< bits a channel of the stored picture; more than 8 are
-                              dithered to 8, or rounded in HEIC; of a depth file
-                              those of its samples. 0: floats */
+    int32_t stored_bits;       /**< bits a channel of the stored picture; more than 8 are
+                                    dithered to 8, or rounded in HEIC; of a depth file
+                                    those of its samples. 0: floats */
 };
 
 /** A photo read from a file, upright, with the depth it carries. */
@@ -123,9 +123,8 @@ REFOCUS_API int refocus_photo_read(struct refocus_photo **photo, const char *pat
                                    struct refocus_reason *reason);
 
 /** The same from memory; the bytes are not used after the return. */
-REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo,
-                                          const void *bytes, size_t size,
-                                          const struct refocus_read_limits *limits,
+REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
+                                          size_t size, const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
 
 /**
@@ -136,8 +135,7 @@ REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo,
  * @return as refocus_photo_read(); REFOCUS_ERR_UNSUPPORTED when there is only one
  *         picture
  */
-REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo,
-                                          const char *path,
+REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo, const char *path,
                                           const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
 
@@ -157,16 +155,15 @@ REFOCUS_API void refocus_photo_free(struct refocus_photo **photo);
  * @return as refocus_photo_read(), and REFOCUS_ERR_ARGUMENT for a unit it does not
  *         know, REFOCUS_ERR_NO_DEPTH for a colour picture
  */
-REFOCUS_API int refocus_depth_read(struct refocus_photo **depth, const char *path,
-                                   const char *unit, double near_m, double far_m,
+REFOCUS_API int refocus_depth_read(struct refocus_photo **depth, const char *path, const char *unit,
+                                   double near_m, double far_m,
                                    const struct refocus_read_limits *limits,
                                    struct refocus_reason *reason);
 
 /** The same from memory. */
-REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth,
-                                          const void *bytes, size_t size,
-                                          const char *unit, double near_m, double far_m,
-                                          const struct refocus_read_limits *limits,
+REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
+                                          size_t size, const char *unit, double near_m,
+                                          double far_m, const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
 
 /** Words of the command line for how samples are read; see refocus_depth_read().
@@ -176,11 +173,11 @@ REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char
 
 /** What goes into a file beside the pixels. Zeros: nothing. */
 struct refocus_write_options {
-    int32_t quality;                /**< JPEG, 1 to 100; 0 = 95 */
+    int32_t quality;                 /**< JPEG, 1 to 100; 0 = 95 */
     const struct refocus_blob *exif; /**< TIFF block; NULL = none. PPM takes neither */
     const struct refocus_blob *icc;  /**< NULL = none */
-    int32_t unsynced;               /**< 1: does not wait until the file is on the disk,
-                                         for frames of a stream */
+    int32_t unsynced;                /**< 1: does not wait until the file is on the disk,
+                                          for frames of a stream */
 };
 
 /**
@@ -209,9 +206,8 @@ REFOCUS_API int refocus_image_write(const char *path, const struct refocus_image
  *
  * @param stride  bytes from a row to the next; even
  */
-REFOCUS_API int refocus_gray16_write(const char *path, const uint16_t *samples,
-                                     int width, int height, ptrdiff_t stride,
-                                     struct refocus_reason *reason);
+REFOCUS_API int refocus_gray16_write(const char *path, const uint16_t *samples, int width,
+                                     int height, ptrdiff_t stride, struct refocus_reason *reason);
 
 /** Depth to be saved in a photo. Start from refocus_depth_write_default(). */
 struct refocus_depth_write {
@@ -265,8 +261,7 @@ REFOCUS_API int refocus_photo_write_depth(const char *path, const char *original
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO, REFOCUS_ERR_SIZE,
  *         REFOCUS_ERR_MEMORY. Thread-safe.
  */
-REFOCUS_API int refocus_file_read(const char *path, uint64_t max_bytes,
-                                  struct refocus_blob *blob,
+REFOCUS_API int refocus_file_read(const char *path, uint64_t max_bytes, struct refocus_blob *blob,
                                   struct refocus_reason *reason);
 
 /**

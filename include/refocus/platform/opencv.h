@@ -55,9 +55,9 @@ static inline struct refocus_stereo_params refocus_stereo_params_default(void)
 
 /** What the matching found. */
 struct refocus_stereo_report {
-    float vertical_offset;      /**< pixels that the right picture lies lower; undone */
-    float least, greatest;      /**< disparities found, pixels of the left picture */
-    float matched;              /**< share of pixels that agree from left and right */
+    float vertical_offset; /**< pixels that the right picture lies lower; undone */
+    float least, greatest; /**< disparities found, pixels of the left picture */
+    float matched;         /**< share of pixels that agree from left and right */
 };
 
 /**
@@ -70,12 +70,12 @@ struct refocus_stereo_report {
  * @param disparity    receives width x height floats, larger = nearer
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (the pictures do not
  *         match, or their disparities differ by less than a pixel), REFOCUS_ERR_MEMORY,
- *         REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the reason). On an error @p disparity holds nothing of use. Thread-safe.
+ *         REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the reason). On an error @p disparity holds
+ * nothing of use. Thread-safe.
  */
 REFOCUS_API int refocus_cv_stereo(const struct refocus_image *left,
                                   const struct refocus_image *right,
-                                  const struct refocus_stereo_params *params,
-                                  float *disparity,
+                                  const struct refocus_stereo_params *params, float *disparity,
                                   struct refocus_stereo_report *report,
                                   struct refocus_cv_reason *reason);
 
@@ -84,7 +84,7 @@ struct refocus_network {
     int32_t width, height; /**< of its input, 32 to 2048 */
     float mean[3];         /**< codes 0..255 */
     float scale;
-    int32_t inverse;       /**< 1: its output grows with distance */
+    int32_t inverse; /**< 1: its output grows with distance */
 };
 
 /** Presets: "tcmonodepth", "midas-small", "depth-anything-small"; NULL ends them. */
@@ -98,8 +98,7 @@ REFOCUS_API int refocus_cv_network(uint32_t index, struct refocus_network *netwo
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file),
  *         REFOCUS_ERR_FORMAT (the shape is beyond 32 to 2048)
  */
-REFOCUS_API int refocus_cv_network_fit(struct refocus_network *network,
-                                       const char *model,
+REFOCUS_API int refocus_cv_network_fit(struct refocus_network *network, const char *model,
                                        struct refocus_cv_reason *reason);
 
 /** Depth of one picture, without a unit. */
@@ -115,8 +114,7 @@ struct refocus_estimate {
  *         REFOCUS_ERR_FORMAT (no network that OpenCV reads, or not one with this
  *         input), REFOCUS_ERR_MEMORY
  */
-REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo,
-                                    const char *model,
+REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo, const char *model,
                                     const struct refocus_network *network,
                                     struct refocus_estimate *estimate,
                                     struct refocus_cv_reason *reason);
@@ -134,8 +132,7 @@ struct refocus_estimator;
  * @return as refocus_cv_estimate(), but that the network's input and output are not yet
  *         tried
  */
-REFOCUS_API int refocus_cv_estimator_create(struct refocus_estimator **estimator,
-                                            const char *model,
+REFOCUS_API int refocus_cv_estimator_create(struct refocus_estimator **estimator, const char *model,
                                             const struct refocus_network *network,
                                             struct refocus_cv_reason *reason);
 
@@ -158,9 +155,8 @@ REFOCUS_API void refocus_cv_estimator_destroy(struct refocus_estimator **estimat
  * @param out          width x height, packed
  */
 REFOCUS_API int refocus_cv_upsample(const struct refocus_image *photo,
-                                    const struct refocus_disparity *map,
-                                    float sigma_range, uint16_t *out,
-                                    struct refocus_cv_reason *reason);
+                                    const struct refocus_disparity *map, float sigma_range,
+                                    uint16_t *out, struct refocus_cv_reason *reason);
 
 /** Ways of OpenCV to bring a map to the photo's size. */
 enum refocus_cv_filter {
@@ -169,8 +165,8 @@ enum refocus_cv_filter {
     REFOCUS_CV_JOINT_BILATERAL = 1, /**< refocus_cv_upsample() with a sigma of a
                                          tenth */
     /* Of OpenCV contrib: bilinear, then smoothed by the photo. */
-    REFOCUS_CV_GUIDED = 2,          /**< guided filter (He et al. 2010) */
-    REFOCUS_CV_FAST_GLOBAL = 3,     /**< fast global smoother (Min et al. 2014) */
+    REFOCUS_CV_GUIDED = 2,               /**< guided filter (He et al. 2010) */
+    REFOCUS_CV_FAST_GLOBAL = 3,          /**< fast global smoother (Min et al. 2014) */
     REFOCUS_CV_JOINT_BILATERAL_FULL = 4, /**< joint bilateral filter at full size */
 };
 
@@ -187,10 +183,9 @@ REFOCUS_API const char *refocus_cv_filter_name(uint32_t filter);
  * @return as refocus_cv_upsample(); REFOCUS_ERR_UNSUPPORTED when the module is not
  *         there
  */
-REFOCUS_API int refocus_cv_upsample_by(uint32_t filter,
-                                       const struct refocus_image *photo,
-                                       const struct refocus_disparity *map,
-                                       uint16_t *out, struct refocus_cv_reason *reason);
+REFOCUS_API int refocus_cv_upsample_by(uint32_t filter, const struct refocus_image *photo,
+                                       const struct refocus_disparity *map, uint16_t *out,
+                                       struct refocus_cv_reason *reason);
 
 #ifdef __cplusplus
 }

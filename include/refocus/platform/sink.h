@@ -53,11 +53,11 @@ REFOCUS_API int refocus_sink_open(struct refocus_sink **sink, const char *name,
  * Say what will come: before the first frame, and whenever the size changes.
  *
  * @param fps  frames a second, of which 10000 at most count; 0 = 30
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (a stream of one size has begun, or the
- *         device has no such size), and as refocus_sink_open()
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (a stream of one size has
+ * begun, or the device has no such size), and as refocus_sink_open()
  */
-REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int height,
-                                   double fps, struct refocus_reason *reason);
+REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int height, double fps,
+                                   struct refocus_reason *reason);
 
 /**
  * Whether pictures of a format can be written as they are, without a detour by R, G
@@ -86,16 +86,14 @@ REFOCUS_API int refocus_sink_start_image(struct refocus_sink *sink,
  *         window, or pressed Escape or q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never
  *         raises SIGPIPE.
  */
-REFOCUS_API int refocus_sink_write(struct refocus_sink *sink,
-                                   const struct refocus_image *image,
+REFOCUS_API int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *image,
                                    struct refocus_reason *reason);
 
 /**
  * Write what is left, close, free, set the handle to NULL. A NULL handle is fine.
  * @return REFOCUS_OK, or what refocus_sink_write() returns when the rest was lost
  */
-REFOCUS_API int refocus_sink_close(struct refocus_sink **sink,
-                                   struct refocus_reason *reason);
+REFOCUS_API int refocus_sink_close(struct refocus_sink **sink, struct refocus_reason *reason);
 
 #ifdef __cplusplus
 }

@@ -218,17 +218,15 @@ REFOCUS_API void refocus_source_interrupt(struct refocus_source *source);
  *         bits), REFOCUS_ERR_UNSUPPORTED (the source has none), REFOCUS_ERR_GONE,
  *         REFOCUS_ERR_IO
  */
-REFOCUS_API int refocus_source_set_control(struct refocus_source *source,
-                                           const char *name, double value,
-                                           struct refocus_reason *reason);
+REFOCUS_API int refocus_source_set_control(struct refocus_source *source, const char *name,
+                                           double value, struct refocus_reason *reason);
 
 /** What has been counted; zeros of a NULL source. @param counters  NULL is fine */
 REFOCUS_API void refocus_source_get_counters(const struct refocus_source *source,
                                              struct refocus_source_counters *counters);
 
 /** Receives a camera: the name to open it by, and what it calls itself. */
-typedef void refocus_source_found(void *user, const char *name,
-                                  const char *description);
+typedef void refocus_source_found(void *user, const char *name, const char *description);
 
 /** List the cameras of this machine. @return their number or a negative status:
  *  REFOCUS_ERR_ARGUMENT when @p found is NULL */

@@ -136,9 +136,8 @@ REFOCUS_API int refocus_strokes_begin(struct refocus_strokes *strokes,
  *         points, or there is none), REFOCUS_ERR_SIZE (too many points),
  *         REFOCUS_ERR_MEMORY. On an error nothing has changed.
  */
-REFOCUS_API int refocus_strokes_extend(struct refocus_strokes *strokes,
-                                       const float *points, int count,
-                                       struct refocus_changed *changed);
+REFOCUS_API int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points,
+                                       int count, struct refocus_changed *changed);
 
 /** Drop the last stroke. As refocus_strokes_extend(); REFOCUS_ERR_STATE when there is
  *  none. */
@@ -160,8 +159,7 @@ REFOCUS_API int refocus_strokes_get(const struct refocus_strokes *strokes, int i
 
 /** The disparities, packed, of the photo's size; the painting's, and changed by it. NULL
  *  for NULL. */
-REFOCUS_API const uint16_t *
-refocus_strokes_disparity(const struct refocus_strokes *strokes);
+REFOCUS_API const uint16_t *refocus_strokes_disparity(const struct refocus_strokes *strokes);
 
 /**
  * What the last layer covers, 255 or 0.
@@ -170,9 +168,8 @@ refocus_strokes_disparity(const struct refocus_strokes *strokes);
  * @param stride  bytes from a row to the next; may be negative
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT
  */
-REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes,
-                                          uint8_t *mask, int width, int height,
-                                          ptrdiff_t stride);
+REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes, uint8_t *mask,
+                                          int width, int height, ptrdiff_t stride);
 
 /**
  * Paint the strokes of a file after those that there are. The file is one JSON object:
@@ -195,8 +192,7 @@ REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes,
  *         changed.
  */
 REFOCUS_API int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
-                                     size_t size,
-                                     struct refocus_strokes_reason *reason);
+                                     size_t size, struct refocus_strokes_reason *reason);
 
 /**
  * The strokes as such a file, in memory of malloc() that the caller frees. Numbers are

@@ -68,12 +68,11 @@ static int print_report(const struct settings *settings, const struct engine *en
     char rays[16] = "full";
 
     if (settings->engine.json) {
-        json_t *json =
-            json_pack("{s:o, s:i, s:i, s:i, s:f}", "photo",
-                      photo ? report_text_json(photo) : json_null(), "width",
-                      (int)scene->photo.width, "height", (int)scene->photo.height,
-                      "repeat", (int)settings->engine.repeat, "megapixels_per_second",
-                      megapixels(scene) * 1e3 / times->median);
+        json_t *json = json_pack("{s:o, s:i, s:i, s:i, s:f}", "photo",
+                                 photo ? report_text_json(photo) : json_null(), "width",
+                                 (int)scene->photo.width, "height", (int)scene->photo.height,
+                                 "repeat", (int)settings->engine.repeat, "megapixels_per_second",
+                                 megapixels(scene) * 1e3 / times->median);
         json_t *run = engine_json(engine);
 
         if (json && json_object_update(json, run) != 0) {
@@ -85,11 +84,10 @@ static int print_report(const struct settings *settings, const struct engine *en
     }
     if (params->rays != REFOCUS_RAYS_FULL)
         snprintf(rays, sizeof rays, "%d", (int)params->rays);
-    printf("%dx%d, %s, blur %.4g, focus %.3f, %s rays, %d threads, %s\n",
-           (int)scene->photo.width, (int)scene->photo.height,
-           refocus_method_name(params->method), (double)params->max_blur_radius,
-           (double)params->focus_disparity, rays, (int)engine->info.threads,
-           refocus_cpu_name(engine->info.cpu));
+    printf("%dx%d, %s, blur %.4g, focus %.3f, %s rays, %d threads, %s\n", (int)scene->photo.width,
+           (int)scene->photo.height, refocus_method_name(params->method),
+           (double)params->max_blur_radius, (double)params->focus_disparity, rays,
+           (int)engine->info.threads, refocus_cpu_name(engine->info.cpu));
     printf("create   %9.2f ms   %.1f MiB\n", engine->create_ms,
            (double)engine->info.memory / (1 << 20));
     printf("prepare  %9.2f ms\n", engine->prepare_ms);
@@ -100,12 +98,11 @@ static int print_report(const struct settings *settings, const struct engine *en
     return report_end_output();
 }
 
-static int check(const struct settings *settings, const char *photo, int argc,
-                 char **argv)
+static int check(const struct settings *settings, const char *photo, int argc, char **argv)
 {
     static const char *const of_frames[] = {
-        "--focus", "--focus-at", "--focus-distance", "--focus-rectangle",
-        "--blur",  "--quality",  NULL};
+        "--focus",   "--focus-at", "--focus-distance", "--focus-rectangle", "--blur",
+        "--quality", NULL};
     static const char *const of_kernels[] = {"--kernels", "--cpu", "--json", NULL};
     int status = input_check_depth(&settings->depth);
 
@@ -118,8 +115,7 @@ static int check(const struct settings *settings, const char *photo, int argc,
         status = options_refuse_beside(&bench_command, argc, argv, of_kernels,
                                        "it does not go with --kernels; leave it out");
     if (status == EXIT_DONE && settings->kernels && (photo || settings->statistics))
-        status = report_failure(EXIT_WRONG, "--kernels",
-                                "it takes no %s; leave one of them out",
+        status = report_failure(EXIT_WRONG, "--kernels", "it takes no %s; leave one of them out",
                                 photo ? "photo" : "--rays");
     if (status != EXIT_DONE)
         return status;
@@ -130,9 +126,8 @@ static int check(const struct settings *settings, const char *photo, int argc,
     if (photo && !isnan(settings->size[0]))
         return report_failure(EXIT_WRONG, "--size",
                               "the photo has a size of its own; leave one of them out");
-    if (!photo && (settings->depth.file || settings->depth.unit ||
-                   !isnan(settings->depth.near_m) || !isnan(settings->depth.far_m) ||
-                   !isnan(settings->lens.focus_distance)))
+    if (!photo && (settings->depth.file || settings->depth.unit || !isnan(settings->depth.near_m) ||
+                   !isnan(settings->depth.far_m) || !isnan(settings->lens.focus_distance)))
         return report_failure(EXIT_WRONG, "bench",
                               "--depth, --depth-unit, --near, --far and "
                               "--focus-distance go with a photo; give one");
@@ -144,9 +139,8 @@ static int count_rays(const struct engine *engine, const struct settings *settin
 {
     struct ray_statistics statistics;
 
-    if (ray_statistics(&statistics, disparity, width, height,
-                       engine->params.focus_disparity, engine->params.max_blur_radius,
-                       engine->aperture) != 0)
+    if (ray_statistics(&statistics, disparity, width, height, engine->params.focus_disparity,
+                       engine->params.max_blur_radius, engine->aperture) != 0)
         return report_failure(EXIT_FAILED, "--rays", "not enough memory");
     if (settings->engine.json)
         return report_print_json(ray_statistics_json(&statistics));
@@ -154,32 +148,29 @@ static int count_rays(const struct engine *engine, const struct settings *settin
     return report_end_output();
 }
 
-static int measure(struct engine *engine, const struct settings *settings,
-                   struct input *input, const struct scene *scene)
+static int measure(struct engine *engine, const struct settings *settings, struct input *input,
+                   const struct scene *scene)
 {
     const int width = scene->photo.width, height = scene->photo.height;
     const struct refocus_disparity disparity = refocus_disparity16(
-        scene->disparity, scene->map_width, scene->map_height,
-        (ptrdiff_t)scene->map_width * 2);
+        scene->disparity, scene->map_width, scene->map_height, (ptrdiff_t)scene->map_width * 2);
     const size_t pixels = (size_t)width * (size_t)height;
-    struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width,
-                                                    height, (ptrdiff_t)width * 3);
+    struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
     uint16_t *prepared = malloc(pixels * 2);
     double blur = 0, focus = 0;
     int status;
 
     out.plane[0] = malloc(pixels * 3);
-    status = prepared && out.plane[0]
-                 ? input_blur(input, &settings->lens, &blur)
-                 : report_failure(EXIT_FAILED, "bench", "not enough memory");
+    status = prepared && out.plane[0] ? input_blur(input, &settings->lens, &blur)
+                                      : report_failure(EXIT_FAILED, "bench", "not enough memory");
     if (status == EXIT_DONE)
         status = engine_create(engine, &settings->engine, width, height, blur);
     report_progress("preparing", 0.15);
     if (status == EXIT_DONE)
         status = engine_prepare(engine, &scene->photo, &disparity);
     if (status == EXIT_DONE) {
-        refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared,
-                         (ptrdiff_t)width * 2);
+        refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared, (ptrdiff_t)width * 2);
         status = input_focus(input, &settings->lens, prepared, &focus);
         engine->params.focus_disparity = (float)focus;
     }
@@ -246,17 +237,15 @@ static int run(int argc, char **argv)
         }
     } else if (status == EXIT_DONE) {
         engine.name = input.photo_name = input.depth_name = "made-up scene";
-        status = bench_scene_make(
-            &scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
-            isnan(settings.size[0]) ? 540 : (int)settings.size[1]);
+        status = bench_scene_make(&scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
+                                  isnan(settings.size[0]) ? 540 : (int)settings.size[1]);
         made.image = scene.photo;
         made.info.focus_x = made.info.focus_y = -1;
         input.photo = &made;
     }
     if (status == EXIT_DONE && settings.frames)
         status = bench_frames(&settings.engine,
-                              files[0] || !isnan(settings.size[0]) ? &scene : NULL,
-                              files[0]);
+                              files[0] || !isnan(settings.size[0]) ? &scene : NULL, files[0]);
     else if (status == EXIT_DONE)
         status = measure(&engine, &settings, &input, &scene);
     if (status == EXIT_DONE && !settings.statistics && !settings.frames)

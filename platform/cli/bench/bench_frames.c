@@ -21,8 +21,8 @@ struct buffers {
 };
 
 /* Mean of 2 K + 1 rows and columns, the border extended: running sums, plain C. */
-static void box_rows(uint8_t *restrict out, const uint8_t *restrict in, int width,
-                     int height, int K)
+static void box_rows(uint8_t *restrict out, const uint8_t *restrict in, int width, int height,
+                     int K)
 {
     const uint32_t scale = (1u << 24) / (2 * (uint32_t)K + 1);
 
@@ -46,9 +46,8 @@ static void box_rows(uint8_t *restrict out, const uint8_t *restrict in, int widt
     }
 }
 
-static void slide(uint32_t *restrict sum, uint8_t *restrict out,
-                  const uint8_t *restrict after, const uint8_t *restrict before,
-                  uint32_t scale, size_t n)
+static void slide(uint32_t *restrict sum, uint8_t *restrict out, const uint8_t *restrict after,
+                  const uint8_t *restrict before, uint32_t scale, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         out[i] = (uint8_t)((sum[i] * scale + (1 << 23)) >> 24);
@@ -56,17 +55,15 @@ static void slide(uint32_t *restrict sum, uint8_t *restrict out,
     }
 }
 
-static void box_columns(uint8_t *out, const uint8_t *in, uint32_t *sum, int width,
-                        int height, int K)
+static void box_columns(uint8_t *out, const uint8_t *in, uint32_t *sum, int width, int height,
+                        int K)
 {
     const uint32_t scale = (1u << 24) / (2 * (uint32_t)K + 1);
     const size_t row = (size_t)width * 3;
 
     memset(sum, 0, row * sizeof *sum);
     for (int y = -K; y <= K; y++) {
-        const uint8_t *from = in + row * (size_t)(y < 0        ? 0
-                                                  : y < height ? y
-                                                               : height - 1);
+        const uint8_t *from = in + row * (size_t)(y < 0 ? 0 : y < height ? y : height - 1);
 
         for (size_t i = 0; i < row; i++)
             sum[i] += from[i];
@@ -85,17 +82,15 @@ static void keep(double *best, double start)
 }
 
 /* Everything in turns, so that all see the same machine. */
-static int measure(struct engine *engine, const struct scene *scene,
-                   const struct place *place, const struct buffers *b, int repeat,
-                   struct times *best)
+static int measure(struct engine *engine, const struct scene *scene, const struct place *place,
+                   const struct buffers *b, int repeat, struct times *best)
 {
     const int width = place->width, height = place->height;
     const size_t bytes = 3 * (size_t)width * (size_t)height;
-    const struct refocus_disparity disparity =
-        refocus_disparity16(scene->disparity, scene->map_width, scene->map_height,
-                            (ptrdiff_t)scene->map_width * 2);
-    const struct refocus_image out = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, b->out, width, height, (ptrdiff_t)width * 3);
+    const struct refocus_disparity disparity = refocus_disparity16(
+        scene->disparity, scene->map_width, scene->map_height, (ptrdiff_t)scene->map_width * 2);
+    const struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, b->out, width, height, (ptrdiff_t)width * 3);
 
     *best = (struct times){INFINITY, INFINITY, INFINITY, INFINITY};
     for (int i = 0; i < repeat; i++) {
@@ -113,10 +108,8 @@ static int measure(struct engine *engine, const struct scene *scene,
             status = engine_render(engine, &out, 1);
         if (status != EXIT_DONE)
             return status;
-        best->prepare =
-            engine->prepare_ms < best->prepare ? engine->prepare_ms : best->prepare;
-        best->render = engine->render_ms.min < best->render ? engine->render_ms.min
-                                                            : best->render;
+        best->prepare = engine->prepare_ms < best->prepare ? engine->prepare_ms : best->prepare;
+        best->render = engine->render_ms.min < best->render ? engine->render_ms.min : best->render;
     }
     return EXIT_DONE;
 }
@@ -125,26 +118,24 @@ static json_t *row_json(const struct place *place, const struct engine *engine,
                         const struct times *t)
 {
     return json_pack("{s:i, s:i, s:f, s:s, s:i, s:i, s:s, s:f, s:f, s:f, s:f}", "width",
-                     place->width, "height", place->height, "blur", place->blur,
-                     "quality", engine_quality_name((uint32_t)place->quality), "rays",
-                     (int)engine->params.rays, "threads", (int)engine->info.threads,
-                     "cpu", refocus_cpu_name(engine->info.cpu), "memcpy_ms", t->copy,
-                     "box_ms", t->box, "prepare_ms", t->prepare, "render_ms",
-                     t->render);
+                     place->width, "height", place->height, "blur", place->blur, "quality",
+                     engine_quality_name((uint32_t)place->quality), "rays",
+                     (int)engine->params.rays, "threads", (int)engine->info.threads, "cpu",
+                     refocus_cpu_name(engine->info.cpu), "memcpy_ms", t->copy, "box_ms", t->box,
+                     "prepare_ms", t->prepare, "render_ms", t->render);
 }
 
-static void print_row(const struct place *place, const struct engine *engine,
-                      const struct times *t)
+static void print_row(const struct place *place, const struct engine *engine, const struct times *t)
 {
-    printf("%5dx%-5d %5g  %-9s %7d  %8.3f %8.2f %8.2f %9.2f %8.1f %8.2f\n",
-           place->width, place->height, place->blur,
-           engine_quality_name((uint32_t)place->quality), (int)engine->info.threads,
-           t->copy, t->box, t->prepare, t->render, 1e3 / t->render, t->render / t->box);
+    printf("%5dx%-5d %5g  %-9s %7d  %8.3f %8.2f %8.2f %9.2f %8.1f %8.2f\n", place->width,
+           place->height, place->blur, engine_quality_name((uint32_t)place->quality),
+           (int)engine->info.threads, t->copy, t->box, t->prepare, t->render, 1e3 / t->render,
+           t->render / t->box);
 }
 
 static int one(const struct engine_settings *common, const struct place *place,
-               const struct scene *scene, const struct buffers *buffers,
-               const char *name, json_t *rows)
+               const struct scene *scene, const struct buffers *buffers, const char *name,
+               json_t *rows)
 {
     struct engine_settings settings = *common;
     struct engine engine;
@@ -156,8 +147,7 @@ static int one(const struct engine_settings *common, const struct place *place,
     status = engine_begin(&engine, &settings);
     engine.name = name;
     if (status == EXIT_DONE)
-        status =
-            engine_create(&engine, &settings, place->width, place->height, place->blur);
+        status = engine_create(&engine, &settings, place->width, place->height, place->blur);
     engine.params.focus_disparity = 0.3f;
     if (status == EXIT_DONE)
         status = measure(&engine, scene, place, buffers, (int)settings.repeat, &times);
@@ -172,8 +162,7 @@ static int one(const struct engine_settings *common, const struct place *place,
 /* The threads that are asked for, else one and one for each processor. */
 static int thread_counts(const struct engine_settings *settings, int counts[2])
 {
-    const int all =
-        report_processors() < MOST_THREADS ? report_processors() : MOST_THREADS;
+    const int all = report_processors() < MOST_THREADS ? report_processors() : MOST_THREADS;
 
     counts[0] = settings->threads > 0 ? (int)settings->threads : 1;
     counts[1] = all;
@@ -186,8 +175,7 @@ static int all_of(const struct engine_settings *settings, const struct scene *sc
     static const double blurs[] = {10, 20, 40};
     const int width = scene->photo.width, height = scene->photo.height;
     const size_t row = 3 * (size_t)width, bytes = row * (size_t)height;
-    struct buffers buffers = {malloc(bytes), malloc(bytes),
-                              malloc(row * sizeof(uint32_t))};
+    struct buffers buffers = {malloc(bytes), malloc(bytes), malloc(row * sizeof(uint32_t))};
     int counts[2], status = EXIT_DONE;
     const int count = thread_counts(settings, counts);
 
@@ -215,9 +203,8 @@ int bench_frames(const struct engine_settings *settings, const struct scene *sce
     int status = EXIT_DONE;
 
     if (!settings->json)
-        printf("%-11s %5s  %-9s %7s  %8s %8s %8s %9s %8s %8s\n", "size", "blur",
-               "quality", "threads", "memcpy", "box blur", "prepare", "render ms",
-               "frames/s", "to box");
+        printf("%-11s %5s  %-9s %7s  %8s %8s %8s %9s %8s %8s\n", "size", "blur", "quality",
+               "threads", "memcpy", "box blur", "prepare", "render ms", "frames/s", "to box");
     if (scene)
         status = all_of(settings, scene, name ? name : "made-up scene", rows);
     for (int i = 0; i < 3 && !scene && status == EXIT_DONE; i++) {
@@ -232,6 +219,5 @@ int bench_frames(const struct engine_settings *settings, const struct scene *sce
         json_decref(rows);
         return status;
     }
-    return rows ? report_print_json(json_pack("{s:o}", "frames", rows))
-                : report_end_output();
+    return rows ? report_print_json(json_pack("{s:o}", "frames", rows)) : report_end_output();
 }

@@ -3,8 +3,7 @@
 
 static int unsupported(uint32_t cpu)
 {
-    return report_failure(EXIT_FAILED, "--cpu",
-                          "this processor or build has no %s; give auto",
+    return report_failure(EXIT_FAILED, "--cpu", "this processor or build has no %s; give auto",
                           refocus_cpu_name(cpu));
 }
 
@@ -38,21 +37,19 @@ int bench_kernels(const struct engine_settings *settings)
         if (i == 0 && !rows)
             printf("%-15s %9s %9s\n", "kernel", name, "c");
         if (rows)
-            json_array_append_new(rows, json_pack("{s:s, s:s, s:f, s:f}", "kernel",
-                                                  time.name, "unit", time.unit, "ns",
-                                                  time.ns, "ns_c", time.ns_c));
+            json_array_append_new(rows,
+                                  json_pack("{s:s, s:s, s:f, s:f}", "kernel", time.name, "unit",
+                                            time.unit, "ns", time.ns, "ns_c", time.ns_c));
         else
-            printf("%-15s %9.3f %9.3f ns/%s, %.1f times\n", time.name, time.ns,
-                   time.ns_c, time.unit, time.ns_c / time.ns);
+            printf("%-15s %9.3f %9.3f ns/%s, %.1f times\n", time.name, time.ns, time.ns_c,
+                   time.unit, time.ns_c / time.ns);
     }
     if (status != REFOCUS_ERR_ARGUMENT) {
         json_decref(rows);
         return status == REFOCUS_ERR_UNSUPPORTED
                    ? unsupported(cpu)
-                   : report_failure(EXIT_FAILED, "--kernels", "%s",
-                                    refocus_strerror(status));
+                   : report_failure(EXIT_FAILED, "--kernels", "%s", refocus_strerror(status));
     }
-    return rows ? report_print_json(
-                      json_pack("{s:s, s:o}", "cpu", name, "kernels", rows))
+    return rows ? report_print_json(json_pack("{s:s, s:o}", "cpu", name, "kernels", rows))
                 : report_end_output();
 }

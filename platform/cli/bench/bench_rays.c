@@ -5,11 +5,7 @@
 #include "bench/bench_rays.h"
 
 /* Pixels of the grid at the most, and rays of the full mask at K = 127 and less. */
-enum {
-    MOST_PIXELS = 4000,
-    MOST_RAYS = 255 * 255,
-    SIDE = 2 * REFOCUS_MAX_BLUR_RADIUS + 5
-};
+enum { MOST_PIXELS = 4000, MOST_RAYS = 255 * 255, SIDE = 2 * REFOCUS_MAX_BLUR_RADIUS + 5 };
 
 struct scene {
     const uint16_t *disparity;
@@ -30,13 +26,11 @@ static double d_at(const struct scene *s, struct hit q)
 }
 
 /* Eq. 4: where ray (u, v) of p meets disparity d. */
-static struct hit meet(const struct scene *s, struct hit p, double u, double v,
-                       double d)
+static struct hit meet(const struct scene *s, struct hit p, double u, double v, double d)
 {
     const double blur = s->K * (s->df - d);
 
-    return (struct hit){p.x + (int)floor(u * blur + 0.5),
-                        p.y + (int)floor(v * blur + 0.5)};
+    return (struct hit){p.x + (int)floor(u * blur + 0.5), p.y + (int)floor(v * blur + 0.5)};
 }
 
 static bool confirms(const struct scene *s, struct hit q, double length, double d)
@@ -45,8 +39,7 @@ static bool confirms(const struct scene *s, struct hit q, double length, double 
 }
 
 /* The front-most hit: disparities from the nearest on, half a pixel apart. */
-static bool trace(const struct scene *s, struct hit p, double u, double v,
-                  struct hit *q)
+static bool trace(const struct scene *s, struct hit p, double u, double v, struct hit *q)
 {
     const double length = hypot(u, v);
     const int steps = (int)ceil(2 * length * s->K);
@@ -63,8 +56,7 @@ static bool trace(const struct scene *s, struct hit p, double u, double v,
 
 /* The randomized search with T tests. Returns after how many it found something, or 0;
  * *q is the last pixel looked at. */
-static int search(const struct scene *s, struct hit p, double u, double v, int tests,
-                  struct hit *q)
+static int search(const struct scene *s, struct hit p, double u, double v, int tests, struct hit *q)
 {
     double d = d_at(s, meet(s, p, u, v, 1));
 
@@ -82,9 +74,8 @@ static uint8_t *mark(uint8_t set[SIDE][SIDE], struct hit p, struct hit q)
     return &set[q.y - p.y + SIDE / 2][q.x - p.x + SIDE / 2];
 }
 
-static void look(const struct scene *s, struct hit p, const struct refocus_ray *ray,
-                 int rays, struct hit *front, uint8_t set[SIDE][SIDE],
-                 struct ray_statistics *all)
+static void look(const struct scene *s, struct hit p, const struct refocus_ray *ray, int rays,
+                 struct hit *front, uint8_t set[SIDE][SIDE], struct ray_statistics *all)
 {
     memset(set, 0, (size_t)SIDE * SIDE);
     for (int n = 0; n < rays; n++) {
@@ -108,8 +99,7 @@ static void look(const struct scene *s, struct hit p, const struct refocus_ray *
             const int valid = search(s, p, u, v, T, &q);
 
             /* rounding may put the same surface a pixel away */
-            all->first[T - 1] +=
-                abs(q.x - front[n].x) <= 1 && abs(q.y - front[n].y) <= 1;
+            all->first[T - 1] += abs(q.x - front[n].x) <= 1 && abs(q.y - front[n].y) <= 1;
             if (!valid && d_at(s, q) < d_at(s, p))
                 q = p;
             all->in_set[T - 1] += *mark(set, p, q);
@@ -119,9 +109,8 @@ static void look(const struct scene *s, struct hit p, const struct refocus_ray *
     all->pixels++;
 }
 
-int ray_statistics(struct ray_statistics *all, const uint16_t *disparity, int width,
-                   int height, double focus, double blur,
-                   const struct refocus_aperture *aperture)
+int ray_statistics(struct ray_statistics *all, const uint16_t *disparity, int width, int height,
+                   double focus, double blur, const struct refocus_aperture *aperture)
 {
     const struct scene scene = {disparity, width, height, blur, focus};
     struct refocus_ray *ray = malloc(MOST_RAYS * sizeof *ray);
@@ -162,11 +151,10 @@ static json_t *shares(const long *count, long of)
 
 json_t *ray_statistics_json(const struct ray_statistics *s)
 {
-    return json_pack("{s:f, s:f, s:i, s:i, s:f, s:o, s:f, s:o, s:o}", "blur", s->K,
-                     "focus", s->focus, "pixels", (int)s->pixels, "rays", (int)s->rays,
-                     "hidden", (double)s->hidden / (double)s->rays, "found_after",
-                     shares(s->found, s->rays), "never",
-                     (double)s->never / (double)s->rays, "front_most",
+    return json_pack("{s:f, s:f, s:i, s:i, s:f, s:o, s:f, s:o, s:o}", "blur", s->K, "focus",
+                     s->focus, "pixels", (int)s->pixels, "rays", (int)s->rays, "hidden",
+                     (double)s->hidden / (double)s->rays, "found_after", shares(s->found, s->rays),
+                     "never", (double)s->never / (double)s->rays, "front_most",
                      shares(s->first, s->rays), "in_set", shares(s->in_set, s->rays));
 }
 
@@ -174,8 +162,8 @@ void ray_statistics_print(const struct ray_statistics *s)
 {
     const double of = (double)s->rays / 100;
 
-    printf("%ld rays of %ld pixels, blur %.4g, focus %.3f; %.2f %% meet nothing\n",
-           s->rays, s->pixels, s->K, s->focus, (double)s->hidden / of);
+    printf("%ld rays of %ld pixels, blur %.4g, focus %.3f; %.2f %% meet nothing\n", s->rays,
+           s->pixels, s->K, s->focus, (double)s->hidden / of);
     printf("tests  first found  front-most  in the set of p\n");
     for (int i = 0; i < RAYS_TESTS; i++)
         printf("%5d  %9.3f %%  %8.3f %%  %13.3f %%\n", i + 1, (double)s->found[i] / of,

@@ -21,9 +21,8 @@ struct ray_statistics {
 };
 
 /* disparity: packed. Returns 0, or -1 without memory. */
-int ray_statistics(struct ray_statistics *statistics, const uint16_t *disparity,
-                   int width, int height, double focus, double blur,
-                   const struct refocus_aperture *aperture);
+int ray_statistics(struct ray_statistics *statistics, const uint16_t *disparity, int width,
+                   int height, double focus, double blur, const struct refocus_aperture *aperture);
 
 json_t *ray_statistics_json(const struct ray_statistics *statistics);
 void ray_statistics_print(const struct ray_statistics *statistics);

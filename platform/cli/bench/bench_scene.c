@@ -37,8 +37,8 @@ int bench_scene_make(struct scene *scene, int width, int height)
 {
     const uint64_t pixels = (uint64_t)width * (uint64_t)height;
 
-    scene->photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
-                                        (ptrdiff_t)width * 3);
+    scene->photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
     scene->map_width = width;
     scene->map_height = height;
     if (pixels <= SIZE_MAX / 3) { /* else they stay NULL */
@@ -46,8 +46,8 @@ int bench_scene_make(struct scene *scene, int width, int height)
         scene->disparity = malloc((size_t)pixels * 2);
     }
     if (!scene->photo.plane[0] || !scene->disparity)
-        return report_failure(EXIT_FAILED, "--size",
-                              "not enough memory for %dx%d pixels", width, height);
+        return report_failure(EXIT_FAILED, "--size", "not enough memory for %dx%d pixels", width,
+                              height);
     for (int y = 0; y < height; y++) {
         uint8_t *row = scene->photo.plane[0] + y * scene->photo.stride[0];
         uint16_t *disparity = scene->disparity + (size_t)y * (size_t)width;
@@ -57,9 +57,9 @@ int bench_scene_make(struct scene *scene, int width, int height)
 
             disparity[x] = surface_at((double)x / height, (double)y / height, &which);
             for (int c = 0; c < 3; c++)
-                row[3 * x + c] = (uint8_t)((hash((uint32_t)which, (uint32_t)c) & 127) +
-                                           (hash((uint32_t)x, (uint32_t)y) & 63) +
-                                           ((x ^ y) & 8) * 4);
+                row[3 * x + c] =
+                    (uint8_t)((hash((uint32_t)which, (uint32_t)c) & 127) +
+                              (hash((uint32_t)x, (uint32_t)y) & 63) + ((x ^ y) & 8) * 4);
         }
     }
     return EXIT_DONE;

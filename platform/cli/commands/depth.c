@@ -206,11 +206,10 @@ static int print_report(const struct settings *settings, const struct input *inp
     const struct refocus_depth_report *report = &input->report;
 
     if (settings->json) {
-        json_t *json = json_pack("{s:o, s:o, s:i, s:i, s:o}", "file",
-                                 report_text_json(input->photo_name), "output",
-                                 report_text_json(settings->output), "width",
-                                 input->width, "height", input->height, "depth",
-                                 report_depth_json(input->depth_from, report));
+        json_t *json =
+            json_pack("{s:o, s:o, s:i, s:i, s:o}", "file", report_text_json(input->photo_name),
+                      "output", report_text_json(settings->output), "width", input->width, "height",
+                      input->height, "depth", report_depth_json(input->depth_from, report));
         return report_print_json(with_evidence(json, &input->made.info));
     }
     printf("size     %dx%d\n", input->width, input->height);
@@ -218,15 +217,15 @@ static int print_report(const struct settings *settings, const struct input *inp
         printf("near     %.4g m\n", report->near_m);
     if (report->far_m > 0)
         printf("far      %.4g m\n", report->far_m);
-    printf("filled   %llu samples without a value, %.1f %%\n",
-           (unsigned long long)report->unknown, percent(report->unknown, map));
+    printf("filled   %llu samples without a value, %.1f %%\n", (unsigned long long)report->unknown,
+           percent(report->unknown, map));
     if (settings->depth.speckle > 1)
         printf("specks   %llu samples in small patches, filled too, %.1f %%\n",
                (unsigned long long)report->specks, percent(report->specks, map));
     for (int i = 0; i < input->made.info.evidence_count; i++)
         printf("because  %s\n", input->made.info.evidence[i]);
-    printf("clamped  %llu samples beyond the range, %.1f %%\n",
-           (unsigned long long)report->clamped, percent(report->clamped, map));
+    printf("clamped  %llu samples beyond the range, %.1f %%\n", (unsigned long long)report->clamped,
+           percent(report->clamped, map));
     return report_end_output();
 }
 
@@ -250,11 +249,10 @@ static int write_view(const struct settings *settings, const struct input *input
     if (!rgb)
         return report_failure(EXIT_FAILED, settings->output, "not enough memory");
     for (size_t i = 0; i < 3 * pixels; i++)
-        rgb[i] =
-            known ? input->confidence[i / 3] : (uint8_t)(input->disparity[i / 3] >> 8);
+        rgb[i] = known ? input->confidence[i / 3] : (uint8_t)(input->disparity[i / 3] >> 8);
 
-    const struct refocus_image image = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, rgb, width, height, 3 * (ptrdiff_t)width);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, width, height, 3 * (ptrdiff_t)width);
     status = output_write_image(settings->output, &image, NULL);
     free(rgb);
     return status;
@@ -266,8 +264,7 @@ static double disparity_at(const struct input *input, double x, double y)
     const int column = (int)fmin(x * input->width, input->width - 1);
     const int row = (int)fmin(y * input->height, input->height - 1);
 
-    return input->disparity[(size_t)row * (size_t)input->width + (size_t)column] /
-           65535.0;
+    return input->disparity[(size_t)row * (size_t)input->width + (size_t)column] / 65535.0;
 }
 
 /* The focus to be saved: that of the options, else that of the photo. */
@@ -287,8 +284,7 @@ static int settle_focus(const struct settings *settings, const struct input *inp
         }
         depth->focus_distance = info->focus_distance;
         depth->blur_at_infinity = info->blur_at_infinity;
-        if (info->own_blur > 0 && info->focus_x >= 0 &&
-            input->photo->depth.near_m <= 0) {
+        if (info->own_blur > 0 && info->focus_x >= 0 && input->photo->depth.near_m <= 0) {
             /* No metres: they are not written, and 0 is taken for infinity then. */
             depth->focus_distance = 0;
             depth->blur_at_infinity =
@@ -332,12 +328,10 @@ static int write_photo(const struct settings *settings, const struct input *inpu
     interrupt_hold(true);
     status = interrupt_came()
                  ? REFOCUS_ERR_CANCELLED
-                 : refocus_photo_write_depth(settings->output, input->photo_name,
-                                             &depth, &reason);
+                 : refocus_photo_write_depth(settings->output, input->photo_name, &depth, &reason);
     interrupt_hold(false);
     if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, settings->output,
-                              "interrupted; nothing was written");
+        return report_failure(EXIT_FAILED, settings->output, "interrupted; nothing was written");
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, settings->output, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -350,25 +344,22 @@ static int write_output(const struct settings *settings, const struct input *inp
         return write_view(settings, input);
     if (is_jpeg(settings->output))
         return write_photo(settings, input);
-    return output_write_gray16(settings->output, input->disparity, input->width,
-                               input->height);
+    return output_write_gray16(settings->output, input->disparity, input->width, input->height);
 }
 
 static bool is_made(const struct settings *settings, const char *const *files)
 {
-    return files[1] || settings->side_by_side || settings->stereo.within ||
-           settings->model;
+    return files[1] || settings->side_by_side || settings->stereo.within || settings->model;
 }
 
 /* Options of depth that is read or matched, with depth that is not. */
-static int check_ways(const struct settings *settings, const char *const *files,
-                      int argc, char **argv)
+static int check_ways(const struct settings *settings, const char *const *files, int argc,
+                      char **argv)
 {
     static const char *const of_read[] = {"--depth-unit", "--invalid",  "--speckle",
                                           "--snap",       "--upsample", NULL};
     const bool pair = is_made(settings, files) && !settings->model;
-    const bool nothing =
-        settings->strokes && !settings->depth.file && !is_made(settings, files);
+    const bool nothing = settings->strokes && !settings->depth.file && !is_made(settings, files);
 
     if (!pair && options_given(&depth_command, argc, argv, "--match"))
         return report_failure(EXIT_WRONG, "--match",
@@ -388,23 +379,20 @@ static int check_ways(const struct settings *settings, const char *const *files,
                           "it out");
 }
 
-static int check(const struct settings *settings, const char *const *files, int argc,
-                 char **argv)
+static int check(const struct settings *settings, const char *const *files, int argc, char **argv)
 {
-    static const char *const endings[] = {".png", ".pgm",  ".pfm",
-                                          ".jpg", ".jpeg", NULL};
+    static const char *const endings[] = {".png", ".pgm", ".pfm", ".jpg", ".jpeg", NULL};
     static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
-    const char *const inputs[] = {files[0], settings->depth.file, files[1],
-                                  settings->model, settings->strokes};
+    const char *const inputs[] = {files[0], settings->depth.file, files[1], settings->model,
+                                  settings->strokes};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
-        status =
-            output_check(settings->output, settings->view ? views : endings, inputs, 5);
-    if (status == EXIT_DONE &&
-        (files[1] != NULL) + settings->side_by_side + settings->stereo.within +
-                (settings->model != NULL) +
-                (settings->depth.file != NULL) > 1)
+        status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
+    if (status == EXIT_DONE && (files[1] != NULL) + settings->side_by_side +
+                                       settings->stereo.within + (settings->model != NULL) +
+                                       (settings->depth.file != NULL) >
+                                   1)
         return report_failure(EXIT_WRONG, files[0],
                               "its depth is given twice; give one of RIGHT, "
                               "--side-by-side, --stereo-file, "
@@ -419,8 +407,7 @@ static int check(const struct settings *settings, const char *const *files, int 
                               "they are not painted over half a picture; give LEFT and "
                               "RIGHT");
     if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
-        return report_failure(EXIT_WRONG, "--blur",
-                              "it goes with --focus-at; give that too");
+        return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
     if (status == EXIT_DONE && !isnan(settings->focus_at[0]) &&
         (settings->view != VIEW_NONE || !is_jpeg(settings->output)))
         return report_failure(EXIT_WRONG, "--focus-at",
@@ -436,8 +423,7 @@ static int read_input(const struct settings *settings, const char *const *files,
         return input_read_estimate(input, files[0], settings->model, &settings->network,
                                    &settings->depth);
     if (is_made(settings, files))
-        return input_read_stereo(input, files[0], files[1], &settings->stereo,
-                                 &settings->depth);
+        return input_read_stereo(input, files[0], files[1], &settings->stereo, &settings->depth);
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);
     if (settings->depth.file || settings->depth.full || settings->depth.snap > 0 ||
@@ -448,9 +434,10 @@ static int read_input(const struct settings *settings, const char *const *files,
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {
-        .network = NETWORK_SETTINGS_NONE, .depth = DEPTH_SETTINGS_NONE,
-        .focus_at = {NAN, NAN}, .blur = NAN};
+    struct settings settings = {.network = NETWORK_SETTINGS_NONE,
+                                .depth = DEPTH_SETTINGS_NONE,
+                                .focus_at = {NAN, NAN},
+                                .blur = NAN};
     struct input input = {0};
     const char *files[3] = {NULL};
     int status;

@@ -19,8 +19,7 @@ static const struct option options[] = {
 };
 
 /* What the samples of a map mean, in words. */
-static void describe_meaning(char *text, size_t size,
-                             const struct refocus_depth_map *map)
+static void describe_meaning(char *text, size_t size, const struct refocus_depth_map *map)
 {
     if (map->meaning == REFOCUS_DEPTH_DISTANCE)
         snprintf(text, size, "distance, %.6g m + %.6g m a unit", map->metres_at_zero,
@@ -92,14 +91,12 @@ static void print_text(const char *file, const struct refocus_photo *photo,
     printf("file          %s\n", clean);
     printf("container     %s\n", info->container);
     if (photo->image.plane[0])
-        printf("picture       %dx%d, upright, %d bits a channel%s\n",
-               (int)photo->image.width, (int)photo->image.height,
-               (int)info->stored_bits,
+        printf("picture       %dx%d, upright, %d bits a channel%s\n", (int)photo->image.width,
+               (int)photo->image.height, (int)info->stored_bits,
                info->original_used ? ", the all-in-focus original in the file" : "");
     if (info->stored_width > 0)
         printf("stored        %dx%d, orientation %d\n", (int)info->stored_width,
-               (int)info->stored_height,
-               info->orientation ? (int)info->orientation : 1);
+               (int)info->stored_height, info->orientation ? (int)info->orientation : 1);
     report_clean(clean, sizeof clean, info->camera);
     if (clean[0])
         printf("camera        %s\n", clean);
@@ -110,13 +107,11 @@ static void print_text(const char *file, const struct refocus_photo *photo,
     if (info->f_number > 0)
         printf("f-number      f/%.3g\n", info->f_number);
     if (info->simulated_f_number > 0)
-        printf("simulated     f/%.3g, the blur that the phone shows\n",
-               info->simulated_f_number);
+        printf("simulated     f/%.3g, the blur that the phone shows\n", info->simulated_f_number);
     if (info->own_blur > 0 && photo->image.plane[0])
         printf("own blur      %.1f pixels\n",
-               info->own_blur * (photo->image.width > photo->image.height
-                                     ? photo->image.width
-                                     : photo->image.height));
+               info->own_blur * (photo->image.width > photo->image.height ? photo->image.width
+                                                                          : photo->image.height));
     if (info->focus_x >= 0 && info->focus_y >= 0 && photo->image.plane[0] &&
         (info->focus_x > 0 || info->focus_y > 0))
         printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image.width,
@@ -151,37 +146,31 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
                          const struct refocus_depth_report *report)
 {
     const struct refocus_photo_info *info = &photo->info;
-    const bool focus = info->focus_x >= 0 && info->focus_y >= 0 &&
-                       (info->focus_x > 0 || info->focus_y > 0);
-    json_t *depth =
-        photo->depth.samples ? report_depth_json(photo, report) : json_null();
+    const bool focus =
+        info->focus_x >= 0 && info->focus_y >= 0 && (info->focus_x > 0 || info->focus_y > 0);
+    json_t *depth = photo->depth.samples ? report_depth_json(photo, report) : json_null();
     char text[160];
 
     if (photo->depth.samples && depth) {
         describe_meaning(text, sizeof text, &photo->depth);
         json_object_set_new(depth, "unit", report_text_json(text));
-        json_object_set_new(depth, "sample",
-                            json_string(sample_name(photo->depth.sample)));
+        json_object_set_new(depth, "sample", json_string(sample_name(photo->depth.sample)));
     }
     return json_pack(
         "{s:o, s:s, s:o, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
         "s:o}",
-        "file",
-        report_text_json(file), "container", info->container, "picture",
-        photo->image.plane[0] ? size_json(photo->image.width, photo->image.height)
-                              : json_null(),
+        "file", report_text_json(file), "container", info->container, "picture",
+        photo->image.plane[0] ? size_json(photo->image.width, photo->image.height) : json_null(),
         "stored",
-        info->stored_width > 0 ? size_json(info->stored_width, info->stored_height)
-                               : json_null(),
+        info->stored_width > 0 ? size_json(info->stored_width, info->stored_height) : json_null(),
         "orientation", info->orientation ? (int)info->orientation : 1, "bits",
         (int)info->stored_bits, "original_used", (int)info->original_used, "camera",
-        info->camera[0] ? report_text_json(info->camera) : json_null(),
-        "focal_length_mm", positive(info->focal_length_mm), "focal_length_35mm",
-        positive(info->focal_length_35mm), "f_number", positive(info->f_number),
-        "simulated_f_number", positive(info->simulated_f_number), "own_blur",
-        positive(info->own_blur), "focus_point",
-        focus ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(),
-        "depth", depth, "evidence", evidence_json(info));
+        info->camera[0] ? report_text_json(info->camera) : json_null(), "focal_length_mm",
+        positive(info->focal_length_mm), "focal_length_35mm", positive(info->focal_length_35mm),
+        "f_number", positive(info->f_number), "simulated_f_number",
+        positive(info->simulated_f_number), "own_blur", positive(info->own_blur), "focus_point",
+        focus ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(), "depth", depth,
+        "evidence", evidence_json(info));
 }
 
 /* Read a photo, or a depth file that is none; a grey picture without depth may be
@@ -193,8 +182,7 @@ static int read_any(struct refocus_photo **photo, const char *file)
     int status = refocus_photo_read(photo, file, NULL, &reason);
 
     if (status == REFOCUS_OK ? !(*photo)->depth.samples
-                             : status == REFOCUS_ERR_FORMAT ||
-                                   status == REFOCUS_ERR_UNSUPPORTED)
+                             : status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED)
         if (refocus_depth_read(&map, file, NULL, 0, 0, NULL, NULL) == REFOCUS_OK) {
             refocus_photo_free(photo);
             *photo = map;
@@ -213,9 +201,9 @@ static int measure_depth(const char *file, const struct refocus_depth_map *map,
 {
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
     uint16_t *disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
-    int status = disparity ? refocus_depth_to_disparity(
-                                 map, disparity, (ptrdiff_t)map->width * 2, report)
-                           : REFOCUS_ERR_MEMORY;
+    int status = disparity
+                     ? refocus_depth_to_disparity(map, disparity, (ptrdiff_t)map->width * 2, report)
+                     : REFOCUS_ERR_MEMORY;
 
     free(disparity);
     if (status == REFOCUS_ERR_NO_DEPTH) {
@@ -223,8 +211,7 @@ static int measure_depth(const char *file, const struct refocus_depth_map *map,
         status = REFOCUS_OK;
     }
     if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, file, "the depth map: %s",
-                              refocus_strerror(status));
+        return report_failure(EXIT_FAILED, file, "the depth map: %s", refocus_strerror(status));
     return EXIT_DONE;
 }
 

@@ -20,12 +20,10 @@ static const struct parameter {
     double least, greatest;
 } parameters[] = {
     {"focus", offsetof(struct refocus_render_params, focus_disparity), 0, 1},
-    {"blur", offsetof(struct refocus_render_params, max_blur_radius), 0,
-     REFOCUS_MAX_BLUR_RADIUS},
+    {"blur", offsetof(struct refocus_render_params, max_blur_radius), 0, REFOCUS_MAX_BLUR_RADIUS},
     {"highlights", offsetof(struct refocus_render_params, highlight_gain), 1, 16},
     {"focus-width", offsetof(struct refocus_render_params, focus_half_width), 0, 1},
-    {"focus-transition", offsetof(struct refocus_render_params, focus_transition), 0,
-     1},
+    {"focus-transition", offsetof(struct refocus_render_params, focus_transition), 0, 1},
     {"cat-eye", offsetof(struct refocus_render_params, cat_eye), 0, 0.9f},
     {"field-x", offsetof(struct refocus_render_params, field_x), 0, 1},
     {"field-y", offsetof(struct refocus_render_params, field_y), 0, 1},
@@ -87,8 +85,7 @@ static int find_parameter(const char *name)
 static struct key *append(struct keys **keys, double time, enum ease ease)
 {
     const int count = *keys ? (*keys)->count : 0;
-    struct keys *more =
-        realloc(*keys, sizeof **keys + (size_t)(count + 1) * sizeof(struct key));
+    struct keys *more = realloc(*keys, sizeof **keys + (size_t)(count + 1) * sizeof(struct key));
     struct key *key;
 
     if (!more)
@@ -103,8 +100,7 @@ static struct key *append(struct keys **keys, double time, enum ease ease)
     return key;
 }
 
-int keys_add(struct keys **keys, double time, const char *name, double value,
-             enum ease ease)
+int keys_add(struct keys **keys, double time, const char *name, double value, enum ease ease)
 {
     struct key *key = *keys && (*keys)->key[(*keys)->count - 1].time == time
                           ? &(*keys)->key[(*keys)->count - 1]
@@ -128,8 +124,7 @@ static int damaged(const char *file, int i, const char *name, const char *why)
 static int read_ease(const char *file, int i, const json_t *value, struct key *key)
 {
     for (uint32_t e = 0; ease_name(e); e++) {
-        if (json_is_string(value) &&
-            strcmp(json_string_value(value), ease_name(e)) == 0) {
+        if (json_is_string(value) && strcmp(json_string_value(value), ease_name(e)) == 0) {
             key->ease = (enum ease)e;
             return EXIT_DONE;
         }
@@ -137,8 +132,8 @@ static int read_ease(const char *file, int i, const json_t *value, struct key *k
     return damaged(file, i, "ease", "has to be one of smooth, linear, in, out");
 }
 
-static int read_parameter(const char *file, int i, const char *name,
-                          const json_t *value, struct key *key)
+static int read_parameter(const char *file, int i, const char *name, const json_t *value,
+                          struct key *key)
 {
     const int p = find_parameter(name);
     char why[160];
@@ -146,16 +141,14 @@ static int read_parameter(const char *file, int i, const char *name,
     if (p < 0) {
         const char *nearest = options_nearest(name, parameter_word, NULL);
 
-        snprintf(why, sizeof why, "is no parameter%s%s%s",
-                 nearest ? "; did you mean '" : "", nearest ? nearest : "",
-                 nearest ? "'?" : "");
+        snprintf(why, sizeof why, "is no parameter%s%s%s", nearest ? "; did you mean '" : "",
+                 nearest ? nearest : "", nearest ? "'?" : "");
         return damaged(file, i, name, why);
     }
-    if (!json_is_number(value) ||
-        !(json_number_value(value) >= parameters[p].least &&
-          json_number_value(value) <= parameters[p].greatest)) {
-        snprintf(why, sizeof why, "has to be a number from %g to %g",
-                 parameters[p].least, parameters[p].greatest);
+    if (!json_is_number(value) || !(json_number_value(value) >= parameters[p].least &&
+                                    json_number_value(value) <= parameters[p].greatest)) {
+        snprintf(why, sizeof why, "has to be a number from %g to %g", parameters[p].least,
+                 parameters[p].greatest);
         return damaged(file, i, name, why);
     }
     key->value[p] = json_number_value(value);
@@ -182,7 +175,8 @@ static int read_key(struct keys **keys, const char *file, int i, json_t *object)
     key = append(keys, json_number_value(time), EASE_SMOOTH);
     if (!key)
         return report_failure(EXIT_FAILED, file, "not enough memory");
-    json_object_foreach(object, name, value) {
+    json_object_foreach(object, name, value)
+    {
         if (strcmp(name, "time") == 0)
             continue;
         status = strcmp(name, "ease") == 0 ? read_ease(file, i, value, key)
@@ -203,22 +197,25 @@ static int read_all(struct keys **keys, const char *file, json_t *root)
 
     if (!json_is_integer(version) || json_integer_value(version) != VERSION)
         return report_failure(EXIT_FAILED, file,
-                              "holds no keys: its member \"refocus-pull\" should be %d",
-                              VERSION);
-    json_object_foreach(root, name, value)
-        if (strcmp(name, "keys") != 0 && strcmp(name, "refocus-pull") != 0) {
-            char clean[64];
+                              "holds no keys: its member \"refocus-pull\" should be %d", VERSION);
+    json_object_foreach(root, name,
+                        value) if (strcmp(name, "keys") != 0 && strcmp(name, "refocus-pull") != 0)
+    {
+        char clean[64];
 
-            report_clean(clean, sizeof clean, name);
-            return report_failure(EXIT_FAILED, file, "'%s' is no member; did you mean "
-                                                     "'keys'?",
-                                  clean);
-        }
+        report_clean(clean, sizeof clean, name);
+        return report_failure(EXIT_FAILED, file,
+                              "'%s' is no member; did you mean "
+                              "'keys'?",
+                              clean);
+    }
     if (json_array_size(list) < 2 || json_array_size(list) > MOST_KEYS)
-        return report_failure(EXIT_FAILED, file, "'keys' has to be a list of 2 to %d "
-                                                 "keys",
+        return report_failure(EXIT_FAILED, file,
+                              "'keys' has to be a list of 2 to %d "
+                              "keys",
                               MOST_KEYS);
-    json_array_foreach(list, i, value) {
+    json_array_foreach(list, i, value)
+    {
         status = read_key(keys, file, (int)i, value);
         if (status != EXIT_DONE)
             break;
@@ -234,8 +231,8 @@ int keys_read(struct keys **keys, const char *file, const char *bytes, size_t si
 
     *keys = NULL;
     if (!root)
-        return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s",
-                              error.line, error.column, error.text);
+        return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s", error.line,
+                              error.column, error.text);
     status = read_all(keys, file, root);
     json_decref(root);
     if (status != EXIT_DONE) {
@@ -294,8 +291,7 @@ static double value_at(const struct keys *keys, int p, double time)
 
             if (!before)
                 return key->value[p];
-            part =
-                ease_at(key->ease, (time - before->time) / (key->time - before->time));
+            part = ease_at(key->ease, (time - before->time) / (key->time - before->time));
             return before->value[p] + (key->value[p] - before->value[p]) * part;
         }
         before = key;
@@ -303,8 +299,7 @@ static double value_at(const struct keys *keys, int p, double time)
     return before ? before->value[p] : NAN;
 }
 
-void keys_apply(const struct keys *keys, double time,
-                struct refocus_render_params *params)
+void keys_apply(const struct keys *keys, double time, struct refocus_render_params *params)
 {
     for (int p = 0; p < PARAMETERS; p++) {
         const double value = value_at(keys, p, time);

@@ -36,8 +36,7 @@ void keys_free(struct keys *keys);
 
 /* A key by hand: a parameter by its name, which there has to be, with a value in its
  * range. */
-int keys_add(struct keys **keys, double time, const char *name, double value,
-             enum ease ease);
+int keys_add(struct keys **keys, double time, const char *name, double value, enum ease ease);
 
 double keys_seconds(const struct keys *keys);
 
@@ -45,7 +44,6 @@ double keys_seconds(const struct keys *keys);
 double keys_most(const struct keys *keys, const char *name, double otherwise);
 
 /* Set what keys name to its values at a time. */
-void keys_apply(const struct keys *keys, double time,
-                struct refocus_render_params *params);
+void keys_apply(const struct keys *keys, double time, struct refocus_render_params *params);
 
 #endif

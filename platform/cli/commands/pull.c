@@ -19,11 +19,12 @@ struct settings {
     bool back;
 };
 
-#define NUMBER(name_, argument_, field_, least_, greatest_, help_)                     \
-    {.kind = OPTION_NUMBER, .name = name_, .argument = argument_,                      \
-     .offset = offsetof(struct settings, field_), .least = least_,                     \
-     .greatest = greatest_,                                                            \
-     .help = help_}
+#define NUMBER(name_, argument_, field_, least_, greatest_, help_)                                 \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = name_, .argument = argument_,                               \
+        .offset = offsetof(struct settings, field_), .least = least_, .greatest = greatest_,       \
+        .help = help_                                                                              \
+    }
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
@@ -36,17 +37,23 @@ static const struct option options[] = {
     NUMBER("--to", "D", to, 0, 1, "and at the end; default 0"),
     NUMBER("--blur-from", "K", blur_from, 0, REFOCUS_MAX_BLUR_RADIUS,
            "blur radius at the beginning; default --blur"),
-    NUMBER("--blur-to", "K", blur_to, 0, REFOCUS_MAX_BLUR_RADIUS,
-           "and at the end; default --blur"),
-    {.kind = OPTION_TEXT, .name = "--keys", .argument = "FILE",
+    NUMBER("--blur-to", "K", blur_to, 0, REFOCUS_MAX_BLUR_RADIUS, "and at the end; default --blur"),
+    {.kind = OPTION_TEXT,
+     .name = "--keys",
+     .argument = "FILE",
      .offset = offsetof(struct settings, keys),
      .help = "JSON list of key frames in place of these; see below"},
     NUMBER("--seconds", "S", seconds, 0.01, 3600, "how long it takes; default 2"),
     NUMBER("--fps", "N", fps, 1, 240, "frames a second; default 25"),
-    {.kind = OPTION_CHOICE, .name = "--ease", .argument = "HOW",
-     .offset = offsetof(struct settings, ease), .choice = ease_name,
+    {.kind = OPTION_CHOICE,
+     .name = "--ease",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, ease),
+     .choice = ease_name,
      .help = "how it goes from one to the other; default smooth"},
-    {.kind = OPTION_FLAG, .name = "--back", .offset = offsetof(struct settings, back),
+    {.kind = OPTION_FLAG,
+     .name = "--back",
+     .offset = offsetof(struct settings, back),
      .help = "and the same way back, so that it can be repeated"},
     NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST,
            "in place of a pull: the eye swings sideways, and what is not in focus "
@@ -77,8 +84,7 @@ static int make_keys(struct keys **keys, const struct settings *s, double blur)
     if (status == EXIT_DONE)
         status = keys_add(keys, end, "focus", given(s->to, 0), (enum ease)s->ease);
     if (status == EXIT_DONE)
-        status =
-            keys_add(keys, end, "blur", given(s->blur_to, blur), (enum ease)s->ease);
+        status = keys_add(keys, end, "blur", given(s->blur_to, blur), (enum ease)s->ease);
     return status;
 }
 
@@ -86,8 +92,7 @@ static int make_keys(struct keys **keys, const struct settings *s, double blur)
  * its place, but for the line that --tilt-angle turns about. */
 static int check_focus(const struct settings *s, int argc, char **argv)
 {
-    static const char *const names[] = {"--focus", "--focus-distance",
-                                        "--focus-rectangle", NULL};
+    static const char *const names[] = {"--focus", "--focus-distance", "--focus-rectangle", NULL};
     static const char *const point[] = {"--focus-at", NULL};
     static const char why[] = "--from and --to are in its place; leave it out";
     const struct control_settings *controls = &s->shot.engine.controls;
@@ -99,8 +104,7 @@ static int check_focus(const struct settings *s, int argc, char **argv)
         return EXIT_DONE;
     if (!turns)
         status = options_refuse(&pull_command, argc, argv, point, why);
-    return status == EXIT_DONE ? options_refuse(&pull_command, argc, argv, names, why)
-                               : status;
+    return status == EXIT_DONE ? options_refuse(&pull_command, argc, argv, names, why) : status;
 }
 
 static int check(struct settings *s, const char *photo, int argc, char **argv)
@@ -150,9 +154,9 @@ static double swing(double parallax, int i, int count)
     return parallax / 2 * sin(turn * i / count);
 }
 
-static int render_frame(struct shot *shot, const struct keys *keys,
-                        const struct stereo *stereo, const struct settings *s, int i,
-                        int count, int there, const struct refocus_image *out)
+static int render_frame(struct shot *shot, const struct keys *keys, const struct stereo *stereo,
+                        const struct settings *s, int i, int count, int there,
+                        const struct refocus_image *out)
 {
     if (stereo)
         return stereo_render(stereo, shot, swing(s->wiggle, i, count), out);
@@ -161,18 +165,16 @@ static int render_frame(struct shot *shot, const struct keys *keys,
 }
 
 /* stereo: NULL in a pull. */
-static int write_frames(struct shot *shot, const struct keys *keys,
-                        const struct stereo *stereo, const struct settings *s,
-                        int *frames)
+static int write_frames(struct shot *shot, const struct keys *keys, const struct stereo *stereo,
+                        const struct settings *s, int *frames)
 {
     const double fps = given(s->fps, 25);
     const double seconds = stereo ? given(s->seconds, 2) - 1 / fps : keys_seconds(keys);
     const int there = (int)(seconds * fps + 0.5) + 1;
     const int count = s->back && there > 2 ? 2 * there - 2 : there;
     const struct refocus_image *photo = &shot->input.photo->image;
-    struct refocus_image out =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, photo->width, photo->height,
-                             (ptrdiff_t)photo->width * 3);
+    struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, photo->width,
+                                                    photo->height, (ptrdiff_t)photo->width * 3);
     struct animation *animation = NULL;
     int status = EXIT_FAILED, closed;
 
@@ -203,8 +205,8 @@ static int wiggle(struct shot *shot, const struct settings *s, int *frames)
     return status;
 }
 
-static int pull(struct shot *shot, const char *photo, struct keys **keys,
-                const struct settings *s, int *frames)
+static int pull(struct shot *shot, const char *photo, struct keys **keys, const struct settings *s,
+                int *frames)
 {
     struct shot_settings wanted = s->shot;
     double most_blur = fmax(given(s->blur_from, 0), given(s->blur_to, 0));
@@ -236,11 +238,11 @@ static int print_report(const struct settings *s, const struct shot *shot, int f
 
     if (!s->shot.engine.json)
         return EXIT_DONE;
-    json = json_pack("{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo",
-                     report_text_json(shot->input.photo_name), "output",
-                     report_text_json(s->output), "width", (int)photo->width, "height",
-                     (int)photo->height, "frames", frames, "fps", given(s->fps, 25),
-                     "method", refocus_method_name(shot->engine.params.method));
+    json =
+        json_pack("{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo",
+                  report_text_json(shot->input.photo_name), "output", report_text_json(s->output),
+                  "width", (int)photo->width, "height", (int)photo->height, "frames", frames, "fps",
+                  given(s->fps, 25), "method", refocus_method_name(shot->engine.params.method));
     blur = input_blur_json(&shot->input, &s->shot.lens);
     if (json && json_object_update(json, blur) != 0) {
         json_decref(json);

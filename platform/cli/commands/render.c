@@ -65,15 +65,13 @@ static int check(struct settings *settings, const char *photo)
     const int count = shot_inputs(&settings->shot, photo, inputs);
     int status = shot_check(&settings->shot, false);
 
-    if (status == EXIT_DONE && settings->view != VIEW_NONE &&
-        !isnan(settings->region[0]))
+    if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
                                 "a view is always of the whole; leave --region or "
                                 "--view out");
-    if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH &&
-        !isnan(settings->parallax))
-        status = report_failure(EXIT_WRONG, "--parallax",
-                                "goes with --view anaglyph; give that too");
+    if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH && !isnan(settings->parallax))
+        status =
+            report_failure(EXIT_WRONG, "--parallax", "goes with --view anaglyph; give that too");
     if (status == EXIT_DONE)
         status = output_check(settings->output, endings, inputs, count);
     if (status == EXIT_DONE && settings->shot.save)
@@ -85,16 +83,14 @@ static int print_report(const struct settings *settings, const struct engine *en
                         const struct input *input, const struct refocus_image *out)
 {
     if (settings->shot.engine.json) {
-        json_t *json = json_pack("{s:o, s:o, s:i, s:i, s:o}", "photo",
-                                 report_text_json(input->photo_name), "output",
-                                 report_text_json(settings->output), "width",
-                                 (int)out->width, "height", (int)out->height, "depth",
-                                 report_depth_json(input->depth_from, &input->report));
+        json_t *json = json_pack(
+            "{s:o, s:o, s:i, s:i, s:o}", "photo", report_text_json(input->photo_name), "output",
+            report_text_json(settings->output), "width", (int)out->width, "height",
+            (int)out->height, "depth", report_depth_json(input->depth_from, &input->report));
         json_t *run = engine_json(engine);
         json_t *blur = input_blur_json(input, &settings->shot.lens);
 
-        if (json && (json_object_update(json, run) != 0 ||
-                     json_object_update(json, blur) != 0)) {
+        if (json && (json_object_update(json, run) != 0 || json_object_update(json, blur) != 0)) {
             json_decref(json);
             json = NULL;
         }
@@ -104,16 +100,15 @@ static int print_report(const struct settings *settings, const struct engine *en
     }
     if (settings->shot.engine.repeat > 1) {
         printf("prepare %.2f ms, render %.2f ms (median of %.0f; %.2f to %.2f)\n",
-               engine->prepare_ms, engine->render_ms.median,
-               settings->shot.engine.repeat, engine->render_ms.min,
-               engine->render_ms.max);
+               engine->prepare_ms, engine->render_ms.median, settings->shot.engine.repeat,
+               engine->render_ms.min, engine->render_ms.max);
         return report_end_output();
     }
     return EXIT_DONE;
 }
 
-static int render(struct shot *shot, struct refocus_image *out,
-                  const struct settings *settings, const char *photo)
+static int render(struct shot *shot, struct refocus_image *out, const struct settings *settings,
+                  const char *photo)
 {
     int status = shot_open(shot, photo, &settings->shot, 0);
 
@@ -127,9 +122,7 @@ static int render(struct shot *shot, struct refocus_image *out,
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {.shot = SHOT_SETTINGS_NONE,
-                                .region = {NAN},
-                                .parallax = NAN};
+    struct settings settings = {.shot = SHOT_SETTINGS_NONE, .region = {NAN}, .parallax = NAN};
     struct shot shot;
     struct refocus_image out = {0};
     const char *files[2];
@@ -144,9 +137,8 @@ static int run(int argc, char **argv)
     status = render(&shot, &out, &settings, files[0]);
     if (status == EXIT_DONE) {
         report_progress("writing", 0.9);
-        status =
-            output_write_image(settings.output, &out,
-                               settings.view == VIEW_NONE ? shot.input.photo : NULL);
+        status = output_write_image(settings.output, &out,
+                                    settings.view == VIEW_NONE ? shot.input.photo : NULL);
     }
     report_progress_end();
     if (status == EXIT_DONE && settings.shot.save)

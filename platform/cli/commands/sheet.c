@@ -16,10 +16,10 @@ struct settings {
     double region[4];
 };
 
-#define LIST(name_, argument_, field_, help_)                                          \
-    {                                                                                  \
-        .kind = OPTION_TEXT, .name = name_, .argument = argument_,                     \
-        .offset = offsetof(struct settings, sheet.field_), .help = help_               \
+#define LIST(name_, argument_, field_, help_)                                                      \
+    {                                                                                              \
+        .kind = OPTION_TEXT, .name = name_, .argument = argument_,                                 \
+        .offset = offsetof(struct settings, sheet.field_), .help = help_                           \
     }
 
 static const struct option options[] = {
@@ -34,8 +34,7 @@ static const struct option options[] = {
      .choice = sheet_kind_name,
      .summary = sheet_kind_summary,
      .help = "what differs from cell to cell; default focus"},
-    LIST("--focuses", "D,D...", focuses,
-         "disparities in focus; default 0,0.25,0.5,0.75,1"),
+    LIST("--focuses", "D,D...", focuses, "disparities in focus; default 0,0.25,0.5,0.75,1"),
     LIST("--blurs", "K,K...", blurs,
          "blur radii in pixels of the photo; default a quarter of --blur, half, and "
          "all of it"),
@@ -83,12 +82,8 @@ static int check_lists(const struct sheet_settings *s, int argc, char **argv)
         {s->kind == SHEET_FOCUS,
          {"--focus", "--focus-at", "--focus-distance", "--focus-rectangle"},
          "--focuses is in its place; give that, or another --kind"},
-        {s->kind == SHEET_APERTURE,
-         {"--aperture"},
-         "--apertures is in its place; leave it out"},
-        {s->kind == SHEET_BOKEH,
-         {"--bokeh"},
-         "the sheet has a cell for each; leave it out"},
+        {s->kind == SHEET_APERTURE, {"--aperture"}, "--apertures is in its place; leave it out"},
+        {s->kind == SHEET_BOKEH, {"--bokeh"}, "the sheet has a cell for each; leave it out"},
         {s->kind == SHEET_SIGMA,
          {"--sigma", "--blend"},
          "the sheet has cells for several; leave it out"},
@@ -97,8 +92,7 @@ static int check_lists(const struct sheet_settings *s, int argc, char **argv)
 
     for (size_t i = 0; i < sizeof rules / sizeof *rules && status == EXIT_DONE; i++)
         if (rules[i].holds)
-            status = options_refuse(&sheet_command, argc, argv, rules[i].options,
-                                    rules[i].why);
+            status = options_refuse(&sheet_command, argc, argv, rules[i].options, rules[i].why);
     return status;
 }
 
@@ -130,13 +124,11 @@ static int check(struct settings *settings, const char *photo, int argc, char **
 
 /* The part of the photo that a cell shows, untouched. */
 static void take_photo(const struct refocus_image *photo,
-                       const struct refocus_render_params *params,
-                       const struct refocus_image *out)
+                       const struct refocus_render_params *params, const struct refocus_image *out)
 {
     for (int y = 0; y < out->height; y++)
         memcpy(out->plane[0] + y * out->stride[0],
-               photo->plane[0] + (params->region_y + y) * photo->stride[0] +
-                   3 * params->region_x,
+               photo->plane[0] + (params->region_y + y) * photo->stride[0] + 3 * params->region_x,
                (size_t)out->width * 3);
 }
 
@@ -169,8 +161,7 @@ static int render_cell(struct shot *shot, const struct refocus_render_params *us
 }
 
 /* Size of a cell that shows `full` and is no wider than was asked for. */
-static void cell_size(const struct refocus_image *full, double wanted, int *width,
-                      int *height)
+static void cell_size(const struct refocus_image *full, double wanted, int *width, int *height)
 {
     const int most = isnan(wanted) ? 320 : (int)wanted;
 
@@ -179,8 +170,8 @@ static void cell_size(const struct refocus_image *full, double wanted, int *widt
     *height = *height > 0 ? *height : 1;
 }
 
-static int make_cells(struct shot *shot, const struct sheet *sheet,
-                      const struct settings *settings, struct refocus_image *picture)
+static int make_cells(struct shot *shot, const struct sheet *sheet, const struct settings *settings,
+                      struct refocus_image *picture)
 {
     const struct refocus_render_params usual = shot->engine.params;
     struct refocus_image full = {0};
@@ -219,8 +210,7 @@ static int make(struct shot *shot, struct sheet *sheet, const char *photo,
         wanted.lens.f_number = sheet->least_f_number;
     if (settings->sheet.kind == SHEET_FOCUS && !input_focus_is_given(&wanted.lens))
         wanted.lens.focus = 1; /* each cell has its own: none has to be found */
-    status = shot_open(shot, photo, &wanted,
-                       isnan(sheet->most_blur) ? 0 : sheet->most_blur);
+    status = shot_open(shot, photo, &wanted, isnan(sheet->most_blur) ? 0 : sheet->most_blur);
     if (status == EXIT_DONE)
         status = sheet_fill(sheet, &settings->sheet, &wanted.lens, &shot->input,
                             (double)shot->engine.params.max_blur_radius);
@@ -242,25 +232,22 @@ static int print_report(const struct settings *settings, const struct shot *shot
         return EXIT_DONE;
     cells = json_array();
     for (int i = 0; i < sheet->count && cells; i++)
-        if (json_array_append_new(cells, report_text_json(sheet->cell[i].caption)) !=
-            0) {
+        if (json_array_append_new(cells, report_text_json(sheet->cell[i].caption)) != 0) {
             json_decref(cells);
             cells = NULL;
         }
     return report_print_json(json_pack(
         "{s:o, s:o, s:i, s:i, s:s, s:i, s:o, s:s}", "photo",
-        report_text_json(shot->input.photo_name), "output",
-        report_text_json(settings->output), "width", (int)picture->width, "height",
-        (int)picture->height, "kind", sheet_kind_name((uint32_t)settings->sheet.kind),
-        "columns", sheet->columns, "cells", cells, "method",
-        refocus_method_name(shot->engine.params.method)));
+        report_text_json(shot->input.photo_name), "output", report_text_json(settings->output),
+        "width", (int)picture->width, "height", (int)picture->height, "kind",
+        sheet_kind_name((uint32_t)settings->sheet.kind), "columns", sheet->columns, "cells", cells,
+        "method", refocus_method_name(shot->engine.params.method)));
 }
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {.shot = SHOT_SETTINGS_NONE,
-                                .sheet = {.cell_width = NAN},
-                                .region = {NAN}};
+    struct settings settings = {
+        .shot = SHOT_SETTINGS_NONE, .sheet = {.cell_width = NAN}, .region = {NAN}};
     struct sheet *sheet = NULL;
     struct refocus_image picture = {0};
     struct shot shot;

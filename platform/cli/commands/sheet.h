@@ -6,13 +6,7 @@
 #include "shot/engine.h"
 #include "inputs/inputs.h"
 
-enum sheet_kind {
-    SHEET_FOCUS,
-    SHEET_APERTURE,
-    SHEET_SIGMA,
-    SHEET_BEFORE_AFTER,
-    SHEET_BOKEH
-};
+enum sheet_kind { SHEET_FOCUS, SHEET_APERTURE, SHEET_SIGMA, SHEET_BEFORE_AFTER, SHEET_BOKEH };
 enum { SHEET_LIST = 16, SHEET_MOST = SHEET_LIST * SHEET_LIST };
 
 const char *sheet_kind_name(uint32_t index);
@@ -37,8 +31,8 @@ struct sheet {
     struct sheet_cell cell[SHEET_MOST];
     int columns, count;
     double most_blur, least_f_number; /* of the lists; NAN: there is none */
-    struct engine look[SHEET_LIST]; /* apertures, or presets of bokeh */
-    int looks;                      /* begun, also those that failed */
+    struct engine look[SHEET_LIST];   /* apertures, or presets of bokeh */
+    int looks;                        /* begun, also those that failed */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */
@@ -49,21 +43,19 @@ int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
 
 /* The cells, for a photo with its blur. */
 int sheet_fill(struct sheet *sheet, const struct sheet_settings *settings,
-               const struct lens_settings *lens, const struct input *input,
-               double blur);
+               const struct lens_settings *lens, const struct input *input, double blur);
 
 /* After sheet_begin(), whatever it returned. */
 void sheet_end(struct sheet *sheet);
 
 /* A picture for cells of that size, their captions and gaps; plane[0] is to be freed
  * and NULL when *why says why not. */
-struct refocus_image sheet_picture(const struct sheet *sheet, int cell_width,
-                                   int cell_height, const char **why);
+struct refocus_image sheet_picture(const struct sheet *sheet, int cell_width, int cell_height,
+                                   const char **why);
 
 /* Put a picture, at least as large as a cell, into cell i: averaged over areas of
  * squared values, which is close to averaging light and stays within integers. */
-void sheet_picture_put(const struct refocus_image *picture, const struct sheet *sheet,
-                       int i, const struct refocus_image *full, int cell_width,
-                       int cell_height);
+void sheet_picture_put(const struct refocus_image *picture, const struct sheet *sheet, int i,
+                       const struct refocus_image *full, int cell_width, int cell_height);
 
 #endif

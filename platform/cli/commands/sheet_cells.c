@@ -5,8 +5,7 @@
 
 const char *sheet_kind_name(uint32_t index)
 {
-    static const char *const names[] = {"focus", "aperture", "sigma", "before-after",
-                                        "bokeh"};
+    static const char *const names[] = {"focus", "aperture", "sigma", "before-after", "bokeh"};
     return index < 5 ? names[index] : NULL;
 }
 
@@ -14,8 +13,8 @@ const char *sheet_kind_summary(uint32_t index)
 {
     static const char *const summaries[] = {
         "columns of --focuses, rows of --blurs or --f-numbers", "--apertures",
-        "columns of --sigmas, a row for each --blend",
-        "the photo, and what render makes of it", "the presets of --bokeh"};
+        "columns of --sigmas, a row for each --blend", "the photo, and what render makes of it",
+        "the presets of --bokeh"};
     return index < 5 ? summaries[index] : NULL;
 }
 
@@ -25,10 +24,9 @@ static const char *next(const char *at, char *text, size_t size, const char *nam
     const size_t length = strcspn(at, ",");
 
     if (length == 0 || length >= size) {
-        report_failure(
-            EXIT_WRONG, name,
-            length ? "one of its values is too long"
-                   : "one of its values is empty; give values with commas between");
+        report_failure(EXIT_WRONG, name,
+                       length ? "one of its values is too long"
+                              : "one of its values is empty; give values with commas between");
         return NULL;
     }
     memcpy(text, at, length);
@@ -43,8 +41,7 @@ static int too_many(const char *name)
 }
 
 /* Values of one range; an exit code. */
-static int read_list(const struct option *range, const char *list, double *values,
-                     int *count)
+static int read_list(const struct option *range, const char *list, double *values, int *count)
 {
     char text[64];
 
@@ -52,8 +49,7 @@ static int read_list(const struct option *range, const char *list, double *value
         if (*count == SHEET_LIST)
             return too_many(range->name);
         list = next(list, text, sizeof text, range->name);
-        if (!list ||
-            options_set(range, range->name, text, values + *count) != OPTIONS_PARSED)
+        if (!list || options_set(range, range->name, text, values + *count) != OPTIONS_PARSED)
             return EXIT_WRONG;
         list = *list ? list + 1 : NULL;
     }
@@ -62,8 +58,7 @@ static int read_list(const struct option *range, const char *list, double *value
 
 static int read_focuses(const char *list, double *values, int *count)
 {
-    static const struct option range = {
-        .kind = OPTION_NUMBER, .name = "--focuses", .greatest = 1};
+    static const struct option range = {.kind = OPTION_NUMBER, .name = "--focuses", .greatest = 1};
     return read_list(&range, list, values, count);
 }
 
@@ -220,9 +215,9 @@ int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
 }
 
 /* The rows: blur radii, and what captions call them. */
-static int make_rows(const struct sheet_settings *settings,
-                     const struct lens_settings *lens, const struct input *input,
-                     double blur, double *blurs, char captions[][16], int *count)
+static int make_rows(const struct sheet_settings *settings, const struct lens_settings *lens,
+                     const struct input *input, double blur, double *blurs, char captions[][16],
+                     int *count)
 {
     double f_numbers[SHEET_LIST];
     int status = EXIT_DONE;
@@ -252,13 +247,11 @@ static int make_rows(const struct sheet_settings *settings,
 }
 
 static int fill_focus(struct sheet *sheet, const struct sheet_settings *settings,
-                      const struct lens_settings *lens, const struct input *input,
-                      double blur)
+                      const struct lens_settings *lens, const struct input *input, double blur)
 {
     double focuses[SHEET_LIST], blurs[SHEET_LIST];
     char captions[SHEET_LIST][16];
-    int rows = 0, status = read_focuses(settings->focuses ? settings->focuses
-                                                          : "0,0.25,0.5,0.75,1",
+    int rows = 0, status = read_focuses(settings->focuses ? settings->focuses : "0,0.25,0.5,0.75,1",
                                         focuses, &sheet->columns);
 
     if (status == EXIT_DONE)
@@ -277,12 +270,9 @@ static int fill_focus(struct sheet *sheet, const struct sheet_settings *settings
 static int fill_sigma(struct sheet *sheet, const char *list)
 {
     double sigmas[SHEET_LIST];
-    const int status =
-        read_sigmas(list ? list : "off,400,100,30", sigmas, &sheet->columns);
+    const int status = read_sigmas(list ? list : "off,400,100,30", sigmas, &sheet->columns);
 
-    for (int i = 0;
-         status == EXIT_DONE && engine_blend_name((uint32_t)(i / sheet->columns));
-         i++) {
+    for (int i = 0; status == EXIT_DONE && engine_blend_name((uint32_t)(i / sheet->columns)); i++) {
         struct sheet_cell *cell = add(sheet);
 
         cell->blend = i / sheet->columns;

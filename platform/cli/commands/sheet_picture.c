@@ -18,24 +18,21 @@ static int caption_height(int cell_width)
     return zoom_of(cell_width) * (GLYPH_HEIGHT + 3);
 }
 
-struct refocus_image sheet_picture(const struct sheet *sheet, int cell_width,
-                                   int cell_height, const char **why)
+struct refocus_image sheet_picture(const struct sheet *sheet, int cell_width, int cell_height,
+                                   const char **why)
 {
     const int rows = (sheet->count + sheet->columns - 1) / sheet->columns;
     const int64_t width = (int64_t)sheet->columns * (cell_width + GAP) + GAP;
-    const int64_t height =
-        (int64_t)rows * (cell_height + caption_height(cell_width) + GAP) + GAP;
+    const int64_t height = (int64_t)rows * (cell_height + caption_height(cell_width) + GAP) + GAP;
     struct refocus_image image = {0};
 
     if (width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE) {
-        *why =
-            "the sheet would be too large; give a smaller --cell-width or fewer values";
+        *why = "the sheet would be too large; give a smaller --cell-width or fewer values";
         return image;
     }
     image = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, (int)width, (int)height,
                                  (ptrdiff_t)width * 3);
-    *why =
-        "not enough memory for the sheet; give a smaller --cell-width or fewer values";
+    *why = "not enough memory for the sheet; give a smaller --cell-width or fewer values";
     if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)
         image.plane[0] = malloc((size_t)width * 3 * (size_t)height);
     if (image.plane[0])
@@ -48,8 +45,7 @@ static uint8_t root(uint32_t value)
 {
     uint32_t r = 0;
 
-    for (uint32_t bit = 128; bit > 0;
-         bit /= 2) /* the largest r with (r - 1/2)^2 <= value */
+    for (uint32_t bit = 128; bit > 0; bit /= 2) /* the largest r with (r - 1/2)^2 <= value */
         if ((r + bit) * (r + bit - 1) < value)
             r += bit;
     return (uint8_t)r;
@@ -65,8 +61,8 @@ static int64_t overlap(int i, int j, int from, int to)
     return (end < b ? end : b) - (begin > a ? begin : a);
 }
 
-static void average(const struct refocus_image *full, int x, int y, int width,
-                    int height, uint8_t *out)
+static void average(const struct refocus_image *full, int x, int y, int width, int height,
+                    uint8_t *out)
 {
     const int x0 = (int)((int64_t)x * full->width / width);
     const int x1 = (int)(((int64_t)(x + 1) * full->width + width - 1) / width);
@@ -90,9 +86,8 @@ static void average(const struct refocus_image *full, int x, int y, int width,
         out[c] = root((uint32_t)((sum[c] + all / 2) / all));
 }
 
-void sheet_picture_put(const struct refocus_image *picture, const struct sheet *sheet,
-                       int i, const struct refocus_image *full, int cell_width,
-                       int cell_height)
+void sheet_picture_put(const struct refocus_image *picture, const struct sheet *sheet, int i,
+                       const struct refocus_image *full, int cell_width, int cell_height)
 {
     const int zoom = zoom_of(cell_width), below = caption_height(cell_width);
     const int left = GAP + i % sheet->columns * (cell_width + GAP);

@@ -19,13 +19,15 @@ struct settings {
     bool fullscreen;
 };
 
-#define SETTINGS_NONE {.shot = SHOT_SETTINGS_NONE, .size = {NAN, NAN}, .seconds = NAN}
+#define SETTINGS_NONE                                                                              \
+    {                                                                                              \
+        .shot = SHOT_SETTINGS_NONE, .size = {NAN, NAN}, .seconds = NAN                             \
+    }
 
 static const struct option options[] = {
-    OUTPUT_OPTION(
-        struct settings, output,
-        "the picture that 's' saves: .jpg, .png or .ppm; settings, depth and strokes "
-        "get names of it. Default: the photo's name with -refocused.jpg, here"),
+    OUTPUT_OPTION(struct settings, output,
+                  "the picture that 's' saves: .jpg, .png or .ppm; settings, depth and strokes "
+                  "get names of it. Default: the photo's name with -refocused.jpg, here"),
     {.kind = OPTION_HEADING, .help = "Depth; without any it can be painted"},
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_TEXT,
@@ -91,15 +93,13 @@ static int print_report(const struct input *input, const struct rf_view_report *
     for (int i = 0; i < report->count; i++)
         json_array_append_new(times, time_json(&report->times[i]));
     return report_print_json(json_pack(
-        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}",
-        "file", report_text_json(input->photo_name), "width",
-        (int)input->photo->image.width, "height", (int)input->photo->image.height,
-        "driver", report->driver, "window_width", report->width, "window_height",
-        report->height, "reduction", report->reduction, "method",
-        refocus_method_name(report->last.method), "focus", (double)report->last.focus,
-        "blur", (double)report->last.blur, "strokes", report->strokes, "saved",
-        saving->saved, "times", times, "peak_rss_kib",
-        (json_int_t)report_peak_rss_kib()));
+        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}", "file",
+        report_text_json(input->photo_name), "width", (int)input->photo->image.width, "height",
+        (int)input->photo->image.height, "driver", report->driver, "window_width", report->width,
+        "window_height", report->height, "reduction", report->reduction, "method",
+        refocus_method_name(report->last.method), "focus", (double)report->last.focus, "blur",
+        (double)report->last.blur, "strokes", report->strokes, "saved", saving->saved, "times",
+        times, "peak_rss_kib", (json_int_t)report_peak_rss_kib()));
 }
 
 /* What the window is opened with, and what of it the session's thread needs. */
@@ -121,13 +121,11 @@ static void take_tap(struct controls *controls, const struct refocus_image *phot
                         fmin(fmax(floor(state->tap_y + 0.5), 0), photo->height - 1));
 }
 
-static void aim(void *of, const struct rf_view_state *state,
-                struct refocus_render_params *params)
+static void aim(void *of, const struct rf_view_state *state, struct refocus_render_params *params)
 {
     const struct viewing *v = of;
     const struct refocus_image *photo = &v->input.photo->image;
-    const struct refocus_disparity size = {.width = photo->width,
-                                           .height = photo->height};
+    const struct refocus_disparity size = {.width = photo->width, .height = photo->height};
     struct controls controls = v->engine.controls;
 
     if (!isnan(v->engine.field_disparity))
@@ -142,8 +140,7 @@ static void aim(void *of, const struct rf_view_state *state,
 }
 
 /* The options that make the same picture. */
-static int save_settings(void *of, const struct rf_view_result *result,
-                         const char *file)
+static int save_settings(void *of, const struct rf_view_result *result, const char *file)
 {
     const struct viewing *v = of;
     const struct refocus_render_params *lens = result->params;
@@ -154,8 +151,7 @@ static int save_settings(void *of, const struct rf_view_result *result,
     if (result->state->focus_tap > 0)
         take_tap(&aimed, &v->input.photo->image, result->state);
     else if (!isnan(v->settings.shot.lens.focus_at[0]))
-        controls_turn_about(&aimed, &v->input.photo->image,
-                            v->settings.shot.lens.focus_at[1]);
+        controls_turn_about(&aimed, &v->input.photo->image, v->settings.shot.lens.focus_at[1]);
     memcpy(controls->focus_plane, aimed.focus_plane, sizeof controls->focus_plane);
     memcpy(controls->tilt_line, aimed.tilt_line, sizeof controls->tilt_line);
     settings.shot.lens = (struct lens_settings)LENS_SETTINGS_NONE;
@@ -180,11 +176,9 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
 
     params->max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
-        status =
-            papers_place(&shot->engine.papers, params, photo->width, photo->height);
+        status = papers_place(&shot->engine.papers, params, photo->width, photo->height);
     if (status == EXIT_DONE)
-        status =
-            shot_aim(&v->input, &shot->lens, &v->engine.controls, disparity, params);
+        status = shot_aim(&v->input, &shot->lens, &v->engine.controls, disparity, params);
     if (status == EXIT_DONE)
         status = controls_check_method(params);
     if (status == EXIT_DONE)
@@ -202,17 +196,16 @@ static uint32_t suitable_methods(const struct engine *engine)
     uint32_t methods = 0;
 
     for (params.method = 0; params.method < REFOCUS_METHOD_COUNT; params.method++)
-        if (controls_suit_method(&params) &&
-            bokeh_suits_method(&params, engine->has_sides))
+        if (controls_suit_method(&params) && bokeh_suits_method(&params, engine->has_sides))
             methods |= REFOCUS_METHOD_BIT(params.method);
     return methods;
 }
 
 static int show(struct viewing *v, view_run_fn *run_window)
 {
-    static const char *const in_sight[] = {
-        "--depth", "--depth-unit", "--focus", "--focus-at", "--focus-distance",
-        "--focus-rectangle", "--blur", "--method", NULL};
+    static const char *const in_sight[] = {"--depth",    "--depth-unit",     "--focus",
+                                           "--focus-at", "--focus-distance", "--focus-rectangle",
+                                           "--blur",     "--method",         NULL};
     static const struct settings usual = SETTINGS_NONE;
     const struct settings *settings = &v->settings;
     const char *name = v->input.photo_name;
@@ -220,9 +213,8 @@ static int show(struct viewing *v, view_run_fn *run_window)
                                  .settings = save_settings,
                                  .of = v,
                                  .quiet = settings->shot.engine.json};
-    struct rf_view_setup setup = {.title = name,
-                                  .stop = interrupted,
-                                  .fullscreen = settings->fullscreen};
+    struct rf_view_setup setup = {
+        .title = name, .stop = interrupted, .fullscreen = settings->fullscreen};
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
     int status;
@@ -248,8 +240,7 @@ static int show(struct viewing *v, view_run_fn *run_window)
     setup.session.save_user = &saving;
     setup.width = isnan(settings->size[0]) ? 0 : (int)settings->size[0];
     setup.height = isnan(settings->size[1]) ? 0 : (int)settings->size[1];
-    setup.quit_after_ms =
-        isnan(settings->seconds) ? 0 : (int)(settings->seconds * 1000);
+    setup.quit_after_ms = isnan(settings->seconds) ? 0 : (int)(settings->seconds * 1000);
     if (status == EXIT_DONE && !view_make_names(&saving.names, settings->output, name))
         status = report_failure(EXIT_FAILED, name,
                                 "its name is too long to make others of it; give "
@@ -269,19 +260,17 @@ static int show(struct viewing *v, view_run_fn *run_window)
 
 static int check_method(const struct engine_settings *settings)
 {
-    const uint32_t without_memory = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
-                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
-                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
-                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
-                                    REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    const uint32_t without_memory =
+        REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
+        REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
+        REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
 
     if (without_memory & REFOCUS_METHOD_BIT(settings->method))
         return EXIT_DONE;
-    return report_failure(
-        EXIT_WRONG, "--method",
-        "'%s' is not for the window; give sweep, search, raytrace, jittered "
-        "or blur",
-        refocus_method_name((uint32_t)settings->method));
+    return report_failure(EXIT_WRONG, "--method",
+                          "'%s' is not for the window; give sweep, search, raytrace, jittered "
+                          "or blur",
+                          refocus_method_name((uint32_t)settings->method));
 }
 
 /* The photo, its depth, all 0 where there is none, and the strokes over it. */
@@ -293,8 +282,8 @@ static int read_input(struct viewing *v, const char *photo)
 
     if (status == EXIT_DONE && !input->disparity) {
         painted_begin(input, depth);
-        input->disparity = calloc((size_t)input->width * (size_t)input->height,
-                                  sizeof *input->disparity);
+        input->disparity =
+            calloc((size_t)input->width * (size_t)input->height, sizeof *input->disparity);
         if (!input->disparity)
             status = report_failure(EXIT_FAILED, photo, "not enough memory");
     }

@@ -7,8 +7,8 @@
 
 /* rf_view_run() of the module, or NULL when it is not in this build or cannot be
  * loaded; why: 256 bytes of words then. */
-typedef int view_run_fn(const struct rf_view_setup *setup,
-                        struct rf_view_report *report, char *reason);
+typedef int view_run_fn(const struct rf_view_setup *setup, struct rf_view_report *report,
+                        char *reason);
 view_run_fn *view_module(char *why);
 
 #endif

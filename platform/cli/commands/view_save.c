@@ -18,24 +18,21 @@ bool view_make_names(struct view_names *names, const char *output, const char *p
     if (output)
         snprintf(names->picture, sizeof names->picture, "%s", output);
     else
-        snprintf(names->picture, sizeof names->picture, "%.*s-refocused.jpg", stem,
-                 base);
+        snprintf(names->picture, sizeof names->picture, "%.*s-refocused.jpg", stem, base);
     snprintf(names->settings, sizeof names->settings, "%.*s-settings.json", stem, base);
     snprintf(names->depth, sizeof names->depth, "%.*s-depth.png", stem, base);
     snprintf(names->strokes, sizeof names->strokes, "%.*s-strokes.json", stem, base);
     return true;
 }
 
-static int save_strokes(const struct view_saving *saving,
-                        const struct refocus_strokes *strokes)
+static int save_strokes(const struct view_saving *saving, const struct refocus_strokes *strokes)
 {
     char *text;
     size_t size;
     int status = refocus_strokes_save(strokes, &text, &size);
 
     if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, saving->names.strokes, "%s",
-                              refocus_strerror(status));
+        return report_failure(EXIT_FAILED, saving->names.strokes, "%s", refocus_strerror(status));
     status = output_write_file(saving->names.strokes, text, size);
     free(text);
     return status;
@@ -64,12 +61,10 @@ void view_save(void *user, const struct rf_view_result *result)
         count(saving, output_write_image(names->picture, picture, saving->input->photo),
               names->picture);
     if (result->what & RF_SAVE_SETTINGS)
-        count(saving, saving->settings(saving->of, result, names->settings),
-              names->settings);
+        count(saving, saving->settings(saving->of, result, names->settings), names->settings);
     if (result->what & RF_SAVE_DEPTH) {
         count(saving,
-              output_write_gray16(names->depth, result->disparity, picture->width,
-                                  picture->height),
+              output_write_gray16(names->depth, result->disparity, picture->width, picture->height),
               names->depth);
         if (refocus_strokes_count(result->strokes) > 0)
             count(saving, save_strokes(saving, result->strokes), names->strokes);

@@ -82,14 +82,12 @@ static int read_reference(struct refocus_photo **reference, const char *file,
     if (status != REFOCUS_OK || !(*reference)->image.plane[0])
         return report_failure(EXIT_FAILED, file, "%s",
                               reason.text[0] ? reason.text : "it is not a picture");
-    if ((*reference)->image.width != photo->width ||
-        (*reference)->image.height != photo->height)
+    if ((*reference)->image.width != photo->width || (*reference)->image.height != photo->height)
         return report_failure(EXIT_FAILED, file,
                               "it has %dx%d pixels, the photo %dx%d; give one of the "
                               "same size",
-                              (int)(*reference)->image.width,
-                              (int)(*reference)->image.height, (int)photo->width,
-                              (int)photo->height);
+                              (int)(*reference)->image.width, (int)(*reference)->image.height,
+                              (int)photo->width, (int)photo->height);
     input_tell_bits(*reference, file);
     return EXIT_DONE;
 }
@@ -105,8 +103,8 @@ static uint8_t *packed(const struct refocus_image *image, bool copy)
     return rgb;
 }
 
-static uint64_t memory_of(const struct engine *engine,
-                          const struct refocus_image *photo, uint32_t method)
+static uint64_t memory_of(const struct engine *engine, const struct refocus_image *photo,
+                          uint32_t method)
 {
     struct refocus_renderer_params params = refocus_renderer_params_default(
         photo->width, photo->height, engine->params.max_blur_radius);
@@ -117,15 +115,16 @@ static uint64_t memory_of(const struct engine *engine,
     return refocus_renderer_memory(&params);
 }
 
-static int add(struct comparison *c, const char *name,
-               const struct refocus_image *image, bool copy)
+static int add(struct comparison *c, const char *name, const struct refocus_image *image, bool copy)
 {
     struct compared *item = &c->item[c->count++];
 
     item->name = name;
     item->rgb = packed(image, copy);
-    return item->rgb ? EXIT_DONE : report_failure(EXIT_FAILED, name, "not enough "
-                                                                     "memory");
+    return item->rgb ? EXIT_DONE
+                     : report_failure(EXIT_FAILED, name,
+                                      "not enough "
+                                      "memory");
 }
 
 static int score(struct comparison *c, const uint8_t *mask, int border)
@@ -135,15 +134,15 @@ static int score(struct comparison *c, const uint8_t *mask, int border)
 
         if (quality_score(item->rgb, c->item[0].rgb, c->width, c->height, border, mask,
                           &item->scores) != 0)
-            return report_failure(EXIT_FAILED, item->name, "not enough memory to score "
-                                                           "it");
+            return report_failure(EXIT_FAILED, item->name,
+                                  "not enough memory to score "
+                                  "it");
         item->scored = item->scores.pixels > 0;
     }
     return EXIT_DONE;
 }
 
-static int render_all(struct engine *engine, struct comparison *c,
-                      const struct variants *variants,
+static int render_all(struct engine *engine, struct comparison *c, const struct variants *variants,
                       const struct refocus_image *photo, int repeat)
 {
     const struct refocus_render_params lens = engine->params;
@@ -159,14 +158,12 @@ static int render_all(struct engine *engine, struct comparison *c,
         params->max_blur_radius = lens.max_blur_radius;
         engine->field_disparity = variant->engine.field_disparity;
         if (status == EXIT_DONE)
-            status = papers_place(&variant->settings.papers, params, photo->width,
-                                  photo->height);
+            status = papers_place(&variant->settings.papers, params, photo->width, photo->height);
         if (status != EXIT_DONE)
             return status;
         out.plane[0] = c->item[c->count - 1].rgb;
         out.stride[0] = (ptrdiff_t)photo->width * 3;
-        report_progress(refocus_method_name(params->method),
-                        (i + 0.5) / variants->count);
+        report_progress(refocus_method_name(params->method), (i + 0.5) / variants->count);
         status = engine_render(engine, &out, repeat);
         if (status != EXIT_DONE)
             return status;
@@ -181,19 +178,18 @@ static json_t *item_json(const struct compared *item)
 {
     const struct quality_scores *s = &item->scores;
     const int length = (int)strcspn(item->name, ":");
-    json_t *json = json_pack(
-        "{s:s#, s:o, s:o, s:o, s:o, s:o}", "method", item->name, length, "label",
-        report_text_json(item->name), "psnr", report_number_json(s->psnr), "ssim",
-        report_number_json(s->ssim), "edge_psnr", report_number_json(s->edge_psnr),
-        "rmse", report_number_json(s->rmse));
+    json_t *json =
+        json_pack("{s:s#, s:o, s:o, s:o, s:o, s:o}", "method", item->name, length, "label",
+                  report_text_json(item->name), "psnr", report_number_json(s->psnr), "ssim",
+                  report_number_json(s->ssim), "edge_psnr", report_number_json(s->edge_psnr),
+                  "rmse", report_number_json(s->rmse));
 
     if (json && item->memory)
         json_object_set_new(json, "render_ms", report_spread_json(item->ms));
     if (json && item->memory)
         json_object_set_new(json, "cpu_ms", report_spread_json(item->cpu_ms));
     if (json && item->memory)
-        json_object_set_new(json, "renderer_bytes",
-                            json_integer((json_int_t)item->memory));
+        json_object_set_new(json, "renderer_bytes", json_integer((json_int_t)item->memory));
     return json;
 }
 
@@ -205,16 +201,14 @@ static int print_report(const struct settings *settings, const struct engine *en
     if (settings->engine.json) {
         json_t *rows = json_array();
         json_t *run = engine_json(engine);
-        json_t *json =
-            json_pack("{s:o, s:o, s:i, s:i, s:i}", "photo", report_text_json(photo),
-                      "reference", report_text_json(settings->reference), "width",
-                      c->width, "height", c->height, "border", border);
+        json_t *json = json_pack("{s:o, s:o, s:i, s:i, s:i}", "photo", report_text_json(photo),
+                                 "reference", report_text_json(settings->reference), "width",
+                                 c->width, "height", c->height, "border", border);
 
         for (int i = 1; i < c->count; i++)
             json_array_append_new(rows, item_json(&c->item[i]));
         if (json && run) {
-            static const char *const of_one[] = {"method", "render_ms", "cpu_ms",
-                                                  "renderer_bytes"};
+            static const char *const of_one[] = {"method", "render_ms", "cpu_ms", "renderer_bytes"};
 
             for (int i = 0; i < 4; i++)
                 json_object_del(run, of_one[i]);
@@ -230,14 +224,14 @@ static int print_report(const struct settings *settings, const struct engine *en
     for (int i = 1; i < c->count; i++)
         if ((int)strlen(c->item[i].name) > widest)
             widest = (int)strlen(c->item[i].name);
-    printf("%-*s %7s %7s %9s %7s %10s %8s\n", widest, "method", "PSNR", "SSIM",
-           "edge PSNR", "RMSE", "ms", "MiB");
+    printf("%-*s %7s %7s %9s %7s %10s %8s\n", widest, "method", "PSNR", "SSIM", "edge PSNR", "RMSE",
+           "ms", "MiB");
     for (int i = 1; i < c->count; i++) {
         const struct compared *item = &c->item[i];
         const struct quality_scores *s = &item->scores;
 
-        printf("%-*s %7.2f %7.4f %9.2f %7.2f", widest, item->name, s->psnr, s->ssim,
-               s->edge_psnr, s->rmse);
+        printf("%-*s %7.2f %7.4f %9.2f %7.2f", widest, item->name, s->psnr, s->ssim, s->edge_psnr,
+               s->rmse);
         if (item->memory)
             printf(" %10.2f %8.1f", item->ms.median, (double)item->memory / (1 << 20));
         putchar('\n');
@@ -250,20 +244,18 @@ static int compare(struct engine *engine, struct input *input, struct comparison
 {
     const struct refocus_image *photo = &input->photo->image;
     const struct refocus_depth_map *map = &input->depth_from->depth;
-    const struct refocus_disparity disparity = refocus_disparity16(
-        input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
+    const struct refocus_disparity disparity =
+        refocus_disparity16(input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     uint16_t *prepared = malloc(pixels * 2);
     uint8_t *mask = malloc(pixels);
     double blur = 0, focus = 0;
     int status, border = 0;
 
-    status = prepared && mask
-                 ? input_blur(input, &settings->lens, &blur)
-                 : report_failure(EXIT_FAILED, "compare", "not enough memory");
+    status = prepared && mask ? input_blur(input, &settings->lens, &blur)
+                              : report_failure(EXIT_FAILED, "compare", "not enough memory");
     if (status == EXIT_DONE)
-        status =
-            engine_create(engine, &settings->engine, photo->width, photo->height, blur);
+        status = engine_create(engine, &settings->engine, photo->width, photo->height, blur);
     if (status == EXIT_DONE)
         status = engine_prepare(engine, photo, &disparity);
     if (status == EXIT_DONE) {
@@ -286,10 +278,10 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     if (status == EXIT_DONE && settings->output) {
         struct refocus_image picture = compare_picture(c, prepared);
 
-        status = picture.plane[0]
-                     ? output_write_image(settings->output, &picture, NULL)
-                     : report_failure(EXIT_FAILED, settings->output, "not enough "
-                                                                     "memory");
+        status = picture.plane[0] ? output_write_image(settings->output, &picture, NULL)
+                                  : report_failure(EXIT_FAILED, settings->output,
+                                                   "not enough "
+                                                   "memory");
         free(picture.plane[0]);
     }
     if (status == EXIT_DONE)

@@ -11,7 +11,7 @@ enum { COMPARE_MOST = VARIANTS_MOST + 2 }; /* and the reference and the photo */
 
 struct compared {
     const char *name; /* NAME:OPTION=VALUE:... */
-    uint8_t *rgb; /* packed */
+    uint8_t *rgb;     /* packed */
     bool scored;
     struct quality_scores scores;
     struct spread ms, cpu_ms;

@@ -12,8 +12,7 @@ static const struct option options[] = {
 };
 
 /* What an entry's options are parsed as. */
-static const struct command entry = {
-    .name = "compare", .usage = "[options]", .options = options};
+static const struct command entry = {.name = "compare", .usage = "[options]", .options = options};
 
 static const char *method_word(const void *list, int i)
 {
@@ -30,8 +29,7 @@ static int find_method(const char *name, int *method)
             return EXIT_DONE;
     nearest = options_nearest(name, method_word, NULL);
     return report_failure(EXIT_WRONG, "--methods", "'%s' is no method%s%s%s", name,
-                          nearest ? "; did you mean '"
-                                  : "; 'refocus render --help' lists them",
+                          nearest ? "; did you mean '" : "; 'refocus render --help' lists them",
                           nearest ? nearest : "", nearest ? "'?" : "");
 }
 
@@ -86,8 +84,8 @@ static int add_all(struct variants *variants, char *list, char **words,
         if (is_listed(variants, text))
             continue;
         if (variants->count == VARIANTS_MOST)
-            return report_failure(EXIT_WRONG, "--methods",
-                                  "there are too many; give at most %d", VARIANTS_MOST);
+            return report_failure(EXIT_WRONG, "--methods", "there are too many; give at most %d",
+                                  VARIANTS_MOST);
         variants->count++;
         variant->label = text;
         variant->settings = *common;
@@ -97,8 +95,7 @@ static int add_all(struct variants *variants, char *list, char **words,
             return status;
     }
     if (variants->count == 0)
-        return report_failure(EXIT_WRONG, "--methods",
-                              "no method is named; give one or more");
+        return report_failure(EXIT_WRONG, "--methods", "no method is named; give one or more");
     return EXIT_DONE;
 }
 
@@ -110,10 +107,8 @@ int variants_begin(struct variants *variants, const char *list,
     size_t length;
 
     memset(variants, 0, sizeof *variants);
-    for (uint32_t i = 0;
-         !list && i < (disc ? REFOCUS_METHOD_COUNT : REFOCUS_METHOD_SCATTER); i++)
-        snprintf(all + strlen(all), sizeof all - strlen(all), "%s,",
-                 refocus_method_name(i));
+    for (uint32_t i = 0; !list && i < (disc ? REFOCUS_METHOD_COUNT : REFOCUS_METHOD_SCATTER); i++)
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s,", refocus_method_name(i));
     list = list ? list : all;
     length = strlen(list) + 1;
     /* the list, its entries, and their options with two dashes for a colon */

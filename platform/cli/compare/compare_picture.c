@@ -4,8 +4,14 @@
 #include "compare/compare.h"
 #include "outputs/text.h"
 
-enum { CROPS = 3, CROP = 96, ZOOM = 2, GAP = 4, LINE = ZOOM * (GLYPH_HEIGHT + 2),
-       LABEL = 3 * LINE + 2 * GAP };
+enum {
+    CROPS = 3,
+    CROP = 96,
+    ZOOM = 2,
+    GAP = 4,
+    LINE = ZOOM * (GLYPH_HEIGHT + 2),
+    LABEL = 3 * LINE + 2 * GAP
+};
 
 struct place {
     int x, y;
@@ -20,8 +26,7 @@ static uint32_t jump(const uint16_t *d, int width, int height, int x, int y)
     return (uint32_t)((right > below ? right : below) >> 8);
 }
 
-static uint64_t jumps(const uint16_t *d, int width, int height, struct place at, int w,
-                      int h)
+static uint64_t jumps(const uint16_t *d, int width, int height, struct place at, int w, int h)
 {
     uint64_t sum = 0;
 
@@ -48,11 +53,9 @@ static int find_crops(const uint16_t *d, int width, int height, int w, int h,
                 bool free_here = true;
 
                 for (int i = 0; i < count; i++)
-                    free_here = free_here &&
-                                (abs(place[i].x - x) >= w || abs(place[i].y - y) >= h);
+                    free_here = free_here && (abs(place[i].x - x) >= w || abs(place[i].y - y) >= h);
                 sum = free_here ? jumps(d, width, height, at, w, h) : 0;
-                if (sum > most ||
-                    (free_here && count == 0 && most == 0 && x == 0 && y == 0)) {
+                if (sum > most || (free_here && count == 0 && most == 0 && x == 0 && y == 0)) {
                     most = sum;
                     place[count] = at;
                 }
@@ -64,31 +67,29 @@ static int find_crops(const uint16_t *d, int width, int height, int w, int h,
     return count;
 }
 
-static void draw_crop(const struct refocus_image *image, int left, int top,
-                      const uint8_t *rgb, int width, struct place at, int w, int h)
+static void draw_crop(const struct refocus_image *image, int left, int top, const uint8_t *rgb,
+                      int width, struct place at, int w, int h)
 {
     for (int y = 0; y < h * ZOOM; y++) {
         uint8_t *row = image->plane[0] + (top + y) * image->stride[0] + 3 * left;
 
         for (int x = 0; x < w * ZOOM; x++)
             memcpy(row + 3 * x,
-                   rgb + 3 * ((size_t)(at.y + y / ZOOM) * (size_t)width +
-                              (size_t)(at.x + x / ZOOM)),
+                   rgb +
+                       3 * ((size_t)(at.y + y / ZOOM) * (size_t)width + (size_t)(at.x + x / ZOOM)),
                    3);
     }
 }
 
-struct refocus_image compare_picture(const struct comparison *c,
-                                     const uint16_t *disparity)
+struct refocus_image compare_picture(const struct comparison *c, const uint16_t *disparity)
 {
-    const int w = c->width < CROP ? c->width : CROP,
-              h = c->height < CROP ? c->height : CROP;
+    const int w = c->width < CROP ? c->width : CROP, h = c->height < CROP ? c->height : CROP;
     struct place place[CROPS];
     const int crops = find_crops(disparity, c->width, c->height, w, h, place);
     const int cell_w = w * ZOOM + GAP, cell_h = h * ZOOM + GAP;
     const int width = c->count * cell_w + GAP, height = LABEL + crops * cell_h + GAP;
-    struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width,
-                                                      height, (ptrdiff_t)width * 3);
+    struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
 
     image.plane[0] = malloc((size_t)width * 3 * (size_t)height);
     if (!image.plane[0])
@@ -102,16 +103,14 @@ struct refocus_image compare_picture(const struct comparison *c,
 
         snprintf(text, sizeof text, "%.*s", length, item->name);
         text_draw(&image, left, GAP, ZOOM, w * ZOOM, text);
-        snprintf(text, sizeof text, "%s",
-                 item->name + length + (item->name[length] == ':'));
+        snprintf(text, sizeof text, "%s", item->name + length + (item->name[length] == ':'));
         text_draw(&image, left, GAP + LINE, ZOOM, w * ZOOM, text);
         text[0] = '\0';
         if (item->scored)
             snprintf(text, sizeof text, "%.2f db", item->scores.psnr);
         text_draw(&image, left, GAP + 2 * LINE, ZOOM, w * ZOOM, text);
         for (int k = 0; k < crops; k++)
-            draw_crop(&image, left, LABEL + k * cell_h, item->rgb, c->width, place[k],
-                      w, h);
+            draw_crop(&image, left, LABEL + k * cell_h, item->rgb, c->width, place[k], w, h);
     }
     return image;
 }

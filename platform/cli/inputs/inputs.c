@@ -31,8 +31,7 @@ static bool find_codes(const char *names, uint32_t *flags)
         bool found = false;
 
         for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
-            if (strlen(codes[i].name) == length &&
-                !strncmp(names, codes[i].name, length)) {
+            if (strlen(codes[i].name) == length && !strncmp(names, codes[i].name, length)) {
                 *flags |= codes[i].flag;
                 found = true;
             }
@@ -79,8 +78,7 @@ bool input_focus_is_given(const struct lens_settings *settings)
 int input_check_lens(const struct lens_settings *settings)
 {
     const int ways = given(settings->focus) + given(settings->focus_at[0]) +
-                     given(settings->focus_distance) +
-                     given(settings->focus_rectangle[0]);
+                     given(settings->focus_distance) + given(settings->focus_rectangle[0]);
 
     if (ways > 1)
         return report_failure(EXIT_WRONG,
@@ -109,9 +107,9 @@ static int settle_embedded(struct input *input, const struct depth_settings *set
     if (settings->unit) {
         const int status = refocus_depth_set_unit(map, settings->unit);
         if (status != REFOCUS_OK)
-            return report_failure(
-                EXIT_WRONG, "--depth-unit", "'%s' does not suit the depth of %s: %s",
-                settings->unit, input->depth_name, refocus_strerror(status));
+            return report_failure(EXIT_WRONG, "--depth-unit",
+                                  "'%s' does not suit the depth of %s: %s", settings->unit,
+                                  input->depth_name, refocus_strerror(status));
     }
     if (given(settings->near_m))
         map->near_m = settings->near_m;
@@ -124,9 +122,8 @@ static int settle_embedded(struct input *input, const struct depth_settings *set
 static int enlarge(struct input *input, const struct depth_settings *settings)
 {
     const struct refocus_image *photo = &input->photo->image;
-    const struct refocus_disparity map =
-        refocus_disparity16(input->disparity, input->width, input->height,
-                            (ptrdiff_t)input->width * 2);
+    const struct refocus_disparity map = refocus_disparity16(
+        input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
     struct refocus_upsample_params params = refocus_upsample_params_default();
     const uint64_t bytes = (uint64_t)photo->width * (uint64_t)photo->height * 2;
     uint16_t *full = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
@@ -135,15 +132,14 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
     params.confidence = input->confidence;
     params.confidence_stride = input->width;
     if (full && settings->upsample > 0) {
-        status = made_upsample((uint32_t)settings->upsample - 1, photo, &map, full,
-                               input->depth_name);
+        status =
+            made_upsample((uint32_t)settings->upsample - 1, photo, &map, full, input->depth_name);
         if (status != EXIT_DONE) {
             free(full);
             return status;
         }
     } else if (full)
-        status =
-            refocus_upsample(photo, &map, &params, full, (ptrdiff_t)photo->width * 2);
+        status = refocus_upsample(photo, &map, &params, full, (ptrdiff_t)photo->width * 2);
     if (status != REFOCUS_OK) {
         free(full);
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
@@ -159,8 +155,7 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
 /* Move the edges of a map of the photo's size onto the photo's. */
 static int snap(struct input *input, const struct depth_settings *settings)
 {
-    const struct refocus_snap_params params =
-        refocus_snap_params_default((int32_t)settings->snap);
+    const struct refocus_snap_params params = refocus_snap_params_default((int32_t)settings->snap);
     const ptrdiff_t stride = (ptrdiff_t)input->width * 2;
     const struct refocus_disparity map =
         refocus_disparity16(input->disparity, input->width, input->height, stride);
@@ -179,16 +174,13 @@ static int snap(struct input *input, const struct depth_settings *settings)
     return EXIT_DONE;
 }
 
-static bool worth_snapping(const struct input *input,
-                           const struct depth_settings *settings)
+static bool worth_snapping(const struct input *input, const struct depth_settings *settings)
 {
     return settings->snap > 0 && input->photo && input->photo->image.plane[0] &&
-           input->photo->image.width == input->width &&
-           input->photo->image.height == input->height;
+           input->photo->image.width == input->width && input->photo->image.height == input->height;
 }
 
-static bool worth_enlarging(const struct input *input,
-                            const struct depth_settings *settings)
+static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
 {
     return input->photo && input->photo->image.plane[0] &&
            (input->photo->image.width != input->width ||
@@ -200,8 +192,7 @@ int input_convert(struct input *input, const struct depth_settings *settings)
 {
     struct refocus_depth_map settled = input->depth_from->depth, *map = &settled;
     struct refocus_repair_params params = refocus_repair_params_default();
-    const uint64_t bytes =
-        (uint64_t)map->width * (uint64_t)map->height * sizeof(uint16_t);
+    const uint64_t bytes = (uint64_t)map->width * (uint64_t)map->height * sizeof(uint16_t);
     int status = REFOCUS_ERR_MEMORY;
     uint32_t flags;
 
@@ -223,8 +214,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     params.confidence = input->confidence;
     params.confidence_stride = map->width;
     if (input->disparity && input->confidence)
-        status = refocus_depth_repair(map, &params, input->disparity,
-                                      (ptrdiff_t)map->width * 2, &input->report);
+        status = refocus_depth_repair(map, &params, input->disparity, (ptrdiff_t)map->width * 2,
+                                      &input->report);
     if (status == REFOCUS_ERR_NO_DEPTH)
         return report_failure(EXIT_FAILED, input->depth_name,
                               "no sample of the depth map holds a value; give another "
@@ -253,17 +244,15 @@ static int report_no_depth(const char *photo)
 }
 
 /* The file may be the photo itself. */
-static int read_side(struct input *input, const char *file,
-                     const struct depth_settings *settings)
+static int read_side(struct input *input, const char *file, const struct depth_settings *settings)
 {
     struct refocus_reason reason = {""};
     int status;
 
     input->depth_name = file;
-    status =
-        refocus_depth_read(&input->side, file, settings->unit,
-                           given(settings->near_m) ? settings->near_m : 0,
-                           given(settings->far_m) ? settings->far_m : 0, NULL, &reason);
+    status = refocus_depth_read(&input->side, file, settings->unit,
+                                given(settings->near_m) ? settings->near_m : 0,
+                                given(settings->far_m) ? settings->far_m : 0, NULL, &reason);
     if (status == REFOCUS_ERR_NO_DEPTH && file == input->photo_name)
         return report_no_depth(file);
     if (status != REFOCUS_OK)
@@ -278,8 +267,7 @@ void input_tell_bits(const struct refocus_photo *photo, const char *name)
     if (photo->info.stored_bits > 8)
         report_warning(name, "it has %d bits a channel; 8 are taken, %s",
                        (int)photo->info.stored_bits,
-                       strcmp(photo->info.container, "HEIC") == 0 ? "rounded"
-                                                                  : "dithered");
+                       strcmp(photo->info.container, "HEIC") == 0 ? "rounded" : "dithered");
 }
 
 int input_read_photo(struct input *input, const char *photo, const char *instead)
@@ -294,8 +282,9 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!input->photo->image.plane[0])
-        return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; "
-                                                  "give %s",
+        return report_failure(EXIT_FAILED, photo,
+                              "it is a depth map, not a photo; "
+                              "give %s",
                               instead);
     input_tell_bits(input->photo, photo);
     return EXIT_DONE;
@@ -315,8 +304,7 @@ static bool has_another_shape(const struct refocus_depth_map *map,
            (2 * wide > 3 * high || 2 * high > 3 * wide);
 }
 
-int input_read(struct input *input, const char *photo,
-               const struct depth_settings *settings)
+int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
 {
     int status = input_read_photo(input, photo, "the photo, and this file to --depth");
 
@@ -324,15 +312,13 @@ int input_read(struct input *input, const char *photo,
         return status;
     if (settings->file) {
         status = read_side(input, settings->file, settings);
-        if (status == EXIT_DONE &&
-            has_another_shape(&input->side->depth, &input->photo->image))
+        if (status == EXIT_DONE && has_another_shape(&input->side->depth, &input->photo->image))
             return report_failure(EXIT_FAILED, settings->file,
                                   "its %dx%d samples have another shape than the photo "
                                   "of %dx%d pixels; give the map of this photo, as "
                                   "upright as the photo is",
                                   input->side->depth.width, input->side->depth.height,
-                                  input->photo->image.width,
-                                  input->photo->image.height);
+                                  input->photo->image.width, input->photo->image.height);
     } else {
         if (!input->photo->depth.samples && settings->optional)
             return EXIT_DONE;
@@ -345,8 +331,7 @@ int input_read(struct input *input, const char *photo,
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
-int input_read_depth(struct input *input, const char *file,
-                     const struct depth_settings *settings)
+int input_read_depth(struct input *input, const char *file, const struct depth_settings *settings)
 {
     int status;
 
@@ -442,8 +427,7 @@ static void blur_without_metres(const struct input *input, double f_number,
 static int choose_blur(const struct input *input, const struct lens_settings *settings,
                        struct blur_choice *choice)
 {
-    const struct refocus_depth_range range = {input->report.near_m,
-                                              input->report.far_m};
+    const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
     struct refocus_lens lens;
 
     *choice = (struct blur_choice){.f_number = NAN};
@@ -456,10 +440,9 @@ static int choose_blur(const struct input *input, const struct lens_settings *se
     if (range_is_known(input)) {
         choice->from = "lens";
         if (!choose_lens(input, settings, &lens))
-            return report_failure(
-                EXIT_FAILED, input->photo_name,
-                "--f-number needs a focal length, which it does not say; give "
-                "--focal-length and --sensor-width, or --blur");
+            return report_failure(EXIT_FAILED, input->photo_name,
+                                  "--f-number needs a focal length, which it does not say; give "
+                                  "--focal-length and --sensor-width, or --blur");
         choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image.width);
     } else if (given(settings->focal_length)) {
         return report_failure(EXIT_FAILED, input->depth_name,
@@ -489,15 +472,14 @@ static void warn_of_blur(const struct input *input, const struct lens_settings *
                        "%s says no distances in metres; f/%g gives %.1f pixels of blur%s, "
                        "by the %s of %.1f at f/%g; --near and --far give that of a lens",
                        input->depth_name, settings->f_number, choice->asked, limited,
-                       strcmp(choice->from, "file") == 0 ? "file's own" : "default",
-                       choice->own, choice->own_number);
+                       strcmp(choice->from, "file") == 0 ? "file's own" : "default", choice->own,
+                       choice->own_number);
     else if (limited[0])
-        report_warning("--f-number", "f/%g gives %.0f pixels of blur%s",
-                       settings->f_number, choice->asked, limited);
+        report_warning("--f-number", "f/%g gives %.0f pixels of blur%s", settings->f_number,
+                       choice->asked, limited);
 }
 
-int input_blur(const struct input *input, const struct lens_settings *settings,
-               double *blur)
+int input_blur(const struct input *input, const struct lens_settings *settings, double *blur)
 {
     struct blur_choice choice;
     const int status = choose_blur(input, settings, &choice);
@@ -509,9 +491,8 @@ int input_blur(const struct input *input, const struct lens_settings *settings,
     return EXIT_DONE;
 }
 
-int input_blur_and_f_number(const struct input *input,
-                            const struct lens_settings *settings, double *blur,
-                            double *f_number)
+int input_blur_and_f_number(const struct input *input, const struct lens_settings *settings,
+                            double *blur, double *f_number)
 {
     struct blur_choice choice;
     const int status = choose_blur(input, settings, &choice);
@@ -549,21 +530,19 @@ static int focus_in_rectangle(const struct input *input, const double rectangle[
         refocus_disparity16(prepared, width, height, (ptrdiff_t)width * 2);
     float found = 0;
 
-    if (refocus_focus_in_rectangle(&map, (int)rectangle[0], (int)rectangle[1],
-                                   (int)rectangle[2], (int)rectangle[3],
-                                   &found) != REFOCUS_OK)
+    if (refocus_focus_in_rectangle(&map, (int)rectangle[0], (int)rectangle[1], (int)rectangle[2],
+                                   (int)rectangle[3], &found) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--focus-rectangle",
                               "%g,%g,%g,%g does not lie within the %dx%d pixels of %s",
-                              rectangle[0], rectangle[1], rectangle[2], rectangle[3],
-                              width, height, input->photo_name);
+                              rectangle[0], rectangle[1], rectangle[2], rectangle[3], width, height,
+                              input->photo_name);
     *focus = found;
     return EXIT_DONE;
 }
 
 static int focus_at_distance(const struct input *input, double metres, double *focus)
 {
-    const struct refocus_depth_range range = {input->report.near_m,
-                                              input->report.far_m};
+    const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
 
     if (!range_is_known(input))
         return report_failure(EXIT_FAILED, input->depth_name,
@@ -573,8 +552,8 @@ static int focus_at_distance(const struct input *input, double metres, double *f
     *focus = refocus_disparity_of_depth(&range, metres);
     if (!(*focus >= 0 && *focus <= 1))
         return report_failure(EXIT_WRONG, "--focus-distance",
-                              "%g m lies outside of the depth of %s; give %g to %g m",
-                              metres, input->depth_name, range.near_m, range.far_m);
+                              "%g m lies outside of the depth of %s; give %g to %g m", metres,
+                              input->depth_name, range.near_m, range.far_m);
     return EXIT_DONE;
 }
 

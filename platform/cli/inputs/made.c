@@ -20,8 +20,9 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
         return report_failure(EXIT_FAILED, name, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!(*photo)->image.plane[0])
-        return report_failure(EXIT_FAILED, name, "it is a depth map, not a photo; give "
-                                                 "a photo");
+        return report_failure(EXIT_FAILED, name,
+                              "it is a depth map, not a photo; give "
+                              "a photo");
     return EXIT_DONE;
 }
 
@@ -55,8 +56,7 @@ static void halve(struct refocus_image *left, struct refocus_image *right)
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct stereo_settings *how,
-                      const struct depth_settings *settings)
+                      const struct stereo_settings *how, const struct depth_settings *settings)
 {
     struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_stereo_report report;
@@ -77,13 +77,12 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
         other = input->side->image;
     else
         halve(&input->photo->image, &other);
-    samples = malloc((size_t)input->photo->image.width *
-                     (size_t)input->photo->image.height * sizeof *samples);
+    samples = malloc((size_t)input->photo->image.width * (size_t)input->photo->image.height *
+                     sizeof *samples);
     if (!samples)
         return report_failure(EXIT_FAILED, left, "not enough memory");
     report_progress("matching", 0.2);
-    status = refocus_cv_stereo(&input->photo->image, &other, &params, samples, &report,
-                               &reason);
+    status = refocus_cv_stereo(&input->photo->image, &other, &params, samples, &report, &reason);
     if (status != REFOCUS_OK) {
         free(samples);
         return report_failure(EXIT_FAILED, right ? right : left, "%s",
@@ -92,11 +91,10 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
     snprintf(input->made.info.evidence[0], REFOCUS_INFO_LENGTH,
              "stereo: disparities %.1f to %.1f pixels, right picture %.0f pixels "
              "lower, %.0f %% of the pixels agree from both sides",
-             (double)report.least, (double)report.greatest,
-             (double)report.vertical_offset, 100.0 * (double)report.matched);
+             (double)report.least, (double)report.greatest, (double)report.vertical_offset,
+             100.0 * (double)report.matched);
     input->made.info.evidence_count = 1;
-    return take(input, samples, input->photo->image.width, input->photo->image.height,
-                settings);
+    return take(input, samples, input->photo->image.width, input->photo->image.height, settings);
 }
 
 static void adjust(struct refocus_network *network, const struct network_settings *how)
@@ -115,8 +113,7 @@ static void adjust(struct refocus_network *network, const struct network_setting
 }
 
 int input_read_estimate(struct input *input, const char *photo, const char *model,
-                        const struct network_settings *how,
-                        const struct depth_settings *settings)
+                        const struct network_settings *how, const struct depth_settings *settings)
 {
     struct refocus_estimate estimate;
     struct refocus_network network;
@@ -130,8 +127,7 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
     adjust(&network, how);
     report_progress("estimating", 0.2);
     if (status == REFOCUS_OK)
-        status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate,
-                                     &reason);
+        status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -155,20 +151,19 @@ int made_upsample(uint32_t filter, const struct refocus_image *photo,
 
     if (status == REFOCUS_OK)
         return EXIT_DONE;
-    return report_failure(EXIT_FAILED, name, "--upsample %s: %s",
-                          refocus_cv_filter_name(filter),
+    return report_failure(EXIT_FAILED, name, "--upsample %s: %s", refocus_cv_filter_name(filter),
                           reason.text[0] ? reason.text : refocus_strerror(status));
 }
 #else
 static int absent(const char *what)
 {
-    return report_failure(EXIT_FAILED, what, "this build has no OpenCV; build it with "
-                                             "OpenCV");
+    return report_failure(EXIT_FAILED, what,
+                          "this build has no OpenCV; build it with "
+                          "OpenCV");
 }
 
 int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct stereo_settings *how,
-                      const struct depth_settings *settings)
+                      const struct stereo_settings *how, const struct depth_settings *settings)
 {
     (void)settings;
     (void)how;
@@ -177,8 +172,7 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
 }
 
 int input_read_estimate(struct input *input, const char *photo, const char *model,
-                        const struct network_settings *how,
-                        const struct depth_settings *settings)
+                        const struct network_settings *how, const struct depth_settings *settings)
 {
     (void)photo;
     (void)how;

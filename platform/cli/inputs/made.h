@@ -20,7 +20,10 @@ struct network_settings {
     double size[2], mean[3], scale;
     bool inverse;
 };
-#define NETWORK_SETTINGS_NONE {0, {NAN, NAN}, {NAN, NAN, NAN}, NAN, false}
+#define NETWORK_SETTINGS_NONE                                                                      \
+    {                                                                                              \
+        0, {NAN, NAN}, {NAN, NAN, NAN}, NAN, false                                                 \
+    }
 
 /* How a pair is matched. */
 struct stereo_settings {

@@ -21,8 +21,7 @@ void painted_begin(struct input *input, const struct depth_settings *settings)
     input->depth_from = &input->made;
 }
 
-int painted_read(struct input *input, const char *photo,
-                 const struct depth_settings *settings)
+int painted_read(struct input *input, const char *photo, const struct depth_settings *settings)
 {
     const int status = input_read_photo(input, photo, "a photo");
 
@@ -45,13 +44,11 @@ static int take(struct input *input, const struct refocus_strokes *strokes)
     }
     if (!input->disparity || !input->confidence)
         return REFOCUS_ERR_MEMORY;
-    memcpy(input->disparity, refocus_strokes_disparity(strokes),
-           pixels * sizeof *input->disparity);
+    memcpy(input->disparity, refocus_strokes_disparity(strokes), pixels * sizeof *input->disparity);
     return REFOCUS_OK;
 }
 
-int painted_open(struct input *input, const char *file,
-                 struct refocus_strokes **strokes)
+int painted_open(struct input *input, const char *file, struct refocus_strokes **strokes)
 {
     const struct refocus_disparity base = refocus_disparity16(
         input->disparity, input->width, input->height, 2 * (ptrdiff_t)input->width);
@@ -63,8 +60,7 @@ int painted_open(struct input *input, const char *file,
     *strokes = NULL;
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, file, "%s", unread.text);
-    status = refocus_strokes_create(strokes, &input->photo->image,
-                                    input->disparity ? &base : NULL);
+    status = refocus_strokes_create(strokes, &input->photo->image, input->disparity ? &base : NULL);
     if (status == REFOCUS_OK)
         status = refocus_strokes_load(*strokes, blob.data, blob.size, &reason);
     free(blob.data);
@@ -81,11 +77,10 @@ int painted_apply(struct input *input, const char *file)
     int status = painted_open(input, file, &strokes);
 
     if (status == EXIT_DONE && take(input, strokes) != REFOCUS_OK)
-        status = report_failure(EXIT_FAILED, file, "%s",
-                                refocus_strerror(REFOCUS_ERR_MEMORY));
+        status = report_failure(EXIT_FAILED, file, "%s", refocus_strerror(REFOCUS_ERR_MEMORY));
     if (status == EXIT_DONE && info->evidence_count < REFOCUS_INFO_LINES)
-        snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
-                 "painted: %d strokes", refocus_strokes_count(strokes));
+        snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, "painted: %d strokes",
+                 refocus_strokes_count(strokes));
     refocus_strokes_destroy(&strokes);
     return status;
 }

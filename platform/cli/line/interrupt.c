@@ -20,25 +20,25 @@ static atomic_int ending; /* the signal that is to end the process, or 0 */
  * shells do for work in the background, and those of a debugger or profiler. */
 static void choose_signals(sigset_t *set)
 {
-    static const int numbers[] = {SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGALRM,
-                                  SIGUSR1, SIGUSR2,
+    static const int numbers[] = {
+        SIGINT,    SIGTERM, SIGHUP, SIGQUIT, SIGALRM, SIGUSR1, SIGUSR2,
 #ifdef SIGVTALRM
-                                  SIGVTALRM,
+        SIGVTALRM,
 #endif
 #ifdef SIGPROF
-                                  SIGPROF,
+        SIGPROF,
 #endif
 #ifdef SIGPOLL
-                                  SIGPOLL,
+        SIGPOLL,
 #endif
 #ifdef SIGXCPU
-                                  SIGXCPU,
+        SIGXCPU,
 #endif
 #ifdef SIGPWR
-                                  SIGPWR,
+        SIGPWR,
 #endif
 #ifdef SIGSTKFLT
-                                  SIGSTKFLT,
+        SIGSTKFLT,
 #endif
     };
     struct sigaction action;

@@ -9,14 +9,12 @@ enum { TEXT_LENGTH = 256 };
 
 /* The row of the next option in argv from *i on, which moves behind it and its value;
  * NULL: there is none. */
-static const struct option *next_given(const struct command *command, int argc,
-                                       char **argv, int *i)
+static const struct option *next_given(const struct command *command, int argc, char **argv, int *i)
 {
     while (*i < argc && strcmp(argv[*i], "--") != 0) {
         const char *argument = argv[(*i)++], *value;
-        const struct option *option = argument[0] == '-' && argument[1]
-                                          ? options_at(command, argument, &value)
-                                          : NULL;
+        const struct option *option =
+            argument[0] == '-' && argument[1] ? options_at(command, argument, &value) : NULL;
 
         if (!option)
             continue;
@@ -26,8 +24,7 @@ static const struct option *next_given(const struct command *command, int argc,
     return NULL;
 }
 
-bool options_given(const struct command *command, int argc, char **argv,
-                   const char *name)
+bool options_given(const struct command *command, int argc, char **argv, const char *name)
 {
     const struct option *option;
     int i = 1;
@@ -46,8 +43,8 @@ static bool is_listed(const char *name, const char *const *names)
     return false;
 }
 
-static int refuse(const struct command *command, int argc, char **argv,
-                  const char *const *names, bool listed, const char *why)
+static int refuse(const struct command *command, int argc, char **argv, const char *const *names,
+                  bool listed, const char *why)
 {
     const struct option *option;
     int i = 1;
@@ -58,8 +55,8 @@ static int refuse(const struct command *command, int argc, char **argv,
     return EXIT_DONE;
 }
 
-int options_refuse(const struct command *command, int argc, char **argv,
-                   const char *const *names, const char *why)
+int options_refuse(const struct command *command, int argc, char **argv, const char *const *names,
+                   const char *why)
 {
     return refuse(command, argc, argv, names, true, why);
 }
@@ -105,8 +102,8 @@ static void list_words(const struct option *option, char text[TEXT_LENGTH])
     text[0] = '\0';
     for (uint32_t i = 0; option->of_word(i) && n < TEXT_LENGTH; i++)
         if (option->of_words >> i & 1)
-            n += snprintf(text + n, (size_t)(TEXT_LENGTH - n), "%s%s",
-                          n > 0 ? ", " : "", option->of_word(i));
+            n += snprintf(text + n, (size_t)(TEXT_LENGTH - n), "%s%s", n > 0 ? ", " : "",
+                          option->of_word(i));
 }
 
 static int not_of(const struct option *option, int word)
@@ -115,15 +112,13 @@ static int not_of(const struct option *option, int word)
 
     list_words(option, words);
     return report_failure(EXIT_WRONG, option->name,
-                          "it changes nothing with %s %s; give %s%s%s, or leave it out",
-                          option->of, option->of_word((uint32_t)word), words,
-                          option->needs ? ", or " : "",
+                          "it changes nothing with %s %s; give %s%s%s, or leave it out", option->of,
+                          option->of_word((uint32_t)word), words, option->needs ? ", or " : "",
                           option->needs ? option->needs : "");
 }
 
 /* Whether one of what an option needs has a value; false when it needs none. */
-static bool is_met(const struct command *command, const char *needs,
-                   const void *settings)
+static bool is_met(const struct command *command, const char *needs, const void *settings)
 {
     char name[TEXT_LENGTH];
 
@@ -140,13 +135,11 @@ static bool is_met(const struct command *command, const char *needs,
     return false;
 }
 
-static int check(const struct command *command, const struct option *option,
-                 const void *settings)
+static int check(const struct command *command, const struct option *option, const void *settings)
 {
     const bool met = is_met(command, option->needs, settings);
-    const int word = option->of_words
-                         ? *(const int *)((const char *)settings + option->of_offset)
-                         : -1;
+    const int word =
+        option->of_words ? *(const int *)((const char *)settings + option->of_offset) : -1;
 
     if (option->of_words)
         return is_of(option, word) || met ? OPTIONS_PARSED : not_of(option, word);
@@ -156,14 +149,12 @@ static int check(const struct command *command, const struct option *option,
                           (int)strcspn(option->needs, ","), option->needs);
 }
 
-int options_check_needs(const struct command *command, int argc, char **argv,
-                        const void *settings)
+int options_check_needs(const struct command *command, int argc, char **argv, const void *settings)
 {
     const struct option *option;
     int i = 1, status = OPTIONS_PARSED;
 
-    while (status == OPTIONS_PARSED &&
-           (option = next_given(command, argc, argv, &i)) != NULL)
+    while (status == OPTIONS_PARSED && (option = next_given(command, argc, argv, &i)) != NULL)
         status = check(command, option, settings);
     return status;
 }

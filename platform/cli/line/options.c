@@ -37,8 +37,7 @@ static int edits(const char *a, const char *b)
     return rows[m % 3][n];
 }
 
-const char *options_nearest(const char *text,
-                            const char *(*word)(const void *list, int i),
+const char *options_nearest(const char *text, const char *(*word)(const void *list, int i),
                             const void *list)
 {
     const int letters = (int)strlen(text) - (int)strspn(text, "-");
@@ -75,7 +74,7 @@ static const char *choice_word(const void *list, int i)
 /* "from 0 to 1", "above 0", ..., and the word that may stand for a number. */
 static const char *range_text(const struct option *option, char text[RANGE_LENGTH])
 {
-    const char *what = option->kind == OPTION_INTEGER ? "a whole number"
+    const char *what = option->kind == OPTION_INTEGER   ? "a whole number"
                        : option->kind == OPTION_NUMBERS ? option->argument
                                                         : "a number";
     int n = snprintf(text, RANGE_LENGTH, "%s", what);
@@ -83,17 +82,14 @@ static const char *range_text(const struct option *option, char text[RANGE_LENGT
     if (option->kind == OPTION_NUMBERS && option->least == -INFINITY)
         return text;
     if (option->above)
-        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " above %.9g",
-                      option->least);
+        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " above %.9g", option->least);
     if (option->above && isfinite(option->greatest))
-        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), ", at most %.9g",
-                      option->greatest);
+        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), ", at most %.9g", option->greatest);
     if (!option->above && isfinite(option->greatest))
-        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " from %.9g to %.9g",
-                      option->least, option->greatest);
+        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " from %.9g to %.9g", option->least,
+                      option->greatest);
     else if (!option->above)
-        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " of at least %.9g",
-                      option->least);
+        n += snprintf(text + n, (size_t)(RANGE_LENGTH - n), " of at least %.9g", option->least);
     if (option->word)
         snprintf(text + n, (size_t)(RANGE_LENGTH - n), ", or '%s'", option->word);
     return text;
@@ -131,8 +127,8 @@ static int wrong_number(const struct option *option, const char *name, const cha
                           range_text(option, range));
 }
 
-static int parse_numbers(const struct option *option, const char *name,
-                         const char *text, double *values)
+static int parse_numbers(const struct option *option, const char *name, const char *text,
+                         double *values)
 {
     const int count = option->kind == OPTION_NUMBERS ? option->count : 1;
     const char *at = text;
@@ -166,20 +162,17 @@ static int parse_choice(const struct option *option, const char *name, const cha
             *chosen = (int)i;
             return OPTIONS_PARSED;
         }
-        snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
-                 i > 0 ? ", " : "", option->choice(i));
+        snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s", i > 0 ? ", " : "",
+                 option->choice(i));
     }
     nearest = options_nearest(text, choice_word, option);
     if (nearest)
-        return report_failure(EXIT_WRONG, name,
-                              "'%s' is not one of %s; did you mean '%s'?", text, words,
-                              nearest);
-    return report_failure(EXIT_WRONG, name, "'%s' cannot be used; give one of %s", text,
-                          words);
+        return report_failure(EXIT_WRONG, name, "'%s' is not one of %s; did you mean '%s'?", text,
+                              words, nearest);
+    return report_failure(EXIT_WRONG, name, "'%s' cannot be used; give one of %s", text, words);
 }
 
-int options_set(const struct option *option, const char *name, const char *text,
-                void *settings)
+int options_set(const struct option *option, const char *name, const char *text, void *settings)
 {
     void *value = (char *)settings + option->offset;
 
@@ -192,8 +185,7 @@ int options_set(const struct option *option, const char *name, const char *text,
         return parse_choice(option, name, text, value);
     case OPTION_TEXT:
         if (*text == '\0')
-            return report_failure(EXIT_WRONG, name, "is empty; give %s",
-                                  option->argument);
+            return report_failure(EXIT_WRONG, name, "is empty; give %s", option->argument);
         *(const char **)value = text;
         return OPTIONS_PARSED;
     case OPTION_FLAG:
@@ -217,8 +209,7 @@ const struct option *options_at(const struct command *command, const char *argum
             *value = argument[2] ? argument + 2 : NULL;
             return option;
         }
-        if (strlen(option->name) == length &&
-            strncmp(argument, option->name, length) == 0) {
+        if (strlen(option->name) == length && strncmp(argument, option->name, length) == 0) {
             *value = argument[length] ? argument + length + 1 : NULL;
             return option;
         }
@@ -240,8 +231,7 @@ const char *options_nearest_name(const struct command *command, const char *name
 }
 
 /* Files of settings come before all else on the command line, which overrules them. */
-static int load_settings(const struct command *command, int argc, char **argv,
-                         void *settings)
+static int load_settings(const struct command *command, int argc, char **argv, void *settings)
 {
     const struct option *row = options_find(command, SETTINGS_NAME);
     const size_t length = strlen(SETTINGS_NAME);
@@ -271,10 +261,10 @@ static int unknown_option(const struct command *command, const char *argument)
     snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
     nearest = options_nearest_name(command, name);
     if (nearest)
-        return report_failure(EXIT_WRONG, name, "unknown option; did you mean %s?",
-                              nearest);
-    return report_failure(EXIT_WRONG, name, "unknown option; 'refocus %s --help' lists "
-                                            "them",
+        return report_failure(EXIT_WRONG, name, "unknown option; did you mean %s?", nearest);
+    return report_failure(EXIT_WRONG, name,
+                          "unknown option; 'refocus %s --help' lists "
+                          "them",
                           command->name);
 }
 
@@ -289,16 +279,16 @@ static int parse_option(const struct command *command, int argc, char **argv, in
         return unknown_option(command, argv[*i]);
     if (option->kind == OPTION_FLAG) {
         if (value)
-            return report_failure(EXIT_WRONG, option->name, "takes no value; leave "
-                                                            "'=%s' out",
+            return report_failure(EXIT_WRONG, option->name,
+                                  "takes no value; leave "
+                                  "'=%s' out",
                                   value);
         return options_set(option, option->name, "", settings);
     }
     if (!value && *i + 1 < argc && strncmp(argv[*i + 1], "--", 2) != 0)
         value = argv[++*i];
     if (!value)
-        return report_failure(EXIT_WRONG, option->name, "has no value; give %s",
-                              option->argument);
+        return report_failure(EXIT_WRONG, option->name, "has no value; give %s", option->argument);
     return options_set(option, option->name, value, settings);
 }
 
@@ -327,13 +317,12 @@ int options_parse(const struct command *command, int argc, char **argv, void *se
             continue;
         }
         if (count == command->files_most)
-            return report_failure(EXIT_WRONG, argv[i],
-                                  "one file too many; give refocus %s %s",
+            return report_failure(EXIT_WRONG, argv[i], "one file too many; give refocus %s %s",
                                   command->name, command->usage);
         if (argv[i][0] == '\0')
             return report_failure(EXIT_WRONG, command->name,
-                                  "a file name is empty; give refocus %s %s",
-                                  command->name, command->usage);
+                                  "a file name is empty; give refocus %s %s", command->name,
+                                  command->usage);
         files[count++] = argv[i];
     }
     if (count < command->files_least)
@@ -392,8 +381,8 @@ static void print_option(const struct option *option)
         snprintf(text, sizeof text, "%s", option->help);
     if (option->kind == OPTION_CHOICE && !option->summary)
         for (uint32_t i = 0; option->choice(i); i++)
-            snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s",
-                     i == 0 ? ": " : ", ", option->choice(i));
+            snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", i == 0 ? ": " : ", ",
+                     option->choice(i));
     print_wrapped(text, HELP_COLUMN, HELP_COLUMN);
     if (option->kind == OPTION_CHOICE && option->summary)
         for (uint32_t i = 0; option->choice(i); i++) {

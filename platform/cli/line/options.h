@@ -19,11 +19,11 @@ enum option_kind {
 
 struct option {
     enum option_kind kind;
-    char letter;          /* short form, or 0 */
-    const char *name;     /* with its dashes */
-    const char *argument; /* what the help calls the value */
-    size_t offset;        /* of the value in the settings; doubles that are NAN
-                             beforehand and still afterwards were not given */
+    char letter;            /* short form, or 0 */
+    const char *name;       /* with its dashes */
+    const char *argument;   /* what the help calls the value */
+    size_t offset;          /* of the value in the settings; doubles that are NAN
+                               beforehand and still afterwards were not given */
     double least, greatest; /* of numbers; least is not allowed itself when above is
                                set */
     bool above;
@@ -50,9 +50,9 @@ struct option {
 
 struct command {
     const char *name;
-    const char *usage;   /* what follows the name */
-    const char *summary; /* one line */
-    const char *notes;   /* paragraphs after the options, or NULL */
+    const char *usage;            /* what follows the name */
+    const char *summary;          /* one line */
+    const char *notes;            /* paragraphs after the options, or NULL */
     const struct option *options; /* ended by a row whose help is NULL */
     int files_least, files_most;  /* how many names go with it */
     int (*run)(int argc, char **argv);
@@ -70,20 +70,18 @@ int options_parse(const struct command *command, int argc, char **argv, void *se
                   const char **files);
 
 /* Whether a command line that options_parse() took gives an option, by its name. */
-bool options_given(const struct command *command, int argc, char **argv,
-                   const char *name);
+bool options_given(const struct command *command, int argc, char **argv, const char *name);
 
 /* EXIT_WRONG, saying why, when that command line gives one of these options, or one
  * beside these; EXIT_DONE when it does not. Names end with NULL. */
-int options_refuse(const struct command *command, int argc, char **argv,
-                   const char *const *names, const char *why);
+int options_refuse(const struct command *command, int argc, char **argv, const char *const *names,
+                   const char *why);
 int options_refuse_beside(const struct command *command, int argc, char **argv,
                           const char *const *names, const char *why);
 
 /* Give an option its value as the command line does; `name` is what errors call it. For
  * flags `text` is not used. Returns OPTIONS_PARSED or EXIT_WRONG. */
-int options_set(const struct option *option, const char *name, const char *text,
-                void *settings);
+int options_set(const struct option *option, const char *name, const char *text, void *settings);
 
 /* The row of an argument such as "--blur=3", "--blur" or "-o", or NULL; *value: what is
  * behind the "=" or the letter, or NULL. */
@@ -92,8 +90,7 @@ const struct option *options_at(const struct command *command, const char *argum
 
 /* needs.c: the last step of options_parse(): OPTIONS_PARSED, or EXIT_WRONG when an
  * option is given without what it would change nothing. */
-int options_check_needs(const struct command *command, int argc, char **argv,
-                        const void *settings);
+int options_check_needs(const struct command *command, int argc, char **argv, const void *settings);
 
 /* The row of a name with its dashes, or NULL. */
 const struct option *options_find(const struct command *command, const char *name);
@@ -104,8 +101,7 @@ const char *options_nearest_name(const struct command *command, const char *name
 void options_print_help(const struct command *command);
 
 /* The one of the words that is most like text, or NULL when none is. */
-const char *options_nearest(const char *text,
-                            const char *(*word)(const void *list, int i),
+const char *options_nearest(const char *text, const char *(*word)(const void *list, int i),
                             const void *list);
 
 #endif

@@ -59,8 +59,7 @@ int report_end_output(void)
         return EXIT_DONE;
     if (interrupt_ends())
         return EXIT_FAILED;
-    return report_failure(EXIT_FAILED, "standard output", "%s; make room for it",
-                          strerror(errno));
+    return report_failure(EXIT_FAILED, "standard output", "%s; make room for it", strerror(errno));
 }
 
 bool report_is_watched(void)
@@ -140,8 +139,8 @@ struct spread report_spread(double *values, int count)
 
 json_t *report_spread_json(struct spread spread)
 {
-    return json_pack("{s:f, s:f, s:f}", "min", spread.min, "median", spread.median,
-                     "max", spread.max);
+    return json_pack("{s:f, s:f, s:f}", "min", spread.min, "median", spread.median, "max",
+                     spread.max);
 }
 
 json_t *report_number_json(double value)
@@ -191,13 +190,13 @@ json_t *report_depth_json(const struct refocus_photo *from,
 {
     const struct refocus_depth_map *map = &from->depth;
     const bool disparity = map->meaning == REFOCUS_DEPTH_DISPARITY;
-    json_t *json = json_pack(
-        "{s:s, s:i, s:i, s:s, s:o, s:o, s:I, s:I, s:I}", "source",
-        report_depth_source(from->info.depth_source), "width", (int)map->width,
-        "height", (int)map->height, "meaning", disparity ? "disparity" : "distance",
-        "near_m", report_metres_json(report->near_m), "far_m",
-        report_metres_json(report->far_m), "unknown", (json_int_t)report->unknown,
-        "clamped", (json_int_t)report->clamped, "specks", (json_int_t)report->specks);
+    json_t *json =
+        json_pack("{s:s, s:i, s:i, s:s, s:o, s:o, s:I, s:I, s:I}", "source",
+                  report_depth_source(from->info.depth_source), "width", (int)map->width, "height",
+                  (int)map->height, "meaning", disparity ? "disparity" : "distance", "near_m",
+                  report_metres_json(report->near_m), "far_m", report_metres_json(report->far_m),
+                  "unknown", (json_int_t)report->unknown, "clamped", (json_int_t)report->clamped,
+                  "specks", (json_int_t)report->specks);
 
     if (json && disparity) {
         json_object_set_new(json, "value_near", report_number_json(report->value_near));
@@ -210,10 +209,8 @@ int report_print_json(json_t *object)
 {
     int status = EXIT_DONE;
 
-    if (!object ||
-        json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0)
-        status =
-            report_failure(EXIT_FAILED, "--json", "the report could not be printed");
+    if (!object || json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0)
+        status = report_failure(EXIT_FAILED, "--json", "the report could not be printed");
     json_decref(object);
     if (status != EXIT_DONE)
         return status;

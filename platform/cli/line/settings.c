@@ -31,14 +31,12 @@ static bool keep(json_t *root)
 }
 
 /* What errors call a member of a file. */
-static const char *member_name(char what[LONGEST_VALUE], const char *file,
-                               const char *key)
+static const char *member_name(char what[LONGEST_VALUE], const char *file, const char *key)
 {
     char name[LONGEST_NAME];
 
     report_clean(name, sizeof name, key);
-    snprintf(what, LONGEST_VALUE, "%.*s: %s", LONGEST_VALUE - LONGEST_NAME - 3, file,
-             name);
+    snprintf(what, LONGEST_VALUE, "%.*s: %s", LONGEST_VALUE - LONGEST_NAME - 3, file, name);
     return what;
 }
 
@@ -54,8 +52,7 @@ static int damaged(const char *file, const char *key, const char *why)
 static bool number_text(const json_t *value, char *text, size_t size)
 {
     if (json_is_integer(value))
-        return snprintf(text, size, "%" JSON_INTEGER_FORMAT,
-                        json_integer_value(value)) > 0;
+        return snprintf(text, size, "%" JSON_INTEGER_FORMAT, json_integer_value(value)) > 0;
     if (!json_is_real(value))
         return false;
     return snprintf(text, size, "%.17g", json_real_value(value)) > 0;
@@ -67,7 +64,8 @@ static bool numbers_text(const json_t *array, char *text, size_t size)
     const json_t *value;
     size_t i, n = 0;
 
-    json_array_foreach(array, i, value) {
+    json_array_foreach(array, i, value)
+    {
         if (n + 32 > size)
             return false;
         if (i > 0)
@@ -94,10 +92,10 @@ static int set_member(const struct command *command, const char *file, const cha
         char why[LONGEST_VALUE];
 
         if (option)
-            return damaged(file, key, "is not of the picture; give it on the command "
-                                      "line");
-        snprintf(why, sizeof why, "unknown setting%s%s%s",
-                 nearest ? "; did you mean '" : "",
+            return damaged(file, key,
+                           "is not of the picture; give it on the command "
+                           "line");
+        snprintf(why, sizeof why, "unknown setting%s%s%s", nearest ? "; did you mean '" : "",
                  nearest ? nearest + strspn(nearest, "-") : "", nearest ? "'?" : "");
         return damaged(file, key, why);
     }
@@ -109,18 +107,18 @@ static int set_member(const struct command *command, const char *file, const cha
     }
     if (json_is_string(value))
         given = json_string_value(value);
-    else if (!number_text(value, text, sizeof text) &&
-             !numbers_text(value, text, sizeof text))
-        return damaged(file, key, option->kind == OPTION_NUMBERS ? "give numbers, as "
-                                                                   "[1, 2]"
-                                                                 : "give a number or a "
-                                                                   "text");
+    else if (!number_text(value, text, sizeof text) && !numbers_text(value, text, sizeof text))
+        return damaged(file, key,
+                       option->kind == OPTION_NUMBERS ? "give numbers, as "
+                                                        "[1, 2]"
+                                                      : "give a number or a "
+                                                        "text");
     status = options_set(option, member_name(what, file, key), given, settings);
     return status == EXIT_WRONG ? EXIT_FAILED : status;
 }
 
-int settings_read(const struct command *command, const char *file, const char *bytes,
-                  size_t size, void *settings)
+int settings_read(const struct command *command, const char *file, const char *bytes, size_t size,
+                  void *settings)
 {
     json_error_t error;
     json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
@@ -129,8 +127,8 @@ int settings_read(const struct command *command, const char *file, const char *b
     json_t *value;
 
     if (!root)
-        return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s",
-                              error.line, error.column, error.text);
+        return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s", error.line,
+                              error.column, error.text);
     value = json_object_get(root, "refocus");
     if (!json_is_integer(value) || json_integer_value(value) != SETTINGS_VERSION)
         status = report_failure(EXIT_FAILED, file,
@@ -140,7 +138,8 @@ int settings_read(const struct command *command, const char *file, const char *b
     else if (!keep(root))
         status = report_failure(EXIT_FAILED, file, "not enough memory");
     if (status == OPTIONS_PARSED) {
-        json_object_foreach(root, key, value) {
+        json_object_foreach(root, key, value)
+        {
             if (strcmp(key, "refocus") == 0)
                 continue;
             status = set_member(command, file, key, value, settings);
@@ -207,7 +206,7 @@ static json_t *member_of(const struct option *option, const void *settings, int 
     case OPTION_CHOICE:
         if (*(const int *)at == 0 && strcmp(option->choice(0), "none") == 0)
             return NULL; /* says nothing, and not every command has it */
-        json = json_string(option->choice((uint32_t)*(const int *)at));
+        json = json_string(option->choice((uint32_t) * (const int *)at));
         break;
     case OPTION_TEXT:
         if (!*(const char *const *)at)
@@ -247,8 +246,7 @@ static bool is_among(const char *name, const char *const *names)
 }
 
 /* "name 1,2,3" into text with a line's end; what it takes of it. */
-static size_t line_of(const struct option *option, const json_t *json, char *text,
-                      size_t size)
+static size_t line_of(const struct option *option, const json_t *json, char *text, size_t size)
 {
     char value[LONGEST_VALUE];
     int n;
@@ -256,15 +254,14 @@ static size_t line_of(const struct option *option, const json_t *json, char *tex
     if (json_is_string(json))
         report_clean(value, sizeof value, json_string_value(json));
     else if (json_is_true(json) ||
-             (!number_text(json, value, sizeof value) &&
-              !numbers_text(json, value, sizeof value)))
+             (!number_text(json, value, sizeof value) && !numbers_text(json, value, sizeof value)))
         value[0] = '\0';
     n = snprintf(text, size, "%s%s%s\n", option->name + 2, *value ? " " : "", value);
     return n > 0 && (size_t)n < size ? (size_t)n : 0;
 }
 
-char *settings_text(const struct command *command, const void *settings,
-                    const void *usual, const char *const *names)
+char *settings_text(const struct command *command, const void *settings, const void *usual,
+                    const char *const *names)
 {
     size_t size = 1, used = 0;
     bool failed = false;
@@ -280,8 +277,7 @@ char *settings_text(const struct command *command, const void *settings,
         int digits = 15;
         json_t *json, *other;
 
-        if (option->elsewhere || option->kind == OPTION_HEADING ||
-            is_among(option->name, names))
+        if (option->elsewhere || option->kind == OPTION_HEADING || is_among(option->name, names))
             continue;
         json = member_of(option, settings, &digits, &failed);
         other = member_of(option, usual, &digits, &failed);
@@ -304,10 +300,8 @@ int settings_save(const struct command *command, const char *file, const void *s
     char *text = NULL;
     int status = EXIT_DONE, digits = 15;
 
-    for (const struct option *option = command->options; option->help && !failed;
-         option++) {
-        json_t *json =
-            option->elsewhere ? NULL : member_of(option, settings, &digits, &failed);
+    for (const struct option *option = command->options; option->help && !failed; option++) {
+        json_t *json = option->elsewhere ? NULL : member_of(option, settings, &digits, &failed);
 
         if (json && json_object_set_new(root, option->name + 2, json) != 0)
             failed = true;
@@ -315,8 +309,8 @@ int settings_save(const struct command *command, const char *file, const void *s
     if (!failed)
         text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
     if (!text)
-        status = report_failure(EXIT_FAILED, file,
-                                "not enough memory, or a file's name is not UTF-8");
+        status =
+            report_failure(EXIT_FAILED, file, "not enough memory, or a file's name is not UTF-8");
     else
         status = output_write_file(file, text, strlen(text));
     free(text);

@@ -27,28 +27,27 @@
 enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
 
 /* Rows of a table of options. */
-#define SETTINGS_OPTION(type, load)                                                    \
-    {.kind = OPTION_TEXT,                                                              \
-     .name = SETTINGS_NAME,                                                            \
-     .argument = "FILE",                                                               \
-     .offset = offsetof(type, load),                                                   \
-     .help = "JSON object of options; the command line overrules it",                  \
-     .elsewhere = true}
-#define SAVE_SETTINGS_OPTION(type, save)                                               \
-    {.kind = OPTION_TEXT,                                                              \
-     .name = "--save-settings",                                                        \
-     .argument = "FILE",                                                               \
-     .offset = offsetof(type, save),                                                   \
-     .help = "write the options that make this picture as JSON for --settings",        \
-     .elsewhere = true}
+#define SETTINGS_OPTION(type, load)                                                                \
+    {                                                                                              \
+        .kind = OPTION_TEXT, .name = SETTINGS_NAME, .argument = "FILE",                            \
+        .offset = offsetof(type, load),                                                            \
+        .help = "JSON object of options; the command line overrules it", .elsewhere = true         \
+    }
+#define SAVE_SETTINGS_OPTION(type, save)                                                           \
+    {                                                                                              \
+        .kind = OPTION_TEXT, .name = "--save-settings", .argument = "FILE",                        \
+        .offset = offsetof(type, save),                                                            \
+        .help = "write the options that make this picture as JSON for --settings",                 \
+        .elsewhere = true                                                                          \
+    }
 
 /* Read a file of settings; OPTIONS_PARSED, or the exit code after an error, which is
  * printed. Texts live as long as the program. */
 int settings_load(const struct command *command, const char *file, void *settings);
 
 /* The same from memory; `file` is what errors call it. */
-int settings_read(const struct command *command, const char *file, const char *bytes,
-                  size_t size, void *settings);
+int settings_read(const struct command *command, const char *file, const char *bytes, size_t size,
+                  void *settings);
 
 /* Before the work: can a file of settings be written there, and is it none of the
  * inputs? */
@@ -57,11 +56,10 @@ int settings_check(const char *file, const char *const *inputs, int input_count)
 /* "option value" in a line of each that says something else than in `usual`, where it
  * is not of a run and not among `names`, which end with NULL. To be freed; NULL without
  * memory. */
-char *settings_text(const struct command *command, const void *settings,
-                    const void *usual, const char *const *names);
+char *settings_text(const struct command *command, const void *settings, const void *usual,
+                    const char *const *names);
 
 /* Write what `settings` says, whole or not at all; an exit code. */
-int settings_save(const struct command *command, const char *file,
-                  const void *settings);
+int settings_save(const struct command *command, const char *file, const void *settings);
 
 #endif

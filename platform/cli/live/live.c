@@ -17,9 +17,8 @@ static const char *policy_name(uint32_t index)
 
 static const char *policy_summary(uint32_t index)
 {
-    static const char *const summaries[] = {
-        "a new frame replaces one that waits: least delay",
-        "each frame is rendered; the source waits or drops"};
+    static const char *const summaries[] = {"a new frame replaces one that waits: least delay",
+                                            "each frame is rendered; the source waits or drops"};
     return index < 2 ? summaries[index] : NULL;
 }
 
@@ -253,8 +252,8 @@ static int print_modes(const char *name)
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), name, "%s", reason.text);
     for (int i = 0; refocus_source_get_mode(source, i, &mode) == REFOCUS_OK; i++)
-        printf("%-6s %5dx%-5d %g fps\n", refocus_frame_format_name(mode.format),
-               (int)mode.width, (int)mode.height, mode.fps);
+        printf("%-6s %5dx%-5d %g fps\n", refocus_frame_format_name(mode.format), (int)mode.width,
+               (int)mode.height, mode.fps);
     refocus_source_close(&source);
     return report_end_output();
 }
@@ -287,8 +286,8 @@ static bool is_of(const char *name, const char *const *kind)
 
 static bool is_source(const char *name)
 {
-    return is_of(name, (const char *const[]){"v4l2:", "libcamera:", "file:", "y4m:", "raw:",
-                                             "replay:", NULL});
+    return is_of(name, (const char *const[]){
+                           "v4l2:", "libcamera:", "file:", "y4m:", "raw:", "replay:", NULL});
 }
 
 static bool is_camera(const char *name)
@@ -299,8 +298,7 @@ static bool is_camera(const char *name)
 /* A picture stays for ever, and so does what begins again. */
 static bool has_end(const struct live_settings *settings)
 {
-    const bool still =
-        is_of_kind(settings->camera, "file:") && !strchr(settings->camera, '%');
+    const bool still = is_of_kind(settings->camera, "file:") && !strchr(settings->camera, '%');
 
     return settings->frames > 0 || settings->duration > 0 || !(still || settings->loop);
 }
@@ -340,8 +338,7 @@ static int check_sources(const struct live_settings *settings)
         return report_failure(EXIT_WRONG, settings->fast ? "--fast" : "--loop",
                               "it is of files and scripts, not of cameras; leave it out");
     if (settings->dmabuf && !is_of_kind(camera, "v4l2:") && !is_of_kind(depth, "v4l2:"))
-        return report_failure(EXIT_WRONG, "--dmabuf",
-                              "it is of V4L2 cameras; leave it out");
+        return report_failure(EXIT_WRONG, "--dmabuf", "it is of V4L2 cameras; leave it out");
     return EXIT_DONE;
 }
 
@@ -400,10 +397,9 @@ static int open_camera(struct live *live, const char *name, bool depth,
         config.height = isnan(settings->size[0]) ? 0 : (int32_t)settings->size[1];
     }
     config.fps = isnan(settings->fps) ? 0 : settings->fps;
-    config.flags = (settings->fast ? REFOCUS_SOURCE_FAST : 0) |
-                   (settings->loop ? REFOCUS_SOURCE_LOOP : 0) |
-                   (settings->dmabuf ? REFOCUS_SOURCE_DMABUF : 0) |
-                   (depth ? REFOCUS_SOURCE_DEPTH : 0);
+    config.flags =
+        (settings->fast ? REFOCUS_SOURCE_FAST : 0) | (settings->loop ? REFOCUS_SOURCE_LOOP : 0) |
+        (settings->dmabuf ? REFOCUS_SOURCE_DMABUF : 0) | (depth ? REFOCUS_SOURCE_DEPTH : 0);
     status = refocus_source_open(source, name, &reason);
     if (status == REFOCUS_OK)
         status = refocus_source_start(*source, &config, mode, &reason);
@@ -424,8 +420,8 @@ static int open_all(struct live *live)
     if (status == EXIT_DONE)
         status = open_camera(live, settings->camera, false, &live->camera, &live->mode);
     if (status == EXIT_DONE && is_source(settings->depth.file))
-        status = open_camera(live, settings->depth.file, true, &live->depth_camera,
-                             &live->depth_mode);
+        status =
+            open_camera(live, settings->depth.file, true, &live->depth_camera, &live->depth_mode);
     else if (status == EXIT_DONE && settings->estimate.model[0])
         status = live_estimate_open(live);
     else if (status == EXIT_DONE)
@@ -456,13 +452,16 @@ static void run_threads(struct live *live)
 {
     enum { CAPTURE, DEPTH, ESTIMATE, OUTPUT, COMMANDS, THREADS };
     const struct live_settings *settings = live->settings;
-    static void *(*const main_of[])(void *) = {
-        [CAPTURE] = live_capture_thread, [DEPTH] = live_depth_thread,
-        [ESTIMATE] = live_estimate_thread, [OUTPUT] = live_output_thread,
-        [COMMANDS] = live_command_thread};
-    const bool wanted[THREADS] = {
-        [CAPTURE] = true, [DEPTH] = live->depth_camera, [ESTIMATE] = live->estimator,
-        [OUTPUT] = true, [COMMANDS] = !settings->no_commands || live->command_fd >= 0};
+    static void *(*const main_of[])(void *) = {[CAPTURE] = live_capture_thread,
+                                               [DEPTH] = live_depth_thread,
+                                               [ESTIMATE] = live_estimate_thread,
+                                               [OUTPUT] = live_output_thread,
+                                               [COMMANDS] = live_command_thread};
+    const bool wanted[THREADS] = {[CAPTURE] = true,
+                                  [DEPTH] = live->depth_camera,
+                                  [ESTIMATE] = live->estimator,
+                                  [OUTPUT] = true,
+                                  [COMMANDS] = !settings->no_commands || live->command_fd >= 0};
     pthread_t thread[THREADS];
     bool running[THREADS] = {false};
 
@@ -475,8 +474,8 @@ static void run_threads(struct live *live)
         }
         running[i] = true;
     }
-    while (settings->offline && running[COMMANDS] &&
-           sem_wait(&live->first_commands) != 0 && !live_is_over(live))
+    while (settings->offline && running[COMMANDS] && sem_wait(&live->first_commands) != 0 &&
+           !live_is_over(live))
         continue;
     live_render(live);
     /* What is rendered already is still written, unless something failed. */
@@ -577,7 +576,8 @@ const struct command live_command = {
     .name = "live",
     .usage = "--camera SOURCE --depth SOURCE [--out SINK] [options]",
     .summary = "camera in, refocused frames out",
-    .notes = "While it runs, standard input (and --socket) takes a command a line: focus D, focus-at X,Y, "
+    .notes = "While it runs, standard input (and --socket) takes a command a line: focus D, "
+             "focus-at X,Y, "
              "pull D SECONDS, pull-at X,Y SECONDS (smooth), blur K, quit. Depth is paired with "
              "colour by time within half a frame; without a pair the newest depth serves, or, "
              "with --frames-policy every, the nearest in time. "

@@ -115,8 +115,8 @@ struct live_depths {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     struct live_depth_map map[LIVE_DEPTHS];
-    uint64_t count; /* maps so far */
-    int pinned;     /* the one that is being used, or -1 */
+    uint64_t count;    /* maps so far */
+    int pinned;        /* the one that is being used, or -1 */
     int64_t needed_ns; /* maps from before this moment are needed no more */
     bool every, ended;
     bool still; /* there is one map for all times */
@@ -127,8 +127,8 @@ void live_depths_free(struct live_depths *depths);
 void live_depths_end(struct live_depths *depths);
 /* A map to fill that no one uses; NULL when it is over or there is no memory. */
 struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, int height);
-void live_depths_put(struct live_depths *depths, struct live_depth_map *map,
-                     int64_t timestamp_ns, bool still);
+void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int64_t timestamp_ns,
+                     bool still);
 /*
  * The map within half a frame of a moment, else *paired = false and the newest one, or, when every
  * frame counts, the one nearest in time, which does not hang on how far depth is ahead; NULL when
@@ -146,8 +146,8 @@ struct live_range_end {
 
 struct live_ranger {
     struct live_range range;
-    bool near_given, far_given;  /* by the command line: that end does not move */
-    struct live_range past[3];   /* ranges that the last maps showed */
+    bool near_given, far_given; /* by the command line: that end does not move */
+    struct live_range past[3];  /* ranges that the last maps showed */
     uint64_t maps;
     struct live_range_end near_end, far_end;
     int64_t last_ns;
@@ -162,8 +162,7 @@ void live_range_end(struct live_ranger *ranger);
 bool live_range_measure(struct live_ranger *ranger, const struct refocus_depth_map *map,
                         struct live_range *seen);
 /* ranger->range, for a map taken then that shows this. The first one sets it. */
-void live_range_follow(struct live_ranger *ranger, const struct live_range *seen,
-                       int64_t now_ns);
+void live_range_follow(struct live_ranger *ranger, const struct live_range *seen, int64_t now_ns);
 /* Puts a map of a wider range in place of a map, in memory that `wide` owns. */
 int live_range_widen(struct live_depth_map *wide, const struct live_depth_map **map,
                      const struct live_range *range);
@@ -173,9 +172,9 @@ int live_range_widen(struct live_depth_map *wide, const struct live_depth_map **
 /* Something to focus on. A point is looked up in the next frame, and is a distance from then on,
  * or a disparity where distances are not known. */
 struct live_target {
-    bool known;        /* false: the disparity at the point has not been read yet */
-    bool dioptres;     /* value is 1/m, else a disparity */
-    bool follows_lens; /* where the camera's own lens is, if it says so */
+    bool known;             /* false: the disparity at the point has not been read yet */
+    bool dioptres;          /* value is 1/m, else a disparity */
+    bool follows_lens;      /* where the camera's own lens is, if it says so */
     double value, point[2]; /* the point NAN: the centre */
 };
 
@@ -187,8 +186,8 @@ struct live_focus {
     int64_t now_ns;
     struct live_range range; /* both of the present frame */
     double blur, blur_most;
-    double stretch; /* K as a multiple of --blur, after the range has moved; 1 once it has stood
-                       still for long */
+    double stretch;    /* K as a multiple of --blur, after the range has moved; 1 once it has stood
+                          still for long */
     int width, height; /* of the pictures; 0: none has come */
 };
 
@@ -220,8 +219,8 @@ struct live_steady {
 
 /* Puts the filtered map in place of a map, filtering it when it has not been yet. Returns what
  * refocus_temporal_create() and refocus_temporal_run() do. */
-int live_steady_run(struct live_steady *steady, double strength,
-                    const struct live_depth_map **map, const struct refocus_image *photo);
+int live_steady_run(struct live_steady *steady, double strength, const struct live_depth_map **map,
+                    const struct refocus_image *photo);
 void live_steady_end(struct live_steady *steady);
 
 /* The whole ------------------------------------------------------------------------------- */
@@ -240,17 +239,17 @@ struct live {
     struct refocus_sink *sink;
     struct refocus_calibration *calibration;
     struct live_queue captured, rendered;
-    struct live_queue to_estimate; /* copies of every n-th picture */
+    struct live_queue to_estimate;    /* copies of every n-th picture */
     struct live_estimator *estimator; /* or NULL */
-    int64_t offered, key; /* of the thread that captures */
+    int64_t offered, key;             /* of the thread that captures */
     struct live_depths depths;
     struct live_focus focus;
-    struct live_ranger ranger; /* to the thread of depth */
+    struct live_ranger ranger;  /* to the thread of depth */
     struct live_depth_map wide; /* to the thread that renders */
 
     atomic_bool quit;
-    int wake_fd; /* eventfd: readable when it is over; for the thread of the commands */
-    int command_fd; /* listens on the socket of the commands, or -1 */
+    int wake_fd;          /* eventfd: readable when it is over; for the thread of the commands */
+    int command_fd;       /* listens on the socket of the commands, or -1 */
     sem_t first_commands; /* offline: those that stand on standard input have been read */
     bool socket_is_ours;
     pthread_mutex_t lock;
@@ -288,8 +287,8 @@ int live_estimate_open(struct live *live);
 void live_estimate_close(struct live *live);
 /* Number the picture, and give the network what the frame looks like when its turn is. */
 int live_estimate_offer(struct live *live, struct live_picture *picture,
-                        const struct refocus_frame *frame,
-                        struct refocus_converter *converter, struct refocus_reason *reason);
+                        const struct refocus_frame *frame, struct refocus_converter *converter,
+                        struct refocus_reason *reason);
 void *live_estimate_thread(void *live);
 
 /* live_commands.c: make the socket of the settings, where there is one; an exit code, and

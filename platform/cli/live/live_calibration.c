@@ -7,23 +7,21 @@
 #include <stdlib.h>
 #include "live/live.h"
 
-static bool read_camera(const json_t *root, const char *name,
-                        struct refocus_pinhole *camera)
+static bool read_camera(const json_t *root, const char *name, struct refocus_pinhole *camera)
 {
     int width, height;
 
-    if (json_unpack(json_object_get(root, name), "{s:i, s:i, s:F, s:F, s:F, s:F}",
-                    "width", &width, "height", &height, "fx", &camera->fx, "fy",
-                    &camera->fy, "cx", &camera->cx, "cy", &camera->cy) != 0)
+    if (json_unpack(json_object_get(root, name), "{s:i, s:i, s:F, s:F, s:F, s:F}", "width", &width,
+                    "height", &height, "fx", &camera->fx, "fy", &camera->fy, "cx", &camera->cx,
+                    "cy", &camera->cy) != 0)
         return false;
     camera->width = width;
     camera->height = height;
-    return width > 0 && height > 0 && width <= REFOCUS_MAX_SIDE &&
-           height <= REFOCUS_MAX_SIDE && camera->fx > 0 && camera->fy > 0;
+    return width > 0 && height > 0 && width <= REFOCUS_MAX_SIDE && height <= REFOCUS_MAX_SIDE &&
+           camera->fx > 0 && camera->fy > 0;
 }
 
-static bool read_numbers(const json_t *root, const char *name, int count,
-                         double *values)
+static bool read_numbers(const json_t *root, const char *name, int count, double *values)
 {
     const json_t *array = json_object_get(root, name);
 
@@ -78,8 +76,7 @@ int live_read_calibration(struct refocus_calibration **result, const char *file)
     if (!c)
         status = report_failure(EXIT_FAILED, file, "not enough memory");
     else if (!root)
-        status =
-            report_failure(EXIT_FAILED, file, "%s (line %d)", error.text, error.line);
+        status = report_failure(EXIT_FAILED, file, "%s (line %d)", error.text, error.line);
     else if (wrong)
         status = report_failure(EXIT_FAILED, file, "it lacks a sound %s", wrong);
     json_decref(root);

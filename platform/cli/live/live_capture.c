@@ -32,7 +32,7 @@ struct lane {
     bool doubted;             /* the last frame's time was not believed */
     bool newest_wins;
     int64_t late_ns; /* only over frames that are older than this */
-    bool done; /* nothing else will come */
+    bool done;       /* nothing else will come */
 };
 
 static int64_t ms_since(int64_t then_ns)
@@ -42,9 +42,9 @@ static int64_t ms_since(int64_t then_ns)
 
 static bool can_restart(int status)
 {
-    return status == REFOCUS_ERR_GONE || status == REFOCUS_ERR_IO ||
-           status == REFOCUS_ERR_BUSY || status == REFOCUS_ERR_STATE ||
-           status == REFOCUS_ERR_MEMORY || status == REFOCUS_ERR_PERMISSION;
+    return status == REFOCUS_ERR_GONE || status == REFOCUS_ERR_IO || status == REFOCUS_ERR_BUSY ||
+           status == REFOCUS_ERR_STATE || status == REFOCUS_ERR_MEMORY ||
+           status == REFOCUS_ERR_PERMISSION;
 }
 
 /* Restart until frames can come again; false when it is over or patience ends. */
@@ -204,8 +204,7 @@ static void run_lane(struct lane *lane)
                 live_fail(live, EXIT_FAILED, lane->name, reason.text);
             return;
         }
-        if (status == REFOCUS_ERR_TIMEOUT &&
-            ms_since(fault_ns) > live->settings->patience * 1e3) {
+        if (status == REFOCUS_ERR_TIMEOUT && ms_since(fault_ns) > live->settings->patience * 1e3) {
             live_fail(live, EXIT_FAILED, lane->name, "no frame comes; check the camera");
             return;
         }
@@ -281,8 +280,8 @@ void *live_capture_thread(void *argument)
                         .stage = &live->capture,
                         .last_ns = INT64_MIN,
                         .period_ns = period_of(&live->mode),
-                        .newest_wins = live->settings->policy == POLICY_NEWEST &&
-                                       !live->settings->fast,
+                        .newest_wins =
+                            live->settings->policy == POLICY_NEWEST && !live->settings->fast,
                         .deliver = deliver_colour};
 
     if (refocus_converter_create(&lane.converter) == REFOCUS_OK)
@@ -320,8 +319,8 @@ static int describe(struct lane *lane, const struct refocus_frame *frame,
                     struct refocus_depth_map *map, struct refocus_reason *reason)
 {
     const struct depth_settings *settings = &lane->live->settings->depth;
-    const bool picture = frame->format == REFOCUS_FRAME_GREY ||
-                         strncmp(lane->name, "file:", 5) == 0;
+    const bool picture =
+        frame->format == REFOCUS_FRAME_GREY || strncmp(lane->name, "file:", 5) == 0;
     const char *unit = settings->unit ? settings->unit : picture ? "disparity" : "mm";
 
     memset(map, 0, sizeof *map);
@@ -349,8 +348,8 @@ static int register_map(struct lane *lane, struct refocus_depth_map *map,
         snprintf(reason->text, sizeof reason->text,
                  "--calibration is for distances of %dx%d samples, these are %s of %dx%d",
                  c->depth.width, c->depth.height,
-                 map->meaning == REFOCUS_DEPTH_DISTANCE ? "distances" : "disparities",
-                 map->width, map->height);
+                 map->meaning == REFOCUS_DEPTH_DISTANCE ? "distances" : "disparities", map->width,
+                 map->height);
         return REFOCUS_ERR_ARGUMENT;
     }
     refocus_register_depth(c, lane->samples, map->metres_per_unit, lane->registered);
@@ -429,8 +428,8 @@ void *live_depth_thread(void *argument)
                         .stage = &live->depth,
                         .last_ns = INT64_MIN,
                         .period_ns = period_of(&live->depth_mode),
-                        .newest_wins = live->settings->policy == POLICY_NEWEST &&
-                                       !live->settings->fast,
+                        .newest_wins =
+                            live->settings->policy == POLICY_NEWEST && !live->settings->fast,
                         .deliver = deliver_depth};
     const struct depth_settings *depth = &live->settings->depth;
     const double fps = live->mode.fps > 0 ? live->mode.fps : 30;
@@ -468,8 +467,7 @@ int live_read_fixed_depth(struct live *live)
             to->range = range_of(input.report.near_m, input.report.far_m);
             live_depths_put(&live->depths, to, 0, true);
         } else {
-            status = report_failure(EXIT_FAILED, live->settings->depth.file,
-                                    "not enough memory");
+            status = report_failure(EXIT_FAILED, live->settings->depth.file, "not enough memory");
         }
     }
     input_free(&input);

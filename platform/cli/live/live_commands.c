@@ -11,13 +11,7 @@
 #include "live/live.h"
 #include "live/live_lines.h"
 
-enum {
-    MOST_CLIENTS = 8,
-    WAKE = 0,
-    LISTENER,
-    FIRST,
-    MOST_FDS = FIRST + 1 + MOST_CLIENTS
-};
+enum { MOST_CLIENTS = 8, WAKE = 0, LISTENER, FIRST, MOST_FDS = FIRST + 1 + MOST_CLIENTS };
 
 /* Someone who gives commands: standard input, or one end of a connection. */
 struct client {
@@ -30,8 +24,7 @@ struct client {
 static void answer(const struct client *client, const char *text)
 {
     /* Who does not read answers does without them. */
-    if (client->is_socket &&
-        send(client->fd, text, strlen(text), MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
+    if (client->is_socket && send(client->fd, text, strlen(text), MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
         return;
 }
 
@@ -115,9 +108,8 @@ void *live_command_thread(void *argument)
         hear_first(&clients[0]);
     sem_post(&live->first_commands);
     while (!live_is_over(live) && (clients[0].fd >= 0 || live->command_fd >= 0)) {
-        struct pollfd fds[MOST_FDS] = {
-            [WAKE] = {.fd = live->wake_fd, .events = POLLIN},
-            [LISTENER] = {.fd = live->command_fd, .events = POLLIN}};
+        struct pollfd fds[MOST_FDS] = {[WAKE] = {.fd = live->wake_fd, .events = POLLIN},
+                                       [LISTENER] = {.fd = live->command_fd, .events = POLLIN}};
 
         for (int i = 0; i <= MOST_CLIENTS; i++) /* poll() leaves out what is -1 */
             fds[FIRST + i] = (struct pollfd){.fd = clients[i].fd, .events = POLLIN};
@@ -173,9 +165,7 @@ int live_commands_open(struct live *live)
         unlink(path);
     before = umask(0077); /* for this user alone; no other thread runs yet */
     error =
-        bind(live->command_fd, (const struct sockaddr *)&address, sizeof address) != 0
-            ? errno
-            : 0;
+        bind(live->command_fd, (const struct sockaddr *)&address, sizeof address) != 0 ? errno : 0;
     umask(before);
     live->socket_is_ours = error == 0;
     if (error == 0 && listen(live->command_fd, MOST_CLIENTS) != 0)

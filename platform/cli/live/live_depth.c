@@ -70,8 +70,7 @@ static struct live_depth_map *oldest(struct live_depths *depths)
     return found;
 }
 
-struct live_depth_map *live_depths_fill(struct live_depths *depths, int width,
-                                        int height)
+struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, int height)
 {
     const uint64_t bytes = (uint64_t)width * (uint64_t)height * 2;
     struct live_depth_map *map = NULL;
@@ -94,8 +93,8 @@ struct live_depth_map *live_depths_fill(struct live_depths *depths, int width,
     return map->disparity ? map : NULL;
 }
 
-void live_depths_put(struct live_depths *depths, struct live_depth_map *map,
-                     int64_t timestamp_ns, bool still)
+void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int64_t timestamp_ns,
+                     bool still)
 {
     pthread_mutex_lock(&depths->lock);
     depths->still |= still;
@@ -113,8 +112,7 @@ static bool is_nearer(int64_t a, int64_t b, int64_t time)
 }
 
 /* The map nearest in time, the earlier of two, and the newest. */
-static const struct live_depth_map *nearest(const struct live_depths *depths,
-                                            int64_t time,
+static const struct live_depth_map *nearest(const struct live_depths *depths, int64_t time,
                                             const struct live_depth_map **newest)
 {
     const struct live_depth_map *found = NULL;
@@ -133,9 +131,8 @@ static const struct live_depth_map *nearest(const struct live_depths *depths,
     return found;
 }
 
-const struct live_depth_map *live_depths_pair(struct live_depths *depths,
-                                              int64_t timestamp_ns, int64_t half_ns,
-                                              bool *paired)
+const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
+                                              int64_t half_ns, bool *paired)
 {
     const struct live_depth_map *map, *newest;
     struct timespec until;
@@ -152,15 +149,13 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths,
     pthread_cond_broadcast(&depths->changed);
     for (;;) {
         map = nearest(depths, timestamp_ns, &newest);
-        *paired = map &&
-                  (depths->still || llabs(map->timestamp_ns - timestamp_ns) <= half_ns);
+        *paired = map && (depths->still || llabs(map->timestamp_ns - timestamp_ns) <= half_ns);
         /* A newer map that does not fit says that none will. */
         if (*paired || depths->ended || error == ETIMEDOUT ||
             (newest && newest->timestamp_ns > timestamp_ns + half_ns))
             break;
-        error = depths->every
-                    ? pthread_cond_wait(&depths->changed, &depths->lock)
-                    : pthread_cond_timedwait(&depths->changed, &depths->lock, &until);
+        error = depths->every ? pthread_cond_wait(&depths->changed, &depths->lock)
+                              : pthread_cond_timedwait(&depths->changed, &depths->lock, &until);
     }
     if (!*paired && !depths->every)
         map = newest;

@@ -27,17 +27,15 @@ int live_estimate_parse(struct live_estimate_settings *settings, const char *dep
     char *comma;
 
     *settings = (struct live_estimate_settings){.every = 1};
-    if (snprintf(settings->model, sizeof settings->model, "%s",
-                 depth + strlen(prefix)) >= (int)sizeof settings->model)
-        return report_failure(EXIT_WRONG, "--depth",
-                              "the name of the model is too long");
+    if (snprintf(settings->model, sizeof settings->model, "%s", depth + strlen(prefix)) >=
+        (int)sizeof settings->model)
+        return report_failure(EXIT_WRONG, "--depth", "the name of the model is too long");
     while ((comma = strrchr(settings->model, ','))) {
         char *end;
 
         if (strncmp(comma, ",every=", 7) == 0) {
             settings->every = strtol(comma + 7, &end, 10);
-            if (end == comma + 7 || *end || settings->every < 1 ||
-                settings->every > 1000000)
+            if (end == comma + 7 || *end || settings->every < 1 || settings->every > 1000000)
                 return report_failure(EXIT_WRONG, "--depth",
                                       "'%.40s' is no number of frames; "
                                       "give every=1 or more",
@@ -88,8 +86,8 @@ int live_estimate_open(struct live *live)
     if (status == REFOCUS_OK)
         status = refocus_cv_network_fit(&network, settings->model, &reason);
     if (status == REFOCUS_OK)
-        status = refocus_cv_estimator_create(&estimator->network, settings->model,
-                                             &network, &reason);
+        status =
+            refocus_cv_estimator_create(&estimator->network, settings->model, &network, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, settings->model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -113,8 +111,7 @@ static int compare(const void *a, const void *b)
 }
 
 /* Between the tails of the values, smoothed from map to map. */
-static int find_range(struct live_estimator *estimator,
-                      const struct refocus_estimate *estimate)
+static int find_range(struct live_estimator *estimator, const struct refocus_estimate *estimate)
 {
     const size_t all = (size_t)estimate->width * (size_t)estimate->height;
     const size_t step = all / 10000 + 1;
@@ -156,8 +153,7 @@ static void to_disparity(const struct live_estimator *estimator,
         const double value = (double)estimate->samples[i];
         const double d = range > 0 ? (value - estimator->least) / range : 0.5;
 
-        disparity[i] =
-            (uint16_t)(d > 0 ? d < 1 ? d * 65535 + 0.5 : 65535 : 0); /* NaN: 0 */
+        disparity[i] = (uint16_t)(d > 0 ? d < 1 ? d * 65535 + 0.5 : 65535 : 0); /* NaN: 0 */
     }
 }
 
@@ -167,8 +163,8 @@ static int estimate_one(struct live *live, const struct live_picture *picture,
     const int64_t begin = live_now_ns();
     struct refocus_estimate estimate = {NULL, 0, 0};
     struct live_depth_map *to = NULL;
-    int status = refocus_cv_estimator_run(live->estimator->network, &picture->image,
-                                          &estimate, reason);
+    int status =
+        refocus_cv_estimator_run(live->estimator->network, &picture->image, &estimate, reason);
     double ms;
 
     if (status == REFOCUS_OK)
@@ -238,8 +234,7 @@ static int copy_rgb(const struct live_picture *picture, const struct refocus_fra
     struct refocus_frame own = *frame;
 
     if (from->format == REFOCUS_FORMAT_RGB8) {
-        memcpy(out->plane[0], from->plane[0],
-               (size_t)from->stride[0] * (size_t)from->height);
+        memcpy(out->plane[0], from->plane[0], (size_t)from->stride[0] * (size_t)from->height);
         return REFOCUS_OK;
     }
     if (own.format == REFOCUS_FRAME_UYVY)
@@ -252,16 +247,16 @@ static int copy_rgb(const struct live_picture *picture, const struct refocus_fra
 }
 
 int live_estimate_offer(struct live *live, struct live_picture *picture,
-                        const struct refocus_frame *frame,
-                        struct refocus_converter *converter, struct refocus_reason *reason)
+                        const struct refocus_frame *frame, struct refocus_converter *converter,
+                        struct refocus_reason *reason)
 {
     const struct refocus_image *from = &picture->image;
     int status = REFOCUS_OK;
     bool memory;
 
     if (live->offered++ % live->settings->estimate.every == 0) {
-        struct live_picture *copy = live_queue_fill(
-            &live->to_estimate, REFOCUS_FORMAT_RGB8, from->width, from->height, &memory);
+        struct live_picture *copy = live_queue_fill(&live->to_estimate, REFOCUS_FORMAT_RGB8,
+                                                    from->width, from->height, &memory);
 
         if (copy && memory)
             status = copy_rgb(picture, frame, converter, &copy->image, reason);

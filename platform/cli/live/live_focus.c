@@ -39,9 +39,9 @@ static double disparity_of(const struct live_focus *focus, const struct live_tar
 /* How far the pull is, 0 to 1: eased, so that it neither starts nor ends with a jerk. */
 static double progress(const struct live_focus *focus)
 {
-    const double t = focus->duration_ns > 0 ? (double)(focus->now_ns - focus->begin_ns) /
-                                                  (double)focus->duration_ns
-                                            : 1;
+    const double t = focus->duration_ns > 0
+                         ? (double)(focus->now_ns - focus->begin_ns) / (double)focus->duration_ns
+                         : 1;
 
     if (!focus->begun && focus->duration_ns > 0)
         return 0;
@@ -166,8 +166,8 @@ void live_focus_found(struct live_focus *focus, const double point[2], double di
         target[i]->dioptres = live_range_is_known(&focus->range);
         target[i]->value = clamp(disparity);
         if (target[i]->dioptres)
-            target[i]->value = focus->range.far +
-                               target[i]->value * (focus->range.near - focus->range.far);
+            target[i]->value =
+                focus->range.far + target[i]->value * (focus->range.near - focus->range.far);
     }
     pthread_mutex_unlock(&focus->lock);
 }
@@ -213,21 +213,22 @@ static bool parse_values(const char *text, int count, double values[2], double *
 
 static bool is_inside(const struct live_focus *focus, const double at[2])
 {
-    return !focus->width || (at[0] >= 0 && at[0] < focus->width && at[1] >= 0 &&
-                             at[1] < focus->height);
+    return !focus->width ||
+           (at[0] >= 0 && at[0] < focus->width && at[1] >= 0 && at[1] < focus->height);
 }
 
-static bool apply(struct live_focus *focus, const char *word, const char *rest,
-                  char *why, size_t size)
+static bool apply(struct live_focus *focus, const char *word, const char *rest, char *why,
+                  size_t size)
 {
     const bool point = strcmp(word, "focus-at") == 0 || strcmp(word, "pull-at") == 0;
     double values[2] = {0, 0}, seconds = strncmp(word, "pull", 4) == 0 ? 1 : 0;
     struct live_target target = {.known = !point};
 
-    if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 &&
-        strcmp(word, "pull") != 0 && !point) {
-        snprintf(why, size, "unknown; give focus D, focus-at X,Y, pull D SECONDS, "
-                            "pull-at X,Y SECONDS, blur K or quit");
+    if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 && strcmp(word, "pull") != 0 &&
+        !point) {
+        snprintf(why, size,
+                 "unknown; give focus D, focus-at X,Y, pull D SECONDS, "
+                 "pull-at X,Y SECONDS, blur K or quit");
         return false;
     }
     if (!parse_values(rest, point ? 2 : 1, values, &seconds)) {
@@ -237,8 +238,8 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest,
     }
     if (strcmp(word, "blur") == 0) {
         if (!(values[0] >= 0 && values[0] <= focus->blur_most)) {
-            snprintf(why, size, "%g is out of 0 to %g; give --blur-most for more",
-                     values[0], focus->blur_most);
+            snprintf(why, size, "%g is out of 0 to %g; give --blur-most for more", values[0],
+                     focus->blur_most);
             return false;
         }
         focus->blur = values[0];
@@ -261,8 +262,8 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest,
     return true;
 }
 
-bool live_focus_command(struct live_focus *focus, const char *line, bool *quit,
-                        char *why, size_t size)
+bool live_focus_command(struct live_focus *focus, const char *line, bool *quit, char *why,
+                        size_t size)
 {
     char word[16];
     size_t n;

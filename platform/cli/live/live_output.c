@@ -13,8 +13,7 @@ static bool reopen(struct live *live, const struct refocus_image *image,
     refocus_sink_close(&live->sink, NULL);
     while (!live_is_over(live)) {
         if (refocus_sink_open(&live->sink, live->settings->out, reason) == REFOCUS_OK &&
-            refocus_sink_start_image(live->sink, image, live->mode.fps, reason) ==
-                REFOCUS_OK) {
+            refocus_sink_start_image(live->sink, image, live->mode.fps, reason) == REFOCUS_OK) {
             live->output.recoveries++;
             return true;
         }
@@ -61,10 +60,8 @@ static bool write_picture(struct live *live, const struct live_picture *picture,
     }
     if (status == REFOCUS_OK) {
         live->last_out_ns = live_now_ns();
-        live->first_out_ns =
-            live->first_out_ns ? live->first_out_ns : live->last_out_ns;
-        live_times_add(&live->latency,
-                       (double)(live->last_out_ns - picture->taken_ns) / 1e6);
+        live->first_out_ns = live->first_out_ns ? live->first_out_ns : live->last_out_ns;
+        live_times_add(&live->latency, (double)(live->last_out_ns - picture->taken_ns) / 1e6);
         atomic_fetch_add(&live->frames_out, 1);
         return true;
     }

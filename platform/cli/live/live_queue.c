@@ -42,8 +42,7 @@ void live_queue_close(struct live_queue *queue)
     pthread_mutex_unlock(&queue->lock);
 }
 
-static bool reserve(struct live_picture *picture, uint32_t format, int width,
-                    int height)
+static bool reserve(struct live_picture *picture, uint32_t format, int width, int height)
 {
     const uint64_t bytes = refocus_image_bytes(format, width, height);
     uint8_t *memory = picture->image.plane[0];
@@ -60,15 +59,14 @@ static bool reserve(struct live_picture *picture, uint32_t format, int width,
     return memory != NULL;
 }
 
-struct live_picture *live_queue_fill(struct live_queue *queue, uint32_t format,
-                                     int width, int height, bool *memory)
+struct live_picture *live_queue_fill(struct live_queue *queue, uint32_t format, int width,
+                                     int height, bool *memory)
 {
     struct live_picture *picture = NULL;
 
     pthread_mutex_lock(&queue->lock);
     while (!queue->closed &&
-           (queue->free_count == 0 ||
-            (!queue->newest_wins && queue->full_count >= queue->most)))
+           (queue->free_count == 0 || (!queue->newest_wins && queue->full_count >= queue->most)))
         pthread_cond_wait(&queue->changed, &queue->lock);
     if (!queue->closed)
         picture = &queue->slot[queue->free[--queue->free_count]];

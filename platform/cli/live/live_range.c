@@ -10,7 +10,7 @@ enum { CODES = 65536, MOST_LOOKS = 40000, TAIL = 1024 };
 /* Shares of the range, seconds, and e-foldings of the range a second. */
 static const double clipped_most = 0.02, unused_most = 0.06, there = 0.002;
 static const double outward_s = 0.1, outward_rate = 4, patience_s = 1, inward_s = 1.5;
-static const double longest_s = 0.25; /* the longest step in time, after a gap in the depth */
+static const double longest_s = 0.25;   /* the longest step in time, after a gap in the depth */
 static const double least_ratio = 1.05; /* farthest / nearest distance, at least */
 
 static uint16_t middle(uint16_t a, uint16_t b, uint16_t c)

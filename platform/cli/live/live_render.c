@@ -6,8 +6,8 @@
 /* A renderer for pictures of this size; the old one goes. */
 static bool fit_renderer(struct live *live, int width, int height)
 {
-    struct refocus_renderer_params params = refocus_renderer_params_default(
-        width, height, (float)live->focus.blur_most);
+    struct refocus_renderer_params params =
+        refocus_renderer_params_default(width, height, (float)live->focus.blur_most);
     const int64_t begin = live_now_ns();
     char why[256];
     int status;
@@ -78,8 +78,8 @@ static int refocus(struct live *live, const struct live_picture *picture,
     status = live_range_widen(&live->wide, &map, &live->range);
     if (status != REFOCUS_OK)
         return status;
-    disparity = refocus_disparity16(map->disparity, map->width, map->height,
-                                    (ptrdiff_t)map->width * 2);
+    disparity =
+        refocus_disparity16(map->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
     status = refocus_prepare(live->engine->renderer, &picture->image, &disparity);
     if (status != REFOCUS_OK)
         return status;
@@ -95,8 +95,7 @@ static int refocus(struct live *live, const struct live_picture *picture,
 }
 
 /* The depth of a picture, or NULL; counts which it was. */
-static const struct live_depth_map *pair(struct live *live,
-                                         const struct live_picture *picture)
+static const struct live_depth_map *pair(struct live *live, const struct live_picture *picture)
 {
     const double fps = live->mode.fps > 0 ? live->mode.fps : 30;
     const int64_t begin = live_now_ns();
@@ -106,8 +105,8 @@ static const struct live_depth_map *pair(struct live *live,
     if (live->estimator) /* by number, and the newest that there is serves at once */
         map = live_depths_pair(&live->depths, picture->key, 0, &paired);
     else
-        map = live_depths_pair(&live->depths, picture->timestamp_ns,
-                               (int64_t)(0.5e9 / fps) + 1, &paired);
+        map = live_depths_pair(&live->depths, picture->timestamp_ns, (int64_t)(0.5e9 / fps) + 1,
+                               &paired);
     live_times_add(&live->pair.times, (double)(live_now_ns() - begin) / 1e6);
     if (!map)
         live->without_depth++;
@@ -142,8 +141,7 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
         size[0] = width;
         size[1] = height;
     }
-    out =
-        live_queue_fill(&live->rendered, picture->image.format, width, height, &memory);
+    out = live_queue_fill(&live->rendered, picture->image.format, width, height, &memory);
     if (!out)
         return false;
     out->image.matrix = picture->image.matrix;
@@ -152,8 +150,7 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     if (status != REFOCUS_OK) {
         live_queue_return(&live->rendered, out);
         if (status != REFOCUS_ERR_CANCELLED)
-            live_fail(live, EXIT_FAILED, live->settings->camera,
-                      refocus_strerror(status));
+            live_fail(live, EXIT_FAILED, live->settings->camera, refocus_strerror(status));
         return false;
     }
     out->timestamp_ns = picture->timestamp_ns;

@@ -4,12 +4,11 @@
 
 static json_t *stage_json(const struct live_stage *stage)
 {
-    return json_pack(
-        "{s:I, s:I, s:I, s:I, s:I, s:I, s:f}", "frames", (json_int_t)stage->frames,
-        "corrupt", (json_int_t)stage->corrupt, "damaged", (json_int_t)stage->damaged,
-        "reordered", (json_int_t)stage->reordered, "timeouts",
-        (json_int_t)stage->timeouts, "recoveries", (json_int_t)stage->recoveries,
-        "worst_recovery_ms", stage->worst_recovery_ms);
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:f}", "frames", (json_int_t)stage->frames,
+                     "corrupt", (json_int_t)stage->corrupt, "damaged", (json_int_t)stage->damaged,
+                     "reordered", (json_int_t)stage->reordered, "timeouts",
+                     (json_int_t)stage->timeouts, "recoveries", (json_int_t)stage->recoveries,
+                     "worst_recovery_ms", stage->worst_recovery_ms);
 }
 
 static double mean(const struct live_stage *stage)
@@ -69,29 +68,25 @@ int live_report(struct live *live)
         "{s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, "
         "s:f, s:f}",
         "camera", report_text_json(settings->camera), "format",
-        refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width,
-        "height", (int)live->mode.height, "frames_in", (json_int_t)live->capture.frames,
-        "frames_out", (json_int_t)out, "dropped", (json_int_t)dropped, "camera_dropped",
-        (json_int_t)counters.dropped, "sink_dropped", (json_int_t)live->sink_dropped,
-        "paired", (json_int_t)live->paired, "unpaired", (json_int_t)live->unpaired,
-        "without_depth", (json_int_t)live->without_depth, "commands",
-        (json_int_t)live->commands, "fps", fps, "latency_ms",
-        live_times_json(&live->latency), "outside_rendering", outside_rendering(live),
+        refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width, "height",
+        (int)live->mode.height, "frames_in", (json_int_t)live->capture.frames, "frames_out",
+        (json_int_t)out, "dropped", (json_int_t)dropped, "camera_dropped",
+        (json_int_t)counters.dropped, "sink_dropped", (json_int_t)live->sink_dropped, "paired",
+        (json_int_t)live->paired, "unpaired", (json_int_t)live->unpaired, "without_depth",
+        (json_int_t)live->without_depth, "commands", (json_int_t)live->commands, "fps", fps,
+        "latency_ms", live_times_json(&live->latency), "outside_rendering", outside_rendering(live),
         "create_ms", live->create_ms);
     if (json) {
-        json_object_set_new(json, "rendered_in",
-                            json_string(rendered_in(live->rendered_format)));
+        json_object_set_new(json, "rendered_in", json_string(rendered_in(live->rendered_format)));
         json_object_set_new(json, "colour", stage_json(&live->capture));
         if (live->depth_camera || live->estimator)
             json_object_set_new(json, "depth", stage_json(&live->depth));
         json_object_set_new(json, "dropped_rendered", /* of "dropped" */
                             json_integer((json_int_t)dropped_rendered));
-        json_object_set_new(json, "buffers_lost",
-                            json_integer((json_int_t)counters.lost));
+        json_object_set_new(json, "buffers_lost", json_integer((json_int_t)counters.lost));
         json_object_set_new(json, "sink_recoveries",
                             json_integer((json_int_t)live->output.recoveries));
-        json_object_set_new(json, "lens_dioptres",
-                            report_number_json(live->lens_dioptres));
+        json_object_set_new(json, "lens_dioptres", report_number_json(live->lens_dioptres));
         /* Of the last frame, as render says it. */
         json_object_set_new(json, "focus", report_number_json(live->focus_disparity));
         json_object_set_new(json, "blur", report_number_json(live->blur));

@@ -23,8 +23,7 @@ double live_times_quantile(const struct live_times *times, double share)
     for (int i = 0; i < LIVE_BINS; i++) {
         passed += times->bin[i];
         if (passed > 0 && (double)passed >= rank)
-            return fmin(fmax(first_ms * pow(width, i + 0.5), times->min_ms),
-                        times->max_ms);
+            return fmin(fmax(first_ms * pow(width, i + 0.5), times->min_ms), times->max_ms);
     }
     return times->max_ms;
 }
@@ -34,7 +33,6 @@ json_t *live_times_json(const struct live_times *times)
     if (times->count == 0)
         return json_null();
     return json_pack("{s:f, s:f, s:f, s:f, s:f}", "min", times->min_ms, "median",
-                     live_times_quantile(times, 0.5), "p99",
-                     live_times_quantile(times, 0.99), "max", times->max_ms, "mean",
-                     times->sum_ms / (double)times->count);
+                     live_times_quantile(times, 0.5), "p99", live_times_quantile(times, 0.99),
+                     "max", times->max_ms, "mean", times->sum_ms / (double)times->count);
 }

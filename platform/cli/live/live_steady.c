@@ -8,8 +8,7 @@ static int fit(struct live_steady *steady, double strength, const struct live_de
         refocus_temporal_params_default(map->width, map->height);
     int status;
 
-    if (steady->filter && steady->map.width == map->width &&
-        steady->map.height == map->height)
+    if (steady->filter && steady->map.width == map->width && steady->map.height == map->height)
         return REFOCUS_OK;
     live_steady_end(steady);
     params.strength = (float)strength;
@@ -36,8 +35,8 @@ static int follow_range(struct live_steady *steady, const struct live_range *ran
                                     (was.far - range->far) / span);
 }
 
-int live_steady_run(struct live_steady *steady, double strength,
-                    const struct live_depth_map **map, const struct refocus_image *photo)
+int live_steady_run(struct live_steady *steady, double strength, const struct live_depth_map **map,
+                    const struct refocus_image *photo)
 {
     const struct live_depth_map *const from = *map;
     const ptrdiff_t stride = (ptrdiff_t)from->width * 2;

@@ -20,7 +20,7 @@ enum kind { KIND_NONE, KIND_PICTURES, KIND_Y4M, KIND_APNG, KIND_ENCODER };
 struct animation {
     enum kind kind;
     char path[PATH_MAX], temporary[PATH_MAX];
-    int frames; /* written */
+    int frames;   /* written */
     long process; /* process number of the encoder, or -1 */
     struct refocus_sink *sink;
     struct apng *apng;
@@ -74,13 +74,14 @@ static bool frame_name(const struct animation *a, int i, char name[PATH_MAX])
 
 int animation_check(const char *path, const char *const *inputs, int input_count)
 {
-    static const char *const endings[] = {".png", ".jpg", ".jpeg", ".ppm", ".y4m",
-                                          ".apng", ".mp4", ".gif", ".webm", NULL};
+    static const char *const endings[] = {".png",  ".jpg", ".jpeg", ".ppm",  ".y4m",
+                                          ".apng", ".mp4", ".gif",  ".webm", NULL};
     const enum kind kind = path ? kind_of(path) : KIND_NONE;
 
     if (path && strlen(path) + 64 > PATH_MAX)
-        return report_failure(EXIT_FAILED, path, "the name is too long; give a shorter "
-                                                 "one");
+        return report_failure(EXIT_FAILED, path,
+                              "the name is too long; give a shorter "
+                              "one");
     if (path && kind == KIND_NONE)
         return report_failure(EXIT_WRONG, path,
                               "no such animation is written; give frames-%%03d.png, "
@@ -101,8 +102,8 @@ static void name_temporary(struct animation *a)
     const char *slash = strrchr(place, '/'), *dot = strrchr(a->path, '.');
     const int folder = slash ? (int)(slash + 1 - place) : 0;
 
-    snprintf(a->temporary, sizeof a->temporary, "%.*s.refocus-%ld.tmp%.8s", folder,
-             place, (long)getpid(), dot);
+    snprintf(a->temporary, sizeof a->temporary, "%.*s.refocus-%ld.tmp%.8s", folder, place,
+             (long)getpid(), dot);
     free(real);
 }
 
@@ -134,8 +135,8 @@ static void abandon(void *of)
     take_away(a);
 }
 
-int animation_open(struct animation **animation, const char *path, int width,
-                   int height, double fps, int frames)
+int animation_open(struct animation **animation, const char *path, int width, int height,
+                   double fps, int frames)
 {
     struct animation *a = calloc(1, sizeof *a);
     struct refocus_reason reason = {{0}};
@@ -173,8 +174,9 @@ static int write_picture(struct animation *a, const struct refocus_image *image,
     char name[PATH_MAX];
 
     if (!frame_name(a, a->frames, name)) {
-        snprintf(reason->text, sizeof reason->text, "the name is too long; give a "
-                                                    "shorter one");
+        snprintf(reason->text, sizeof reason->text,
+                 "the name is too long; give a "
+                 "shorter one");
         return REFOCUS_ERR_ARGUMENT;
     }
     return refocus_image_write(name, image, NULL, reason);

@@ -20,8 +20,8 @@ struct animation;
 /* Before the work: whether such files can be written. */
 int animation_check(const char *path, const char *const *inputs, int input_count);
 
-int animation_open(struct animation **animation, const char *path, int width,
-                   int height, double fps, int frames);
+int animation_open(struct animation **animation, const char *path, int width, int height,
+                   double fps, int frames);
 
 /* RGB8 of the size that was announced. */
 int animation_write(struct animation *animation, const struct refocus_image *image);

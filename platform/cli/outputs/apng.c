@@ -26,8 +26,7 @@ static void put32(uint8_t *to, uint32_t v)
 
 static uint32_t get32(const uint8_t *from)
 {
-    return (uint32_t)from[0] << 24 | (uint32_t)from[1] << 16 | (uint32_t)from[2] << 8 |
-           from[3];
+    return (uint32_t)from[0] << 24 | (uint32_t)from[1] << 16 | (uint32_t)from[2] << 8 | from[3];
 }
 
 /* CRC-32 of PNG, a bit at a time. */
@@ -47,8 +46,8 @@ static bool put(struct apng *a, const void *bytes, size_t size)
 }
 
 /* A chunk whose data are two runs of bytes. */
-static bool put_chunk(struct apng *a, const char *type, const uint8_t *first,
-                      size_t first_size, const uint8_t *second, size_t second_size)
+static bool put_chunk(struct apng *a, const char *type, const uint8_t *first, size_t first_size,
+                      const uint8_t *second, size_t second_size)
 {
     uint8_t head[8], tail[4];
     uint32_t crc;
@@ -59,8 +58,8 @@ static bool put_chunk(struct apng *a, const char *type, const uint8_t *first,
     crc = crc_of(crc, first, first_size);
     crc = crc_of(crc, second, second_size);
     put32(tail, ~crc);
-    return put(a, head, 8) && put(a, first, first_size) &&
-           put(a, second, second_size) && put(a, tail, 4);
+    return put(a, head, 8) && put(a, first, first_size) && put(a, second, second_size) &&
+           put(a, tail, 4);
 }
 
 static int cannot_write(struct refocus_reason *reason)
@@ -70,8 +69,8 @@ static int cannot_write(struct refocus_reason *reason)
     return REFOCUS_ERR_IO;
 }
 
-int apng_open(struct apng **apng, const char *path, int width, int height, double fps,
-              int frames, struct refocus_reason *reason)
+int apng_open(struct apng **apng, const char *path, int width, int height, double fps, int frames,
+              struct refocus_reason *reason)
 {
     struct apng *a = calloc(1, sizeof *a);
     const double ms = 1000 / fps + 0.5;
@@ -85,8 +84,7 @@ int apng_open(struct apng **apng, const char *path, int width, int height, doubl
     a->height = height;
     a->frames = frames;
     a->milliseconds = (uint16_t)(ms < 1 ? 1 : ms > 65535 ? 65535 : ms);
-    if (snprintf(a->picture, sizeof a->picture, "%s.png", path) >=
-        (int)sizeof a->picture) {
+    if (snprintf(a->picture, sizeof a->picture, "%s.png", path) >= (int)sizeof a->picture) {
         snprintf(reason->text, sizeof reason->text, "the name is too long");
         return REFOCUS_ERR_ARGUMENT;
     }
@@ -134,8 +132,8 @@ static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
             put32(number, a->sequence);
             if (a->written > 0)
                 a->sequence++;
-            if (!put_chunk(a, a->written > 0 ? "fdAT" : "IDAT", number,
-                           a->written > 0 ? 4 : 0, png + at + 8, length))
+            if (!put_chunk(a, a->written > 0 ? "fdAT" : "IDAT", number, a->written > 0 ? 4 : 0,
+                           png + at + 8, length))
                 return false;
         }
         at += length + CHUNK_REST;
@@ -143,8 +141,7 @@ static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
     return true;
 }
 
-int apng_write(struct apng *a, const struct refocus_image *image,
-               struct refocus_reason *reason)
+int apng_write(struct apng *a, const struct refocus_image *image, struct refocus_reason *reason)
 {
     struct refocus_blob png = {NULL, 0};
     const struct refocus_write_options options = {.unsynced = 1};

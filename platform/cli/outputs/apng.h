@@ -9,10 +9,9 @@
 struct apng;
 
 /* Status codes; reason has the words. apng_close() frees, whatever came before. */
-int apng_open(struct apng **apng, const char *path, int width, int height, double fps,
-              int frames, struct refocus_reason *reason);
-int apng_write(struct apng *apng, const struct refocus_image *image,
-               struct refocus_reason *reason);
+int apng_open(struct apng **apng, const char *path, int width, int height, double fps, int frames,
+              struct refocus_reason *reason);
+int apng_write(struct apng *apng, const struct refocus_image *image, struct refocus_reason *reason);
 int apng_close(struct apng *apng, struct refocus_reason *reason);
 
 #endif

@@ -27,8 +27,9 @@ bool encoder_is_there(void)
         const int length = (int)strcspn(path, ":");
         char name[PATH_MAX];
 
-        if (length > 0 && snprintf(name, sizeof name, "%.*s/ffmpeg", length, path) <
-                              (int)sizeof name && access(name, X_OK) == 0)
+        if (length > 0 &&
+            snprintf(name, sizeof name, "%.*s/ffmpeg", length, path) < (int)sizeof name &&
+            access(name, X_OK) == 0)
             return true;
         path += length + (path[length] == ':');
     }
@@ -59,19 +60,17 @@ static int start(struct encoder *e, int read_end, char *const *arguments)
 
         sigemptyset(&none);
         posix_spawnattr_setsigmask(&attributes, &none);
-        posix_spawnattr_setflags(&attributes,
-                                 POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
         posix_spawnattr_setpgroup(&attributes, 0);
-        error = posix_spawnp(&e->process, "ffmpeg", &files, &attributes, arguments,
-                             environ);
+        error = posix_spawnp(&e->process, "ffmpeg", &files, &attributes, arguments, environ);
         posix_spawnattr_destroy(&attributes);
     }
     posix_spawn_file_actions_destroy(&files);
     return error;
 }
 
-int encoder_open(struct encoder **encoder, const char *path, int width, int height,
-                 double fps, struct refocus_reason *reason)
+int encoder_open(struct encoder **encoder, const char *path, int width, int height, double fps,
+                 struct refocus_reason *reason)
 {
     /* Sides of 4:2:0 are even; the one more row or column repeats the last. */
     static char even[] = "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p";

@@ -12,8 +12,8 @@ struct encoder;
 bool encoder_is_there(void);
 
 /* Status codes; reason has the words. */
-int encoder_open(struct encoder **encoder, const char *path, int width, int height,
-                 double fps, struct refocus_reason *reason);
+int encoder_open(struct encoder **encoder, const char *path, int width, int height, double fps,
+                 struct refocus_reason *reason);
 int encoder_write(struct encoder *encoder, const struct refocus_image *image,
                   struct refocus_reason *reason);
 

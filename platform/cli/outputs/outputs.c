@@ -19,10 +19,14 @@ static int check_ending(const char *path, const char *const *endings)
         if (length > n && strcasecmp(path + length - n, endings[i]) == 0)
             return EXIT_DONE;
         snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
-                 i == 0 ? "" : endings[i + 1] ? ", " : " or ", endings[i]);
+                 i == 0           ? ""
+                 : endings[i + 1] ? ", "
+                                  : " or ",
+                 endings[i]);
     }
-    return report_failure(EXIT_WRONG, path, "no such format is written; end the name "
-                                            "in %s",
+    return report_failure(EXIT_WRONG, path,
+                          "no such format is written; end the name "
+                          "in %s",
                           words);
 }
 
@@ -34,10 +38,10 @@ static int check_folder_of(const char *path, const char *name)
     const int length = slash ? (int)(slash - path) : 0;
 
     if (slash && length >= (int)sizeof folder)
-        return report_failure(EXIT_FAILED, name, "the name is too long; give a shorter "
-                                                 "one");
-    snprintf(folder, sizeof folder, "%.*s", slash ? (length ? length : 1) : 1,
-             slash ? path : ".");
+        return report_failure(EXIT_FAILED, name,
+                              "the name is too long; give a shorter "
+                              "one");
+    snprintf(folder, sizeof folder, "%.*s", slash ? (length ? length : 1) : 1, slash ? path : ".");
     if (access(folder, W_OK | X_OK) != 0)
         return report_failure(EXIT_FAILED, name,
                               "the folder %s cannot be written to (%s); give another "
@@ -56,8 +60,8 @@ static int check_folder(const char *path)
     return status;
 }
 
-int output_check(const char *path, const char *const *endings,
-                 const char *const *inputs, int input_count)
+int output_check(const char *path, const char *const *endings, const char *const *inputs,
+                 int input_count)
 {
     struct stat out, in;
     int status;
@@ -70,8 +74,9 @@ int output_check(const char *path, const char *const *endings,
     if (stat(path, &out) != 0)
         return check_folder(path);
     if (S_ISDIR(out.st_mode))
-        return report_failure(EXIT_FAILED, path, "it is a folder; give the name of a "
-                                                 "file");
+        return report_failure(EXIT_FAILED, path,
+                              "it is a folder; give the name of a "
+                              "file");
     for (int i = 0; i < input_count; i++)
         if (inputs[i] && stat(inputs[i], &in) == 0 && in.st_dev == out.st_dev &&
             in.st_ino == out.st_ino)
@@ -110,8 +115,7 @@ int output_write_image(const char *path, const struct refocus_image *image,
     return written(status, path, &reason);
 }
 
-int output_write_gray16(const char *path, const uint16_t *samples, int width,
-                        int height)
+int output_write_gray16(const char *path, const uint16_t *samples, int width, int height)
 {
     struct refocus_reason reason = {""};
     int status;

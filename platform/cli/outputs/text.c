@@ -74,9 +74,7 @@ void text_draw(const struct refocus_image *image, int left, int top, int zoom, i
         for (int y = 0; y < GLYPH_HEIGHT * zoom; y++)
             for (int x = 0; x < GLYPH_WIDTH * zoom && x < room; x++)
                 if (text_dot(letter, x / zoom, y / zoom))
-                    memset(image->plane[0] + (top + y) * image->stride[0] +
-                               3 * (left + x),
-                           INK, 3);
+                    memset(image->plane[0] + (top + y) * image->stride[0] + 3 * (left + x), INK, 3);
         left += (GLYPH_WIDTH + 1) * zoom;
         room -= (GLYPH_WIDTH + 1) * zoom;
     }

@@ -16,19 +16,16 @@ struct preset {
 
 static const struct preset presets[] = {
     {"plain", "a perfect lens, the default", "disc", 0, 1, 0, 0, 0, 0, 0, 0},
-    {"classic", "seven blades, a little curved; discs narrower in the corners",
-     "polygon:7:90", 0.4, 1, 0, 0.1, -0.1, 0.3, 0, 0},
-    {"smooth", "discs that fade out, as behind an apodizing filter", "disc", 0, 1, 0,
-     -1, -1, 0, 0, 0},
-    {"bubble", "discs with bright rims behind the focus", "disc", 0, 1, 0, 0.7, -0.7,
-     0.2, 0, 0},
+    {"classic", "seven blades, a little curved; discs narrower in the corners", "polygon:7:90", 0.4,
+     1, 0, 0.1, -0.1, 0.3, 0, 0},
+    {"smooth", "discs that fade out, as behind an apodizing filter", "disc", 0, 1, 0, -1, -1, 0, 0,
+     0},
+    {"bubble", "discs with bright rims behind the focus", "disc", 0, 1, 0, 0.7, -0.7, 0.2, 0, 0},
     {"ring", "rings, as of a mirror lens", "disc", 0, 1, 0.45, 0, 0, 0, 0, 0},
-    {"swirl", "cat's eyes that turn around the middle", "disc", 0, 1, 0, 0.35, -0.35,
-     0.65, 0, 0},
-    {"cine", "upright ovals, as of an anamorphic lens", "disc", 0, 0.55, 0, 0, 0, 0.2,
-     0, 0},
-    {"vintage", "six blades, bright rims, colour at the rims", "polygon:6:90", 0.25, 1,
-     0, 0.4, -0.4, 0.35, 0.08, 0},
+    {"swirl", "cat's eyes that turn around the middle", "disc", 0, 1, 0, 0.35, -0.35, 0.65, 0, 0},
+    {"cine", "upright ovals, as of an anamorphic lens", "disc", 0, 0.55, 0, 0, 0, 0.2, 0, 0},
+    {"vintage", "six blades, bright rims, colour at the rims", "polygon:6:90", 0.25, 1, 0, 0.4,
+     -0.4, 0.35, 0.08, 0},
     {"heart", "hearts", "heart", 0, 1, 0, 0, 0, 0, 0, 0},
     {"star", "five-pointed stars", "star", 0, 1, 0, 0, 0, 0, 0, 0},
     {"sparkle", "spikes on lamps, as of a star filter", "disc", 0, 1, 0, 0, 0, 0, 0, 6},
@@ -66,8 +63,7 @@ static int parse_polygon(const char *shape, struct refocus_aperture_params *para
     if (errno == 0 && end != shape + strlen("polygon:") && *end == ':') {
         const char *number = end + 1;
 
-        degrees = number[strspn(number, "+-.0123456789")] == '\0' ? strtod(number, &end)
-                                                                  : NAN;
+        degrees = number[strspn(number, "+-.0123456789")] == '\0' ? strtod(number, &end) : NAN;
         if (end == number)
             degrees = NAN;
     }
@@ -89,13 +85,13 @@ static int parse_star(const char *shape, struct refocus_aperture_params *params)
     long points = 5;
 
     if (*number == ':')
-        points = number[1 + strspn(number + 1, "0123456789")] == '\0'
-                     ? strtol(number + 1, &end, 10)
-                     : 0;
+        points =
+            number[1 + strspn(number + 1, "0123456789")] == '\0' ? strtol(number + 1, &end, 10) : 0;
     if (points < 3 || points > 16)
         return report_failure(EXIT_WRONG, "--aperture",
                               "'%s' cannot be used; give star, or star:POINTS with 3 "
-                              "to 16 points", shape);
+                              "to 16 points",
+                              shape);
     params->figure = REFOCUS_FIGURE_STAR;
     params->blades = (int32_t)points;
     return EXIT_DONE;
@@ -123,8 +119,7 @@ static int read_mask(const char *file, struct refocus_aperture_params *params)
         return report_failure(EXIT_FAILED, file,
                               "%dx%d pixels are too many for an "
                               "aperture; give at most %dx%d",
-                              width, height, REFOCUS_MAX_APERTURE_SIDE,
-                              REFOCUS_MAX_APERTURE_SIDE);
+                              width, height, REFOCUS_MAX_APERTURE_SIDE, REFOCUS_MAX_APERTURE_SIDE);
     return EXIT_DONE;
 }
 
@@ -160,8 +155,7 @@ static int find_opening(const struct bokeh_settings *s, double *opening)
     return EXIT_DONE;
 }
 
-static int fill_params(const struct bokeh_settings *s,
-                       struct refocus_aperture_params *params)
+static int fill_params(const struct bokeh_settings *s, struct refocus_aperture_params *params)
 {
     const struct preset *preset = &presets[s->preset];
     const bool polygon = params->blades && !params->figure;
@@ -181,8 +175,7 @@ static int fill_params(const struct bokeh_settings *s,
     params->squeeze = or_else(s->squeeze, preset->squeeze);
     params->hole = or_else(s->ring, preset->ring);
     params->edge_behind = or_else(s->edge, preset->edge);
-    params->edge_before =
-        or_else(s->edge_before, isnan(s->edge) ? preset->edge_before : -s->edge);
+    params->edge_before = or_else(s->edge_before, isnan(s->edge) ? preset->edge_before : -s->edge);
     return EXIT_DONE;
 }
 
@@ -200,11 +193,11 @@ int bokeh_aperture(const struct bokeh_settings *settings, const char *shape,
         const int made = refocus_aperture_create(aperture, &params);
 
         if (made == REFOCUS_ERR_ARGUMENT && params.mask)
-            status = report_failure(EXIT_FAILED, shape, "no pixel of the aperture is "
+            status = report_failure(EXIT_FAILED, shape,
+                                    "no pixel of the aperture is "
                                     "open; give white where light passes");
         else if (made != REFOCUS_OK)
-            status =
-                report_failure(EXIT_FAILED, "--aperture", "%s", refocus_strerror(made));
+            status = report_failure(EXIT_FAILED, "--aperture", "%s", refocus_strerror(made));
     }
     free((void *)params.mask);
     return status;
@@ -215,16 +208,14 @@ bool bokeh_has_sides(const struct bokeh_settings *s)
     const struct preset *preset = &presets[s->preset];
     const double behind = or_else(s->edge, preset->edge);
 
-    return or_else(s->edge_before, isnan(s->edge) ? preset->edge_before : -s->edge) !=
-           behind;
+    return or_else(s->edge_before, isnan(s->edge) ? preset->edge_before : -s->edge) != behind;
 }
 
 bool bokeh_is_plain_disc(const struct bokeh_settings *s, const char *shape)
 {
     const struct preset *preset = &presets[s->preset];
 
-    return strcmp(shape_of(s, shape), "disc") == 0 &&
-           or_else(s->squeeze, preset->squeeze) == 1 &&
+    return strcmp(shape_of(s, shape), "disc") == 0 && or_else(s->squeeze, preset->squeeze) == 1 &&
            or_else(s->ring, preset->ring) == 0 && or_else(s->edge, preset->edge) == 0 &&
            !bokeh_has_sides(s);
 }

@@ -15,57 +15,70 @@ struct bokeh_settings {
     double f_number; /* of the lens's options, for open_f_number */
 };
 
-#define BOKEH_SETTINGS_NONE                                                            \
-    {.curvature = NAN, .open_f_number = NAN, .squeeze = NAN, .ring = NAN, .edge = NAN, \
-     .edge_before = NAN, .cat_eye = NAN, .fringe = NAN, .grain = NAN,                  \
-     .highlight_stops = NAN, .f_number = NAN}
+#define BOKEH_SETTINGS_NONE                                                                        \
+    {                                                                                              \
+        .curvature = NAN, .open_f_number = NAN, .squeeze = NAN, .ring = NAN, .edge = NAN,          \
+        .edge_before = NAN, .cat_eye = NAN, .fringe = NAN, .grain = NAN, .highlight_stops = NAN,   \
+        .f_number = NAN                                                                            \
+    }
 
 const char *bokeh_preset_name(uint32_t index);
 const char *bokeh_preset_summary(uint32_t index);
 
-#define BOKEH_NUMBER(type, member, name_, argument_, field_, least_, greatest_, help_) \
-    {.kind = OPTION_NUMBER, .name = name_, .argument = argument_,                      \
-     .offset = offsetof(type, member.field_), .least = least_, .greatest = greatest_,  \
-     .help = help_}
+#define BOKEH_NUMBER(type, member, name_, argument_, field_, least_, greatest_, help_)             \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = name_, .argument = argument_,                               \
+        .offset = offsetof(type, member.field_), .least = least_, .greatest = greatest_,           \
+        .help = help_                                                                              \
+    }
 
 /* Rows of a table of options; `method` is the member with the method. */
-#define BOKEH_OPTIONS(type, member, method)                                            \
-    {.kind = OPTION_HEADING, .help = "Bokeh"},                                         \
-    {.kind = OPTION_CHOICE, .name = "--bokeh", .argument = "NAME",                     \
-     .offset = offsetof(type, member.preset), .choice = bokeh_preset_name,             \
-     .summary = bokeh_preset_summary,                                                  \
-     .help = "presets; what else is given overrules them"},                            \
-    BOKEH_NUMBER(type, member, "--curvature", "C", curvature, 0, 1,                    \
-                 "of the blades of a polygon: 0 = straight, the default, 1 = arcs of " \
-                 "the circle"),                                                        \
-    {.kind = OPTION_NUMBER, .name = "--open-f-number", .argument = "N",                \
-     .offset = offsetof(type, member.open_f_number), .least = 0, .above = true,        \
-     .greatest = 1000,                                                                 \
-     .help = "f-number of the lens wide open, where it is round: a polygon shows as "  \
-             "--f-number closes it"},                                                  \
-    BOKEH_NUMBER(type, member, "--squeeze", "Q", squeeze, 0.5, 2,                      \
-                 "width / height of the discs, below 1 as of an anamorphic lens; "     \
-                 "default 1"),                                                         \
-    BOKEH_NUMBER(type, member, "--ring", "R", ring, 0, 0.9,                            \
-                 "radius of a stop in the middle, as of a mirror lens; default 0"),    \
-    BOKEH_NUMBER(type, member, "--edge", "E", edge, -1, 1,                             \
-                 "behind the focus: 1 = bubbles with bright rims, -1 = discs that "    \
-                 "fade out; before it the contrary; default 0"),                       \
-    BOKEH_NUMBER(type, member, "--edge-before", "E", edge_before, -1, 1,               \
-                 "the same before the focus, when it is not the contrary"),            \
-    BOKEH_NUMBER(type, member, "--cat-eye", "A", cat_eye, 0, 0.9,                      \
-                 "how much narrower discs are in the corners; default 0"),             \
-    BOKEH_NUMBER(type, member, "--fringe", "A", fringe, -0.5, 0.5,                     \
-                 "rims of colour: green behind the focus and magenta before it, or "   \
-                 "the contrary; default 0"),                                           \
-    BOKEH_NUMBER(type, member, "--grain", "G", grain, 0, 4,                            \
-                 "grain of the sharp parts put back into the blurred ones, 1 = as "    \
-                 "much as there was; default 0; --seed chooses it"),                   \
-    {.kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",              \
-     .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,      \
-     .help = "sweep: light given back to small clipped lamps, in stops, for "          \
-             "--highlights 2^S",                                                       \
-     OF_METHODS(type, method, OF_SWEEP)}
+#define BOKEH_OPTIONS(type, member, method)                                                        \
+    {.kind = OPTION_HEADING, .help = "Bokeh"},                                                     \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--bokeh",                                                                        \
+         .argument = "NAME",                                                                       \
+         .offset = offsetof(type, member.preset),                                                  \
+         .choice = bokeh_preset_name,                                                              \
+         .summary = bokeh_preset_summary,                                                          \
+         .help = "presets; what else is given overrules them"},                                    \
+        BOKEH_NUMBER(type, member, "--curvature", "C", curvature, 0, 1,                            \
+                     "of the blades of a polygon: 0 = straight, the default, 1 = arcs of "         \
+                     "the circle"),                                                                \
+        {.kind = OPTION_NUMBER,                                                                    \
+         .name = "--open-f-number",                                                                \
+         .argument = "N",                                                                          \
+         .offset = offsetof(type, member.open_f_number),                                           \
+         .least = 0,                                                                               \
+         .above = true,                                                                            \
+         .greatest = 1000,                                                                         \
+         .help = "f-number of the lens wide open, where it is round: a polygon shows as "          \
+                 "--f-number closes it"},                                                          \
+        BOKEH_NUMBER(type, member, "--squeeze", "Q", squeeze, 0.5, 2,                              \
+                     "width / height of the discs, below 1 as of an anamorphic lens; "             \
+                     "default 1"),                                                                 \
+        BOKEH_NUMBER(type, member, "--ring", "R", ring, 0, 0.9,                                    \
+                     "radius of a stop in the middle, as of a mirror lens; default 0"),            \
+        BOKEH_NUMBER(type, member, "--edge", "E", edge, -1, 1,                                     \
+                     "behind the focus: 1 = bubbles with bright rims, -1 = discs that "            \
+                     "fade out; before it the contrary; default 0"),                               \
+        BOKEH_NUMBER(type, member, "--edge-before", "E", edge_before, -1, 1,                       \
+                     "the same before the focus, when it is not the contrary"),                    \
+        BOKEH_NUMBER(type, member, "--cat-eye", "A", cat_eye, 0, 0.9,                              \
+                     "how much narrower discs are in the corners; default 0"),                     \
+        BOKEH_NUMBER(type, member, "--fringe", "A", fringe, -0.5, 0.5,                             \
+                     "rims of colour: green behind the focus and magenta before it, or "           \
+                     "the contrary; default 0"),                                                   \
+        BOKEH_NUMBER(type, member, "--grain", "G", grain, 0, 4,                                    \
+                     "grain of the sharp parts put back into the blurred ones, 1 = as "            \
+                     "much as there was; default 0; --seed chooses it"),                           \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",                       \
+        .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,               \
+        .help = "sweep: light given back to small clipped lamps, in stops, for "                   \
+                "--highlights 2^S",                                                                \
+        OF_METHODS(type, method, OF_SWEEP)                                                         \
+    }
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 

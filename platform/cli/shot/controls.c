@@ -52,8 +52,7 @@ static int parse_bands(const char *text, struct refocus_render_params *params)
             if (i == 2)
                 return wrong_bands(text);
         }
-        params->band[params->bands++] =
-            (struct refocus_band){value[0], value[1], value[2]};
+        params->band[params->bands++] = (struct refocus_band){value[0], value[1], value[2]};
         if (*at == '\0')
             return EXIT_DONE;
         if (*at++ != ',')
@@ -98,8 +97,8 @@ int controls_check(const struct control_settings *s, bool focus_given)
     return EXIT_DONE;
 }
 
-int controls_apply(const struct control_settings *s,
-                   struct refocus_render_params *params, struct controls *controls)
+int controls_apply(const struct control_settings *s, struct refocus_render_params *params,
+                   struct controls *controls)
 {
     int status = EXIT_DONE;
 
@@ -123,12 +122,10 @@ int controls_apply(const struct control_settings *s,
     return status;
 }
 
-static int outside(const char *name, double x, double y,
-                   const struct refocus_disparity *prepared)
+static int outside(const char *name, double x, double y, const struct refocus_disparity *prepared)
 {
-    return report_failure(EXIT_WRONG, name,
-                          "%g,%g lies outside of the picture; give 0,0 to %d,%d", x, y,
-                          (int)prepared->width - 1, (int)prepared->height - 1);
+    return report_failure(EXIT_WRONG, name, "%g,%g lies outside of the picture; give 0,0 to %d,%d",
+                          x, y, (int)prepared->width - 1, (int)prepared->height - 1);
 }
 
 static bool is_inside(const double at[2], const struct refocus_disparity *prepared)
@@ -141,12 +138,10 @@ static struct refocus_focus_point point_at(const double at[2], float disparity,
                                            const struct refocus_disparity *prepared)
 {
     return (struct refocus_focus_point){(float)((at[0] + 0.5) / prepared->width),
-                                        (float)((at[1] + 0.5) / prepared->height),
-                                        disparity};
+                                        (float)((at[1] + 0.5) / prepared->height), disparity};
 }
 
-static void tilt(struct refocus_render_params *params,
-                 const struct refocus_focus_plane *plane)
+static void tilt(struct refocus_render_params *params, const struct refocus_focus_plane *plane)
 {
     params->tilt_x = plane->x;
     params->tilt_y = plane->y;
@@ -155,8 +150,7 @@ static void tilt(struct refocus_render_params *params,
     params->focus_disparity = plane->focus_disparity;
 }
 
-static int aim_by_points(const struct controls *controls,
-                         struct refocus_render_params *params,
+static int aim_by_points(const struct controls *controls, struct refocus_render_params *params,
                          const struct refocus_disparity *prepared)
 {
     struct refocus_focus_point point[3];
@@ -168,8 +162,7 @@ static int aim_by_points(const struct controls *controls,
 
         if (!is_inside(at, prepared))
             return outside("--focus-plane", at[0], at[1], prepared);
-        if (refocus_focus_at_point(prepared, (int)at[0], (int)at[1], 0, &disparity) !=
-            REFOCUS_OK)
+        if (refocus_focus_at_point(prepared, (int)at[0], (int)at[1], 0, &disparity) != REFOCUS_OK)
             return outside("--focus-plane", at[0], at[1], prepared);
         point[i] = point_at(at, disparity, prepared);
     }
@@ -181,24 +174,20 @@ static int aim_by_points(const struct controls *controls,
     return EXIT_DONE;
 }
 
-static int aim_by_line(const struct controls *controls,
-                       struct refocus_render_params *params,
+static int aim_by_line(const struct controls *controls, struct refocus_render_params *params,
                        const struct refocus_disparity *prepared)
 {
     const double y = (prepared->height - 1) / 2.0;
     const double level[4] = {0, y, prepared->width - 1.0, y};
     const double *line = given(controls->tilt_line[0]) ? controls->tilt_line : level;
-    const struct refocus_focus_point from =
-        point_at(line, params->focus_disparity, prepared);
-    const struct refocus_focus_point to =
-        point_at(line + 2, params->focus_disparity, prepared);
+    const struct refocus_focus_point from = point_at(line, params->focus_disparity, prepared);
+    const struct refocus_focus_point to = point_at(line + 2, params->focus_disparity, prepared);
     struct refocus_focus_plane plane;
 
     for (int i = 0; i < 4; i += 2)
         if (!is_inside(line + i, prepared))
             return outside("--tilt-line", line[i], line[i + 1], prepared);
-    if (refocus_focus_plane_of_line(&plane, &from, &to,
-                                    (double)prepared->height / prepared->width,
+    if (refocus_focus_plane_of_line(&plane, &from, &to, (double)prepared->height / prepared->width,
                                     controls->tilt_angle) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--tilt-line",
                               "both its ends are at one pixel; give two");
@@ -206,8 +195,7 @@ static int aim_by_line(const struct controls *controls,
     return EXIT_DONE;
 }
 
-void controls_turn_about(struct controls *controls, const struct refocus_image *photo,
-                         double y)
+void controls_turn_about(struct controls *controls, const struct refocus_image *photo, double y)
 {
     const double line[4] = {0, y, photo->width - 1, y};
 
@@ -227,15 +215,13 @@ int controls_aim(const struct controls *controls, struct refocus_render_params *
 
 bool controls_suit_method(const struct refocus_render_params *p)
 {
-    const bool any = p->field != REFOCUS_FIELD_LENS || p->focus_half_width > 0 ||
-                     p->bands > 0 || p->tilt_across != 0 || p->tilt_down != 0 ||
-                     p->depth_share != 1 || p->focus_map || p->sharp_map ||
-                     p->least_disparity > 0 || p->most_disparity < 1 ||
-                     p->blur_limit < p->max_blur_radius;
+    const bool any = p->field != REFOCUS_FIELD_LENS || p->focus_half_width > 0 || p->bands > 0 ||
+                     p->tilt_across != 0 || p->tilt_down != 0 || p->depth_share != 1 ||
+                     p->focus_map || p->sharp_map || p->least_disparity > 0 ||
+                     p->most_disparity < 1 || p->blur_limit < p->max_blur_radius;
 
-    return !any || p->method == REFOCUS_METHOD_SWEEP ||
-           p->method == REFOCUS_METHOD_SEARCH || p->method == REFOCUS_METHOD_BLUR ||
-           p->method == REFOCUS_METHOD_DIFFUSION;
+    return !any || p->method == REFOCUS_METHOD_SWEEP || p->method == REFOCUS_METHOD_SEARCH ||
+           p->method == REFOCUS_METHOD_BLUR || p->method == REFOCUS_METHOD_DIFFUSION;
 }
 
 int controls_check_method(const struct refocus_render_params *p)
@@ -244,7 +230,8 @@ int controls_check_method(const struct refocus_render_params *p)
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--method",
                           "%s knows the focus of a plain lens only; give sweep, "
-                          "search, blur or diffusion", refocus_method_name(p->method));
+                          "search, blur or diffusion",
+                          refocus_method_name(p->method));
 }
 
 void controls_free(struct controls *controls)

@@ -6,8 +6,8 @@
 #include "line/interrupt.h"
 
 /* Two stops. Lamps of path-traced scenes have lost more, but what is found in photos of cameras is
- * as often paper or a petal as a lamp: there 9.5 scores no better than this, and shows 7 to 11 times
- * as many discs where there is no light. */
+ * as often paper or a petal as a lamp: there 9.5 scores no better than this, and shows 7 to 11
+ * times as many discs where there is no light. */
 static const float highlight_gain = 4;
 
 static const struct {
@@ -33,8 +33,7 @@ const char *engine_quality_name(uint32_t index)
 
 const char *engine_quality_summary(uint32_t index)
 {
-    return index < sizeof qualities / sizeof *qualities ? qualities[index].summary
-                                                        : NULL;
+    return index < sizeof qualities / sizeof *qualities ? qualities[index].summary : NULL;
 }
 
 const char *engine_blend_name(uint32_t index)
@@ -71,8 +70,8 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     *params = refocus_render_params_default(0, 0);
     params->method = (uint32_t)settings->method;
     params->blend = (uint32_t)settings->blend;
-    params->rays = isnan(settings->rays) ? qualities[settings->quality].rays
-                                         : (int32_t)settings->rays;
+    params->rays =
+        isnan(settings->rays) ? qualities[settings->quality].rays : (int32_t)settings->rays;
     if (!isnan(settings->iterations))
         params->iterations = (int32_t)settings->iterations;
     if (!isnan(settings->sigma))
@@ -100,12 +99,13 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
 
 static int interrupted(const struct engine *engine)
 {
-    return report_failure(EXIT_FAILED, engine->name, "interrupted; nothing was "
-                                                     "written");
+    return report_failure(EXIT_FAILED, engine->name,
+                          "interrupted; nothing was "
+                          "written");
 }
 
-int engine_create(struct engine *engine, const struct engine_settings *settings,
-                  int width, int height, double blur)
+int engine_create(struct engine *engine, const struct engine_settings *settings, int width,
+                  int height, double blur)
 {
     struct refocus_renderer_params params =
         refocus_renderer_params_default(width, height, (float)blur);
@@ -120,12 +120,10 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;
     if (status == REFOCUS_ERR_UNSUPPORTED)
-        return report_failure(EXIT_FAILED, "--cpu",
-                              "this processor or build has no %s; give auto",
+        return report_failure(EXIT_FAILED, "--cpu", "this processor or build has no %s; give auto",
                               refocus_cpu_name(params.cpu));
     if (status == REFOCUS_ERR_THREAD)
-        return report_failure(EXIT_FAILED, "--threads", "%s; give fewer",
-                              refocus_strerror(status));
+        return report_failure(EXIT_FAILED, "--threads", "%s; give fewer", refocus_strerror(status));
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name,
                               "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a "
@@ -141,9 +139,8 @@ int engine_prepare(struct engine *engine, const struct refocus_image *photo,
                    const struct refocus_disparity *disparity)
 {
     const double start = report_clock_ms();
-    const int status = interrupt_came()
-                           ? REFOCUS_ERR_CANCELLED
-                           : refocus_prepare(engine->renderer, photo, disparity);
+    const int status = interrupt_came() ? REFOCUS_ERR_CANCELLED
+                                        : refocus_prepare(engine->renderer, photo, disparity);
 
     engine->prepare_ms = report_clock_ms() - start;
     if (status == REFOCUS_ERR_CANCELLED)
@@ -156,8 +153,8 @@ int engine_prepare(struct engine *engine, const struct refocus_image *photo,
 
 /* Render whole, or, where that is slow and somebody watches, in strips of rows. The
  * progress goes from begin by share. */
-static int render_once(struct engine *engine, const struct refocus_image *out,
-                       double begin, double share)
+static int render_once(struct engine *engine, const struct refocus_image *out, double begin,
+                       double share)
 {
     enum { STRIPS = 20 };
     const bool strips = report_is_watched() && out->height >= STRIPS &&
@@ -236,22 +233,20 @@ void engine_end(struct engine *engine)
 json_t *engine_json(const struct engine *engine)
 {
     const struct refocus_render_params *params = &engine->params;
-    json_t *rays = params->rays == REFOCUS_RAYS_FULL ? json_string("full")
-                                                     : json_integer(params->rays);
+    json_t *rays =
+        params->rays == REFOCUS_RAYS_FULL ? json_string("full") : json_integer(params->rays);
 
     return json_pack(
         "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
         "s:I}",
         "method", refocus_method_name(params->method), "rays", rays, "blend",
         engine_blend_name(params->blend), "sigma",
-        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"),
-        "highlights", (double)params->highlight_gain, "iterations",
-        (int)params->iterations, "blur", (double)params->max_blur_radius, "focus",
-        (double)params->focus_disparity, "threads", (int)engine->info.threads, "cpu",
-        refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms,
-        "prepare_ms", engine->prepare_ms, "render_ms",
-        report_spread_json(engine->render_ms), "cpu_ms",
-        report_spread_json(engine->cpu_ms), "renderer_bytes",
-        (json_int_t)engine->info.memory, "peak_rss_kib",
+        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "highlights",
+        (double)params->highlight_gain, "iterations", (int)params->iterations, "blur",
+        (double)params->max_blur_radius, "focus", (double)params->focus_disparity, "threads",
+        (int)engine->info.threads, "cpu", refocus_cpu_name(engine->info.cpu), "create_ms",
+        engine->create_ms, "prepare_ms", engine->prepare_ms, "render_ms",
+        report_spread_json(engine->render_ms), "cpu_ms", report_spread_json(engine->cpu_ms),
+        "renderer_bytes", (json_int_t)engine->info.memory, "peak_rss_kib",
         (json_int_t)report_peak_rss_kib());
 }

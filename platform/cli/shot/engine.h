@@ -24,10 +24,12 @@ struct engine_settings {
 
 enum { QUALITY_STANDARD = 1 };
 
-#define ENGINE_SETTINGS_NONE(repeat_default)                                           \
-    {.quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,        \
-     .highlights = NAN, .repeat = repeat_default, .papers = PAPER_SETTINGS_NONE,       \
-     .controls = CONTROL_SETTINGS_NONE, .bokeh = BOKEH_SETTINGS_NONE}
+#define ENGINE_SETTINGS_NONE(repeat_default)                                                       \
+    {                                                                                              \
+        .quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,                 \
+        .highlights = NAN, .repeat = repeat_default, .papers = PAPER_SETTINGS_NONE,                \
+        .controls = CONTROL_SETTINGS_NONE, .bokeh = BOKEH_SETTINGS_NONE                            \
+    }
 
 const char *engine_quality_name(uint32_t index);
 const char *engine_quality_summary(uint32_t index);
@@ -35,124 +37,116 @@ const char *engine_blend_name(uint32_t index);
 const char *engine_blend_summary(uint32_t index);
 
 /* Rows of tables of options, for settings with a member of the type above. */
-#define METHOD_OPTION(type, member)                                                    \
-    {.kind = OPTION_CHOICE,                                                            \
-     .name = "--method",                                                               \
-     .argument = "NAME",                                                               \
-     .offset = offsetof(type, member.method),                                          \
-     .choice = refocus_method_name,                                                    \
-     .summary = refocus_method_summary,                                                \
-     .help = "how it is rendered; default sweep"}
-#define METHOD_OPTIONS(type, member)                                                   \
-    {.kind = OPTION_INTEGER,                                                           \
-     .name = "--rays",                                                                 \
-     .argument = "N",                                                                  \
-     .offset = offsetof(type, member.rays),                                            \
-     .least = 1,                                                                       \
-     .greatest = REFOCUS_MAX_RAYS,                                                     \
-     .word = "full",                                                                   \
-     .word_value = REFOCUS_RAYS_FULL,                                                  \
-     .help = "ray samples a pixel at the largest blur; full = every pixel of the "     \
-             "aperture mask; default: by --quality",                                   \
-     OF_METHODS(type, member.method, OF_RAYS)},                             \
-    {.kind = OPTION_CHOICE,                                                            \
-     .name = "--quality",                                                              \
-     .argument = "NAME",                                                               \
-     .offset = offsetof(type, member.quality),                                         \
-     .choice = engine_quality_name,                                                    \
-     .summary = engine_quality_summary,                                                \
-     .help = "presets; default standard; --rays overrules"},                           \
-    {.kind = OPTION_INTEGER,                                                           \
-     .name = "--iterations",                                                           \
-     .argument = "T",                                                                  \
-     .offset = offsetof(type, member.iterations),                                      \
-     .least = 1,                                                                       \
-     .greatest = 64,                                                                   \
-     .help = "search: tests of the randomized intersection search, default 2; the "    \
-             "paper's is 1",                                                           \
-     OF_METHODS(type, member.method, OF_SEARCH)},                               \
-    {.kind = OPTION_FLAG,                                                              \
-     .name = "--mirror",                                                               \
-     .offset = offsetof(type, member.mirror),                                          \
-     .help = "search: where a ray is hidden take the mirrored pixel",                  \
-     OF_METHODS(type, member.method, OF_SEARCH)},                               \
-    {.kind = OPTION_FLAG,                                                              \
-     .name = "--background",                                                           \
-     .offset = offsetof(type, member.background),                                      \
-     .help = "search: where a ray is hidden take the background layer",                \
-     OF_METHODS(type, member.method, OF_SEARCH)},                               \
-    {.kind = OPTION_FLAG,                                                              \
-     .name = "--no-thin",                                                              \
-     .offset = offsetof(type, member.no_thin),                                         \
-     .help = "sweep: thin things far before the focus, and in it, are met by rays "    \
-             "like all else, not drawn; so in quality preview",                        \
-     OF_METHODS(type, member.method, OF_SWEEP)},                                       \
-    {.kind = OPTION_TEXT,                                                              \
-     .name = "--aperture",                                                             \
-     .argument = "SHAPE",                                                              \
-     .offset = offsetof(type, member.aperture),                                        \
-     .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "  \
-             "blades, heart, star or star:POINTS, or a mask picture of at most "       \
-             "255x255, white = open"},                                                 \
-    {.kind = OPTION_CHOICE,                                                            \
-     .name = "--blend",                                                                \
-     .argument = "NAME",                                                               \
-     .offset = offsetof(type, member.blend),                                           \
-     .choice = engine_blend_name,                                                      \
-     .summary = engine_blend_summary,                                                  \
-     .help = "the values that are averaged; default linear"},                          \
-    {.kind = OPTION_NUMBER,                                                            \
-     .name = "--sigma",                                                                \
-     .argument = "S",                                                                  \
-     .offset = offsetof(type, member.sigma),                                           \
-     .least = 1,                                                                       \
-     .greatest = 1e30,                                                                 \
-     .word = "off",                                                                    \
-     .word_value = INFINITY,                                                           \
-     .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default "   \
-             "off"},                                                                   \
-    {.kind = OPTION_NUMBER,                                                            \
-     .name = "--highlights",                                                           \
-     .argument = "GAIN",                                                               \
-     .offset = offsetof(type, member.highlights),                                      \
-     .least = 1,                                                                       \
-     .greatest = 16,                                                                   \
-     .word = "off",                                                                    \
-     .word_value = 1,                                                                  \
-     .help = "sweep: light given back to small clipped lamps, up to GAIN times "       \
-             "white; default 4",                                                      \
-     OF_METHODS(type, member.method, OF_SWEEP)}
-#define RUN_OPTIONS(type, member)                                                      \
-    {.kind = OPTION_INTEGER,                                                           \
-     .elsewhere = true,                                                                \
-     .name = "--threads",                                                              \
-     .argument = "N",                                                                  \
-     .offset = offsetof(type, member.threads),                                         \
-     .greatest = 64,                                                                   \
-     .help = "0 = one for each processor, the default; never changes the result"},     \
-    {.kind = OPTION_CHOICE,                                                            \
-     .elsewhere = true,                                                                \
-     .name = "--cpu",                                                                  \
-     .argument = "NAME",                                                               \
-     .offset = offsetof(type, member.cpu),                                             \
-     .choice = refocus_cpu_name,                                                       \
-     .help = "instruction set, auto = the best that there is, the default; never "     \
-             "changes the result"},                                                    \
-    {.kind = OPTION_FLAG,                                                              \
-     .elsewhere = true,                                                                \
-     .name = "--json",                                                                 \
-     .offset = offsetof(type, member.json),                                            \
-     .help = "print a report as one JSON object; times in milliseconds, without "      \
-             "reading and writing of files"}
-#define REPEAT_OPTION(type, member)                                                    \
-    {.kind = OPTION_INTEGER,                                                           \
-     .elsewhere = true,                                                                \
-     .name = "--repeat",                                                               \
-     .argument = "N",                                                                  \
-     .offset = offsetof(type, member.repeat),                                          \
-     .least = 1,                                                                       \
-     .greatest = 10000,                                                                \
-     .help = "render N times and report the times"}
+#define METHOD_OPTION(type, member)                                                                \
+    {                                                                                              \
+        .kind = OPTION_CHOICE, .name = "--method", .argument = "NAME",                             \
+        .offset = offsetof(type, member.method), .choice = refocus_method_name,                    \
+        .summary = refocus_method_summary, .help = "how it is rendered; default sweep"             \
+    }
+#define METHOD_OPTIONS(type, member)                                                               \
+    {.kind = OPTION_INTEGER,                                                                       \
+     .name = "--rays",                                                                             \
+     .argument = "N",                                                                              \
+     .offset = offsetof(type, member.rays),                                                        \
+     .least = 1,                                                                                   \
+     .greatest = REFOCUS_MAX_RAYS,                                                                 \
+     .word = "full",                                                                               \
+     .word_value = REFOCUS_RAYS_FULL,                                                              \
+     .help = "ray samples a pixel at the largest blur; full = every pixel of the "                 \
+             "aperture mask; default: by --quality",                                               \
+     OF_METHODS(type, member.method, OF_RAYS)},                                                    \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--quality",                                                                      \
+         .argument = "NAME",                                                                       \
+         .offset = offsetof(type, member.quality),                                                 \
+         .choice = engine_quality_name,                                                            \
+         .summary = engine_quality_summary,                                                        \
+         .help = "presets; default standard; --rays overrules"},                                   \
+        {.kind = OPTION_INTEGER,                                                                   \
+         .name = "--iterations",                                                                   \
+         .argument = "T",                                                                          \
+         .offset = offsetof(type, member.iterations),                                              \
+         .least = 1,                                                                               \
+         .greatest = 64,                                                                           \
+         .help = "search: tests of the randomized intersection search, default 2; the "            \
+                 "paper's is 1",                                                                   \
+         OF_METHODS(type, member.method, OF_SEARCH)},                                              \
+        {.kind = OPTION_FLAG,                                                                      \
+         .name = "--mirror",                                                                       \
+         .offset = offsetof(type, member.mirror),                                                  \
+         .help = "search: where a ray is hidden take the mirrored pixel",                          \
+         OF_METHODS(type, member.method, OF_SEARCH)},                                              \
+        {.kind = OPTION_FLAG,                                                                      \
+         .name = "--background",                                                                   \
+         .offset = offsetof(type, member.background),                                              \
+         .help = "search: where a ray is hidden take the background layer",                        \
+         OF_METHODS(type, member.method, OF_SEARCH)},                                              \
+        {.kind = OPTION_FLAG,                                                                      \
+         .name = "--no-thin",                                                                      \
+         .offset = offsetof(type, member.no_thin),                                                 \
+         .help = "sweep: thin things far before the focus, and in it, are met by rays "            \
+                 "like all else, not drawn; so in quality preview",                                \
+         OF_METHODS(type, member.method, OF_SWEEP)},                                               \
+        {.kind = OPTION_TEXT,                                                                      \
+         .name = "--aperture",                                                                     \
+         .argument = "SHAPE",                                                                      \
+         .offset = offsetof(type, member.aperture),                                                \
+         .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "          \
+                 "blades, heart, star or star:POINTS, or a mask picture of at most "               \
+                 "255x255, white = open"},                                                         \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--blend",                                                                        \
+         .argument = "NAME",                                                                       \
+         .offset = offsetof(type, member.blend),                                                   \
+         .choice = engine_blend_name,                                                              \
+         .summary = engine_blend_summary,                                                          \
+         .help = "the values that are averaged; default linear"},                                  \
+        {.kind = OPTION_NUMBER,                                                                    \
+         .name = "--sigma",                                                                        \
+         .argument = "S",                                                                          \
+         .offset = offsetof(type, member.sigma),                                                   \
+         .least = 1,                                                                               \
+         .greatest = 1e30,                                                                         \
+         .word = "off",                                                                            \
+         .word_value = INFINITY,                                                                   \
+         .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default "           \
+                 "off"},                                                                           \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = "--highlights", .argument = "GAIN",                         \
+        .offset = offsetof(type, member.highlights), .least = 1, .greatest = 16, .word = "off",    \
+        .word_value = 1,                                                                           \
+        .help = "sweep: light given back to small clipped lamps, up to GAIN times "                \
+                "white; default 4",                                                                \
+        OF_METHODS(type, member.method, OF_SWEEP)                                                  \
+    }
+#define RUN_OPTIONS(type, member)                                                                  \
+    {.kind = OPTION_INTEGER,                                                                       \
+     .elsewhere = true,                                                                            \
+     .name = "--threads",                                                                          \
+     .argument = "N",                                                                              \
+     .offset = offsetof(type, member.threads),                                                     \
+     .greatest = 64,                                                                               \
+     .help = "0 = one for each processor, the default; never changes the result"},                 \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .elsewhere = true,                                                                        \
+         .name = "--cpu",                                                                          \
+         .argument = "NAME",                                                                       \
+         .offset = offsetof(type, member.cpu),                                                     \
+         .choice = refocus_cpu_name,                                                               \
+         .help = "instruction set, auto = the best that there is, the default; never "             \
+                 "changes the result"},                                                            \
+    {                                                                                              \
+        .kind = OPTION_FLAG, .elsewhere = true, .name = "--json",                                  \
+        .offset = offsetof(type, member.json),                                                     \
+        .help = "print a report as one JSON object; times in milliseconds, without "               \
+                "reading and writing of files"                                                     \
+    }
+#define REPEAT_OPTION(type, member)                                                                \
+    {                                                                                              \
+        .kind = OPTION_INTEGER, .elsewhere = true, .name = "--repeat", .argument = "N",            \
+        .offset = offsetof(type, member.repeat), .least = 1, .greatest = 10000,                    \
+        .help = "render N times and report the times"                                              \
+    }
 
 struct engine {
     const char *name; /* of the photo, for errors */
@@ -161,9 +155,9 @@ struct engine {
     struct refocus_aperture *aperture;
     struct refocus_disparity field_map; /* samples NULL: none */
     struct controls controls;
-    bool has_sides; /* the aperture's light differs before and behind the focus */
-    double field_disparity;             /* NAN: that in focus */
-    uint32_t methods; /* that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
+    bool has_sides;         /* the aperture's light differs before and behind the focus */
+    double field_disparity; /* NAN: that in focus */
+    uint32_t methods;       /* that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     struct refocus_render_params params;
     double create_ms, prepare_ms;
     struct spread render_ms, cpu_ms; /* cpu_ms: of all threads, of a render */
@@ -175,8 +169,8 @@ struct engine {
 int engine_begin(struct engine *engine, const struct engine_settings *settings);
 
 /* Renderer for photos of this size and blur; prepare; render settings->repeat times. */
-int engine_create(struct engine *engine, const struct engine_settings *settings,
-                  int width, int height, double blur);
+int engine_create(struct engine *engine, const struct engine_settings *settings, int width,
+                  int height, double blur);
 int engine_prepare(struct engine *engine, const struct refocus_image *photo,
                    const struct refocus_disparity *disparity);
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat);

@@ -13,8 +13,7 @@ const char *papers_spread_name(uint32_t index)
 
 const char *papers_field_name(uint32_t index)
 {
-    static const char *const names[] = {"lens",  "cylinder", "plus",
-                                        "plane", "sphere",   "picture"};
+    static const char *const names[] = {"lens", "cylinder", "plus", "plane", "sphere", "picture"};
 
     return index < sizeof names / sizeof *names ? names[index] : NULL;
 }
@@ -51,9 +50,7 @@ uint8_t *papers_read_grey(const char *file, int *width, int *height)
 
         for (int x = 0; x < image->width; x++) /* luma, exact for grey pixels */
             grey[(size_t)y * (size_t)image->width + (size_t)x] =
-                (uint8_t)((54 * row[3 * x] + 183 * row[3 * x + 1] +
-                           19 * row[3 * x + 2]) >>
-                          8);
+                (uint8_t)((54 * row[3 * x] + 183 * row[3 * x + 1] + 19 * row[3 * x + 2]) >> 8);
     }
 end:
     refocus_photo_free(&photo);
@@ -66,8 +63,8 @@ static void take(float *to, double from)
         *to = (float)from;
 }
 
-static int read_map(const struct paper_settings *settings,
-                    struct refocus_render_params *params, struct refocus_disparity *map)
+static int read_map(const struct paper_settings *settings, struct refocus_render_params *params,
+                    struct refocus_disparity *map)
 {
     int width, height;
     uint8_t *grey;
@@ -87,16 +84,16 @@ static int read_map(const struct paper_settings *settings,
     if (width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE) {
         free(grey);
         return report_failure(EXIT_FAILED, settings->field_map,
-                              "%dx%d pixels are too many; give at most %d a side",
-                              width, height, (int)REFOCUS_MAX_SIDE);
+                              "%dx%d pixels are too many; give at most %d a side", width, height,
+                              (int)REFOCUS_MAX_SIDE);
     }
     *map = (struct refocus_disparity){8, width, height, grey, width};
     params->field_map = map;
     return EXIT_DONE;
 }
 
-int papers_apply(const struct paper_settings *settings,
-                 struct refocus_render_params *params, struct refocus_disparity *map)
+int papers_apply(const struct paper_settings *settings, struct refocus_render_params *params,
+                 struct refocus_disparity *map)
 {
     const struct paper_settings *s = settings;
 
@@ -104,8 +101,7 @@ int papers_apply(const struct paper_settings *settings,
         return report_failure(EXIT_WRONG, "--star",
                               "'1' cannot be used; give 0 for none, or 2 to 16 spikes");
     if (s->middle_ratio == 1 || s->last_ratio == 1)
-        return report_failure(EXIT_WRONG,
-                              s->middle_ratio == 1 ? "--middle-ratio" : "--last-ratio",
+        return report_failure(EXIT_WRONG, s->middle_ratio == 1 ? "--middle-ratio" : "--last-ratio",
                               "'1' cannot be used; give a number above 1");
     if (s->middle_ratio >= s->last_ratio)
         return report_failure(EXIT_WRONG, "--middle-ratio",
@@ -137,22 +133,21 @@ int papers_apply(const struct paper_settings *settings,
     return read_map(settings, params, map);
 }
 
-static int place(const char *name, const double at[2], int width, int height, float *x,
-                 float *y)
+static int place(const char *name, const double at[2], int width, int height, float *x, float *y)
 {
     if (isnan(at[0]))
         return EXIT_DONE;
     if (at[0] > width - 1 || at[1] > height - 1)
         return report_failure(EXIT_WRONG, name,
-                              "%g,%g lies outside of the picture; give 0,0 to %d,%d",
-                              at[0], at[1], width - 1, height - 1);
+                              "%g,%g lies outside of the picture; give 0,0 to %d,%d", at[0], at[1],
+                              width - 1, height - 1);
     *x = (float)(width > 1 ? at[0] / (width - 1) : 0.5);
     *y = (float)(height > 1 ? at[1] / (height - 1) : 0.5);
     return EXIT_DONE;
 }
 
-int papers_place(const struct paper_settings *settings,
-                 struct refocus_render_params *params, int width, int height)
+int papers_place(const struct paper_settings *settings, struct refocus_render_params *params,
+                 int width, int height)
 {
     const int status = place("--attention", settings->attention, width, height,
                              &params->attention_x, &params->attention_y);

@@ -8,8 +8,8 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
              struct refocus_render_params *params)
 {
     const struct refocus_image *photo = &input->photo->image;
-    const struct refocus_disparity map = refocus_disparity16(
-        disparity, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
+    const struct refocus_disparity map =
+        refocus_disparity16(disparity, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
     struct controls aimed = *controls;
     double focus = 0;
     const int status = input_focus(input, lens, disparity, &focus);
@@ -30,14 +30,13 @@ static int choose_focus(struct shot *shot, const struct lens_settings *lens)
     uint16_t *prepared = malloc(pixels * sizeof *prepared);
     int status;
 
-    if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
-                                      prepared, stride) != REFOCUS_OK) {
+    if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, prepared,
+                                      stride) != REFOCUS_OK) {
         free(prepared);
         return report_failure(EXIT_FAILED, shot->input.photo_name,
                               "not enough memory to find the focus");
     }
-    status = shot_aim(&shot->input, lens, &shot->engine.controls, prepared,
-                      &shot->engine.params);
+    status = shot_aim(&shot->input, lens, &shot->engine.controls, prepared, &shot->engine.params);
     free(prepared);
     return status;
 }
@@ -70,8 +69,8 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
     return count;
 }
 
-int shot_open(struct shot *shot, const char *photo,
-              const struct shot_settings *settings, double most_blur)
+int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
+              double most_blur)
 {
     struct refocus_disparity disparity;
     const struct refocus_image *image;
@@ -90,12 +89,11 @@ int shot_open(struct shot *shot, const char *photo,
     if (status != EXIT_DONE)
         return status;
     image = &shot->input.photo->image;
-    disparity =
-        refocus_disparity16(shot->input.disparity, shot->input.width,
-                            shot->input.height, (ptrdiff_t)shot->input.width * 2);
+    disparity = refocus_disparity16(shot->input.disparity, shot->input.width, shot->input.height,
+                                    (ptrdiff_t)shot->input.width * 2);
     report_progress("preparing", 0.15);
-    status = engine_create(&shot->engine, &settings->engine, image->width,
-                           image->height, fmax(blur, most_blur));
+    status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
+                           fmax(blur, most_blur));
     shot->engine.params.max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
         status = engine_prepare(&shot->engine, image, &disparity);
@@ -120,15 +118,14 @@ int shot_output(struct shot *shot, const double region[4], struct refocus_image 
             return report_failure(EXIT_WRONG, "--region",
                                   "%g,%g,%g,%g does not lie within the %dx%d pixels of "
                                   "%s",
-                                  region[0], region[1], region[2], region[3], width,
-                                  height, shot->input.photo_name);
+                                  region[0], region[1], region[2], region[3], width, height,
+                                  shot->input.photo_name);
         params->region_x = (int32_t)region[0];
         params->region_y = (int32_t)region[1];
         params->region_width = width = (int32_t)region[2];
         params->region_height = height = (int32_t)region[3];
     }
-    *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height,
-                                (ptrdiff_t)width * 3);
+    *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
     if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)
         out->plane[0] = malloc((size_t)width * 3 * (size_t)height);
     if (!out->plane[0])

@@ -14,23 +14,24 @@ struct shot_settings {
     const char *load, *save; /* files of settings, or NULL */
 };
 
-#define SHOT_SETTINGS_NONE                                                             \
-    {.depth = DEPTH_SETTINGS_NONE, .lens = LENS_SETTINGS_NONE,                         \
-     .engine = ENGINE_SETTINGS_NONE(1)}
+#define SHOT_SETTINGS_NONE                                                                         \
+    {                                                                                              \
+        .depth = DEPTH_SETTINGS_NONE, .lens = LENS_SETTINGS_NONE,                                  \
+        .engine = ENGINE_SETTINGS_NONE(1)                                                          \
+    }
 
 /* Rows of tables of options, for settings with a member of that type. */
-#define SHOT_DEPTH_OPTIONS(type, member)                                               \
-    DEPTH_FILE_OPTION(type, member.depth), DEPTH_UNIT_OPTIONS(type, member.depth),     \
-    REPAIR_OPTIONS(type, member.depth)
-#define SHOT_LENS_OPTIONS(type, member)                                                \
-    {.kind = OPTION_HEADING, .help = "Focus and blur"},                                \
-    FOCUS_OPTIONS(type, member.lens), LENS_OPTIONS(type, member.lens),                 \
-    CONTROL_OPTIONS(type, member.engine.controls),                                     \
-    BOKEH_OPTIONS(type, member.engine.bokeh, member.engine.method)
-#define SHOT_METHOD_OPTIONS(type, member)                                              \
-    {.kind = OPTION_HEADING, .help = "Rendering"}, METHOD_OPTION(type, member.engine), \
-    METHOD_OPTIONS(type, member.engine)
-#define SHOT_PAPER_OPTIONS(type, member)                                               \
+#define SHOT_DEPTH_OPTIONS(type, member)                                                           \
+    DEPTH_FILE_OPTION(type, member.depth), DEPTH_UNIT_OPTIONS(type, member.depth),                 \
+        REPAIR_OPTIONS(type, member.depth)
+#define SHOT_LENS_OPTIONS(type, member)                                                            \
+    {.kind = OPTION_HEADING, .help = "Focus and blur"}, FOCUS_OPTIONS(type, member.lens),          \
+        LENS_OPTIONS(type, member.lens), CONTROL_OPTIONS(type, member.engine.controls),            \
+        BOKEH_OPTIONS(type, member.engine.bokeh, member.engine.method)
+#define SHOT_METHOD_OPTIONS(type, member)                                                          \
+    {.kind = OPTION_HEADING, .help = "Rendering"}, METHOD_OPTION(type, member.engine),             \
+        METHOD_OPTIONS(type, member.engine)
+#define SHOT_PAPER_OPTIONS(type, member)                                                           \
     PAPER_OPTIONS(type, member.engine.papers, member.engine.method)
 
 struct shot {
@@ -59,8 +60,8 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
 
 /* most_blur: what the renderer is made for, where that is more than the settings' blur;
  * 0: that. Ended by shot_close(), whatever it returned. */
-int shot_open(struct shot *shot, const char *photo,
-              const struct shot_settings *settings, double most_blur);
+int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
+              double most_blur);
 void shot_close(struct shot *shot);
 
 /* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y,

@@ -19,9 +19,8 @@ struct colour {
     uint8_t r, g, b;
 };
 
-static const struct colour paper = {16, 16, 16}, ink = {240, 240, 240},
-                           sharp = {0, 255, 120}, near_line = {255, 0, 200},
-                           far_line = {255, 255, 255};
+static const struct colour paper = {16, 16, 16}, ink = {240, 240, 240}, sharp = {0, 255, 120},
+                           near_line = {255, 0, 200}, far_line = {255, 255, 255};
 
 /* Equal steps from 0 to 1, dark to light so that it reads in grey too. */
 static const struct colour ramp[] = {{24, 16, 64},   {38, 80, 180},  {28, 150, 160},
@@ -41,8 +40,8 @@ static struct colour colour_at(double t)
 }
 
 /* A rectangle in legend units, from the corner of the legend. */
-static void fill(const struct refocus_image *image, int top, int scale, int x, int y,
-                 int width, int height, struct colour colour)
+static void fill(const struct refocus_image *image, int top, int scale, int x, int y, int width,
+                 int height, struct colour colour)
 {
     for (int j = top + y * scale; j < top + (y + height) * scale; j++) {
         if (j < 0 || j >= image->height)
@@ -55,8 +54,8 @@ static void fill(const struct refocus_image *image, int top, int scale, int x, i
 }
 
 /* Text centred about x, but within the picture. */
-static void write_text(const struct refocus_image *image, int top, int scale, int x,
-                       int y, const char *text)
+static void write_text(const struct refocus_image *image, int top, int scale, int x, int y,
+                       const char *text)
 {
     const int width = (int)strlen(text) * (GLYPH_WIDTH + 1) - 1;
     const int room = image->width / scale - 1;
@@ -81,8 +80,7 @@ static struct refocus_image make_picture(int width, int height, int *scale)
     if (height > REFOCUS_MAX_SIDE - LEGEND_HEIGHT * *scale)
         *scale = 0;
     rows = height + LEGEND_HEIGHT * *scale;
-    image = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, rows,
-                                 (ptrdiff_t)width * 3);
+    image = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, rows, (ptrdiff_t)width * 3);
     if ((uint64_t)width * 3 * (uint64_t)rows <= SIZE_MAX)
         image.plane[0] = malloc((size_t)width * 3 * (size_t)rows);
     return image;
@@ -105,11 +103,9 @@ static void draw_bar(const struct refocus_image *image, int top, int scale)
 
     fill(image, top, scale, 0, 0, width + 1, LEGEND_HEIGHT, paper);
     for (int x = 4; x < width - 4; x++)
-        fill(image, top, scale, x, BAR_TOP, 1, BAR_HEIGHT,
-             colour_at((x - 4 + 0.5) / (width - 8)));
+        fill(image, top, scale, x, BAR_TOP, 1, BAR_HEIGHT, colour_at((x - 4 + 0.5) / (width - 8)));
     for (int i = 0; i < TICKS; i++)
-        fill(image, top, scale, 4 + i * (width - 9) / (TICKS - 1), BAR_TOP + BAR_HEIGHT,
-             1, 2, ink);
+        fill(image, top, scale, 4 + i * (width - 9) / (TICKS - 1), BAR_TOP + BAR_HEIGHT, 1, 2, ink);
 }
 
 static int tick_x(const struct refocus_image *image, int scale, int i)
@@ -144,8 +140,7 @@ static void write_key(const struct refocus_image *image, int top, int scale, int
                       struct colour colour, const char *text)
 {
     fill(image, top, scale, x, 25, GLYPH_HEIGHT, GLYPH_HEIGHT, colour);
-    write_text(image, top, scale, x + 10 + (int)strlen(text) * (GLYPH_WIDTH + 1) / 2,
-               25, text);
+    write_text(image, top, scale, x + 10 + (int)strlen(text) * (GLYPH_WIDTH + 1) / 2, 25, text);
 }
 
 /* "near 0.552 1.23 m" */
@@ -155,14 +150,13 @@ static void write_limit(char text[32], const char *name, double d,
     if (d < 0 || d > 1)
         snprintf(text, 32, "%s all", name);
     else if (range)
-        snprintf(text, 32, "%s %.3f %.3g m", name, d,
-                 refocus_depth_of_disparity(range, d));
+        snprintf(text, 32, "%s %.3f %.3g m", name, d, refocus_depth_of_disparity(range, d));
     else
         snprintf(text, 32, "%s %.3f", name, d);
 }
 
-static void draw_blur_legend(const struct refocus_image *image, int top, int scale,
-                             double greatest, const struct refocus_depth_range *range,
+static void draw_blur_legend(const struct refocus_image *image, int top, int scale, double greatest,
+                             const struct refocus_depth_range *range,
                              const struct blur_limits *limits)
 {
     char text[32];
@@ -202,19 +196,16 @@ static void draw_limits(const struct refocus_image *image, const uint16_t *blur,
                 const int j = y + (k % 4 == 2 ? far : k % 4 == 3 ? -far : 0);
                 const size_t there = (size_t)j * (size_t)width + (size_t)i;
 
-                found = i >= 0 && i < width && j >= 0 && j < height &&
-                        blur[there] >= HALF_PIXEL;
+                found = i >= 0 && i < width && j >= 0 && j < height && blur[there] >= HALF_PIXEL;
                 if (found)
-                    memcpy(row + 3 * x,
-                           disparity[there] > disparity[here] ? &near_line : &far_line,
+                    memcpy(row + 3 * x, disparity[there] > disparity[here] ? &near_line : &far_line,
                            3);
             }
         }
     }
 }
 
-static void lay_over(const struct refocus_image *image,
-                     const struct refocus_image *photo)
+static void lay_over(const struct refocus_image *image, const struct refocus_image *photo)
 {
     for (int y = 0; y < photo->height; y++) {
         const uint8_t *from = photo->plane[0] + y * photo->stride[0];
@@ -259,8 +250,8 @@ struct refocus_image falsecolour_depth(const uint16_t *values, int width, int he
     return image;
 }
 
-struct refocus_image falsecolour_blur(const uint16_t *values, const uint16_t *disparity,
-                                      int width, int height, double greatest,
+struct refocus_image falsecolour_blur(const uint16_t *values, const uint16_t *disparity, int width,
+                                      int height, double greatest,
                                       const struct refocus_depth_range *range,
                                       const struct blur_limits *limits)
 {

@@ -24,8 +24,8 @@ struct blur_limits {
  * green, with a line where it ends: magenta where nearer things begin, white where
  * farther ones do, by the disparities. The legend names the limits, if they are not
  * NULL, in metres too when range is not. */
-struct refocus_image falsecolour_blur(const uint16_t *values, const uint16_t *disparity,
-                                      int width, int height, double greatest,
+struct refocus_image falsecolour_blur(const uint16_t *values, const uint16_t *disparity, int width,
+                                      int height, double greatest,
                                       const struct refocus_depth_range *range,
                                       const struct blur_limits *limits);
 

@@ -21,12 +21,10 @@ void peaking_draw(const struct refocus_image *photo, const uint16_t *blur,
 
         for (int x = 0; x < photo->width; x++, blur++) {
             const int here = peaking_luma(row + 3 * x);
-            const int right =
-                x + 1 < photo->width ? peaking_luma(row + 3 * x + 3) : here;
+            const int right = x + 1 < photo->width ? peaking_luma(row + 3 * x + 3) : here;
             const int down = peaking_luma(below + 3 * x);
 
-            if (*blur < HALF_PIXEL &&
-                (abs(right - here) > EDGE || abs(down - here) > EDGE))
+            if (*blur < HALF_PIXEL && (abs(right - here) > EDGE || abs(down - here) > EDGE))
                 memcpy(to + 3 * x, mark, 3);
             else
                 memset(to + 3 * x, here, 3);

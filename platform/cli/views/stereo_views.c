@@ -34,8 +34,7 @@ static int ceil_pixel(int32_t at)
 static void put(const struct rows *r, int x, int a, int b, int32_t part, int32_t whole)
 {
     const int32_t d =
-        (int32_t)(r->disparity[a] +
-                  ((int64_t)r->disparity[b] - r->disparity[a]) * part / whole);
+        (int32_t)(r->disparity[a] + ((int64_t)r->disparity[b] - r->disparity[a]) * part / whole);
 
     if (x < 0 || x >= r->width || d < r->nearest[x])
         return;
@@ -63,11 +62,10 @@ static void warp_row(const struct rows *r)
                 put(r, i, x, x + 1, i * ONE - from, to - from);
             continue;
         }
-        for (int i = x >= 0 ? ceil_pixel(from) : 0; x >= 0 && i * ONE < from + HALF;
-             i++)
+        for (int i = x >= 0 ? ceil_pixel(from) : 0; x >= 0 && i * ONE < from + HALF; i++)
             put(r, i, x, x, 0, 1);
-        for (int i = x + 1 < r->width ? ceil_pixel(to - HALF) : 0;
-             x + 1 < r->width && i * ONE < to; i++)
+        for (int i = x + 1 < r->width ? ceil_pixel(to - HALF) : 0; x + 1 < r->width && i * ONE < to;
+             i++)
             put(r, i, x + 1, x + 1, 0, 1);
     }
 }
@@ -87,8 +85,7 @@ static void fill_hole(const struct rows *r, int begin, int end)
         const int to = edge + step * (k + 1), mirrored = edge - step * k;
 
         if (mirrored >= 0 && mirrored < r->width && r->nearest[mirrored] != HOLE &&
-            r->nearest[mirrored] <= far + 1024 &&
-            source == mirrored + (k > 0 ? step : 0))
+            r->nearest[mirrored] <= far + 1024 && source == mirrored + (k > 0 ? step : 0))
             source = mirrored;
         memcpy(r->view + 3 * to, r->view + 3 * source, 3);
         r->seen[to] = (uint16_t)far;
@@ -125,9 +122,9 @@ static void fill_row(const struct rows *r)
     }
 }
 
-void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity,
-                 double focus, double parallax, const struct refocus_image *view,
-                 uint16_t *seen, int32_t *nearest)
+void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity, double focus,
+                 double parallax, const struct refocus_image *view, uint16_t *seen,
+                 int32_t *nearest)
 {
     const size_t width = (size_t)photo->width;
 
@@ -151,16 +148,14 @@ int stereo_open(struct stereo *stereo, const struct shot *shot)
     const struct refocus_image *photo = &shot->input.photo->image;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
 
-    stereo->view =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, malloc(pixels * 3), photo->width,
-                             photo->height, (ptrdiff_t)photo->width * 3);
+    stereo->view = refocus_image_packed(REFOCUS_FORMAT_RGB8, malloc(pixels * 3), photo->width,
+                                        photo->height, (ptrdiff_t)photo->width * 3);
     stereo->disparity = malloc(pixels * sizeof *stereo->disparity);
     stereo->seen = malloc(pixels * sizeof *stereo->seen);
     stereo->nearest = malloc((size_t)photo->width * sizeof *stereo->nearest);
-    if (!stereo->view.plane[0] || !stereo->disparity || !stereo->seen ||
-        !stereo->nearest ||
-        refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
-                         stereo->disparity, (ptrdiff_t)photo->width * 2) != REFOCUS_OK)
+    if (!stereo->view.plane[0] || !stereo->disparity || !stereo->seen || !stereo->nearest ||
+        refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, stereo->disparity,
+                         (ptrdiff_t)photo->width * 2) != REFOCUS_OK)
         return report_failure(EXIT_FAILED, shot->input.photo_name,
                               "not enough memory for a second eye");
     return EXIT_DONE;
@@ -170,12 +165,12 @@ int stereo_render(const struct stereo *stereo, struct shot *shot, double paralla
                   const struct refocus_image *out)
 {
     const struct refocus_image *photo = &shot->input.photo->image;
-    const struct refocus_disparity seen = refocus_disparity16(
-        stereo->seen, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
+    const struct refocus_disparity seen =
+        refocus_disparity16(stereo->seen, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
     int status;
 
-    stereo_warp(photo, stereo->disparity, (double)shot->engine.params.focus_disparity,
-                parallax, &stereo->view, stereo->seen, stereo->nearest);
+    stereo_warp(photo, stereo->disparity, (double)shot->engine.params.focus_disparity, parallax,
+                &stereo->view, stereo->seen, stereo->nearest);
     status = engine_prepare(&shot->engine, &stereo->view, &seen);
     return status == EXIT_DONE ? engine_render(&shot->engine, out, 1) : status;
 }

@@ -18,9 +18,9 @@ enum { STEREO_MOST = 256 }; /* pixels of parallax */
  * meets a pixel wins. nearest: room for a row. All in integers: the same bits
  * everywhere.
  */
-void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity,
-                 double focus, double parallax, const struct refocus_image *view,
-                 uint16_t *seen, int32_t *nearest);
+void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity, double focus,
+                 double parallax, const struct refocus_image *view, uint16_t *seen,
+                 int32_t *nearest);
 
 struct stereo {
     struct refocus_image view;

@@ -6,8 +6,7 @@
 
 const char *view_name(uint32_t index)
 {
-    static const char *const names[] = {"none",    "depth",   "blur",
-                                        "overlay", "peaking", "anaglyph"};
+    static const char *const names[] = {"none", "depth", "blur", "overlay", "peaking", "anaglyph"};
     return index < 6 ? names[index] : NULL;
 }
 
@@ -33,8 +32,8 @@ static int lost(int status)
 /* The limits of what is sharp, K |d - df| = 1/2 pixel, unless there are others: where
  * more than 1/16 of the picture has another blur than K |d - df|. Along depth edges
  * some have: pixels that mix two surfaces are given the disparity of one of them. */
-static bool find_limits(const struct shot *shot, const uint16_t *blur,
-                        const uint16_t *disparity, struct blur_limits *limits)
+static bool find_limits(const struct shot *shot, const uint16_t *blur, const uint16_t *disparity,
+                        struct blur_limits *limits)
 {
     const struct refocus_image *photo = &shot->input.photo->image;
     const double most = (double)shot->engine.params.max_blur_radius;
@@ -56,8 +55,7 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
     const struct refocus_image *photo = &shot->input.photo->image;
     const int width = photo->width, height = photo->height;
     const size_t pixels = (size_t)width * (size_t)height;
-    const struct refocus_depth_range known = {shot->input.report.near_m,
-                                              shot->input.report.far_m};
+    const struct refocus_depth_range known = {shot->input.report.near_m, shot->input.report.far_m};
     const struct refocus_depth_range *range =
         known.near_m > 0 && known.far_m > known.near_m ? &known : NULL;
     uint16_t *disparity = malloc(pixels * sizeof *disparity);
@@ -67,19 +65,18 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
     int status = disparity && blur ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
 
     if (status == REFOCUS_OK)
-        status = refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
-                                  disparity, (ptrdiff_t)width * 2);
-    if (status == REFOCUS_OK)
-        status = refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_BLUR, blur,
+        status = refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, disparity,
                                   (ptrdiff_t)width * 2);
+    if (status == REFOCUS_OK)
+        status =
+            refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_BLUR, blur, (ptrdiff_t)width * 2);
     if (status == REFOCUS_OK && view == VIEW_PEAKING) {
         peaking_draw(photo, blur, out);
     } else if (status == REFOCUS_OK) {
         if (view == VIEW_BLUR)
-            made = falsecolour_blur(
-                blur, disparity, width, height,
-                (double)shot->engine.params.max_blur_radius, range,
-                find_limits(shot, blur, disparity, &limits) ? &limits : NULL);
+            made = falsecolour_blur(blur, disparity, width, height,
+                                    (double)shot->engine.params.max_blur_radius, range,
+                                    find_limits(shot, blur, disparity, &limits) ? &limits : NULL);
         else
             made = falsecolour_depth(disparity, width, height, range,
                                      view == VIEW_OVERLAY ? photo : NULL);
@@ -96,11 +93,9 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
 
 /* The left eye in red over the right one: things in focus lie in the plane of the
  * screen. */
-static int make_anaglyph(struct shot *shot, const struct refocus_image *out,
-                         double parallax)
+static int make_anaglyph(struct shot *shot, const struct refocus_image *out, double parallax)
 {
-    const double apart =
-        isnan(parallax) ? fmin(out->width / 50.0, STEREO_MOST) : parallax;
+    const double apart = isnan(parallax) ? fmin(out->width / 50.0, STEREO_MOST) : parallax;
     const size_t pixels = (size_t)out->width * (size_t)out->height;
     struct refocus_image left = *out;
     struct stereo stereo;
@@ -120,8 +115,8 @@ static int make_anaglyph(struct shot *shot, const struct refocus_image *out,
     return status;
 }
 
-int views_render(struct shot *shot, struct refocus_image *out, int view,
-                 double parallax, int repeat)
+int views_render(struct shot *shot, struct refocus_image *out, int view, double parallax,
+                 int repeat)
 {
     int status;
 

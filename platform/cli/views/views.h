@@ -4,14 +4,7 @@
 
 #include "shot/shot.h"
 
-enum view {
-    VIEW_NONE,
-    VIEW_DEPTH,
-    VIEW_BLUR,
-    VIEW_OVERLAY,
-    VIEW_PEAKING,
-    VIEW_ANAGLYPH
-};
+enum view { VIEW_NONE, VIEW_DEPTH, VIEW_BLUR, VIEW_OVERLAY, VIEW_PEAKING, VIEW_ANAGLYPH };
 
 const char *view_name(uint32_t index);
 const char *view_summary(uint32_t index);
@@ -19,7 +12,7 @@ const char *view_summary(uint32_t index);
 /* Render an open shot into `out`, or replace that by a view of it. parallax: pixels
  * between the eyes of an anaglyph at disparity 1 when 0 is in focus; NAN: 1/50 of the
  * width. Exit code; prints why it is not EXIT_DONE. */
-int views_render(struct shot *shot, struct refocus_image *out, int view,
-                 double parallax, int repeat);
+int views_render(struct shot *shot, struct refocus_image *out, int view, double parallax,
+                 int repeat);
 
 #endif

@@ -19,17 +19,14 @@ static bool is_bearable(const struct rf_script *script)
              event->fault == RF_FAULT_VANISH) &&
             event->value > LONGEST_MS)
             return false;
-        if (event->fault == RF_FAULT_STRIDE &&
-            event->value * script->height > MOST_BYTES)
+        if (event->fault == RF_FAULT_STRIDE && event->value * script->height > MOST_BYTES)
             return false;
         if (event->fault == RF_FAULT_DROP && event->value > 1000000)
             return false; /* decides the fate of each */
-        if (event->fault == RF_FAULT_FORMAT &&
-            (int64_t)event->width * event->height > MOST_BYTES)
+        if (event->fault == RF_FAULT_FORMAT && (int64_t)event->width * event->height > MOST_BYTES)
             return false;
     }
-    return !script->from && !script->jpeg &&
-           script->stride * script->height <= MOST_BYTES &&
+    return !script->from && !script->jpeg && script->stride * script->height <= MOST_BYTES &&
            (int64_t)script->width * script->height <= MOST_BYTES;
 }
 

@@ -11,9 +11,8 @@ static void read_frame(const struct refocus_frame *frame)
 {
     volatile unsigned sum = 0;
 
-    if (frame->format == REFOCUS_FRAME_ANY ||
-        frame->format >= REFOCUS_FRAME_FORMAT_COUNT || frame->width < 1 ||
-        frame->height < 1 || frame->width > REFOCUS_MAX_SIDE ||
+    if (frame->format == REFOCUS_FRAME_ANY || frame->format >= REFOCUS_FRAME_FORMAT_COUNT ||
+        frame->width < 1 || frame->height < 1 || frame->width > REFOCUS_MAX_SIDE ||
         frame->height > REFOCUS_MAX_SIDE)
         abort();
     for (int i = 0; i < rf_format_planes(frame->format); i++)
@@ -24,8 +23,7 @@ static void read_frame(const struct refocus_frame *frame)
 }
 
 /* As a picture or as samples, one of which it must be. */
-static void convert(struct refocus_converter *converter,
-                    const struct refocus_frame *frame)
+static void convert(struct refocus_converter *converter, const struct refocus_frame *frame)
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;
     uint8_t *memory = malloc(pixels * 3);

@@ -12,11 +12,11 @@ static void use(const struct refocus_calibration *c)
 {
     static uint16_t samples[MOST_SIDE * MOST_SIDE], out[MOST_SIDE * MOST_SIDE];
 
-    if (c->depth.width < 1 || c->depth.height < 1 || c->colour.width < 1 ||
-        c->colour.height < 1 || !(c->depth.fx > 0) || !(c->colour.fy > 0))
+    if (c->depth.width < 1 || c->depth.height < 1 || c->colour.width < 1 || c->colour.height < 1 ||
+        !(c->depth.fx > 0) || !(c->colour.fy > 0))
         abort();
-    if (c->depth.width > MOST_SIDE || c->depth.height > MOST_SIDE ||
-        c->colour.width > MOST_SIDE || c->colour.height > MOST_SIDE)
+    if (c->depth.width > MOST_SIDE || c->depth.height > MOST_SIDE || c->colour.width > MOST_SIDE ||
+        c->colour.height > MOST_SIDE)
         return;
     for (int i = 0; i < c->depth.width * c->depth.height; i++)
         samples[i] = (uint16_t)(i * 2654435761u >> 12);

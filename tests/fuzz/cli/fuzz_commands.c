@@ -45,8 +45,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     for (size_t at = 0, piece = 1; at < size; at += piece, piece = piece % 61 + 7) {
         const size_t left = size - at;
 
-        live_lines_take(&lines, (const char *)data + at, left < piece ? left : piece,
-                        obey, &focus);
+        live_lines_take(&lines, (const char *)data + at, left < piece ? left : piece, obey, &focus);
     }
     check(&focus);
     pthread_mutex_destroy(&focus.lock);

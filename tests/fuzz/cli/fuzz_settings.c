@@ -24,22 +24,51 @@ static const char *word(uint32_t index)
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "heading"},
-    {.kind = OPTION_FLAG, .name = "--flag", .offset = offsetof(struct values, flag),
+    {.kind = OPTION_FLAG,
+     .name = "--flag",
+     .offset = offsetof(struct values, flag),
      .help = "flag"},
-    {.kind = OPTION_NUMBER, .name = "--number", .argument = "N",
-     .offset = offsetof(struct values, number), .least = -1, .greatest = 1, .word = "off",
-     .word_value = INFINITY, .help = "number"},
-    {.kind = OPTION_INTEGER, .name = "--whole", .argument = "N",
-     .offset = offsetof(struct values, whole), .least = 0, .greatest = 9, .help = "whole"},
-    {.kind = OPTION_NUMBERS, .name = "--several", .argument = "A,B,C,D",
-     .offset = offsetof(struct values, several), .least = 0, .greatest = 99, .count = 4,
+    {.kind = OPTION_NUMBER,
+     .name = "--number",
+     .argument = "N",
+     .offset = offsetof(struct values, number),
+     .least = -1,
+     .greatest = 1,
+     .word = "off",
+     .word_value = INFINITY,
+     .help = "number"},
+    {.kind = OPTION_INTEGER,
+     .name = "--whole",
+     .argument = "N",
+     .offset = offsetof(struct values, whole),
+     .least = 0,
+     .greatest = 9,
+     .help = "whole"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--several",
+     .argument = "A,B,C,D",
+     .offset = offsetof(struct values, several),
+     .least = 0,
+     .greatest = 99,
+     .count = 4,
      .help = "several"},
-    {.kind = OPTION_TEXT, .name = "--text", .argument = "TEXT",
-     .offset = offsetof(struct values, text), .help = "text"},
-    {.kind = OPTION_CHOICE, .name = "--choice", .argument = "WORD",
-     .offset = offsetof(struct values, choice), .choice = word, .help = "choice"},
-    {.kind = OPTION_TEXT, .name = "--output", .argument = "FILE",
-     .offset = offsetof(struct values, text), .help = "output", .elsewhere = true},
+    {.kind = OPTION_TEXT,
+     .name = "--text",
+     .argument = "TEXT",
+     .offset = offsetof(struct values, text),
+     .help = "text"},
+    {.kind = OPTION_CHOICE,
+     .name = "--choice",
+     .argument = "WORD",
+     .offset = offsetof(struct values, choice),
+     .choice = word,
+     .help = "choice"},
+    {.kind = OPTION_TEXT,
+     .name = "--output",
+     .argument = "FILE",
+     .offset = offsetof(struct values, text),
+     .help = "output",
+     .elsewhere = true},
     {.help = NULL},
 };
 static const struct command command = {.name = "fuzz", .usage = "", .options = options};
@@ -69,8 +98,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         abort();
     if (status != OPTIONS_PARSED)
         return 0;
-    if (!(in(v.number, -1, 1) || v.number == INFINITY) || !in(v.whole, 0, 9) ||
-        v.choice < 0 || v.choice > 2 || (v.text && !*v.text))
+    if (!(in(v.number, -1, 1) || v.number == INFINITY) || !in(v.whole, 0, 9) || v.choice < 0 ||
+        v.choice > 2 || (v.text && !*v.text))
         abort();
     for (int i = 0; i < 4; i++)
         if (!in(v.several[i], 0, 99))

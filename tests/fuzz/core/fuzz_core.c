@@ -150,9 +150,8 @@ static void take_controls(struct input *in, int wild, const struct refocus_dispa
     p->focus_transition = take_fraction(in, wild, 1);
     p->bands = take_in(in, wild, 0, REFOCUS_MAX_BANDS - 1);
     for (int i = 0; i < p->bands && i < REFOCUS_MAX_BANDS - 1; i++)
-        p->band[i] = (struct refocus_band){take_fraction(in, wild, 1),
-                                           take_fraction(in, wild, 0.2f),
-                                           take_fraction(in, wild, 1)};
+        p->band[i] = (struct refocus_band){
+            take_fraction(in, wild, 1), take_fraction(in, wild, 0.2f), take_fraction(in, wild, 1)};
     p->focus_map = maps & 1 ? map : NULL;
     p->sharp_map = maps & 2 ? map : NULL;
     p->field_map = maps & 4 ? map : NULL;
@@ -170,8 +169,8 @@ static void take_controls(struct input *in, int wild, const struct refocus_dispa
 
 static struct refocus_render_params take_lens(struct input *in, int wild, float most)
 {
-    struct refocus_render_params p = refocus_render_params_default(
-        take_fraction(in, wild, 1), take_fraction(in, wild, most));
+    struct refocus_render_params p =
+        refocus_render_params_default(take_fraction(in, wild, 1), take_fraction(in, wild, most));
 
     p.method = (uint32_t)take_in(in, wild, 0, REFOCUS_METHOD_COUNT - 1);
     p.rays = take_in(in, wild, 0, 65);
@@ -207,8 +206,8 @@ static int render(struct refocus_renderer *renderer, struct refocus_render_param
 
     memset(out, 0xa5, capacity);
     status = refocus_render(renderer, p, &image);
-    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT
-          || status == REFOCUS_ERR_STATE || status == REFOCUS_ERR_UNSUPPORTED);
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_STATE ||
+          status == REFOCUS_ERR_UNSUPPORTED);
     const size_t written = status == REFOCUS_OK ? refocus_image_bytes(format, w, h) : 0;
     for (size_t i = 0; i < capacity; i++)
         check((i >= GUARD && i < GUARD + written) || out[i] == 0xa5);
@@ -227,9 +226,8 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
     const int same = (int)take(in, 1) & 1;
     struct refocus_image image = refocus_image_planar(format, photo, width, height);
-    const struct refocus_disparity map = {
-        (uint32_t)bits, same ? width : dw, same ? height : dh, disparity,
-        (ptrdiff_t)(same ? width : dw) * bits / 8};
+    const struct refocus_disparity map = {(uint32_t)bits, same ? width : dw, same ? height : dh,
+                                          disparity, (ptrdiff_t)(same ? width : dw) * bits / 8};
     struct refocus_render_params lens = take_lens(in, wild, most);
     struct refocus_aperture *aperture = take_aperture(in, wild);
     int status;
@@ -277,8 +275,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     limits.max_memory = 64 << 20;
     status = refocus_renderer_create(&renderer, &limits);
     check((status == REFOCUS_OK) == (renderer != NULL));
-    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE
-          || status == REFOCUS_ERR_THREAD);
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE ||
+          status == REFOCUS_ERR_THREAD);
     check((status == REFOCUS_ERR_ARGUMENT) == (refocus_renderer_memory(&limits) == 0));
     for (int i = 0; i < 2 && renderer; i++)
         use(&in, renderer, limits.max_blur_radius, wild);

@@ -72,8 +72,8 @@ static inline void fuzz_check_photo(const struct refocus_photo *photo)
         sum += photo->icc.data[i];
     }
     (void)sum;
-    if (photo->info.evidence_count > REFOCUS_INFO_LINES ||
-        photo->info.orientation < 1 || photo->info.orientation > 8) {
+    if (photo->info.evidence_count > REFOCUS_INFO_LINES || photo->info.orientation < 1 ||
+        photo->info.orientation > 8) {
         abort();
     }
 }

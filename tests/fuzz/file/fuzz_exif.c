@@ -3,8 +3,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    uint8_t *const once = malloc(size ? size : 1), *const twice =
-                                                       malloc(size ? size : 1);
+    uint8_t *const once = malloc(size ? size : 1), *const twice = malloc(size ? size : 1);
     struct rf_exif first, second;
 
     memcpy(once, data, size);

@@ -4,8 +4,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct refocus_photo *photo = NULL;
     struct refocus_reason reason;
-    const int status =
-        refocus_photo_read_memory(&photo, data, size, &fuzz_limits, &reason);
+    const int status = refocus_photo_read_memory(&photo, data, size, &fuzz_limits, &reason);
 
     if ((status == REFOCUS_OK) != (photo != NULL) ||
         (status != REFOCUS_OK && reason.text[0] == '\0')) {

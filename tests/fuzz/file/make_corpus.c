@@ -69,8 +69,7 @@ static void seed_mpf(void)
 {
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct bytes part = make_auxiliary("disparity", NULL);
-        struct bytes file =
-            make_mpf(make_jpeg(16, 16, false, false), &part, 1, big_endian);
+        struct bytes file = make_mpf(make_jpeg(16, 16, false, false), &part, 1, big_endian);
 
         seed("mpf", big_endian ? "high" : "low", file.data + 10, 82);
         bytes_free(&file);

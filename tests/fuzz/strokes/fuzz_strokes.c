@@ -28,8 +28,7 @@ static int points_of(const struct refocus_strokes *strokes)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static uint8_t pixels[3 * W * H];
-    struct refocus_image photo =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
+    struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
     struct refocus_strokes *strokes, *again;
     struct refocus_strokes_reason reason;
     char *text;
@@ -46,8 +45,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         must(refocus_strokes_load(again, text, size, &reason) == REFOCUS_OK);
         must(refocus_strokes_count(strokes) == refocus_strokes_count(again));
         must(points_of(strokes) == points_of(again));
-        must(!memcmp(refocus_strokes_disparity(strokes),
-                     refocus_strokes_disparity(again), 2 * W * H));
+        must(!memcmp(refocus_strokes_disparity(strokes), refocus_strokes_disparity(again),
+                     2 * W * H));
         free(text);
         while (refocus_strokes_count(strokes) > 0)
             must(refocus_strokes_undo(strokes, NULL) == REFOCUS_OK);

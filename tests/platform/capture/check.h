@@ -20,12 +20,12 @@ int count_mappings(void);
 /* A source that must open and start. */
 struct refocus_source *started(const char *name, uint32_t flags);
 
-#define assert_status(expression, status)                                                   \
-    do {                                                                                    \
-        const int got_ = (expression);                                                      \
-        if (got_ != (status))                                                               \
-            fail_msg("%s gives %d (%s), not %d", #expression, got_, refocus_strerror(got_), \
-                     (int)(status));                                                        \
+#define assert_status(expression, status)                                                          \
+    do {                                                                                           \
+        const int got_ = (expression);                                                             \
+        if (got_ != (status))                                                                      \
+            fail_msg("%s gives %d (%s), not %d", #expression, got_, refocus_strerror(got_),        \
+                     (int)(status));                                                               \
     } while (0)
 
 #endif

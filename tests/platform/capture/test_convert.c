@@ -78,8 +78,8 @@ static void expect(const double yuv[3], uint32_t matrix, int full, double rgb[3]
 static uint8_t memory[3][MOST * MOST * 4 + PAD * MOST];
 static uint8_t out[MOST * MOST * 3 + PAD * MOST];
 
-static void check_frame(struct refocus_converter *converter, uint32_t format, int width,
-                        int height, uint32_t matrix, int full)
+static void check_frame(struct refocus_converter *converter, uint32_t format, int width, int height,
+                        uint32_t matrix, int full)
 {
     struct refocus_frame frame;
     struct refocus_image image =
@@ -110,8 +110,7 @@ static void check_frame(struct refocus_converter *converter, uint32_t format, in
 }
 
 /* A frame in Y, U and V copied: every sample, the matrix and the range, nothing else. */
-static void check_copy(struct refocus_converter *converter, uint32_t format, int width,
-                       int height)
+static void check_copy(struct refocus_converter *converter, uint32_t format, int width, int height)
 {
     static uint8_t copy[MOST * MOST * 4 + PAD * MOST * 3];
     const uint32_t kept = refocus_frame_image_format(format);
@@ -155,8 +154,7 @@ static void check_copy(struct refocus_converter *converter, uint32_t format, int
     image.stride[0] = rf_plane_row(format, 0, width) - 1;
     assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_ERR_ARGUMENT);
     frame.format = REFOCUS_FRAME_RGB24;
-    assert_status(refocus_convert_copy(converter, &frame, &image, NULL),
-                  REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_ERR_UNSUPPORTED);
 }
 
 static void copies_are_exact(void **state)
@@ -190,8 +188,7 @@ static void rgb_is_exact(void **state)
 {
     static const int order[][4] = {{0, 1, 2, 3}, {2, 1, 0, 3}, {0, 1, 2, 4}, {2, 1, 0, 4}};
     struct refocus_converter *converter = NULL;
-    struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 31, 17, 31 * 3);
+    struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 31, 17, 31 * 3);
     struct refocus_frame frame;
 
     (void)state;
@@ -224,9 +221,8 @@ static void samples_are_exact(void **state)
         for (int y = 0; y < 11; y++)
             for (int x = 0; x < 23; x++) {
                 const uint8_t *row = frame.plane[0] + y * frame.stride[0];
-                const int expected = format == REFOCUS_FRAME_GREY
-                                         ? row[x] * 257
-                                         : row[2 * x] + 256 * row[2 * x + 1];
+                const int expected =
+                    format == REFOCUS_FRAME_GREY ? row[x] * 257 : row[2 * x] + 256 * row[2 * x + 1];
 
                 assert_int_equal(samples[y * 23 + x], expected);
             }
@@ -240,8 +236,7 @@ static void samples_are_exact(void **state)
 static void bad_frames_are_refused(void **state)
 {
     struct refocus_converter *converter = NULL;
-    struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 32, 16, 32 * 3);
+    struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 32, 16, 32 * 3);
     struct refocus_reason reason;
     struct refocus_frame frame;
 
@@ -249,20 +244,16 @@ static void bad_frames_are_refused(void **state)
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     make_frame(&frame, REFOCUS_FRAME_NV12, 32, 16, memory);
     frame.stride[1] = 31;
-    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
-                  REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason), REFOCUS_ERR_ARGUMENT);
     assert_non_null(strstr(reason.text, "plane 1"));
     frame.stride[1] = 32;
     frame.plane[1] = NULL;
-    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
-                  REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason), REFOCUS_ERR_ARGUMENT);
     make_frame(&frame, REFOCUS_FRAME_YUYV, 32, 18, memory);
-    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
-                  REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason), REFOCUS_ERR_ARGUMENT);
     frame.format = REFOCUS_FRAME_FORMAT_COUNT;
     frame.height = 16;
-    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason),
-                  REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_convert_rgb8(converter, &frame, &image, &reason), REFOCUS_ERR_ARGUMENT);
     refocus_converter_destroy(&converter);
 }
 

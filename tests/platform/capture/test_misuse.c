@@ -9,9 +9,8 @@
 
 enum { W = 16, H = 12 };
 static uint8_t memory[W * H * 4];
-static const ptrdiff_t no_strides[] = {0,           1,           -1,
-                                       W - 1,       -(W - 1),    PTRDIFF_MIN,
-                                       PTRDIFF_MAX, PTRDIFF_MIN + 1, PTRDIFF_MIN / 2};
+static const ptrdiff_t no_strides[] = {
+    0, 1, -1, W - 1, -(W - 1), PTRDIFF_MIN, PTRDIFF_MAX, PTRDIFF_MIN + 1, PTRDIFF_MIN / 2};
 enum { NO_STRIDES = sizeof no_strides / sizeof *no_strides };
 
 /* Enough for the rows of U and V of 4:2:0 in planes, which have half as many. */
@@ -55,9 +54,8 @@ static void sources_of_nothing(void **state)
     assert_status(refocus_source_wait(source, 0, NULL, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_set_control(source, NULL, 1, NULL), REFOCUS_ERR_ARGUMENT);
     for (int i = 0; i < 3; i++)
-        assert_status(refocus_source_set_control(source, "focus",
-                                                 (double[]){(double)NAN, 1e300, -INFINITY}[i],
-                                                 NULL),
+        assert_status(refocus_source_set_control(
+                          source, "focus", (double[]){(double)NAN, 1e300, -INFINITY}[i], NULL),
                       REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_wait(source, -1, &frame, NULL), REFOCUS_OK);
     refocus_source_release(source, NULL);
@@ -90,8 +88,7 @@ static void sinks_of_nothing(void **state)
         assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_STATE);
         assert_status(refocus_sink_start_image(sink, NULL, 30, NULL), REFOCUS_ERR_ARGUMENT);
         image = refocus_image_planar(formats[f], memory, W, H);
-        assert_status(refocus_sink_start_image(sink, &image, (double)INFINITY, NULL),
-                      REFOCUS_OK);
+        assert_status(refocus_sink_start_image(sink, &image, (double)INFINITY, NULL), REFOCUS_OK);
         assert_status(refocus_sink_write(sink, NULL, NULL), REFOCUS_ERR_ARGUMENT);
         for (int p = 0; p < refocus_format_planes(formats[f]); p++) {
             struct refocus_image bad = image;
@@ -116,10 +113,10 @@ static void sinks_of_nothing(void **state)
 static struct refocus_frame frame_of(uint32_t format)
 {
     struct refocus_frame frame;
-    const int row = format == REFOCUS_FRAME_RGB24 || format == REFOCUS_FRAME_BGR24   ? 3 * W
-                    : format == REFOCUS_FRAME_RGBX || format == REFOCUS_FRAME_BGRX   ? 4 * W
+    const int row = format == REFOCUS_FRAME_RGB24 || format == REFOCUS_FRAME_BGR24 ? 3 * W
+                    : format == REFOCUS_FRAME_RGBX || format == REFOCUS_FRAME_BGRX ? 4 * W
                     : format == REFOCUS_FRAME_YUYV || format == REFOCUS_FRAME_UYVY ||
-                              format == REFOCUS_FRAME_Y16 || format == REFOCUS_FRAME_Z16
+                            format == REFOCUS_FRAME_Y16 || format == REFOCUS_FRAME_Z16
                         ? 2 * W
                         : W;
 
@@ -136,9 +133,9 @@ static struct refocus_frame frame_of(uint32_t format)
 
 static int planes_of(uint32_t format)
 {
-    return format == REFOCUS_FRAME_YUV420                                        ? 3
+    return format == REFOCUS_FRAME_YUV420                                 ? 3
            : format == REFOCUS_FRAME_NV12 || format == REFOCUS_FRAME_NV21 ? 2
-                                                                               : 1;
+                                                                          : 1;
 }
 
 /* All that converts, of this frame and into this memory. */

@@ -61,9 +61,10 @@ static void frames_come_at_their_pace(void **state)
 
 static void drops_and_flags_are_seen(void **state)
 {
-    struct refocus_source *source = started(
-        "replay::size 64x48;sequence 4294967290;frames 30;at 3 drop 2;at 8 corrupt;"
-        "at 12 timestamp -500", REFOCUS_SOURCE_FAST);
+    struct refocus_source *source =
+        started("replay::size 64x48;sequence 4294967290;frames 30;at 3 drop 2;at 8 corrupt;"
+                "at 12 timestamp -500",
+                REFOCUS_SOURCE_FAST);
     const struct refocus_frame *frame;
     int64_t before = INT64_MIN;
     int corrupt = 0, backwards = 0, n = 0;
@@ -104,8 +105,7 @@ static void formats_and_strides_change(void **state)
 
 static void a_device_returns_within_a_second(void **state)
 {
-    struct refocus_source *source =
-        started("replay::size 64x48;fps 100;at 5 vanish 300", 0);
+    struct refocus_source *source = started("replay::size 64x48;fps 100;at 5 vanish 300", 0);
     const struct refocus_frame *frame;
     int64_t gone, back;
     int status;
@@ -173,9 +173,9 @@ static void start_errors_pass(void **state)
 
 static void lost_buffers_are_counted(void **state)
 {
-    struct refocus_source *source = started(
-        "replay::size 64x48;at 2 queue-error;at 4 queue-error;at 6 queue-error",
-        REFOCUS_SOURCE_FAST);
+    struct refocus_source *source =
+        started("replay::size 64x48;at 2 queue-error;at 4 queue-error;at 6 queue-error",
+                REFOCUS_SOURCE_FAST);
     const struct refocus_frame *frame;
 
     (void)state;
@@ -215,8 +215,7 @@ static void *interrupt(void *source)
 
 static void another_thread_stops_it(void **state)
 {
-    struct refocus_source *source =
-        started("replay::size 64x48;fps 100;at 3 stall 60000", 0);
+    struct refocus_source *source = started("replay::size 64x48;fps 100;at 3 stall 60000", 0);
     const struct refocus_frame *frame;
     const int64_t begin = now_ms();
     pthread_t thread;

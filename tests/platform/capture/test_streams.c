@@ -36,8 +36,7 @@ static void write_frames(const char *name)
 /* Every frame twice over, as with REFOCUS_SOURCE_LOOP, each byte within a bound. */
 static void read_frames(const char *name, int bound)
 {
-    struct refocus_source *source =
-        started(name, REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_LOOP);
+    struct refocus_source *source = started(name, REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_LOOP);
     struct refocus_converter *converter = NULL;
     uint8_t back[WIDTH * HEIGHT * 3];
     const struct refocus_image image =
@@ -55,8 +54,7 @@ static void read_frames(const char *name, int bound)
         picture(n % FRAMES);
         for (size_t i = 0; i < sizeof back; i++)
             if (abs(back[i] - pixels[i]) > bound)
-                fail_msg("%s: frame %d, byte %zu is %d, was %d", name, n, i, back[i],
-                         pixels[i]);
+                fail_msg("%s: frame %d, byte %zu is %d, was %d", name, n, i, back[i], pixels[i]);
     }
     refocus_converter_destroy(&converter);
     refocus_source_close(&source);
@@ -110,8 +108,7 @@ static void damage_is_named(void **state)
     write_text("bad.y4m", "YUV4MPEG2 W400000 H4\n");
     assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_SIZE);
     write_text("bad.y4m", "YUV4MPEG2 W4 H4 C444\n");
-    assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason),
-                  REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_UNSUPPORTED);
     write_text("bad.y4m", "YUV4MPEG2 W4 H4\nFRAME\nabcdefghijklmnopqrstuvwxFRAME\nabc");
     source = started("y4m:bad.y4m", REFOCUS_SOURCE_FAST);
     assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
@@ -254,8 +251,8 @@ enum { RAW_W = 7, RAW_H = 5 };
 /* A picture of any format, rows with gaps. */
 static struct refocus_image noisy(uint32_t format, uint8_t memory[3][32 * RAW_H], uint32_t range)
 {
-    struct refocus_image image = {.format = format, .width = RAW_W, .height = RAW_H,
-                                  .range = range};
+    struct refocus_image image = {
+        .format = format, .width = RAW_W, .height = RAW_H, .range = range};
 
     for (int i = 0; i < 3; i++) {
         image.plane[i] = memory[i];
@@ -269,9 +266,10 @@ static struct refocus_image noisy(uint32_t format, uint8_t memory[3][32 * RAW_H]
 /* Pictures of one format in frames of another with as many samples, back by the source. */
 static void check_raw_of(uint32_t format, const char *name, uint32_t frame_format, bool own)
 {
-    static const uint32_t image_formats[] = {
-        [REFOCUS_FRAME_NV12] = REFOCUS_FORMAT_NV12, [REFOCUS_FRAME_NV21] = REFOCUS_FORMAT_NV21,
-        [REFOCUS_FRAME_YUV420] = REFOCUS_FORMAT_I420, [REFOCUS_FRAME_YUYV] = REFOCUS_FORMAT_YUYV};
+    static const uint32_t image_formats[] = {[REFOCUS_FRAME_NV12] = REFOCUS_FORMAT_NV12,
+                                             [REFOCUS_FRAME_NV21] = REFOCUS_FORMAT_NV21,
+                                             [REFOCUS_FRAME_YUV420] = REFOCUS_FORMAT_I420,
+                                             [REFOCUS_FRAME_YUYV] = REFOCUS_FORMAT_YUYV};
     static uint8_t memory[3][32 * RAW_H];
     struct refocus_image image = noisy(format, memory, 1), back = {0};
     const int tall = format == REFOCUS_FORMAT_YUYV;
@@ -296,8 +294,8 @@ static void check_raw_of(uint32_t format, const char *name, uint32_t frame_forma
     for (int n = 0; n < 2; n++) {
         assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
         assert_int_equal(frame->format, frame_format);
-        back = (struct refocus_image){.format = REFOCUS_FORMAT_YUYV, .width = RAW_W,
-                                      .height = RAW_H};
+        back =
+            (struct refocus_image){.format = REFOCUS_FORMAT_YUYV, .width = RAW_W, .height = RAW_H};
         if (frame_format == REFOCUS_FRAME_UYVY) {
             for (size_t i = 0; i < 2 * (RAW_W + 1) * RAW_H; i++)
                 swapped[i] = frame->plane[0][i ^ 1];
@@ -349,10 +347,10 @@ static void raw_formats(void **state)
     static const struct {
         const char *name;
         int bound;
-    } formats[] = {{"own", 0}, {"RGB24", 0}, {"BGR24", 0}, {"RGBX", 0}, {"BGRX", 0},
-                   {"NV12", 5}, {"NV21", 5}, {"YUV420", 5}, {"YUYV", 5}, {"UYVY", 5}};
-    static const char *const wrong[] = {"raw:x,NV99", "raw:x,", "raw:x,GREY", "raw:x,MJPEG",
-                                        "raw:,NV12", "raw:x,Z16", "raw:x,any"};
+    } formats[] = {{"own", 0},  {"RGB24", 0}, {"BGR24", 0},  {"RGBX", 0}, {"BGRX", 0},
+                   {"NV12", 5}, {"NV21", 5},  {"YUV420", 5}, {"YUYV", 5}, {"UYVY", 5}};
+    static const char *const wrong[] = {"raw:x,NV99", "raw:x,",    "raw:x,GREY", "raw:x,MJPEG",
+                                        "raw:,NV12",  "raw:x,Z16", "raw:x,any"};
     struct refocus_sink *sink = NULL;
     struct refocus_image yuv = {.format = REFOCUS_FORMAT_YUYV, .width = 4, .height = 4};
 
@@ -390,7 +388,8 @@ static int chroma_as(const struct refocus_image *image, bool tall, int i, int x,
         return *sample_of(image, i, x, y);
     y = y / 2 * 2;
     return (*sample_of(image, i, x, y) +
-            *sample_of(image, i, x, y + 1 < image->height ? y + 1 : y) + 1) / 2;
+            *sample_of(image, i, x, y + 1 < image->height ? y + 1 : y) + 1) /
+           2;
 }
 
 /* 4:2:0 into 4:2:2 and back: codes of Y stay, rows of U and V come twice or are mixed. */
@@ -494,8 +493,7 @@ static void sinks_refuse_what_is_wrong(void **state)
     assert_status(refocus_sink_start(sink, WIDTH, HEIGHT, 25, NULL), REFOCUS_OK);
     image.width--;
     assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_ARGUMENT);
-    assert_status(refocus_sink_start(sink, WIDTH - 1, HEIGHT, 25, NULL),
-                  REFOCUS_ERR_UNSUPPORTED);
+    assert_status(refocus_sink_start(sink, WIDTH - 1, HEIGHT, 25, NULL), REFOCUS_ERR_UNSUPPORTED);
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
 }
 
@@ -528,8 +526,10 @@ int main(void)
         cmocka_unit_test(damage_is_named),
         cmocka_unit_test(wrong_names_are_refused),
         cmocka_unit_test(a_closed_pipe_is_a_status),
-        cmocka_unit_test(y4m_keeps_codes), cmocka_unit_test(raw_keeps_codes),
-        cmocka_unit_test(raw_formats), cmocka_unit_test(raw_of_other_samples),
+        cmocka_unit_test(y4m_keeps_codes),
+        cmocka_unit_test(raw_keeps_codes),
+        cmocka_unit_test(raw_formats),
+        cmocka_unit_test(raw_of_other_samples),
         cmocka_unit_test(y4m_422_comes_back),
         cmocka_unit_test(sinks_refuse_what_is_wrong),
         cmocka_unit_test(replay_replays),

@@ -15,8 +15,8 @@
 #include <refocus/platform/file.h>
 #include "make.h"
 
-static inline void check_status(int status, int expected, const char *reason,
-                                const char *file, int line)
+static inline void check_status(int status, int expected, const char *reason, const char *file,
+                                int line)
 {
     if (status != expected) {
         print_error("status %d (%s), expected %d\n", status, reason, expected);
@@ -38,8 +38,7 @@ static inline struct refocus_photo *read_photo_at(struct bytes bytes, int expect
 {
     struct refocus_photo *photo = (struct refocus_photo *)1;
     struct refocus_reason reason;
-    const int status =
-        refocus_photo_read_memory(&photo, bytes.data, bytes.size, NULL, &reason);
+    const int status = refocus_photo_read_memory(&photo, bytes.data, bytes.size, NULL, &reason);
 
     bytes_free(&bytes);
     check_status(status, expected, reason.text, file, line);
@@ -50,13 +49,12 @@ static inline struct refocus_photo *read_photo_at(struct bytes bytes, int expect
 }
 
 static inline struct refocus_photo *read_depth_at(struct bytes bytes, const char *unit,
-                                                  int expected, const char *file,
-                                                  int line)
+                                                  int expected, const char *file, int line)
 {
     struct refocus_photo *photo = (struct refocus_photo *)1;
     struct refocus_reason reason;
-    const int status = refocus_depth_read_memory(&photo, bytes.data, bytes.size, unit,
-                                                 0, 0, NULL, &reason);
+    const int status =
+        refocus_depth_read_memory(&photo, bytes.data, bytes.size, unit, 0, 0, NULL, &reason);
 
     bytes_free(&bytes);
     check_status(status, expected, reason.text, file, line);
@@ -66,16 +64,14 @@ static inline struct refocus_photo *read_depth_at(struct bytes bytes, const char
     return photo;
 }
 
-#define read_photo(bytes, expected) read_photo_at(bytes, expected, __FILE__, __LINE__)
-#define read_depth(bytes, unit, expected)                                              \
-    read_depth_at(bytes, unit, expected, __FILE__, __LINE__)
+#define read_photo(bytes, expected)       read_photo_at(bytes, expected, __FILE__, __LINE__)
+#define read_depth(bytes, unit, expected) read_depth_at(bytes, unit, expected, __FILE__, __LINE__)
 
 static inline unsigned sample_at(const struct refocus_depth_map *map, int x, int y)
 {
     const uint8_t *const row = (const uint8_t *)map->samples + y * map->stride;
 
-    return map->sample == REFOCUS_SAMPLE_U8 ? row[x]
-                                            : ((const uint16_t *)(const void *)row)[x];
+    return map->sample == REFOCUS_SAMPLE_U8 ? row[x] : ((const uint16_t *)(const void *)row)[x];
 }
 
 static inline double float_at(const struct refocus_depth_map *map, int x, int y)
@@ -105,11 +101,9 @@ static const struct {
                       {'l', 't'}, {'r', 't'}, {'r', 'b'}, {'l', 'b'}};
 
 /* Where the stored pixel (column, row) of a w x h picture lies in the upright one. */
-static inline void upright_place(int orientation, int w, int h, int column, int row,
-                                 int *x, int *y)
+static inline void upright_place(int orientation, int w, int h, int column, int row, int *x, int *y)
 {
-    const char r = upright_sides[orientation].row,
-               c = upright_sides[orientation].column;
+    const char r = upright_sides[orientation].row, c = upright_sides[orientation].column;
 
     *x = c == 'l' ? column : c == 'r' ? w - 1 - column : r == 'l' ? row : h - 1 - row;
     *y = r == 't' ? row : r == 'b' ? h - 1 - row : c == 't' ? column : w - 1 - column;

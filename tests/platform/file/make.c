@@ -69,8 +69,7 @@ struct bytes bytes_copy(const void *data, size_t size)
 
 unsigned pattern(int x, int y, int c, unsigned max)
 {
-    return (unsigned)(x * 37 + y * 91 + c * 53 + x * y * 7) * (max > 255 ? 251u : 1u) %
-           (max + 1);
+    return (unsigned)(x * 37 + y * 91 + c * 53 + x * y * 7) * (max > 255 ? 251u : 1u) % (max + 1);
 }
 
 /* PNG ----------------------------------------------------------------- */
@@ -125,8 +124,8 @@ static int png_channels(int type)
     return type == 2 ? 3 : type == 4 ? 2 : type == 6 ? 4 : 1;
 }
 
-struct bytes make_png_raw(int width, int height, int type, int bits,
-                          const uint8_t *samples, const struct bytes *exif)
+struct bytes make_png_raw(int width, int height, int type, int bits, const uint8_t *samples,
+                          const struct bytes *exif)
 {
     const size_t stride = ((size_t)(width * png_channels(type) * bits) + 7) / 8;
     struct bytes png = {NULL, 0}, header = {NULL, 0}, rows = {NULL, 0}, packed;
@@ -247,8 +246,7 @@ static void add_box(struct bytes *to, const char *type, struct bytes content)
     bytes_join(to, content);
 }
 
-struct bytes make_heif_boxes(const struct heif_property *properties, int count,
-                             bool large)
+struct bytes make_heif_boxes(const struct heif_property *properties, int count, bool large)
 {
     struct bytes file = {NULL, 0}, meta = {NULL, 0}, iprp = {NULL, 0}, ipco = {NULL, 0};
     struct bytes ipma = {NULL, 0}, pitm = {NULL, 0};
@@ -264,8 +262,7 @@ struct bytes make_heif_boxes(const struct heif_property *properties, int count,
         bytes_number(&ipma, (uint64_t)item, large ? 4 : 2, true);
         bytes_number(&ipma, (uint64_t)own, 1, true);
         for (int i = 1; i <= own; i++) {
-            bytes_number(&ipma, (uint64_t)i | (large ? 0x8000 : 0x80), large ? 2 : 1,
-                         true);
+            bytes_number(&ipma, (uint64_t)i | (large ? 0x8000 : 0x80), large ? 2 : 1, true);
         }
     }
     for (int i = 0; i < count; i++) {
@@ -286,8 +283,7 @@ struct bytes make_heif_boxes(const struct heif_property *properties, int count,
 
 struct bytes base64(const void *data, size_t size)
 {
-    static const char digits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const uint8_t *const from = data;
     struct bytes text = {NULL, 0};
 
@@ -310,17 +306,15 @@ struct bytes make_xmp(const char *attributes)
 {
     struct bytes xmp = {NULL, 0};
 
-    bytes_text(
-        &xmp,
-        "<?xpacket begin=\"\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>"
-        "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf="
-        "\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description "
-        "rdf:about=\"\" xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\" "
-        "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
-        "xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\" "
-        "xmlns:apdi=\"http://ns.apple.com/pixeldatainfo/1.0/\" "
-        "xmlns:depthData=\"http://ns.apple.com/depthData/1.0/\" "
-        "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" ");
+    bytes_text(&xmp, "<?xpacket begin=\"\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>"
+                     "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf="
+                     "\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description "
+                     "rdf:about=\"\" xmlns:GDepth=\"http://ns.google.com/photos/1.0/depthmap/\" "
+                     "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
+                     "xmlns:GFocus=\"http://ns.google.com/photos/1.0/focus/\" "
+                     "xmlns:apdi=\"http://ns.apple.com/pixeldatainfo/1.0/\" "
+                     "xmlns:depthData=\"http://ns.apple.com/depthData/1.0/\" "
+                     "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" ");
     bytes_text(&xmp, attributes);
     bytes_text(&xmp, "/></rdf:RDF></x:xmpmeta><?xpacket end=\"w\"?>  \n");
     return xmp;

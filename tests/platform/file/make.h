@@ -26,8 +26,8 @@ unsigned pattern(int x, int y, int c, unsigned max);
 /* PNG, not compressed. Types: 0 grey, 2 RGB, 3 palette of 256 greys, two transparent, 4
  * grey + alpha, 6 RGBA. samples: rows as PNG stores them. exif, icc: put in when not
  * NULL. */
-struct bytes make_png_raw(int width, int height, int type, int bits,
-                          const uint8_t *samples, const struct bytes *exif);
+struct bytes make_png_raw(int width, int height, int type, int bits, const uint8_t *samples,
+                          const struct bytes *exif);
 /* The same with the pattern. */
 struct bytes make_png(int width, int height, int type, int bits);
 void png_chunk(struct bytes *png, const char *type, const void *data, size_t size);
@@ -37,8 +37,8 @@ void png_chunk(struct bytes *png, const char *type, const void *data, size_t siz
  */
 struct bytes make_jpeg(int width, int height, bool grey, bool progressive);
 /* A segment right behind SOI. */
-void jpeg_insert(struct bytes *jpeg, int marker, const char *signature,
-                 size_t signature_size, const void *data, size_t size);
+void jpeg_insert(struct bytes *jpeg, int marker, const char *signature, size_t signature_size,
+                 const void *data, size_t size);
 void jpeg_insert_exif(struct bytes *jpeg, struct bytes exif); /* frees it */
 void jpeg_insert_xmp(struct bytes *jpeg, const char *xmp);
 
@@ -52,8 +52,7 @@ struct heif_property {
     const char *type;
     int value;
 };
-struct bytes make_heif_boxes(const struct heif_property *properties, int count,
-                             bool large);
+struct bytes make_heif_boxes(const struct heif_property *properties, int count, bool large);
 
 struct bytes base64(const void *data, size_t size); /* NUL-terminated */
 
@@ -61,8 +60,8 @@ struct bytes base64(const void *data, size_t size); /* NUL-terminated */
 struct bytes make_xmp(const char *attributes);
 /* Add the extended packet in chunks of a size, in the order of the permutation
  * i -> i * step mod count. skip: index of a chunk to leave out; -1: none. */
-void jpeg_insert_extended(struct bytes *jpeg, const char *guid, struct bytes packet,
-                          size_t chunk, int step, int skip);
+void jpeg_insert_extended(struct bytes *jpeg, const char *guid, struct bytes packet, size_t chunk,
+                          int step, int skip);
 extern const char test_guid[33];
 
 /* A phone's photo: main JPEG, GDepth in the standard packet. NULL stands for absent. */
@@ -74,12 +73,10 @@ struct gdepth {
 };
 struct bytes make_gdepth(struct gdepth gdepth, int orientation);
 /* The same with depth and original in an extended packet. */
-struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step,
-                                  int skip);
+struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, int skip);
 
 /* A JPEG with others behind it, as MPF lists them. Parts are freed. */
-struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count,
-                      bool big_endian);
+struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count, bool big_endian);
 /* A grey JPEG whose XMP says what it is. */
 struct bytes make_auxiliary(const char *type, const char *extra);
 

@@ -9,8 +9,7 @@ const char test_guid[33] = "0123456789ABCDEF0123456789ABCDEF";
 
 static void fill(uint8_t *pixels, int width, int height, bool grey)
 {
-    static const uint8_t colours[4][3] = {
-        {255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
+    static const uint8_t colours[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
     static const uint8_t greys[4] = {32, 96, 160, 224};
 
     for (int y = 0; y < height; y++) {
@@ -35,8 +34,8 @@ struct bytes make_jpeg(int width, int height, bool grey, bool progressive)
     unsigned long size = 0;
 
     fill(pixels, width, height, grey);
-    if (tjCompress2(compressor, pixels, width, 0, height, grey ? TJPF_GRAY : TJPF_RGB,
-                    &out, &size, grey ? TJSAMP_GRAY : TJSAMP_444, 95,
+    if (tjCompress2(compressor, pixels, width, 0, height, grey ? TJPF_GRAY : TJPF_RGB, &out, &size,
+                    grey ? TJSAMP_GRAY : TJSAMP_444, 95,
                     progressive ? TJFLAG_PROGRESSIVE : 0) != 0) {
         exit(98);
     }
@@ -47,8 +46,8 @@ struct bytes make_jpeg(int width, int height, bool grey, bool progressive)
     return jpeg;
 }
 
-void jpeg_insert(struct bytes *jpeg, int marker, const char *signature,
-                 size_t signature_size, const void *data, size_t size)
+void jpeg_insert(struct bytes *jpeg, int marker, const char *signature, size_t signature_size,
+                 const void *data, size_t size)
 {
     struct bytes whole = {NULL, 0};
 
@@ -74,8 +73,8 @@ void jpeg_insert_xmp(struct bytes *jpeg, const char *xmp)
     jpeg_insert(jpeg, 0xe1, "http://ns.adobe.com/xap/1.0/", 29, xmp, strlen(xmp));
 }
 
-void jpeg_insert_extended(struct bytes *jpeg, const char *guid, struct bytes packet,
-                          size_t chunk, int step, int skip)
+void jpeg_insert_extended(struct bytes *jpeg, const char *guid, struct bytes packet, size_t chunk,
+                          int step, int skip)
 {
     const int count = (int)((packet.size + chunk - 1) / chunk);
 
@@ -92,8 +91,7 @@ void jpeg_insert_extended(struct bytes *jpeg, const char *guid, struct bytes pac
         bytes_number(&body, packet.size, 4, true);
         bytes_number(&body, from, 4, true);
         bytes_add(&body, packet.data + from, size);
-        jpeg_insert(jpeg, 0xe1, "http://ns.adobe.com/xmp/extension/", 35, body.data,
-                    body.size);
+        jpeg_insert(jpeg, 0xe1, "http://ns.adobe.com/xmp/extension/", 35, body.data, body.size);
         bytes_free(&body);
     }
 }
@@ -139,8 +137,7 @@ struct bytes make_gdepth(struct gdepth gdepth, int orientation)
     return jpeg;
 }
 
-struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step,
-                                  int skip)
+struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, int skip)
 {
     struct bytes jpeg = make_jpeg(48, 32, false, false);
     struct bytes text = {NULL, 0}, data = {NULL, 0}, xmp;
@@ -161,8 +158,7 @@ struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step,
     return jpeg;
 }
 
-struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count,
-                      bool big_endian)
+struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count, bool big_endian)
 {
     const size_t entries = 16 * (size_t)(count + 1);
     const size_t segment = 4 + 4 + 8 + 2 + 36 + 4 + entries;
@@ -189,8 +185,7 @@ struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count,
     bytes_number(&tiff, 0, 4, big_endian);
     for (int i = -1; i < count; i++) {
         bytes_number(&tiff, i < 0 ? 0x30000 : 0, 4, big_endian);
-        bytes_number(&tiff, i < 0 ? main_jpeg.size + segment : parts[i].size, 4,
-                     big_endian);
+        bytes_number(&tiff, i < 0 ? main_jpeg.size + segment : parts[i].size, 4, big_endian);
         bytes_number(&tiff, i < 0 ? 0 : at, 4, big_endian);
         bytes_number(&tiff, 0, 4, big_endian);
         at += i < 0 ? 0 : parts[i].size;

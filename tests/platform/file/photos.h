@@ -36,16 +36,15 @@ static inline struct refocus_photo *depth_of(const char *name, const char *unit)
 {
     struct refocus_photo *photo = NULL;
     struct refocus_reason reason;
-    const int status =
-        refocus_depth_read(&photo, in_photos(name), unit, 0, 0, NULL, &reason);
+    const int status = refocus_depth_read(&photo, in_photos(name), unit, 0, 0, NULL, &reason);
 
     check_status(status, REFOCUS_OK, reason.text, name, 0);
     assert_null(photo->image.plane[0]);
     return photo;
 }
 
-static inline void assert_sizes(const struct refocus_photo *photo, int width,
-                                int height, int depth_width, int depth_height)
+static inline void assert_sizes(const struct refocus_photo *photo, int width, int height,
+                                int depth_width, int depth_height)
 {
     assert_int_equal(photo->image.width, width);
     assert_int_equal(photo->image.height, height);

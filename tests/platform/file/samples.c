@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-static void put(struct sample *samples, int *count, const char *name,
-                struct bytes bytes, bool photo, bool depth)
+static void put(struct sample *samples, int *count, const char *name, struct bytes bytes,
+                bool photo, bool depth)
 {
     const struct sample sample = {name, bytes, photo, depth, 0, false};
 
@@ -21,19 +21,17 @@ static struct bytes text_with(const char *head, const void *body, size_t size)
 
 static void put_plain(struct sample *samples, int *count)
 {
-    put(samples, count, "p5.pgm", text_with("P5\n3 2\n255\n", "\1\2\3\4\5\6", 6), true,
+    put(samples, count, "p5.pgm", text_with("P5\n3 2\n255\n", "\1\2\3\4\5\6", 6), true, true);
+    put(samples, count, "p5-16.pgm", text_with("P5\n# 16 bits\n2 1\n65535\n", "\1\2\3\4", 4), true,
         true);
-    put(samples, count, "p5-16.pgm",
-        text_with("P5\n# 16 bits\n2 1\n65535\n", "\1\2\3\4", 4), true, true);
-    put(samples, count, "p6.ppm", text_with("P6\n2 1\n255\n", "\1\2\3\4\5\6", 6), true,
-        false);
+    put(samples, count, "p6.ppm", text_with("P6\n2 1\n255\n", "\1\2\3\4\5\6", 6), true, false);
     put(samples, count, "p2.pgm", text_with("P2 3 1 10\n", "1 2 10", 6), true, true);
     samples[*count - 1].loose_end = true;
     put(samples, count, "p3.ppm", text_with("P3 1 1 10\n", "7 7 7", 5), true, true);
-    put(samples, count, "pf-low.pfm",
-        text_with("Pf\n2 1\n-1.0\n", "\0\0\200\77\0\0\0\100", 8), false, true);
-    put(samples, count, "pf-high.pfm",
-        text_with("Pf\n1 2\n1.0\n", "\77\200\0\0\177\300\0\0", 8), false, true);
+    put(samples, count, "pf-low.pfm", text_with("Pf\n2 1\n-1.0\n", "\0\0\200\77\0\0\0\100", 8),
+        false, true);
+    put(samples, count, "pf-high.pfm", text_with("Pf\n1 2\n1.0\n", "\77\200\0\0\177\300\0\0", 8),
+        false, true);
 }
 
 #ifdef RF_HAVE_PNG
@@ -70,13 +68,12 @@ static void put_phone(struct sample *samples, int *count)
                                       .depth = make_jpeg(16, 16, true, false)};
     struct bytes parts[2] = {
         make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL),
-        make_auxiliary("disparity",
-                       "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\"")};
+        make_auxiliary("disparity", "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\"")};
     const size_t last = parts[0].size + parts[1].size;
 
     put(samples, count, "linear.jpg", make_gdepth(jpeg_depth, 8), true, true);
-    put(samples, count, "apple.jpg",
-        make_mpf(make_jpeg(16, 16, false, false), parts, 2, true), true, true);
+    put(samples, count, "apple.jpg", make_mpf(make_jpeg(16, 16, false, false), parts, 2, true),
+        true, true);
     samples[*count - 1].whole_at = samples[*count - 1].bytes.size - last;
 #ifdef RF_HAVE_PNG
     const struct gdepth png_depth = {
@@ -85,8 +82,7 @@ static void put_phone(struct sample *samples, int *count)
                  "GFocus:FocalPointX=\"0.5\" GFocus:FocalPointY=\"0.25\" ",
         .depth = make_png(4, 3, 0, 8),
         .original = make_png(3, 2, 2, 8)};
-    put(samples, count, "extended.jpg", make_gdepth_extended(png_depth, 100, 23, -1),
-        true, true);
+    put(samples, count, "extended.jpg", make_gdepth_extended(png_depth, 100, 23, -1), true, true);
 #endif
 }
 #endif

@@ -3,11 +3,10 @@
 
 #include <unistd.h>
 
-
 #include <math.h>
 
-#define APPLE_RANGE                                                                    \
-    "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\" apdi:IntMinValue=\"0\" "     \
+#define APPLE_RANGE                                                                                \
+    "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\" apdi:IntMinValue=\"0\" "                 \
     "apdi:IntMaxValue=\"255\" depthData:Accuracy=\"relative\""
 
 static void apple_disparity(void **state)
@@ -41,8 +40,7 @@ static void apple_gain_map_is_no_depth(void **state)
 {
     struct bytes part = make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL);
     struct bytes file = make_mpf(make_jpeg(32, 32, false, false), &part, 1, true);
-    struct refocus_photo *photo =
-        read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
+    struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
 
     (void)state;
     assert_null(photo->depth.samples);
@@ -90,13 +88,11 @@ static void mpo_second_view(void **state)
     assert_null(photo);
 }
 
-static struct refocus_photo *apple_with(const char *type, const char *extra,
-                                        int expected)
+static struct refocus_photo *apple_with(const char *type, const char *extra, int expected)
 {
     struct bytes part = make_auxiliary(type, extra);
 
-    return read_photo(make_mpf(make_jpeg(32, 32, false, false), &part, 1, true),
-                      expected);
+    return read_photo(make_mpf(make_jpeg(32, 32, false, false), &part, 1, true), expected);
 }
 
 static void apple_ranges(void **state)
@@ -104,8 +100,8 @@ static void apple_ranges(void **state)
     struct refocus_photo *photo;
 
     (void)state;
-    photo = apple_with(
-        "disparity", "apdi:FloatMinValue=\"-1\" apdi:FloatMaxValue=\"4\"", REFOCUS_OK);
+    photo =
+        apple_with("disparity", "apdi:FloatMinValue=\"-1\" apdi:FloatMaxValue=\"4\"", REFOCUS_OK);
     assert_near(photo->depth.value_far, 51); /* where disparity is 0 */
     assert_true(isinf(photo->depth.far_m) && photo->depth.near_m == 0.25);
     refocus_photo_free(&photo);
@@ -127,8 +123,7 @@ static void apple_ranges(void **state)
     refocus_photo_free(&photo);
     apple_with("disparity", "apdi:FloatMinValue=\"4\" apdi:FloatMaxValue=\"4\"",
                REFOCUS_ERR_FORMAT);
-    apple_with("disparity", "apdi:IntMinValue=\"9\" apdi:IntMaxValue=\"9\"",
-               REFOCUS_ERR_FORMAT);
+    apple_with("disparity", "apdi:IntMinValue=\"9\" apdi:IntMaxValue=\"9\"", REFOCUS_ERR_FORMAT);
     apple_with("disparity", "apdi:FloatMinValue=\"x\"", REFOCUS_ERR_FORMAT);
 }
 
@@ -173,8 +168,11 @@ static void xmp_hostile(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mpo_second_view), cmocka_unit_test(apple_disparity), cmocka_unit_test(apple_gain_map_is_no_depth),
-        cmocka_unit_test(apple_ranges),    cmocka_unit_test(mpf_index_of_another_file),
+        cmocka_unit_test(mpo_second_view),
+        cmocka_unit_test(apple_disparity),
+        cmocka_unit_test(apple_gain_map_is_no_depth),
+        cmocka_unit_test(apple_ranges),
+        cmocka_unit_test(mpf_index_of_another_file),
         cmocka_unit_test(xmp_hostile),
     };
 

@@ -4,17 +4,15 @@
 #include "check.h"
 #include "samples.h"
 
-static int read_exact(const uint8_t *bytes, size_t size, bool depth,
-                      struct refocus_reason *reason)
+static int read_exact(const uint8_t *bytes, size_t size, bool depth, struct refocus_reason *reason)
 {
     uint8_t *const copy = malloc(size ? size : 1);
     struct refocus_photo *photo = (struct refocus_photo *)1;
     int status;
 
     memcpy(copy, bytes, size);
-    status =
-        depth ? refocus_depth_read_memory(&photo, copy, size, NULL, 0, 0, NULL, reason)
-              : refocus_photo_read_memory(&photo, copy, size, NULL, reason);
+    status = depth ? refocus_depth_read_memory(&photo, copy, size, NULL, 0, 0, NULL, reason)
+                   : refocus_photo_read_memory(&photo, copy, size, NULL, reason);
     free(copy);
     if ((status == REFOCUS_OK) != (photo != NULL) ||
         (status != REFOCUS_OK && reason->text[0] == '\0')) {
@@ -96,8 +94,8 @@ static void limits_of_parts(void **state)
     for (int i = 0; i < count; i++) {
         struct refocus_reason reason;
         struct refocus_photo *photo;
-        const int status = refocus_photo_read_memory(
-            &photo, samples[i].bytes.data, samples[i].bytes.size, &limits, &reason);
+        const int status = refocus_photo_read_memory(&photo, samples[i].bytes.data,
+                                                     samples[i].bytes.size, &limits, &reason);
         const int small = strcmp(samples[i].name, "p3.ppm") == 0;
 
         if (samples[i].photo) {

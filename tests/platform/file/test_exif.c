@@ -7,9 +7,18 @@
 #include "internal.h"
 
 enum {
-    ASCII = 2, SHORT = 3, LONG = 4, RATIONAL = 5,
-    MAKE = 0x010f, MODEL = 0x0110, ORIENTATION = 0x0112, SETTINGS = 0x8769,
-    F_NUMBER = 0x829d, FOCAL_LENGTH = 0x920a, WIDTH = 0xa002, HEIGHT = 0xa003,
+    ASCII = 2,
+    SHORT = 3,
+    LONG = 4,
+    RATIONAL = 5,
+    MAKE = 0x010f,
+    MODEL = 0x0110,
+    ORIENTATION = 0x0112,
+    SETTINGS = 0x8769,
+    F_NUMBER = 0x829d,
+    FOCAL_LENGTH = 0x920a,
+    WIDTH = 0xa002,
+    HEIGHT = 0xa003,
     FOCAL_LENGTH_35MM = 0xa405,
 };
 

@@ -16,8 +16,7 @@ static struct gdepth small_gdepth(void)
     return gdepth;
 }
 
-static void check_quarter(const struct refocus_image *image, int x, int y,
-                          const uint8_t *colour)
+static void check_quarter(const struct refocus_image *image, int x, int y, const uint8_t *colour)
 {
     for (int c = 0; c < 3; c++) {
         assert_in_range(pixel_at(image, x, y)[c] + 10, colour[c], colour[c] + 20);
@@ -26,8 +25,7 @@ static void check_quarter(const struct refocus_image *image, int x, int y,
 
 static void orientation_of_photo_and_depth(void **state)
 {
-    static const uint8_t colours[4][3] = {
-        {255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
+    static const uint8_t colours[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
 
     (void)state;
     for (int orientation = 1; orientation <= 8; orientation++) {
@@ -39,8 +37,7 @@ static void orientation_of_photo_and_depth(void **state)
         assert_int_equal(photo->depth.width, orientation < 5 ? 6 : 4);
         for (int i = 0; i < 24; i++) {
             upright_place(orientation, 6, 4, i % 6, i / 6, &x, &y);
-            assert_int_equal(sample_at(&photo->depth, x, y),
-                             pattern(i % 6, i / 6, 0, 255));
+            assert_int_equal(sample_at(&photo->depth, x, y), pattern(i % 6, i / 6, 0, 255));
         }
         for (int i = 0; i < 4; i++) {
             upright_place(orientation, 48, 32, i % 2 ? 40 : 8, i / 2 ? 24 : 8, &x, &y);
@@ -56,8 +53,7 @@ static void orientation_of_photo_and_depth(void **state)
 
 static void gdepth_range_inverse(void **state)
 {
-    struct refocus_photo *photo =
-        read_photo(make_gdepth(small_gdepth(), 0), REFOCUS_OK);
+    struct refocus_photo *photo = read_photo(make_gdepth(small_gdepth(), 0), REFOCUS_OK);
 
     (void)state;
     assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
@@ -98,8 +94,7 @@ static void gdepth_range_linear(void **state)
                                   .extra = "GDepth:Near=\"500\" GDepth:Far=\"3500\" "
                                            "GDepth:Units=\"mm\"",
                                   .depth = make_png(6, 4, 0, 16)};
-    const struct gdepth without = {.format = "RangeLinear",
-                                   .depth = make_png(6, 4, 0, 8)};
+    const struct gdepth without = {.format = "RangeLinear", .depth = make_png(6, 4, 0, 8)};
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
     (void)state;
@@ -115,8 +110,7 @@ static void gdepth_range_linear(void **state)
 
 static void gdepth_payload_jpeg_without_range(void **state)
 {
-    const struct gdepth gdepth = {.format = "RangeInverse",
-                                  .depth = make_jpeg(32, 16, true, true)};
+    const struct gdepth gdepth = {.format = "RangeInverse", .depth = make_jpeg(32, 16, true, true)};
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
     (void)state;
@@ -164,19 +158,17 @@ static void gdepth_units_absent_are_told(void **state)
 /* Distances of no unit and of a strange one: disparities, and no metres. */
 static void gdepth_linear_without_metres(void **state)
 {
-    static const char *const extra[] = {
-        "GDepth:Near=\"2\" GDepth:Far=\"9\"",
-        "GDepth:Near=\"0\" GDepth:Far=\"9\"",
-        "GDepth:Near=\"2\" GDepth:Far=\"9\" GDepth:Units=\"feet\""};
+    static const char *const extra[] = {"GDepth:Near=\"2\" GDepth:Far=\"9\"",
+                                        "GDepth:Near=\"0\" GDepth:Far=\"9\"",
+                                        "GDepth:Near=\"2\" GDepth:Far=\"9\" GDepth:Units=\"feet\""};
 
     (void)state;
     for (int i = 0; i < 6; i++) {
         const int bits = i % 2 ? 16 : 8, max = (1 << bits) - 1;
         const double near = i / 2 == 1 ? 0 : 2, step = (9 - near) / max;
         const double least = near > 0 ? near : step;
-        const struct gdepth gdepth = {.format = "RangeLinear",
-                                      .extra = extra[i / 2],
-                                      .depth = make_png(6, 4, 0, bits)};
+        const struct gdepth gdepth = {
+            .format = "RangeLinear", .extra = extra[i / 2], .depth = make_png(6, 4, 0, bits)};
         struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
         assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
@@ -214,9 +206,11 @@ static void gdepth_own_blur(void **state)
 #define BLUR  "GFocus:BlurAtInfinity=\"0.01\" "
 #define POINT "GFocus:FocalPointX=\"0.6\" GFocus:FocalPointY=\"0.6\" "
     assert_near(own_blur(BLUR "GDepth:Near=\"2\" GDepth:Far=\"10\" "
-                              "GFocus:FocalDistance=\"5\""), 0.02);
+                              "GFocus:FocalDistance=\"5\""),
+                0.02);
     assert_near(own_blur(BLUR "GDepth:Near=\"2\" GDepth:Far=\"10\" GDepth:Units=\"mm\" "
-                              "GFocus:FocalDistance=\"5\""), 0.02);
+                              "GFocus:FocalDistance=\"5\""),
+                0.02);
     assert_near(own_blur(BLUR POINT "GDepth:Near=\"2\" GDepth:Far=\"10\""),
                 0.01 * 0.4 / (0.1 + 0.4 * d));
     assert_near(own_blur(BLUR POINT), 0.01 / d);
@@ -284,8 +278,7 @@ static void extended_in_any_order(void **state)
     for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
         /* 23 has no common divisor with any number of chunks here. */
         struct refocus_photo *photo = read_photo(
-            make_gdepth_extended(small_gdepth(), chunks[i], i % 2 ? 23 : 1, -1),
-            REFOCUS_OK);
+            make_gdepth_extended(small_gdepth(), chunks[i], i % 2 ? 23 : 1, -1), REFOCUS_OK);
         assert_int_equal(sample_at(&photo->depth, 3, 2), pattern(3, 2, 0, 255));
         refocus_photo_free(&photo);
     }

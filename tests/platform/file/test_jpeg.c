@@ -62,8 +62,7 @@ static void icc_in_chunks(void **state)
     memcpy(profile + 16, "RGB ", 4);
     memcpy(profile + 36, "acsp", 4);
     /* jpeg_insert() puts each before the last: they come in reverse order. */
-    photo =
-        read_photo(plain_with_icc((struct bytes){profile, 300}, 70, -1), REFOCUS_OK);
+    photo = read_photo(plain_with_icc((struct bytes){profile, 300}, 70, -1), REFOCUS_OK);
     assert_int_equal(photo->icc.size, 300);
     assert_memory_equal(photo->icc.data, profile, 300);
     refocus_photo_free(&photo);
@@ -72,8 +71,7 @@ static void icc_in_chunks(void **state)
     assert_true(has_evidence(photo, "ICC"));
     refocus_photo_free(&photo);
     memcpy(profile + 16, "GRAY", 4);
-    photo =
-        read_photo(plain_with_icc((struct bytes){profile, 300}, 300, -1), REFOCUS_OK);
+    photo = read_photo(plain_with_icc((struct bytes){profile, 300}, 300, -1), REFOCUS_OK);
     assert_null(photo->icc.data);
     refocus_photo_free(&photo);
 }
@@ -148,8 +146,7 @@ static void bytes_too_many(void **state)
 
 static void grey_jpeg_is_depth(void **state)
 {
-    struct refocus_photo *photo =
-        read_depth(make_jpeg(32, 16, true, false), "inverse", REFOCUS_OK);
+    struct refocus_photo *photo = read_depth(make_jpeg(32, 16, true, false), "inverse", REFOCUS_OK);
 
     (void)state;
     assert_true(photo->depth.value_near == 0 && photo->depth.value_far == 255);

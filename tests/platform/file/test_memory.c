@@ -12,10 +12,10 @@ static int read_one(const struct sample *sample, bool depth, bool *photo_made)
     struct refocus_photo *photo = NULL;
     struct refocus_reason reason;
     const int status =
-        depth ? refocus_depth_read_memory(&photo, sample->bytes.data,
-                                          sample->bytes.size, NULL, 0, 0, NULL, &reason)
-              : refocus_photo_read_memory(&photo, sample->bytes.data,
-                                          sample->bytes.size, NULL, &reason);
+        depth ? refocus_depth_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL, 0,
+                                          0, NULL, &reason)
+              : refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL,
+                                          &reason);
 
     *photo_made = photo != NULL;
     refocus_photo_free(&photo);
@@ -39,8 +39,8 @@ static void fail_each_in(const struct sample *sample, bool depth)
         status = read_one(sample, depth, &made);
         failing.fail_at = 0;
         if (status != REFOCUS_ERR_MEMORY || made || failing.live != 0) {
-            fail_msg("%s: allocation %ld of %ld: status %d, %ld kept", sample->name, k,
-                     total, status, failing.live);
+            fail_msg("%s: allocation %ld of %ld: status %d, %ld kept", sample->name, k, total,
+                     status, failing.live);
         }
     }
 }
@@ -86,15 +86,14 @@ static void peak_of(const struct sample *sample)
     size_t bound;
 
     failing.held = failing.peak = 0;
-    assert_int_equal(refocus_photo_read_memory(&photo, sample->bytes.data,
-                                               sample->bytes.size, NULL, NULL),
-                     REFOCUS_OK);
+    assert_int_equal(
+        refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL, NULL),
+        REFOCUS_OK);
     bound = (128u << 10) + (strstr(sample->name, ".jpg") ? 8 * sample->bytes.size : 0) +
             9 * (size_t)photo->image.width * (size_t)photo->image.height +
             9 * (size_t)photo->depth.width * (size_t)photo->depth.height;
     if (failing.peak > bound || failing.peak == 0) {
-        fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name,
-                 failing.peak, bound);
+        fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name, failing.peak, bound);
     }
     refocus_photo_free(&photo);
 }
@@ -128,11 +127,10 @@ static void stated_peak(void **state)
 #endif
 #if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
     large.name = "large.jpg";
-    large.bytes =
-        make_gdepth_extended((struct gdepth){.format = "RangeInverse",
-                                             .depth = make_png(300, 200, 0, 16),
-                                             .original = make_png(500, 300, 2, 8)},
-                             60000, 7, -1);
+    large.bytes = make_gdepth_extended((struct gdepth){.format = "RangeInverse",
+                                                       .depth = make_png(300, 200, 0, 16),
+                                                       .original = make_png(500, 300, 2, 8)},
+                                       60000, 7, -1);
     peak_of(&large);
     bytes_free(&large.bytes);
 #endif
@@ -145,8 +143,7 @@ static int write_one(const char *path, long fail)
     struct bytes exif = make_exif(true, 1);
     const struct refocus_blob blob = {exif.data, exif.size};
     const struct refocus_write_options options = {.exif = &blob};
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 4, 3, 12);
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 4, 3, 12);
     struct refocus_reason reason;
     int status;
 
@@ -178,8 +175,7 @@ static void writers(void **state)
         char path[64];
         long total;
 
-        snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(),
-                 endings[i]);
+        snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(), endings[i]);
         assert_int_equal(write_one(path, 0), REFOCUS_OK);
         total = failing.calls;
         assert_int_equal(unlink(path), 0);
@@ -233,8 +229,7 @@ int main(void)
 #ifdef RF_HAVE_HEIC
         cmocka_unit_test(heic),
 #endif
-        cmocka_unit_test(stated_peak), cmocka_unit_test(writers),
-        cmocka_unit_test(files),
+        cmocka_unit_test(stated_peak), cmocka_unit_test(writers), cmocka_unit_test(files),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -22,9 +22,8 @@ static void numbers(void **state)
         {"0.000000000000000000000000000001", 1e-30},
         {"0e99999", 0},
     };
-    static const char *const bad[] = {"",      " ",    ".",    "-",   "e5",
-                                      "1,5",   "0x10", "nan",  "inf", "1 2",
-                                      "1e999", "--1",  "1.2.3"};
+    static const char *const bad[] = {"",    " ",   ".",   "-",     "e5",  "1,5",  "0x10",
+                                      "nan", "inf", "1 2", "1e999", "--1", "1.2.3"};
     double value;
 
     (void)state;
@@ -67,8 +66,8 @@ static void base64_text(void **state)
 /* Directories that point at themselves, at each other and outside. */
 static void exif_offsets(void **state)
 {
-    static const uint32_t places[] = {
-        0, 1, 7, 8, 62, 100, 171, 176, 177, 0x7fffffff, 0xfffffffe, 0xffffffff};
+    static const uint32_t places[] = {0,   1,   7,   8,          62,         100,
+                                      171, 176, 177, 0x7fffffff, 0xfffffffe, 0xffffffff};
     struct rf_exif exif;
 
     (void)state;
@@ -166,19 +165,15 @@ static void heif_orientations(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         for (int large = 0; large < 2; large++) {
-            struct bytes file =
-                make_heif_boxes(cases[i].properties, cases[i].count, large);
+            struct bytes file = make_heif_boxes(cases[i].properties, cases[i].count, large);
 
-            assert_int_equal(
-                rf_heif_orientation((struct rf_bytes){file.data, file.size}, 0),
-                cases[i].orientation);
-            assert_int_equal(
-                rf_heif_orientation((struct rf_bytes){file.data, file.size}, 2), 1);
+            assert_int_equal(rf_heif_orientation((struct rf_bytes){file.data, file.size}, 0),
+                             cases[i].orientation);
+            assert_int_equal(rf_heif_orientation((struct rf_bytes){file.data, file.size}, 2), 1);
             for (size_t size = 0; size < file.size; size++) {
                 uint8_t *const exact = malloc(size ? size : 1);
                 memcpy(exact, file.data, size);
-                assert_int_equal(rf_heif_orientation((struct rf_bytes){exact, size}, 1),
-                                 1);
+                assert_int_equal(rf_heif_orientation((struct rf_bytes){exact, size}, 1), 1);
                 free(exact);
             }
             bytes_free(&file);

@@ -55,8 +55,7 @@ static void apple_jpeg(void **state)
 
 static void triples(void **state)
 {
-    struct refocus_photo *depth =
-        depth_of("lens-blur-triples/hut-depth.jpg", "inverse");
+    struct refocus_photo *depth = depth_of("lens-blur-triples/hut-depth.jpg", "inverse");
     struct refocus_photo *photo = photo_of("lens-blur-triples/hut-alternative.jpg");
 
     (void)state;
@@ -119,8 +118,7 @@ static void stereo_truth(void **state)
 
 static void light_field_truth(void **state)
 {
-    struct refocus_photo *depth =
-        depth_of("light-field/antinous/gt_disp_lowres.pfm", NULL);
+    struct refocus_photo *depth = depth_of("light-field/antinous/gt_disp_lowres.pfm", NULL);
     double low = INFINITY, high = -INFINITY;
 
     (void)state;
@@ -200,8 +198,7 @@ static void heic_turned(void **state)
     assert_int_equal(turned->info.orientation, 8);
     for (int i = 0; i < 768 * 576; i += 101) {
         const int x = i % 768, y = i / 768;
-        assert_int_equal(sample_at(&turned->depth, y, 767 - x),
-                         sample_at(&straight->depth, x, y));
+        assert_int_equal(sample_at(&turned->depth, y, 767 - x), sample_at(&straight->depth, x, y));
     }
     for (int i = 0; i < 4032 * 3024; i += 10007) {
         const int x = i % 4032, y = i / 4032;
@@ -240,8 +237,7 @@ static void heic_depth_without_rotation(void **state)
     assert_int_equal(turned->info.orientation, 6);
     for (int i = 0; i < 768 * 576; i += 101) {
         const int x = i % 768, y = i / 768;
-        assert_int_equal(sample_at(&turned->depth, 575 - y, x),
-                         sample_at(&straight->depth, x, y));
+        assert_int_equal(sample_at(&turned->depth, 575 - y, x), sample_at(&straight->depth, x, y));
     }
     refocus_photo_free(&turned);
     refocus_photo_free(&straight);
@@ -268,9 +264,8 @@ static void heic_cut_and_limited(void **state)
             fail_msg("cut at %zu of %zu is read as if whole", size, file.size);
         }
     }
-    assert_int_equal(
-        refocus_photo_read_memory(&photo, file.data, file.size, &limits, &reason),
-        REFOCUS_ERR_SIZE);
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &limits, &reason),
+                     REFOCUS_ERR_SIZE);
     bytes_free(&file);
 }
 
@@ -314,8 +309,7 @@ int main(void)
     };
 
     if (!find_photos()) {
-        printf("SKIPPED: no photos in %s; set REFOCUS_PHOTOS to their folder\n",
-               photos_folder);
+        printf("SKIPPED: no photos in %s; set REFOCUS_PHOTOS to their folder\n", photos_folder);
         return 77;
     }
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -51,8 +51,7 @@ static void pgm_16_bits_as_photo_and_depth(void **state)
 
 static void pgm_white_is_its_greatest_value(void **state)
 {
-    struct refocus_photo *photo =
-        read_depth(text_file("P2 2 1 1000\n0 1000\n"), NULL, REFOCUS_OK);
+    struct refocus_photo *photo = read_depth(text_file("P2 2 1 1000\n0 1000\n"), NULL, REFOCUS_OK);
 
     (void)state;
     assert_true(photo->depth.value_near == 1000);
@@ -110,8 +109,7 @@ static void pfm_both_byte_orders(void **state)
 {
     (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
-        struct refocus_photo *photo =
-            read_depth(make_pfm(big_endian, "Pf"), NULL, REFOCUS_OK);
+        struct refocus_photo *photo = read_depth(make_pfm(big_endian, "Pf"), NULL, REFOCUS_OK);
 
         assert_int_equal(photo->depth.width, 3);
         assert_int_equal(photo->depth.height, 2);
@@ -127,16 +125,14 @@ static void pfm_both_byte_orders(void **state)
 
 static void pfm_units(void **state)
 {
-    struct refocus_photo *photo =
-        read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
+    struct refocus_photo *photo = read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
 
     (void)state;
     assert_true(photo->depth.value_near == -1.5 && photo->depth.value_far == 100.0);
     refocus_photo_free(&photo);
     photo = read_depth(make_pfm(false, "Pf"), "m", REFOCUS_OK);
     assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_true(photo->depth.metres_per_unit == 1.0 &&
-                photo->depth.metres_at_zero == 0.0);
+    assert_true(photo->depth.metres_per_unit == 1.0 && photo->depth.metres_at_zero == 0.0);
     refocus_photo_free(&photo);
 }
 
@@ -157,9 +153,8 @@ static void pfm_refused(void **state)
 
 static void unit_words(void **state)
 {
-    static const char *const bad[] = {"",        "M",    "cm",    "m/m",
-                                      "/m",      "0/m",  "-1/m",  "1e999/m",
-                                      "5000/mm", "5000", "nan/m", "inf/m"};
+    static const char *const bad[] = {"",     "M",       "cm",      "m/m",  "/m",    "0/m",
+                                      "-1/m", "1e999/m", "5000/mm", "5000", "nan/m", "inf/m"};
     struct refocus_depth_map map = {.sample = REFOCUS_SAMPLE_U8};
 
     (void)state;
@@ -192,14 +187,14 @@ static void range_overrules(void **state)
     struct refocus_photo *photo;
 
     (void)state;
-    assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size,
-                                               "disparity", 0.5, INFINITY, NULL, NULL),
+    assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, "disparity", 0.5,
+                                               INFINITY, NULL, NULL),
                      REFOCUS_OK);
     assert_true(photo->depth.near_m == 0.5 && isinf(photo->depth.far_m));
     refocus_photo_free(&photo);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, NULL,
-                                                   bad[i][0], bad[i][1], NULL, NULL),
+        assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, NULL, bad[i][0],
+                                                   bad[i][1], NULL, NULL),
                          REFOCUS_ERR_ARGUMENT);
         assert_null(photo);
     }
@@ -216,16 +211,14 @@ static void unknown_content(void **state)
     read_photo(text_file(""), REFOCUS_ERR_FORMAT);
     read_photo(text_file("P"), REFOCUS_ERR_FORMAT);
     read_photo(text_file("P4 1 1 x"), REFOCUS_ERR_FORMAT);
-    assert_int_equal(refocus_photo_read_memory(&photo, NULL, 0, NULL, &reason),
-                     REFOCUS_ERR_FORMAT);
+    assert_int_equal(refocus_photo_read_memory(&photo, NULL, 0, NULL, &reason), REFOCUS_ERR_FORMAT);
     assert_int_equal(refocus_photo_read_memory(&photo, NULL, 5, NULL, &reason),
                      REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_photo_read(&photo, "/does/not/exist.png", NULL, &reason),
                      REFOCUS_ERR_IO);
     assert_null(strstr(reason.text, "exist.png"));
     assert_int_equal(refocus_photo_read(&photo, "/", NULL, &reason), REFOCUS_ERR_IO);
-    assert_int_equal(refocus_depth_read(&photo, "/", NULL, 0, 0, NULL, &reason),
-                     REFOCUS_ERR_IO);
+    assert_int_equal(refocus_depth_read(&photo, "/", NULL, 0, 0, NULL, &reason), REFOCUS_ERR_IO);
     assert_null(photo);
     refocus_photo_free(NULL);
 }
@@ -239,13 +232,11 @@ static void limits_are_kept(void **state)
     struct refocus_photo *photo;
 
     (void)state;
-    assert_int_equal(
-        refocus_photo_read_memory(&photo, file.data, file.size, &few_pixels, &reason),
-        REFOCUS_ERR_SIZE);
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &few_pixels, &reason),
+                     REFOCUS_ERR_SIZE);
     assert_non_null(strstr(reason.text, "11"));
-    assert_int_equal(
-        refocus_photo_read_memory(&photo, file.data, file.size, &few_bytes, &reason),
-        REFOCUS_ERR_SIZE);
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &few_bytes, &reason),
+                     REFOCUS_ERR_SIZE);
     bytes_free(&file);
 }
 
@@ -258,8 +249,7 @@ static void png_kinds(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const int type = kinds[i][0], bits = kinds[i][1];
-        struct refocus_photo *photo =
-            read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
+        struct refocus_photo *photo = read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
 
         assert_string_equal(photo->info.container, "PNG");
         assert_int_equal(photo->info.stored_bits, bits);
@@ -268,8 +258,7 @@ static void png_kinds(void **state)
             for (int x = 0; x < 7; x++) {
                 for (int c = 0; c < 3; c++) {
                     const unsigned max = bits == 16 ? 65535 : 255;
-                    const unsigned v =
-                        pattern(x, y, type & 2 && type != 3 ? c : 0, max);
+                    const unsigned v = pattern(x, y, type & 2 && type != 3 ? c : 0, max);
                     const int code = pixel_at(&photo->image, x, y)[c];
 
                     if (bits == 16) { /* dithered: one of the two beside it */
@@ -352,8 +341,8 @@ static void more_than_8_bits_are_dithered(void **state)
 static void png_small_samples(void **state)
 {
     /* 5 pixels of 2 bits: 0 1 2 3 0 */
-    struct refocus_photo *photo = read_photo(
-        make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
+    struct refocus_photo *photo =
+        read_photo(make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
 
     (void)state;
     assert_int_equal(pixel_at(&photo->image, 1, 0)[0], 85);
@@ -363,8 +352,7 @@ static void png_small_samples(void **state)
 
 static void png_depth(void **state)
 {
-    struct refocus_photo *photo =
-        read_depth(make_png(6, 4, 0, 16), "5000/m", REFOCUS_OK);
+    struct refocus_photo *photo = read_depth(make_png(6, 4, 0, 16), "5000/m", REFOCUS_OK);
     uint8_t grey_rgb[2 * 3 * 2];
 
     (void)state;
@@ -455,7 +443,8 @@ int main(void)
         cmocka_unit_test(unknown_content),
         cmocka_unit_test(limits_are_kept),
 #ifdef RF_HAVE_PNG
-        cmocka_unit_test(png_kinds), cmocka_unit_test(more_than_8_bits_are_dithered),
+        cmocka_unit_test(png_kinds),
+        cmocka_unit_test(more_than_8_bits_are_dithered),
         cmocka_unit_test(png_small_samples),
         cmocka_unit_test(png_depth),
         cmocka_unit_test(png_absurd),

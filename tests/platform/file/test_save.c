@@ -14,8 +14,8 @@ int __wrap_rename(const char *from, const char *to);
 
 static char steps[16]; /* f: a file is synced, d: a folder, r: renamed */
 static size_t count;
-static off_t synced;   /* bytes that the file had by then */
-static int error;      /* of fsync(), once */
+static off_t synced; /* bytes that the file had by then */
+static int error;    /* of fsync(), once */
 
 static void note(char step)
 {
@@ -60,8 +60,8 @@ static int make_folder(void **state)
 
 static int remove_folder(void **state)
 {
-    static const char *const names[] = {"a.ppm", "b.ppm", "link.ppm", "sub/a.ppm", "jpeg.jpg",
-                                        "grey.pgm", "text", "tmp"};
+    static const char *const names[] = {"a.ppm",    "b.ppm",    "link.ppm", "sub/a.ppm",
+                                        "jpeg.jpg", "grey.pgm", "text",     "tmp"};
 
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -119,8 +119,7 @@ static void all_writers_wait_for_the_disk(void **state)
     assert_int_equal(refocus_file_move("tmp", "text", NULL), REFOCUS_OK);
     took("frd");
     assert_int_equal(access("tmp", F_OK), -1);
-    assert_int_equal(save("a.ppm", &(struct refocus_write_options){.unsynced = 1}),
-                     REFOCUS_OK);
+    assert_int_equal(save("a.ppm", &(struct refocus_write_options){.unsynced = 1}), REFOCUS_OK);
     took("r");
 }
 
@@ -138,8 +137,7 @@ static void depth_in_a_photo_waits_too(void **state)
     depth.disparity = disparity;
     depth.width = depth.height = 2;
     depth.stride = 4;
-    assert_int_equal(refocus_photo_write_depth("jpeg.jpg", "jpeg.jpg", &depth, NULL),
-                     REFOCUS_OK);
+    assert_int_equal(refocus_photo_write_depth("jpeg.jpg", "jpeg.jpg", &depth, NULL), REFOCUS_OK);
     took("frd");
     assert_true((size_t)synced > jpeg.size && synced == facts_of("jpeg.jpg").st_size);
     assert_int_equal(facts_of("jpeg.jpg").st_mode & 07777, 0604);

@@ -35,8 +35,7 @@ static unsigned read_sample(const struct sample *sample)
     struct refocus_reason reason;
     unsigned sum;
 
-    refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL,
-                              &reason);
+    refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL, &reason);
     sum = digest(photo);
     refocus_photo_free(&photo);
     return sum;
@@ -69,8 +68,7 @@ static void *run(void *argument)
 
     for (int round = 0; round < ROUNDS; round++) {
         for (int i = 0; i < work->count; i++) {
-            const struct sample *const sample =
-                &work->samples[(i + work->number) % work->count];
+            const struct sample *const sample = &work->samples[(i + work->number) % work->count];
             work->wrong += read_sample(sample) != (unsigned)sample->whole_at;
         }
         work->wrong += write_shared(work->number, ".ppm");
@@ -106,8 +104,7 @@ static void many_threads(void **state)
     }
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         char path[64];
-        snprintf(path, sizeof path, "/tmp/refocus-threads-%ld%s", (long)getpid(),
-                 endings[i]);
+        snprintf(path, sizeof path, "/tmp/refocus-threads-%ld%s", (long)getpid(), endings[i]);
         unlink(path);
     }
     free_samples(samples, count);

@@ -66,13 +66,12 @@ static struct picture make_picture(uint32_t format, int width, int height, bool 
     struct picture picture;
 
     picture.memory = malloc((size_t)stride * (size_t)height);
-    picture.image = refocus_image_packed(
-        format, picture.memory + (flipped ? (height - 1) * stride : 0), width, height,
-        flipped ? -stride : stride);
+    picture.image =
+        refocus_image_packed(format, picture.memory + (flipped ? (height - 1) * stride : 0), width,
+                             height, flipped ? -stride : stride);
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
-            uint8_t *const p =
-                picture.image.plane[0] + y * picture.image.stride[0] + x * bytes;
+            uint8_t *const p = picture.image.plane[0] + y * picture.image.stride[0] + x * bytes;
             for (int c = 0; c < 3; c++) {
                 p[swap ? 2 - c : c] = (uint8_t)pattern(x, y, c, 255);
             }
@@ -95,23 +94,20 @@ static struct refocus_photo *read_back(const char *path)
 
 static void lossless(const char *name)
 {
-    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8;
-         format++) {
+    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8; format++) {
         for (int flipped = 0; flipped < 2; flipped++) {
             struct picture picture = make_picture(format, 13, 9, flipped);
             struct refocus_reason reason;
             struct refocus_photo *photo;
 
-            assert_int_equal(
-                refocus_image_write(in_folder(name), &picture.image, NULL, &reason),
-                REFOCUS_OK);
+            assert_int_equal(refocus_image_write(in_folder(name), &picture.image, NULL, &reason),
+                             REFOCUS_OK);
             assert_string_equal(reason.text, "");
             free(picture.memory);
             photo = read_back(in_folder(name));
             for (int i = 0; i < 13 * 9 * 3; i++) {
                 const int x = i / 3 % 13, y = i / 39;
-                assert_int_equal(pixel_at(&photo->image, x, y)[i % 3],
-                                 pattern(x, y, i % 3, 255));
+                assert_int_equal(pixel_at(&photo->image, x, y)[i % 3], pattern(x, y, i % 3, 255));
             }
             refocus_photo_free(&photo);
         }
@@ -141,19 +137,17 @@ static void grey_round_trip(void **state)
     }
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         for (int flipped = 0; flipped < 2; flipped++) {
-            assert_int_equal(refocus_gray16_write(in_folder(names[k]),
-                                                  samples + (flipped ? 9 : 0), 3, 4,
-                                                  flipped ? -6 : 6, &reason),
+            assert_int_equal(refocus_gray16_write(in_folder(names[k]), samples + (flipped ? 9 : 0),
+                                                  3, 4, flipped ? -6 : 6, &reason),
                              REFOCUS_OK);
-            assert_int_equal(refocus_depth_read(&depth, in_folder(names[k]), NULL, 0, 0,
-                                                NULL, &reason),
-                             REFOCUS_OK);
+            assert_int_equal(
+                refocus_depth_read(&depth, in_folder(names[k]), NULL, 0, 0, NULL, &reason),
+                REFOCUS_OK);
             for (int i = 0; i < 12; i++) {
                 const int y = flipped ? 3 - i / 3 : i / 3;
                 const unsigned v = samples[y * 3 + i % 3];
                 if (depth->depth.sample == REFOCUS_SAMPLE_F32) {
-                    assert_true(float_at(&depth->depth, i % 3, i / 3) ==
-                                (float)(v / 65535.0));
+                    assert_true(float_at(&depth->depth, i % 3, i / 3) == (float)(v / 65535.0));
                 } else {
                     assert_int_equal(sample_at(&depth->depth, i % 3, i / 3), v);
                 }
@@ -204,9 +198,8 @@ static void keeps_exif_and_icc(const char *name, size_t icc_size)
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
-    assert_int_equal(
-        refocus_image_write(in_folder(name), &picture.image, &options, &reason),
-        REFOCUS_OK);
+    assert_int_equal(refocus_image_write(in_folder(name), &picture.image, &options, &reason),
+                     REFOCUS_OK);
     assert_string_equal(reason.text, "");
     photo = read_back(in_folder(name));
     assert_int_equal(photo->exif.size, exif.size);
@@ -239,9 +232,8 @@ static void left_out(const char *name, const struct refocus_write_options *optio
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
-    assert_int_equal(
-        refocus_image_write(in_folder(name), &picture.image, options, &reason),
-        REFOCUS_OK);
+    assert_int_equal(refocus_image_write(in_folder(name), &picture.image, options, &reason),
+                     REFOCUS_OK);
     assert_non_null(strstr(reason.text, "left out"));
     photo = read_back(in_folder(name));
     assert_null(photo->exif.data);
@@ -272,12 +264,10 @@ static void jpeg_formats_and_quality(void **state)
     long size[2] = {0, 0};
 
     (void)state;
-    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8;
-         format++) {
+    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8; format++) {
         uint8_t pixels[32 * 32 * 4];
         const int bytes = format >= REFOCUS_FORMAT_RGBA8 ? 4 : 3;
-        const bool swap =
-            format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
+        const bool swap = format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
         struct refocus_image image;
         struct refocus_photo *photo;
 
@@ -288,10 +278,8 @@ static void jpeg_formats_and_quality(void **state)
             p[swap ? 0 : 2] = 90;
         }
         /* Bottom-up: what was above is below. */
-        image =
-            refocus_image_packed(format, pixels + 31 * 32 * bytes, 32, 32, -32 * bytes);
-        assert_int_equal(refocus_image_write(in_folder("j.jpg"), &image, NULL, NULL),
-                         REFOCUS_OK);
+        image = refocus_image_packed(format, pixels + 31 * 32 * bytes, 32, 32, -32 * bytes);
+        assert_int_equal(refocus_image_write(in_folder("j.jpg"), &image, NULL, NULL), REFOCUS_OK);
         photo = read_back(in_folder("j.jpg"));
         assert_in_range(pixel_at(&photo->image, 5, 25)[0], 195, 205);
         assert_in_range(pixel_at(&photo->image, 5, 5)[0], 15, 25);
@@ -303,9 +291,8 @@ static void jpeg_formats_and_quality(void **state)
         const struct refocus_write_options options = {.quality = i ? 100 : 20};
         struct stat facts;
 
-        assert_int_equal(
-            refocus_image_write(in_folder("q.jpg"), &picture.image, &options, NULL),
-            REFOCUS_OK);
+        assert_int_equal(refocus_image_write(in_folder("q.jpg"), &picture.image, &options, NULL),
+                         REFOCUS_OK);
         assert_int_equal(stat(in_folder("q.jpg"), &facts), 0);
         size[i] = (long)facts.st_size;
         free(picture.memory);
@@ -335,8 +322,8 @@ static void refusals(void **state)
     refused(in_folder("x.gif"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
     refused(in_folder("x.pgm"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
     refused(in_folder("png"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
-    refused(in_folder("x.ppm"), &picture.image,
-            &(struct refocus_write_options){.quality = 101}, REFOCUS_ERR_ARGUMENT);
+    refused(in_folder("x.ppm"), &picture.image, &(struct refocus_write_options){.quality = 101},
+            REFOCUS_ERR_ARGUMENT);
     refused(in_folder("x.ppm"), NULL, NULL, REFOCUS_ERR_ARGUMENT);
     refused("/does/not/exist/x.ppm", &picture.image, NULL, REFOCUS_ERR_IO);
     refused("/dev/null/x.ppm", &picture.image, NULL, REFOCUS_ERR_IO);
@@ -378,8 +365,7 @@ static void full_disk(const char *name)
     files = count_files();
     signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &before);
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1000, before.rlim_max}),
-                     0);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1000, before.rlim_max}), 0);
     status = refocus_image_write(in_folder(name), &picture.image, NULL, &reason);
     setrlimit(RLIMIT_FSIZE, &before);
     check_status(status, REFOCUS_ERR_IO, reason.text, __FILE__, __LINE__);
@@ -422,9 +408,8 @@ static void umask_is_honoured(void **state)
 
     (void)state;
     unlink(in_folder("u.ppm"));
-    assert_int_equal(
-        refocus_image_write(in_folder("u.ppm"), &picture.image, NULL, NULL),
-        REFOCUS_OK);
+    assert_int_equal(refocus_image_write(in_folder("u.ppm"), &picture.image, NULL, NULL),
+                     REFOCUS_OK);
     umask(before);
     assert_int_equal(stat(in_folder("u.ppm"), &facts), 0);
     assert_int_equal(facts.st_mode & 0777, 0640);
@@ -439,8 +424,7 @@ static void a_name_without_folder(void **state)
     (void)state;
     assert_non_null(getcwd(before, sizeof before));
     assert_int_equal(chdir(folder), 0);
-    assert_int_equal(refocus_image_write("bare.ppm", &picture.image, NULL, NULL),
-                     REFOCUS_OK);
+    assert_int_equal(refocus_image_write("bare.ppm", &picture.image, NULL, NULL), REFOCUS_OK);
     assert_int_equal(access("bare.ppm", R_OK), 0);
     assert_int_equal(chdir(before), 0);
     free(picture.memory);

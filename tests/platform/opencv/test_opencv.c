@@ -219,8 +219,7 @@ static void estimate(void **state)
     for (network.inverse = 0; network.inverse < 2; network.inverse++) {
         const float sign = network.inverse ? -1 : 1;
 
-        assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason), REFOCUS_OK);
         assert_int_equal(result.width, 48);
         assert_int_equal(result.height, 32);
         for (int y = 0; y < 32; y++) {
@@ -241,8 +240,7 @@ static void estimate(void **state)
     }
     close(file);
     unlink(path);
-    assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
-                     REFOCUS_ERR_IO);
+    assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason), REFOCUS_ERR_IO);
     network.width = 1;
     assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
                      REFOCUS_ERR_ARGUMENT);
@@ -278,11 +276,9 @@ static void estimator(void **state)
         refocus_cv_estimate_free(&result);
     }
     photo.width = 0;
-    assert_int_equal(refocus_cv_estimator_run(net, &photo, &result, &reason),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_cv_estimator_run(net, &photo, &result, &reason), REFOCUS_ERR_ARGUMENT);
     assert_null(result.samples);
-    assert_int_equal(refocus_cv_estimator_run(NULL, &photo, &result, NULL),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_cv_estimator_run(NULL, &photo, &result, NULL), REFOCUS_ERR_ARGUMENT);
     refocus_cv_estimator_destroy(&net);
     assert_null(net);
     refocus_cv_estimator_destroy(&net);
@@ -290,8 +286,7 @@ static void estimator(void **state)
     assert_int_equal(refocus_cv_estimator_create(&net, path, &network, &reason), REFOCUS_ERR_IO);
     assert_int_equal(ftruncate(file, 0), 0);
     close(file);
-    assert_int_equal(refocus_cv_estimator_create(NULL, path, &network, NULL),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_cv_estimator_create(NULL, path, &network, NULL), REFOCUS_ERR_ARGUMENT);
     assert_null(net);
 }
 
@@ -349,10 +344,9 @@ static void upsample_by(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(stereo), cmocka_unit_test(stereo_refuses),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),   cmocka_unit_test(stereo_refuses),
                                        cmocka_unit_test(estimate), cmocka_unit_test(estimator),
-                                       cmocka_unit_test(upsample),
-                                       cmocka_unit_test(upsample_by)};
+                                       cmocka_unit_test(upsample), cmocka_unit_test(upsample_by)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,16 +30,14 @@ static inline struct refocus_image make_picture(int width, int height)
 
             for (int i = 0; i < 3; i++) {
                 state = state * 1664525 + 1013904223;
-                p[i] =
-                    (uint8_t)((disc ? 60 + 40 * i : 180 - 30 * i) + (int)(state >> 28));
+                p[i] = (uint8_t)((disc ? 60 + 40 * i : 180 - 30 * i) + (int)(state >> 28));
             }
         }
     }
     return refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, width, height, 3 * width);
 }
 
-static inline struct refocus_stroke make_stroke(uint32_t kind, float radius,
-                                                float disparity)
+static inline struct refocus_stroke make_stroke(uint32_t kind, float radius, float disparity)
 {
     struct refocus_stroke stroke = refocus_stroke_default(kind, radius);
 
@@ -55,8 +53,7 @@ static inline void paint(struct refocus_strokes *strokes, uint32_t kind, float r
 
     assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_OK);
     if (count > 0)
-        assert_int_equal(refocus_strokes_extend(strokes, points, count, NULL),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_strokes_extend(strokes, points, count, NULL), REFOCUS_OK);
 }
 
 #endif

@@ -9,8 +9,7 @@
 
 enum { W = 4, H = 3, PIXELS = W * H };
 
-static const int dx[8] = {-1, 0, 1, -1, 1, -1, 0, 1},
-                 dy[8] = {-1, -1, -1, 0, 0, 1, 1, 1};
+static const int dx[8] = {-1, 0, 1, -1, 1, -1, 0, 1}, dy[8] = {-1, -1, -1, 0, 0, 1, 1, 1};
 
 static uint32_t state = 7;
 
@@ -102,8 +101,7 @@ static void test_settled(void **unused)
         for (int i = 0; i < PIXELS; i++) /* both ways the same, as in a picture */
             for (int d = 4; d < 8; d++)
                 if (cut.nodes[i].neighbour[d] >= 0)
-                    cut.nodes[cut.nodes[i].neighbour[d]].capacity[7 - d] =
-                        cut.nodes[i].capacity[d];
+                    cut.nodes[cut.nodes[i].neighbour[d]].capacity[7 - d] = cut.nodes[i].capacity[d];
         assert_int_equal(rf_cut_reserve(&kept, PIXELS), 0);
         memcpy(kept.nodes, cut.nodes, PIXELS * sizeof *cut.nodes);
         for (int i = 0; i < PIXELS; i++)

@@ -16,16 +16,14 @@ static struct refocus_strokes *begin(void)
 
 static void test_round_trip(void **unused)
 {
-    const float points[] = {120, 120,    160.123456f, 90,   200,
-                            120, 159.9f, 150,         0.1f, -0.5f};
+    const float points[] = {120, 120, 160.123456f, 90, 200, 120, 159.9f, 150, 0.1f, -0.5f};
     struct refocus_strokes *strokes = begin(), *again = begin();
     struct refocus_stroke ground = make_stroke(REFOCUS_STROKE_ALL, 1, 0);
     char *text, *second;
     size_t size, second_size;
 
     (void)unused;
-    ground.fill =
-        (struct refocus_fill){REFOCUS_FILL_GRADIENT, 1, 0.1f, 160, 239, 160.7f, 3.3f};
+    ground.fill = (struct refocus_fill){REFOCUS_FILL_GRADIENT, 1, 0.1f, 160, 239, 160.7f, 3.3f};
     assert_int_equal(refocus_strokes_begin(strokes, &ground, NULL), REFOCUS_OK);
     paint(strokes, REFOCUS_STROKE_OBJECT, 10.7f, 0.3f, points, 4);
     paint(strokes, REFOCUS_STROKE_MORE, 3, -1, points, 5);
@@ -35,8 +33,8 @@ static void test_round_trip(void **unused)
     assert_int_equal(refocus_strokes_save(strokes, &text, &size), REFOCUS_OK);
     assert_int_equal(refocus_strokes_load(again, text, size, NULL), REFOCUS_OK);
     assert_int_equal(refocus_strokes_count(again), 6);
-    assert_memory_equal(refocus_strokes_disparity(again),
-                        refocus_strokes_disparity(strokes), 2 * W * H);
+    assert_memory_equal(refocus_strokes_disparity(again), refocus_strokes_disparity(strokes),
+                        2 * W * H);
     assert_int_equal(refocus_strokes_save(again, &second, &second_size), REFOCUS_OK);
     assert_string_equal(text, second);
     assert_int_equal(strlen(second), second_size);
@@ -61,8 +59,8 @@ static void test_round_trip(void **unused)
 }
 
 #define HEAD "{\"refocus-strokes\": 1, \"width\": 320, \"height\": 240, \"strokes\": ["
-#define OBJECT                                                                         \
-    "{\"kind\": \"object\", \"radius\": 9, \"points\": [[160, 120]], \"disparity\": "  \
+#define OBJECT                                                                                     \
+    "{\"kind\": \"object\", \"radius\": 9, \"points\": [[160, 120]], \"disparity\": "              \
     "1}"
 
 static void test_refusals(void **unused)
@@ -73,21 +71,18 @@ static void test_refusals(void **unused)
         const char *why;
     } cases[] = {
         {"", REFOCUS_ERR_FORMAT, "it is empty"},
-        {"{", REFOCUS_ERR_FORMAT,
-         "line 1 is no JSON: string or '}' expected near end of file"},
-        {"[1]", REFOCUS_ERR_FORMAT,
-         "no file of strokes: it has no key 'refocus-strokes'"},
+        {"{", REFOCUS_ERR_FORMAT, "line 1 is no JSON: string or '}' expected near end of file"},
+        {"[1]", REFOCUS_ERR_FORMAT, "no file of strokes: it has no key 'refocus-strokes'"},
         {"{\"refocus-strokes\": 2}", REFOCUS_ERR_FORMAT,
          "'refocus-strokes' must be 1, the version that is known here"},
         {"{\"refocus-strokes\": 1, \"strokes\": []}", REFOCUS_ERR_FORMAT,
          "width and height must be those of the photo, 320x240"},
         {"{\"refocus-strokes\": 1, \"width\": 640, \"height\": 480, \"strokes\": []}",
-         REFOCUS_ERR_SIZE,
-         "its strokes are of a picture of 640x480, the photo has 320x240"},
+         REFOCUS_ERR_SIZE, "its strokes are of a picture of 640x480, the photo has 320x240"},
         {"{\"refocus-strokes\": 1, \"width\": 320, \"height\": 240, \"author\": 1}",
          REFOCUS_ERR_FORMAT, "it has an unknown key 'author'"},
-        {"{\"refocus-strokes\": 1, \"width\": 320, \"height\": 240}",
-         REFOCUS_ERR_FORMAT, "'strokes' must be a list"},
+        {"{\"refocus-strokes\": 1, \"width\": 320, \"height\": 240}", REFOCUS_ERR_FORMAT,
+         "'strokes' must be a list"},
         {HEAD "3]}", REFOCUS_ERR_FORMAT, "strokes[0] must be an object"},
         {HEAD "{\"kind\": \"line\"}]}", REFOCUS_ERR_FORMAT,
          "strokes[0].kind must be all, object, more, less, brush or fill"},
@@ -99,35 +94,29 @@ static void test_refusals(void **unused)
          "strokes[0].disparity must be a number from 0 to 1"},
         {HEAD "{\"kind\": \"all\", \"disparity\": \"far\"}]}", REFOCUS_ERR_FORMAT,
          "strokes[0].disparity must be a number from 0 to 1"},
-        {HEAD "{\"kind\": \"all\", \"disparity\": 1, \"gradient\": []}]}",
-         REFOCUS_ERR_FORMAT,
+        {HEAD "{\"kind\": \"all\", \"disparity\": 1, \"gradient\": []}]}", REFOCUS_ERR_FORMAT,
          "strokes[0] has both a disparity and a gradient; give one"},
-        {HEAD "{\"kind\": \"all\", \"gradient\": [[0, 0], [1, 1]]}]}",
-         REFOCUS_ERR_FORMAT,
+        {HEAD "{\"kind\": \"all\", \"gradient\": [[0, 0], [1, 1]]}]}", REFOCUS_ERR_FORMAT,
          "strokes[0].gradient must be [[X, Y, D], [X, Y, D]] with D from 0 to 1"},
-        {HEAD "{\"kind\": \"all\", \"gradient\": [[5, 5, 0], [5, 5.5, 1]]}]}",
-         REFOCUS_ERR_FORMAT, "strokes[0].gradient must go from one pixel to another"},
+        {HEAD "{\"kind\": \"all\", \"gradient\": [[5, 5, 0], [5, 5.5, 1]]}]}", REFOCUS_ERR_FORMAT,
+         "strokes[0].gradient must go from one pixel to another"},
         {HEAD OBJECT ", {\"kind\": \"object\"}]}", REFOCUS_ERR_FORMAT,
          "strokes[1] must have a radius, 0.5 to 4096 pixels"},
         {HEAD "{\"kind\": \"object\", \"radius\": 0}]}", REFOCUS_ERR_FORMAT,
          "strokes[0].radius must be a number from 0.5 to 4096"},
         {HEAD "{\"kind\": \"object\", \"radius\": 3}]}", REFOCUS_ERR_FORMAT,
          "strokes[0].points must be a list of [X, Y], one at least"},
-        {HEAD "{\"kind\": \"object\", \"radius\": 3, \"points\": []}]}",
-         REFOCUS_ERR_FORMAT,
+        {HEAD "{\"kind\": \"object\", \"radius\": 3, \"points\": []}]}", REFOCUS_ERR_FORMAT,
          "strokes[0].points must be a list of [X, Y], one at least"},
-        {HEAD OBJECT
-         ", {\"kind\": \"less\", \"radius\": 3, \"points\": [[3, 4], [320, 4]]}]}",
-         REFOCUS_ERR_FORMAT,
-         "strokes[1].points[1] must be a pixel, 0 to 319 and 0 to 239"},
-        {HEAD "{\"kind\": \"more\", \"radius\": 3, \"points\": [[3, 4]]}]}",
-         REFOCUS_ERR_FORMAT, "strokes[0] is 'more', which needs an object before it"},
+        {HEAD OBJECT ", {\"kind\": \"less\", \"radius\": 3, \"points\": [[3, 4], [320, 4]]}]}",
+         REFOCUS_ERR_FORMAT, "strokes[1].points[1] must be a pixel, 0 to 319 and 0 to 239"},
+        {HEAD "{\"kind\": \"more\", \"radius\": 3, \"points\": [[3, 4]]}]}", REFOCUS_ERR_FORMAT,
+         "strokes[0] is 'more', which needs an object before it"},
         {HEAD "{\"kind\": \"fill\", \"disparity\": 1}]}", REFOCUS_ERR_FORMAT,
          "strokes[0] is 'fill', which needs a layer before it"},
         {HEAD OBJECT ", {\"kind\": \"fill\"}]}", REFOCUS_ERR_FORMAT,
          "strokes[1] must have a disparity or a gradient to fill with"},
-        {HEAD "{\"kind\": \"all\", \"\x1b[31m\\u00e9\": 1}]}", REFOCUS_ERR_FORMAT,
-         NULL},
+        {HEAD "{\"kind\": \"all\", \"\x1b[31m\\u00e9\": 1}]}", REFOCUS_ERR_FORMAT, NULL},
     };
     static uint16_t before[W * H];
     struct refocus_strokes *strokes = begin();
@@ -137,9 +126,9 @@ static void test_refusals(void **unused)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct refocus_strokes_reason reason;
 
-        assert_int_equal(refocus_strokes_load(strokes, cases[i].text,
-                                              strlen(cases[i].text), &reason),
-                         cases[i].status);
+        assert_int_equal(
+            refocus_strokes_load(strokes, cases[i].text, strlen(cases[i].text), &reason),
+            cases[i].status);
         for (const char *c = reason.text; *c; c++)
             assert_true(*c >= ' ' && *c <= '~');
         if (cases[i].why)
@@ -154,9 +143,8 @@ static void test_refusals(void **unused)
  * before. */
 static void test_appended(void **unused)
 {
-    static const char good[] =
-        HEAD "{\"kind\": \"more\", \"radius\": 9, \"points\": "
-             "[[10, 10]]}, {\"kind\": \"fill\", \"disparity\": 0.1}]}";
+    static const char good[] = HEAD "{\"kind\": \"more\", \"radius\": 9, \"points\": "
+                                    "[[10, 10]]}, {\"kind\": \"fill\", \"disparity\": 0.1}]}";
     static const char bad[] = HEAD "{\"kind\": \"more\", \"radius\": 9, \"points\": "
                                    "[[10, 10]]}, {\"kind\": \"fill\"}]}";
     static uint16_t before[W * H];
@@ -166,12 +154,10 @@ static void test_appended(void **unused)
     (void)unused;
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, 2);
     memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
-    assert_int_equal(refocus_strokes_load(strokes, bad, strlen(bad), NULL),
-                     REFOCUS_ERR_FORMAT);
+    assert_int_equal(refocus_strokes_load(strokes, bad, strlen(bad), NULL), REFOCUS_ERR_FORMAT);
     assert_int_equal(refocus_strokes_count(strokes), 1);
     assert_memory_equal(refocus_strokes_disparity(strokes), before, sizeof before);
-    assert_int_equal(refocus_strokes_load(strokes, good, strlen(good), NULL),
-                     REFOCUS_OK);
+    assert_int_equal(refocus_strokes_load(strokes, good, strlen(good), NULL), REFOCUS_OK);
     assert_int_equal(refocus_strokes_count(strokes), 3);
     assert_int_equal(refocus_strokes_disparity(strokes)[10 * W + 10], 6554);
     refocus_strokes_destroy(&strokes);
@@ -189,11 +175,10 @@ static void test_too_many(void **unused)
     assert_non_null(text);
     size = (size_t)snprintf(text, ROOM, HEAD);
     for (int i = 0; i <= REFOCUS_MAX_STROKES; i++)
-        size += (size_t)snprintf(text + size, ROOM - size, "%s{\"kind\": \"all\"}",
-                                 i > 0 ? ", " : "");
+        size +=
+            (size_t)snprintf(text + size, ROOM - size, "%s{\"kind\": \"all\"}", i > 0 ? ", " : "");
     size += (size_t)snprintf(text + size, ROOM - size, "]}");
-    assert_int_equal(refocus_strokes_load(strokes, text, size, &reason),
-                     REFOCUS_ERR_SIZE);
+    assert_int_equal(refocus_strokes_load(strokes, text, size, &reason), REFOCUS_ERR_SIZE);
     assert_string_equal(reason.text, "more than 4096 strokes or 1048576 points");
     assert_int_equal(refocus_strokes_count(strokes), 0);
     free(text);

@@ -70,8 +70,7 @@ static void test_every_allocation(void **unused)
             status = paint_all(strokes, &count);
             if (status != REFOCUS_OK) {
                 assert_int_equal(refocus_strokes_count(strokes), count);
-                assert_memory_equal(refocus_strokes_disparity(strokes), before,
-                                    sizeof before);
+                assert_memory_equal(refocus_strokes_disparity(strokes), before, sizeof before);
             }
         } else {
             assert_null(strokes);

@@ -31,8 +31,7 @@ static void test_selects_to_the_edge(void **unused)
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
     d = refocus_strokes_disparity(strokes);
     for (int i = 0; i < W * H; i++)
-        wrong +=
-            (d[i] != 0) != in_disc(i % W, i / W, W, H) || (d[i] != 0 && d[i] != 32768);
+        wrong += (d[i] != 0) != in_disc(i % W, i / W, W, H) || (d[i] != 0 && d[i] != 32768);
     assert_int_equal(wrong, 0);
     refocus_strokes_destroy(&strokes);
 }
@@ -55,8 +54,7 @@ static void test_segments_and_undo(void **unused)
     paint(strokes, REFOCUS_STROKE_FILL, 1, 0.9f, NULL, 0);
     paint(strokes, REFOCUS_STROKE_MORE, 12, -1, elsewhere, 2);
     paint(strokes, REFOCUS_STROKE_BRUSH, 12, 1, elsewhere, 2);
-    assert_memory_not_equal(refocus_strokes_disparity(strokes), expected,
-                            sizeof expected);
+    assert_memory_not_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
     for (int i = 0; i < 4; i++)
         assert_int_equal(refocus_strokes_undo(strokes, NULL), REFOCUS_OK);
     assert_memory_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
@@ -66,8 +64,7 @@ static void test_segments_and_undo(void **unused)
     assert_int_equal(changed.height, 2 * (H / 3) + 1);
     assert_int_equal(refocus_strokes_begin(strokes, &object, NULL), REFOCUS_OK);
     for (int i = 0; i < OVER; i++)
-        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, NULL),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, NULL), REFOCUS_OK);
     assert_memory_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
     while (refocus_strokes_count(strokes) > 0)
         assert_int_equal(refocus_strokes_undo(strokes, NULL), REFOCUS_OK);
@@ -91,12 +88,11 @@ static void test_changed(void **unused)
         int outside = 0;
 
         memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
-        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, &c),
-                         REFOCUS_OK);
+        assert_int_equal(refocus_strokes_extend(strokes, over + 2 * i, 1, &c), REFOCUS_OK);
         for (int p = 0; p < W * H; p++)
-            outside += before[p] != refocus_strokes_disparity(strokes)[p] &&
-                       !(p % W >= c.x && p % W < c.x + c.width && p / W >= c.y &&
-                         p / W < c.y + c.height);
+            outside +=
+                before[p] != refocus_strokes_disparity(strokes)[p] &&
+                !(p % W >= c.x && p % W < c.x + c.width && p / W >= c.y && p / W < c.y + c.height);
         assert_int_equal(outside, 0);
     }
     refocus_strokes_destroy(&strokes);
@@ -116,14 +112,13 @@ static void test_gradient(void **unused)
     (void)unused;
     for (size_t i = 0; i < sizeof fills / sizeof *fills; i++) {
         const struct refocus_fill *const f = &fills[i];
-        const double dx = (double)f->x1 - (double)f->x0,
-                     dy = (double)f->y1 - (double)f->y0;
+        const double dx = (double)f->x1 - (double)f->x0, dy = (double)f->y1 - (double)f->y0;
 
         ground.fill = *f;
         assert_int_equal(refocus_strokes_begin(strokes, &ground, NULL), REFOCUS_OK);
         for (int p = 0; p < W * H; p++) {
-            double t = ((p % W - (double)f->x0) * dx + (p / W - (double)f->y0) * dy) /
-                       (dx * dx + dy * dy);
+            double t =
+                ((p % W - (double)f->x0) * dx + (p / W - (double)f->y0) * dy) / (dx * dx + dy * dy);
 
             t = t < 0 ? 0 : t > 1 ? 1 : t;
             t = 65535 * ((double)f->d0 + t * ((double)f->d1 - (double)f->d0));
@@ -145,8 +140,7 @@ static double to_segment(double x, double y, const float *a, const float *b)
 
 static void test_brush(void **unused)
 {
-    const float path[] = {10.25f, 20,    200, 31.5f, 200, 150,
-                          319.5f, -0.5f, 30,  239,   30,  239};
+    const float path[] = {10.25f, 20, 200, 31.5f, 200, 150, 319.5f, -0.5f, 30, 239, 30, 239};
     const float radii[] = {0.5f, 7.3f, 40};
 
     (void)unused;
@@ -159,11 +153,9 @@ static void test_brush(void **unused)
             double least = INFINITY;
 
             for (int s = 0; s < 5; s++)
-                least = fmin(least,
-                             to_segment(p % W, p / W, path + 2 * s, path + 2 * s + 2));
+                least = fmin(least, to_segment(p % W, p / W, path + 2 * s, path + 2 * s + 2));
             if (fabs(least - (double)radii[i]) > 1e-3)
-                wrong += (refocus_strokes_disparity(strokes)[p] != 0) !=
-                         (least < (double)radii[i]);
+                wrong += (refocus_strokes_disparity(strokes)[p] != 0) != (least < (double)radii[i]);
         }
         assert_int_equal(wrong, 0);
         refocus_strokes_destroy(&strokes);
@@ -183,8 +175,7 @@ static void test_base_and_selection(void **unused)
         base[i] = (uint16_t)i;
     assert_int_equal(refocus_strokes_create(&strokes, &photo, &map), REFOCUS_OK);
     assert_memory_equal(refocus_strokes_disparity(strokes), base, sizeof base);
-    paint(strokes, REFOCUS_STROKE_OBJECT, 16, -1, over,
-          OVER); /* selected, not filled */
+    paint(strokes, REFOCUS_STROKE_OBJECT, 16, -1, over, OVER); /* selected, not filled */
     assert_memory_equal(refocus_strokes_disparity(strokes), base, sizeof base);
     assert_int_equal(refocus_strokes_selection(strokes, mask, 64, 48, 64), REFOCUS_OK);
     for (int i = 0; i < 64 * 48; i++)
@@ -211,11 +202,9 @@ static void test_formats(void **unused)
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
     memcpy(expected, refocus_strokes_disparity(strokes), sizeof expected);
     refocus_strokes_destroy(&strokes);
-    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8;
-         format++) {
+    for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8; format++) {
         const int bytes = refocus_format_bytes(format);
-        const int turned =
-            format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
+        const int turned = format == REFOCUS_FORMAT_BGR8 || format == REFOCUS_FORMAT_BGRA8;
         struct refocus_image other = refocus_image_packed(
             format, pixels + (size_t)(H - 1) * (size_t)bytes * W, W, H, -bytes * W);
 
@@ -225,8 +214,7 @@ static void test_formats(void **unused)
                     photo.plane[0][3 * i + (turned ? 2 - c : c)];
         assert_int_equal(refocus_strokes_create(&strokes, &other, NULL), REFOCUS_OK);
         paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
-        assert_memory_equal(refocus_strokes_disparity(strokes), expected,
-                            sizeof expected);
+        assert_memory_equal(refocus_strokes_disparity(strokes), expected, sizeof expected);
         refocus_strokes_destroy(&strokes);
     }
 }
@@ -268,17 +256,13 @@ static void test_refusals(void **unused)
             stroke.fill.kind = REFOCUS_FILL_GRADIENT; /* between the same points */
         if (i == 8)
             stroke.radius = 4097;
-        assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL),
-                         REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_ERR_ARGUMENT);
     }
     assert_int_equal(refocus_strokes_count(strokes), 1);
     paint(strokes, REFOCUS_STROKE_OBJECT, 3, 0.5f, NULL, 0);
-    assert_int_equal(refocus_strokes_extend(strokes, nan_point, 1, NULL),
-                     REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_strokes_extend(strokes, out, 1, NULL),
-                     REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_strokes_extend(strokes, in, 0, NULL),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_extend(strokes, nan_point, 1, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_extend(strokes, out, 1, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_extend(strokes, in, 0, NULL), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_strokes_undo(strokes, NULL), REFOCUS_OK);
     for (int i = 1; i < REFOCUS_MAX_STROKES; i++)
         paint(strokes, REFOCUS_STROKE_BRUSH, 1, 0.5f, NULL, 0);
@@ -287,8 +271,7 @@ static void test_refusals(void **unused)
     refocus_strokes_destroy(&strokes);
     refocus_strokes_destroy(&strokes);
     bad.format = 99;
-    assert_int_equal(refocus_strokes_create(&strokes, &bad, NULL),
-                     REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_strokes_create(&strokes, &bad, NULL), REFOCUS_ERR_ARGUMENT);
     assert_null(strokes);
 }
 
@@ -311,8 +294,7 @@ static void test_same_everywhere(void **unused)
             (uint8_t)((noise.plane[0][i] + 3 * (int)(state >> 26) + i / 3 % W / 2) / 3);
     }
     assert_int_equal(refocus_strokes_create(&strokes, &noise, NULL), REFOCUS_OK);
-    stroke.fill =
-        (struct refocus_fill){REFOCUS_FILL_GRADIENT, 0.2f, 0.7f, 3, 9, 300, 211};
+    stroke.fill = (struct refocus_fill){REFOCUS_FILL_GRADIENT, 0.2f, 0.7f, 3, 9, 300, 211};
     assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_OK);
     assert_int_equal(refocus_strokes_extend(strokes, path, 4, NULL), REFOCUS_OK);
     paint(strokes, REFOCUS_STROKE_BRUSH, 20.2f, 0.9f, path, 2);
@@ -383,17 +365,14 @@ static void test_scene(void **unused)
     int both = 0, either = 0;
 
     (void)unused;
-    snprintf(path, sizeof path, "%s/examples/data/portrait/allfocus.png",
-             root ? root : ".");
+    snprintf(path, sizeof path, "%s/examples/data/portrait/allfocus.png", root ? root : ".");
     if (refocus_photo_read(&scene, path, NULL, NULL) == REFOCUS_ERR_UNSUPPORTED) {
         printf("SKIPPED: no PNG in this build\n");
         skip();
     }
     assert_non_null(scene);
-    snprintf(path, sizeof path, "%s/examples/data/portrait/disparity.png",
-             root ? root : ".");
-    assert_int_equal(refocus_depth_read(&depth, path, NULL, 0, 0, NULL, NULL),
-                     REFOCUS_OK);
+    snprintf(path, sizeof path, "%s/examples/data/portrait/disparity.png", root ? root : ".");
+    assert_int_equal(refocus_depth_read(&depth, path, NULL, 0, 0, NULL, NULL), REFOCUS_OK);
     assert_int_equal(refocus_strokes_create(&strokes, &scene->image, NULL), REFOCUS_OK);
     paint(strokes, REFOCUS_STROKE_OBJECT, 14, 1, head, 11);
     paint(strokes, REFOCUS_STROKE_MORE, 16, -1, body, 17);

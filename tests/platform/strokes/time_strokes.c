@@ -36,8 +36,8 @@ static int draw(struct refocus_strokes *strokes, const struct refocus_stroke *st
     for (int i = 0; i < n && status == REFOCUS_OK; i += SEGMENT) {
         const double start = now_ms();
 
-        status = refocus_strokes_extend(strokes, points + 2 * i,
-                                        n - i < SEGMENT ? n - i : SEGMENT, NULL);
+        status = refocus_strokes_extend(strokes, points + 2 * i, n - i < SEGMENT ? n - i : SEGMENT,
+                                        NULL);
         if (count < MOST)
             times[count++] = now_ms() - start;
     }
@@ -50,8 +50,7 @@ static int densify(const float *points, int n, float step, float *out, int most)
     int made = 0;
 
     for (int i = 0; i < n; i++) {
-        const float *const a = points + 2 * (i > 0 ? i - 1 : 0), *const b =
-                                                                     points + 2 * i;
+        const float *const a = points + 2 * (i > 0 ? i - 1 : 0), *const b = points + 2 * i;
         const float dx = b[0] - a[0], dy = b[1] - a[1];
         const int parts = (int)ceilf(sqrtf(dx * dx + dy * dy) / step) + (i == 0);
 
@@ -65,8 +64,7 @@ static int densify(const float *points, int n, float step, float *out, int most)
 
 static int spiral(struct refocus_strokes *strokes, int width, int height)
 {
-    struct refocus_stroke stroke =
-        refocus_stroke_default(REFOCUS_STROKE_OBJECT, (float)width / 60);
+    struct refocus_stroke stroke = refocus_stroke_default(REFOCUS_STROKE_OBJECT, (float)width / 60);
     static float points[2 * 200];
 
     stroke.fill.kind = REFOCUS_FILL_SOLID;
@@ -91,8 +89,7 @@ static int replay(struct refocus_strokes *strokes, const struct refocus_strokes 
         int n;
 
         refocus_strokes_get(from, i, &stroke, &given, &n);
-        status = draw(strokes, &stroke, points,
-                      densify(given, n, stroke.radius, points, MOST));
+        status = draw(strokes, &stroke, points, densify(given, n, stroke.radius, points, MOST));
     }
     return status;
 }
@@ -138,8 +135,8 @@ int main(int argc, char **argv)
         qsort(times, (size_t)count, sizeof *times, by_size);
         printf("%dx%d: create %.1f ms; %d segments: min %.1f, median %.1f, 95 %% %.1f, "
                "max %.1f ms\n",
-               photo->image.width, photo->image.height, created, count, times[0],
-               times[count / 2], times[count * 95 / 100], times[count - 1]);
+               photo->image.width, photo->image.height, created, count, times[0], times[count / 2],
+               times[count * 95 / 100], times[count - 1]);
     }
     refocus_strokes_destroy(&strokes);
     refocus_strokes_destroy(&from);

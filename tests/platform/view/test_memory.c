@@ -33,8 +33,7 @@ static int wait_for(struct rf_session *session, uint64_t request)
 
         if (rf_session_status(session) != REFOCUS_OK)
             return rf_session_status(session);
-        if (rf_session_frame(session, &frame) && frame->full &&
-            frame->request >= request)
+        if (rf_session_frame(session, &frame) && frame->full && frame->request >= request)
             return REFOCUS_OK;
         rf_session_tick(session);
         nanosleep(&pause, NULL);

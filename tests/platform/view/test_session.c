@@ -106,8 +106,7 @@ static struct rf_session *begin(void)
 }
 
 /* Wait for a frame of that request or a newer one; full: for the full one. */
-static const struct rf_view_frame *wait_for(struct rf_session *session,
-                                            uint64_t request, bool full)
+static const struct rf_view_frame *wait_for(struct rf_session *session, uint64_t request, bool full)
 {
     const double end = now_ms() + 60000.0 * slow();
     const struct timespec pause = {0, 1000000};
@@ -125,8 +124,8 @@ static const struct rf_view_frame *wait_for(struct rf_session *session,
     return NULL;
 }
 
-static void expect_render(const struct rf_view_frame *frame, uint32_t method,
-                          float focus, float blur)
+static void expect_render(const struct rf_view_frame *frame, uint32_t method, float focus,
+                          float blur)
 {
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 127);
     struct refocus_render_params lens = refocus_render_params_default(focus, blur);
@@ -144,8 +143,8 @@ static void expect_render(const struct rf_view_frame *frame, uint32_t method,
     for (int i = 0; i < PIXELS; i++) {
         const uint8_t *const p = out.plane[0] + 3 * i;
 
-        wrong += frame->pixels[i] !=
-                 (0xff000000u | (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2]);
+        wrong +=
+            frame->pixels[i] != (0xff000000u | (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2]);
     }
     assert_int_equal(wrong, 0);
     refocus_renderer_destroy(&renderer);
@@ -166,8 +165,7 @@ static void test_full_is_render(void **unused)
     state.tap_x = W / 2.0;
     state.tap_y = 11;
     frame = wait_for(session, rf_session_show(session, &state), true);
-    assert_true(frame->of.focus > 0.7629f &&
-                frame->of.focus < 0.763f); /* 50000 / 65535 */
+    assert_true(frame->of.focus > 0.7629f && frame->of.focus < 0.763f); /* 50000 / 65535 */
     expect_render(frame, REFOCUS_METHOD_SWEEP, frame->of.focus, 9);
     state.tap_x = W / 3.0 + 1; /* at an edge: the nearer one */
     state.focus_tap = 2;
@@ -251,9 +249,8 @@ static void test_modes(void **unused)
     state.mode = RF_VIEW_BEFORE;
     frame = wait_for(session, rf_session_show(session, &state), true);
     for (int i = 0; i < PIXELS; i++)
-        wrong +=
-            frame->pixels[i] != (0xff000000u | (uint32_t)pixels[3 * i] << 16 |
-                                 (uint32_t)pixels[3 * i + 1] << 8 | pixels[3 * i + 2]);
+        wrong += frame->pixels[i] != (0xff000000u | (uint32_t)pixels[3 * i] << 16 |
+                                      (uint32_t)pixels[3 * i + 1] << 8 | pixels[3 * i + 2]);
     assert_int_equal(wrong, 0);
     state.mode = RF_VIEW_DEPTH;
     state.x = W / 2.0; /* moved: right of it there is nothing */
@@ -292,8 +289,8 @@ static void test_painting(void **unused)
     stroke.fill.d0 = 0.25f;
     rf_session_begin(session, &stroke, false);
     stroke.kind = REFOCUS_STROKE_FILL;
-    stroke.fill = (struct refocus_fill){
-        REFOCUS_FILL_GRADIENT, 1, 1, W / 2.0f, H - 1.0f, W / 2.0f, 0};
+    stroke.fill =
+        (struct refocus_fill){REFOCUS_FILL_GRADIENT, 1, 1, W / 2.0f, H - 1.0f, W / 2.0f, 0};
     rf_session_begin(session, &stroke, true);
     stroke = refocus_stroke_default(REFOCUS_STROKE_BRUSH, 10);
     stroke.fill.kind = REFOCUS_FILL_SOLID;
@@ -330,8 +327,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
-        cmocka_unit_test(test_hold), cmocka_unit_test(test_modes),
-        cmocka_unit_test(test_painting)};
+        cmocka_unit_test(test_hold), cmocka_unit_test(test_modes), cmocka_unit_test(test_painting)};
     int failed;
 
     make_scene();

@@ -127,8 +127,7 @@ static void test_two_fingers(void **unused)
 {
     static uint8_t pixels[3 * W * H];
     static uint16_t depth[W * H];
-    struct refocus_image photo =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
+    struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
     struct rf_view_setup setup;
     struct rf_view_report *const report = calloc(1, sizeof *report);
     struct fingers fingers = {report, 0};
@@ -159,8 +158,7 @@ static void test_two_fingers(void **unused)
     assert_true(fabs((double)report->last.focus - 40000 / 65535.0) < 1e-3);
     assert_true(report->last.blur >= 6 && report->last.blur <= 6);
     assert_int_equal(report->last.focus_tap, 1);
-    assert_true(fabs(report->last.scale - exp(1.0)) <
-                1e-3); /* five times a tenth, twice over */
+    assert_true(fabs(report->last.scale - exp(1.0)) < 1e-3); /* five times a tenth, twice over */
     assert_int_equal(report->strokes, 0);
     assert_string_equal(report->times[report->count - 1].cause, "undo");
     assert_true(report->count > 3 && report->times[0].first_ms > 0);
@@ -170,8 +168,7 @@ static void test_two_fingers(void **unused)
 static void test_no_display(void **unused)
 {
     static uint8_t pixel[3];
-    struct refocus_image photo =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
+    struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
     struct rf_view_setup setup;
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
