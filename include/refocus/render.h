@@ -87,8 +87,6 @@ struct refocus_renderer_params {
                             REFOCUS_METHOD_BIT() of each, or-ed */
     uint32_t reserved; /**< 0 */
     struct refocus_parallel parallel; /**< parallel_for NULL: threads of its own */
-    uint32_t previews; /**< 1: refocus_prepare() also makes the photo at 1/2, 1/4 and 1/8 of
-                            its size, for `reduce` of struct refocus_render_params */
     uint32_t in_place; /**< 1: strip mode, for little memory. The photo and its disparities,
                             which are of its size, are not copied: they stay as they are and
                             where they are until the next refocus_prepare() or the
@@ -96,7 +94,7 @@ struct refocus_renderer_params {
                             block, and takes longer; the bytes are the same, but that
                             tilts and fields whose K is more than half of max_blur_radius
                             may change single pixels by a code. For sweep, search,
-                            raytrace, jittered and blur; not with `previews` */
+                            raytrace, jittered and blur */
     uint32_t thin;     /**< 1: with memory for `thin` of struct refocus_render_params, which
                             other renderers, and strip mode, take as 0 */
 };
@@ -129,10 +127,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *     interpolated  32 (W + 16) (H + 16) + 24 (W + 64) T + 2^16
  *     diffusion     96 (W + 16) (H + 16) + 2^18
  *
- * and params->previews take (W + 2P + 400) (H + 2P + 200), 0.8 bytes a pixel for large pictures.
- *
- * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.4 bytes a pixel for large pictures,
- * and 4 / 3 of that with previews.
+ * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.4 bytes a pixel for large pictures.
  *
  * Strip mode, params->in_place, takes no more than
  *
@@ -382,13 +377,6 @@ struct refocus_render_params {
                     brightness, and laid over the blurred parts as luma noise by
                     `seed`. 0 = none, the default; 1 = as much as there was */
 
-    int32_t reduce; /**< 1, or with a renderer for previews 2, 4 or 8: the picture at that
-                         part of its size, rounded up. The photo is reduced by halves, in
-                         linear light, pixels of other surfaces left out. The region, if
-                         any, and `out` are in reduced pixels, all other lengths in
-                         those of the photo: the result is that of the reduced photo
-                         with K / reduce */
-
     uint32_t thin; /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels
                         wide are drawn as the veil that they become, and so are their
                         shares of the pixels at their edges, where they are blurred so
@@ -442,7 +430,6 @@ static inline struct refocus_render_params refocus_render_params_default(float f
     params.depth_share = 1;
     params.most_disparity = 1;
     params.blur_limit = REFOCUS_MAX_BLUR_RADIUS;
-    params.reduce = 1;
     return params;
 }
 
@@ -480,7 +467,7 @@ static inline struct refocus_render_params refocus_render_params_default(float f
  *                matrix and range are the photo's, whatever they say.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
  *         REFOCUS_ERR_UNSUPPORTED (another format than these; of a photo of Y, U and V another
- *         method than the sweep, a reduced picture, cat's eye, fringe, star filter,
+ *         method than the sweep, cat's eye, fringe, star filter,
  *         grain or an aperture that differs before and behind the focus),
  *         REFOCUS_ERR_CANCELLED. On REFOCUS_ERR_CANCELLED parts of @p out are written,
  *         on the others none. Allocates nothing.

@@ -27,7 +27,7 @@ void rf_finish_rect(const struct rf_frame *f, struct rf_rect rect)
 static void copy_disparities(const struct refocus_renderer *r, int x, int y, int width, int height,
                              uint16_t *out)
 {
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     const struct rf_in_place *in_place = &r->in_place;
 
     if (in_place->on)

@@ -34,7 +34,7 @@ static int luma(int r, int g, int b)
 /* In the photo in use. */
 static int luma_at(const struct refocus_renderer *r, int x, int y)
 {
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     const uint8_t *to_code = r->transfer[r->blend].to_code;
     const ptrdiff_t at = y * photo->stride + x;
 
@@ -90,7 +90,7 @@ static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blu
 
 static uint32_t count_blocks(const struct rf_frame *f, bool any_blur)
 {
-    const struct rf_photo *photo = &f->r->photo[f->r->used];
+    const struct rf_photo *photo = &f->r->photo;
     struct rf_grain *grain = f->r->grain;
     uint32_t count = 0;
 

@@ -69,7 +69,7 @@ static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp,
 void rf_find_stars(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
 
     r->stars = 0;
     for (int part = 0; part < rf_lamp_parts(photo->height); part++) {

@@ -352,7 +352,7 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
     const int y0 = rf_larger(r->origin_y + ty * RF_TILE - reach - RF_LAMP_STACK, 0);
     const int y1 = r->origin_y + (ty + 1) * RF_TILE + reach;
     const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_LAMP_RUN);
-    const int parts = rf_lamp_parts(r->photo[r->used].height);
+    const int parts = rf_lamp_parts(r->photo.height);
     struct canvas canvas; /* large: not all of it set */
 
     if (!plan->lamp)
@@ -362,7 +362,7 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
     canvas.even[0] = canvas.even[1] = canvas.even[2] = 0;
     rf_start_sights(&canvas.sights, f, plan, tx, ty);
     for (int part = y0 / RF_LAMP_ROWS; part < parts && part * RF_LAMP_ROWS < y1; part++) {
-        const struct rf_highlights *found = &r->photo[r->used].highlights[part];
+        const struct rf_highlights *found = &r->photo.highlights[part];
         const struct rf_highlight *lamp = found->lamp, *const end = lamp + found->count;
 
         while (lamp < end && lamp->y < y0)

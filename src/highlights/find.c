@@ -246,7 +246,7 @@ static void take_rest(struct search *s, int y)
 /* In strip mode planes hold parts of it. */
 static struct rf_lamp_photo photo_of(const struct refocus_renderer *r)
 {
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     struct rf_lamp_photo p = {
         .width = photo->width,
         .height = photo->height,
@@ -272,7 +272,7 @@ static struct rf_lamp_photo photo_of(const struct refocus_renderer *r)
 void rf_find_highlights(struct refocus_renderer *r, int y0, int y1, uint16_t *scratch)
 {
     struct search s = {
-        .lamps = {.r = r, photo_of(r), r->photo[r->used].highlights, y0, y1, {.count = 0}},
+        .lamps = {.r = r, photo_of(r), r->photo.highlights, y0, y1, {.count = 0}},
         .bits = scratch,
     };
     const int cell = s.lamps.photo.cell, before = MOST + BEFORE - 1;

@@ -7,7 +7,7 @@
 void rf_forget_highlights(struct refocus_renderer *r)
 {
     for (int part = 0; part < RF_LAMP_PARTS; part++)
-        r->photo[r->used].highlights[part].count = 0;
+        r->photo.highlights[part].count = 0;
 }
 
 void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp)
@@ -18,7 +18,7 @@ void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp)
 void rf_sort_highlights(struct refocus_renderer *r)
 {
     for (int part = 0; part < RF_LAMP_PARTS && !rf_cancelled(r); part++) {
-        struct rf_highlights *found = &r->photo[r->used].highlights[part];
+        struct rf_highlights *found = &r->photo.highlights[part];
 
         rf_sort_places(found->lamp, found->count, sizeof *found->lamp);
     }

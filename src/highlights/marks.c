@@ -188,7 +188,7 @@ static void mark_part(void *context, int item, int worker)
 {
     const struct marks *marks = context;
     struct refocus_renderer *r = marks->r;
-    const struct rf_highlights *found = &r->photo[r->used].highlights[rf_first_lamp_part(r) + item];
+    const struct rf_highlights *found = &r->photo.highlights[rf_first_lamp_part(r) + item];
 
     (void)worker;
     for (uint32_t i = 0; i < found->count; i++) {
@@ -203,7 +203,7 @@ static void mark_part(void *context, int item, int worker)
 bool rf_has_highlights(const struct refocus_renderer *r)
 {
     for (int part = rf_first_lamp_part(r); part <= rf_last_lamp_part(r); part++)
-        if (r->photo[r->used].highlights[part].count)
+        if (r->photo.highlights[part].count)
             return true;
     return false;
 }

@@ -30,7 +30,7 @@ struct met {
 static void for_each(const struct met *met, int part,
                      void (*then)(const struct met *met, const struct rf_highlight *lamp))
 {
-    const struct rf_highlights *found = &met->r->photo[met->r->used].highlights[part];
+    const struct rf_highlights *found = &met->r->photo.highlights[part];
 
     for (uint32_t i = 0; i < found->count; i++) {
         if (rf_cancelled_at(met->r, i))

@@ -219,7 +219,7 @@ static uint32_t find_jumps(const struct refocus_renderer *r, int x0, int y)
 
 void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
 {
-    struct rf_photo *photo = &r->photo[r->used];
+    struct rf_photo *photo = &r->photo;
 
     for (int y = part.y0; y < part.y1; y++) {
         const ptrdiff_t at = y * r->stride;
@@ -249,7 +249,7 @@ void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
 void rf_patch_rims(struct refocus_renderer *r, const struct rf_focus_plan *plan,
                    struct rf_bin_scale scale)
 {
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
 
     for (uint32_t i = 0; i < photo->rims; i++) {
         const struct rf_rim *rim = &photo->rim[i];

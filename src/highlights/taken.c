@@ -126,8 +126,7 @@ static void take_part(void *context, int item, int worker)
 {
     const struct taken *taken = context;
     struct refocus_renderer *r = taken->r;
-    const struct rf_highlights *found =
-        &r->photo[r->used].highlights[taken->first + item * taken->step];
+    const struct rf_highlights *found = &r->photo.highlights[taken->first + item * taken->step];
     struct rf_highlight *lamp = found->lamp, *const end = lamp + found->count;
 
     (void)worker;

@@ -21,7 +21,7 @@ void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
     if (f->params->fringe != 0)
         set_fringe(rays, f->params->fringe);
     if (rays->has_eye) {
-        const int64_t w = r->photo[r->used].width, h = r->photo[r->used].height;
+        const int64_t w = r->photo.width, h = r->photo.height;
         /* twice the distances from the middle */
         const int64_t x = 2 * r->origin_x + (2 * tx + 1) * RF_TILE - w;
         const int64_t y = 2 * r->origin_y + (2 * ty + 1) * RF_TILE - h;

@@ -20,7 +20,7 @@
 /* Block number i, row by row, of those of side `block` that cover the photo. */
 static struct rf_rect block_of(const struct refocus_renderer *r, int block, int i)
 {
-    const struct rf_rect all = rf_whole(r, 0);
+    const struct rf_rect all = rf_whole(r);
     const int across = (all.x1 + block - 1) / block;
     const int x = i % across * block, y = i / across * block;
 
@@ -30,7 +30,7 @@ static struct rf_rect block_of(const struct refocus_renderer *r, int block, int 
 
 static int blocks(const struct refocus_renderer *r, int block)
 {
-    const struct rf_rect all = rf_whole(r, 0);
+    const struct rf_rect all = rf_whole(r);
 
     return (all.x1 + block - 1) / block * ((all.y1 + block - 1) / block);
 }
@@ -38,7 +38,7 @@ static int blocks(const struct refocus_renderer *r, int block)
 /* A block with its margin, but for what of that lies beyond the photo. */
 static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block, int margin)
 {
-    const struct rf_rect all = rf_whole(r, 0);
+    const struct rf_rect all = rf_whole(r);
 
     return (struct rf_rect){block.x0 > margin ? block.x0 - margin : 0,
                             block.y0 > margin ? block.y0 - margin : 0,
@@ -87,7 +87,7 @@ static void load(struct refocus_renderer *r, struct rf_rect block, int margin)
     r->in_place.beyond =
         (struct rf_rect){margin - (block.x0 - window.x0), margin - (block.y0 - window.y0),
                          margin - (window.x1 - block.x1), margin - (window.y1 - block.y1)};
-    rf_use(r, 0, window);
+    rf_use(r, window);
     rf_load_light(r, &photo, NULL);
     rf_load_disparity(r, &map, r->in_place.code_step, window.x0 - mapped.x0, window.y0 - mapped.y0);
 }
@@ -139,17 +139,23 @@ static void keep_known(struct refocus_renderer *r, struct rf_rect block)
     }
 }
 
+/* So many pixels of the photo at level RF_KEPT, rounded up. */
+static int kept_pixels(int n)
+{
+    return (n + (1 << RF_KEPT) - 1) >> RF_KEPT;
+}
+
 /* And what the pyramid has above it: blocks begin at multiples of its pixels. */
 static void keep_level(struct refocus_renderer *r, struct rf_rect block)
 {
     const struct rf_level *from = &r->level[RF_KEPT - 1];
     const struct rf_level *to = &r->in_place.kept[RF_KEPT - 1];
     const int x0 = block.x0 >> RF_KEPT, y0 = block.y0 >> RF_KEPT;
-    const int n = rf_reduced(block.x1 - block.x0, RF_KEPT);
+    const int n = kept_pixels(block.x1 - block.x0);
     const ptrdiff_t dx = (block.x0 - r->origin_x) >> RF_KEPT;
     const ptrdiff_t dy = (block.y0 - r->origin_y) >> RF_KEPT;
 
-    for (int y = 0; y < rf_reduced(block.y1 - block.y0, RF_KEPT); y++) {
+    for (int y = 0; y < kept_pixels(block.y1 - block.y0); y++) {
         const ptrdiff_t in = (dy + y) * from->stride + dx, out = (y0 + y) * to->stride + x0;
 
         for (int c = 0; c < 3; c++)
@@ -167,7 +173,7 @@ static void mark(struct rf_frame *f)
     struct rf_in_place *in_place = &r->in_place;
     struct rf_level own[RF_LEVELS];
 
-    in_place->levels = rf_pyramid(in_place->kept, r->photo[0].width, r->photo[0].height);
+    in_place->levels = rf_pyramid(in_place->kept, r->photo.width, r->photo.height);
     for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(r); i++) {
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
@@ -235,7 +241,7 @@ static void make_behind(struct rf_frame *f)
 /* Whether the first time through the photo was for this lens and light. */
 static bool is_marked(const struct rf_frame *f)
 {
-    return f->r->made.behind && rf_same_lens(f, 0) && rf_same_light(f);
+    return f->r->made.behind && rf_same_lens(f) && rf_same_light(f);
 }
 
 static void mark_once(struct rf_frame *f)
@@ -261,7 +267,6 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     r->blend = f->params->blend;
     rf_set_weights(f);
     if (need == RF_NEED_LAYERS) {
-        r->used = 0;
         rf_pass_lamps(f);
         if (!rf_cancelled(r))
             mark_once(f);

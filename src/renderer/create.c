@@ -36,9 +36,8 @@ static bool read_params(struct refocus_renderer_params *own,
            own->max_height <= REFOCUS_MAX_SIDE && own->max_blur_radius >= 0 &&
            own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
            own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX512 &&
-           (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 && own->previews <= 1 &&
-           own->in_place <= 1 && own->thin <= 1 &&
-           !(own->in_place && (own->previews || (own->methods & FRAME_METHODS))) &&
+           (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 && own->in_place <= 1 &&
+           own->thin <= 1 && !(own->in_place && (own->methods & FRAME_METHODS)) &&
            !own->allocator.allocate == !own->allocator.release;
 }
 
@@ -89,7 +88,6 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
         REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
         REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
     r->work_owner = RF_NO_METHOD;
-    r->previews = own.previews;
     r->in_place.on = own.in_place;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);

@@ -88,64 +88,30 @@ static void take_veil(struct rf_arena *arena, struct rf_veil *veil, int width, i
     veil->swapped = rf_arena_take(arena, down, sizeof *veil->swapped);
 }
 
-/* Planes of a photo in a group; NULL: only counting. */
-static void place_photo(struct rf_photo *photo, uint16_t *group, uint8_t *alpha)
-{
-    photo->alpha = alpha;
-    photo->group = group;
-    if (!group)
-        return;
-    group += photo->pad * (photo->stride + 1);
-    for (int c = 0; c < 3; c++)
-        photo->light[c] = group + c * photo->pitch;
-    photo->disparity = group + 3 * photo->pitch;
-}
-
-/* A photo of at most this size with memory of its own. */
-static void take_photo(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
-{
-    uint16_t *group = rf_arena_take(arena, group_size(photo, height), 2);
-
-    place_photo(photo, group, rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 1));
-    take_lists(arena, photo, width, height);
-}
-
-static void shape_photo(struct rf_photo *photo, int width, float max_blur_radius)
-{
-    photo->pad = rf_padding_for(max_blur_radius);
-    photo->pitch = rf_pitch_for(width, photo->pad);
-    photo->stride = RF_GROUP * photo->pitch;
-}
-
-/*
- * The photo, and what a lens setting makes of it. The photo reduced to a half lies in
- * what a half of the size leaves free of the memory of the background layer, so the
- * whole photo's background layer overwrites it; those reduced further have memory of
- * their own.
- */
+/* The photo, and what a lens setting makes of it. */
 static void take_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                        struct rf_arena *arena)
 {
+    struct rf_photo *photo = &r->photo;
     const int w = params->max_width, h = params->max_height;
-    uint64_t behind, half, used;
+    uint64_t size;
 
-    for (int i = 0; i < RF_PHOTOS; i++)
-        shape_photo(&r->photo[i], rf_reduced(w, i), params->max_blur_radius / (float)(1 << i));
-    take_photo(arena, &r->photo[0], w, h);
-    behind = group_size(&r->photo[0], h);
-    r->seen_group = rf_arena_take(arena, behind, 2);
-    half = group_size(&r->photo[1], rf_reduced(h, 1));
-    used = 2 * half + (uint64_t)rf_reduced(w, 1) * (uint64_t)rf_reduced(h, 1) / 2 + 1;
-    if (params->previews && used > behind)
-        behind = used;
-    r->behind_group = rf_arena_take(arena, behind, 2);
-    if (!params->previews)
-        return;
-    if (r->behind_group)
-        place_photo(&r->photo[1], r->behind_group + half, (uint8_t *)(r->behind_group + 2 * half));
-    take_lists(arena, &r->photo[1], rf_reduced(w, 1), rf_reduced(h, 1));
-    for (int i = 2; i < RF_PHOTOS; i++)
-        take_photo(arena, &r->photo[i], rf_reduced(w, i), rf_reduced(h, i));
+    photo->pad = rf_padding_for(params->max_blur_radius);
+    photo->pitch = rf_pitch_for(w, photo->pad);
+    photo->stride = RF_GROUP * photo->pitch;
+    size = group_size(photo, h);
+    photo->group = rf_arena_take(arena, size, 2);
+    photo->alpha = rf_arena_take(arena, (uint64_t)w * (uint64_t)h, 1);
+    if (photo->group) {
+        uint16_t *first = photo->group + photo->pad * (photo->stride + 1);
+
+        for (int c = 0; c < 3; c++)
+            photo->light[c] = first + c * photo->pitch;
+        photo->disparity = first + 3 * photo->pitch;
+    }
+    take_lists(arena, photo, w, h);
+    r->seen_group = rf_arena_take(arena, size, 2);
+    r->behind_group = rf_arena_take(arena, size, 2);
 }
 
 /* The pyramid of a picture of this size, for sizes alone or with memory. */
@@ -192,7 +158,7 @@ static void take_blocks(struct refocus_renderer *r, const struct refocus_rendere
 {
     const int w = params->max_width, h = params->max_height;
     struct rf_in_place *in_place = &r->in_place;
-    struct rf_photo *photo = &r->photo[0];
+    struct rf_photo *photo = &r->photo;
     uint64_t size;
     int side;
 
@@ -296,8 +262,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     arena->used = after;
     if (r->has_thin) {
         take_veil(arena, &r->veil, w, h);
-        for (int i = 0; i < (params->previews ? RF_PHOTOS : 1); i++)
-            take_thin(arena, &r->photo[i].thin, rf_reduced(w, i), rf_reduced(h, i));
+        take_thin(arena, &r->photo.thin, w, h);
     }
     r->range_stride = rf_range_width(across, pad);
     r->range = rf_arena_take(arena, (uint64_t)r->range_stride * (uint64_t)rf_range_width(down, pad),

@@ -7,7 +7,6 @@
 #include "background/background.h"
 #include "planes/yuv.h"
 #include "renderer/bands.h"
-#include "renderer/reduce.h"
 #include "renderer/render_yuv.h"
 #include "thin/thin.h"
 
@@ -15,7 +14,7 @@ static void reblend_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
     struct refocus_renderer *r = f->r;
-    uint8_t *blend = &r->photo[r->used].band_blend[band];
+    uint8_t *blend = &r->photo.band_blend[band];
 
     if (*blend == f->params->blend)
         return;
@@ -32,12 +31,11 @@ static bool contains(struct rf_rect a, struct rf_rect b)
     return a.x0 <= b.x0 && a.y0 <= b.y0 && a.x1 >= b.x1 && a.y1 >= b.y1;
 }
 
-bool rf_same_lens(const struct rf_frame *f, int number)
+bool rf_same_lens(const struct rf_frame *f)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->blur && m->photo == number && !memcmp(&m->plan, &f->plan, sizeof m->plan) &&
-           m->shift == f->scale.shift;
+    return m->blur && !memcmp(&m->plan, &f->plan, sizeof m->plan) && m->shift == f->scale.shift;
 }
 
 bool rf_same_light(const struct rf_frame *f)
@@ -83,13 +81,13 @@ static bool has_same_thin(const struct rf_frame *f)
 }
 
 /* Whether all of that is there. */
-static bool is_there(const struct rf_frame *f, int number, const struct parts *parts, bool layers)
+static bool is_there(const struct rf_frame *f, const struct parts *parts, bool layers)
 {
     const struct rf_made *m = &f->r->made;
 
     if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
         return false;
-    return rf_same_lens(f, number) && contains(m->window, parts->bins) && has_same_thin(f) &&
+    return rf_same_lens(f) && contains(m->window, parts->bins) && has_same_thin(f) &&
            (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
                          (!m->weighed || rf_is_sweep(f))
                    : !m->rims);
@@ -103,12 +101,10 @@ static void make_blur(struct rf_frame *f, bool layers)
     const struct rf_rect window = {r->origin_x, r->origin_y, r->origin_x + r->width,
                                    r->origin_y + r->height};
 
-    if (!rf_same_lens(f, r->used) || !contains(m->window, window) || !contains(window, m->window) ||
+    if (!rf_same_lens(f) || !contains(m->window, window) || !contains(window, m->window) ||
         !has_same_thin(f) || (m->rims && !layers) ||
         (layers && !rf_same_light(f) && (m->lamps || m->drawn || f->params->highlight_gain > 1))) {
-        *m = (struct rf_made){.half = m->half && r->used,
-                              .photo = r->used,
-                              .window = window,
+        *m = (struct rf_made){.window = window,
                               .plan = f->plan,
                               .shift = f->scale.shift,
                               .thin = made_thin(f),
@@ -136,8 +132,6 @@ static void make_smooth(struct rf_frame *f)
         return;
     }
     m->smooth = m->behind = false;
-    if (r->used == 0)
-        m->half = false; /* it lies where the background layer does */
     m->lamps = rf_lamp_gain(f) > 1;
     if (m->ranges) {
         f->bright = RF_WHITE;
@@ -170,7 +164,7 @@ static int thin_margin(const struct rf_frame *f)
 static struct rf_rect sure_part(const struct rf_frame *f)
 {
     const struct refocus_renderer *r = f->r;
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     const int margin = 2 * r->pad + 8 + thin_margin(f);
 
     return (struct rf_rect){
@@ -191,15 +185,13 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     if (m->behind && contains(m->exact, seen) && (!m->weighed || rf_is_sweep(f)))
         return true;
     m->behind = false;
-    if (r->used == 0)
-        m->half = false;
     rf_pass_mark(f, r->levels);
     if (rf_cancelled(r))
         return false;
-    if (!contains(m->window, rf_whole(r, r->used)) &&
+    if (!contains(m->window, rf_whole(r)) &&
         !rf_background_is_exact(r, in_window(r, seen), sure_part(f)))
         return false;
-    m->exact = contains(m->window, rf_whole(r, r->used)) ? m->window : seen;
+    m->exact = contains(m->window, rf_whole(r)) ? m->window : seen;
     rf_pass_behind(f, r->levels);
     m->behind = !rf_cancelled(r);
     m->weighed = false;
@@ -217,10 +209,9 @@ static int ceil_to(int v, int step, int most)
 }
 
 /* A part of the photo, grown by so many pixels each way and on to whole `step`s. */
-static struct rf_rect grown(const struct refocus_renderer *r, int number, struct rf_rect part,
-                            int by, int step)
+static struct rf_rect grown(const struct refocus_renderer *r, struct rf_rect part, int by, int step)
 {
-    const struct rf_photo *photo = &r->photo[number];
+    const struct rf_photo *photo = &r->photo;
 
     return (struct rf_rect){floor_to(part.x0 - by, step), floor_to(part.y0 - by, step),
                             ceil_to(part.x1 + by, step, photo->width),
@@ -228,9 +219,9 @@ static struct rf_rect grown(const struct refocus_renderer *r, int number, struct
 }
 
 /* Large windows save nothing. */
-static bool is_large(const struct refocus_renderer *r, int number, struct rf_rect window)
+static bool is_large(const struct refocus_renderer *r, struct rf_rect window)
 {
-    const struct rf_rect all = rf_whole(r, number);
+    const struct rf_rect all = rf_whole(r);
     const int64_t part = (int64_t)(window.x1 - window.x0) * (window.y1 - window.y0);
 
     return 10 * part > 7 * (int64_t)all.x1 * all.y1;
@@ -242,25 +233,25 @@ static struct rf_rect around_both(struct rf_rect a, struct rf_rect b)
                             a.x1 > b.x1 ? a.x1 : b.x1, a.y1 > b.y1 ? a.y1 : b.y1};
 }
 
-static void make_in_window(struct rf_frame *f, int number, const struct parts *parts, bool layers)
+static void make_in_window(struct rf_frame *f, const struct parts *parts, bool layers)
 {
     struct refocus_renderer *r = f->r;
-    const struct rf_rect all = rf_whole(r, number);
+    const struct rf_rect all = rf_whole(r);
     struct rf_rect window = parts->bins;
     int around = 2 * r->pad, step = RF_TILE;
 
-    if (rf_same_lens(f, number) && contains(r->made.window, all))
+    if (rf_same_lens(f) && contains(r->made.window, all))
         window = all; /* much of it is there */
     for (;;) {
         if (layers && !contains(window, all)) {
             while (step < around / 2)
                 step *= 2;
-            window = grown(r, number, parts->seen, 2 * r->pad + 8 + thin_margin(f) + around, step);
-            window = around_both(window, grown(r, number, parts->bins, 0, step));
+            window = grown(r, parts->seen, 2 * r->pad + 8 + thin_margin(f) + around, step);
+            window = around_both(window, grown(r, parts->bins, 0, step));
         }
-        if (is_large(r, number, window))
+        if (is_large(r, window))
             window = all;
-        rf_use(r, number, window);
+        rf_use(r, window);
         make_blur(f, layers);
         if (!layers || rf_cancelled(r))
             return;
@@ -292,21 +283,18 @@ static void find_thin(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
 
-    if (!rf_takes_apart(f) || r->photo[r->used].thin.blend == r->blend)
+    if (!rf_takes_apart(f) || r->photo.thin.blend == r->blend)
         return;
     rf_find_thin(r);
 }
 
-void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
-                   bool whole)
+void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need, bool whole)
 {
     struct refocus_renderer *r = f->r;
     const bool layers = need == RF_NEED_LAYERS;
-    struct parts parts = {rf_whole(r, number), rf_whole(r, number)};
+    struct parts parts = {rf_whole(r), rf_whole(r)};
 
-    if (number == 1 && !r->made.half)
-        rf_reduce_once(r);
-    rf_use(r, number, rf_whole(r, number));
+    rf_use(r, rf_whole(r));
     f->region = region;
     if (r->yuv.on)
         rf_yuv_set_blend(r, f->params->blend);
@@ -322,17 +310,17 @@ void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum r
     if (need == RF_NEED_LIGHT || rf_cancelled(r))
         return;
     if (!whole) {
-        parts.seen = grown(r, number, grown(r, number, region, 0, RF_TILE), r->pad + RF_CELL, 1);
-        parts.bins = grown(r, number, region, r->pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
+        parts.seen = grown(r, grown(r, region, 0, RF_TILE), r->pad + RF_CELL, 1);
+        parts.bins = grown(r, region, r->pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
-    if (is_there(f, number, &parts, layers)) {
-        rf_use(r, number, r->made.window);
+    if (is_there(f, &parts, layers)) {
+        rf_use(r, r->made.window);
         f->bright = layers ? r->made.bright : RF_WHITE;
     } else {
         /* the background takes smooth light without it */
         if (r->made.spread || r->made.premultiplied)
-            r->made = (struct rf_made){.half = r->made.half};
-        make_in_window(f, number, &parts, layers);
+            r->made = (struct rf_made){0};
+        make_in_window(f, &parts, layers);
     }
     if (layers && !rf_cancelled(r) && !r->made.spread && f->bright != RF_WHITE) {
         rf_pass_bright(f);

@@ -107,7 +107,7 @@ static bool is_plain_focus(const struct refocus_renderer *r, const struct refocu
     struct rf_focus_plan plan;
 
     rf_focus_plan_make(&plan, p, rf_focus_of(p->focus_disparity, p->max_blur_radius),
-                       r->photo[0].width, r->photo[0].height);
+                       r->photo.width, r->photo.height);
     return plan.plain;
 }
 
@@ -127,10 +127,8 @@ bool rf_good_params(const struct refocus_renderer *r, const struct refocus_rende
                                 REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
 
     return p && p->struct_size == sizeof *p && p->method < REFOCUS_METHOD_COUNT &&
-           (r->methods & REFOCUS_METHOD_BIT(p->method)) && good_rays(r, p) &&
-           (p->reduce == 1 ||
-            (r->previews && (p->reduce == 2 || p->reduce == 4 || p->reduce == 8))) &&
-           good_scatter(p) && good_ratios(p) && good_attention(p) && good_field(p) &&
-           good_focus(p) && good_look(p) && (takes_any_focus(p->method) || is_plain_focus(r, p)) &&
+           (r->methods & REFOCUS_METHOD_BIT(p->method)) && good_rays(r, p) && good_scatter(p) &&
+           good_ratios(p) && good_attention(p) && good_field(p) && good_focus(p) && good_look(p) &&
+           (takes_any_focus(p->method) || is_plain_focus(r, p)) &&
            (!(round_only & REFOCUS_METHOD_BIT(p->method)) || has_round_aperture(p));
 }

@@ -53,7 +53,7 @@ void rf_set_weights(struct rf_frame *f)
 static int rows_of_item(const struct refocus_renderer *r)
 {
     enum { EACH = 3 }; /* items for each thread */
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     const int rows = RF_LAMP_ROWS * rf_lamp_cell(photo->width, photo->height);
     const int items = r->pool.threads > 1 ? EACH * r->pool.threads : 1;
 
@@ -63,7 +63,7 @@ static int rows_of_item(const struct refocus_renderer *r)
 static void find_item(void *context, int item, int worker)
 {
     struct refocus_renderer *r = context;
-    const int height = r->photo[r->used].height, rows = rows_of_item(r);
+    const int height = r->photo.height, rows = rows_of_item(r);
     const int y0 = item * rows, y1 = y0 + rows;
 
     rf_find_highlights(r, y0, y1 < height ? y1 : height, rf_scratch(r, worker));
@@ -72,7 +72,7 @@ static void find_item(void *context, int item, int worker)
 void rf_pass_lamps(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
-    struct rf_photo *photo = &r->photo[r->used];
+    struct rf_photo *photo = &r->photo;
     const int rows = rows_of_item(r);
 
     if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)

@@ -24,10 +24,9 @@ enum rf_need {
     RF_NEED_LAYERS,
 };
 
-/* Make what rendering `region` of photo `number` needs and set the window and
+/* Make what rendering `region` needs and set the window and
  * f->region; `whole`: of the whole photo. Ends early when cancelled. */
-void rf_run_passes(struct rf_frame *f, int number, struct rf_rect region, enum rf_need need,
-                   bool whole);
+void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need, bool whole);
 
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
@@ -44,7 +43,7 @@ void rf_pass_weights(struct rf_frame *f);
 
 /* Whether what r->made tells of is for this lens, and its light for this frame's; note
  * the frame's there. */
-bool rf_same_lens(const struct rf_frame *f, int number);
+bool rf_same_lens(const struct rf_frame *f);
 bool rf_same_light(const struct rf_frame *f);
 void rf_note_light(struct rf_frame *f);
 

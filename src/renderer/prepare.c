@@ -11,7 +11,6 @@
 #include "renderer/layout.h"
 #include "renderer/load.h"
 #include "renderer/params.h"
-#include "renderer/reduce.h"
 
 /* The planes of blurs, of pre-filtered light and of the background layer are free until
  * something is rendered. */
@@ -58,9 +57,7 @@ static void take_in(struct refocus_renderer *r, const struct refocus_image *phot
     else
         upsample(r, &guide, disparity);
     if (!rf_cancelled(r))
-        rf_find_rims(r, rf_whole(r, 0));
-    if (r->previews && !r->yuv.on && !rf_cancelled(r))
-        rf_reduce_all(r);
+        rf_find_rims(r, rf_whole(r));
 }
 
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
@@ -79,7 +76,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     if (r->in_place.on && (disparity->width != photo->width || disparity->height != photo->height ||
                            refocus_format_is_yuv(photo->format)))
         return REFOCUS_ERR_UNSUPPORTED;
-    own = &r->photo[0];
+    own = &r->photo;
     own->width = photo->width;
     own->height = photo->height;
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
@@ -93,7 +90,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         r->in_place.code_step = rf_code_step(disparity);
         rf_find_rims_in_blocks(r);
     } else {
-        rf_use(r, 0, rf_whole(r, 0));
+        rf_use(r, rf_whole(r));
         memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(r));
         take_in(r, photo, disparity);
     }

@@ -60,10 +60,9 @@ const char *refocus_method_summary(uint32_t method)
 
 /* The part of a photo to render; false if it is not inside. */
 static bool region_of(const struct refocus_renderer *r, const struct refocus_render_params *p,
-                      int number, struct rf_rect *region)
+                      struct rf_rect *region)
 {
-    const int width = rf_reduced(r->photo[0].width, number);
-    const int height = rf_reduced(r->photo[0].height, number);
+    const int width = r->photo.width, height = r->photo.height;
     const bool whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
     const int w = whole ? width : p->region_width;
     const int h = whole ? height : p->region_height;
@@ -188,7 +187,7 @@ static float largest_blur(const struct rf_frame *f)
                          : f->params->max_blur_radius;
 }
 
-static void run(struct rf_frame *f, int number, struct rf_rect region)
+static void run(struct rf_frame *f, struct rf_rect region)
 {
     struct refocus_renderer *r = f->r;
     const struct method *method = &methods[f->params->method];
@@ -215,7 +214,7 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
         rf_run_blocks(f, region, need, run_tiles);
         return;
     }
-    rf_run_passes(f, number, region, need,
+    rf_run_passes(f, region, need,
                   method->frame != NULL || r->yuv.on || (layers && !f->plan.plain));
     if (rf_cancelled(r))
         return;
@@ -231,27 +230,13 @@ static void run(struct rf_frame *f, int number, struct rf_rect region)
     rf_pool_run(&r->pool, finish_item, f, f->count_tx * f->count_ty);
 }
 
-/* Lengths in pixels of the reduced photo. */
-static struct refocus_render_params reduced(const struct refocus_render_params *params)
-{
-    struct refocus_render_params own = *params;
-
-    own.max_blur_radius /= (float)params->reduce;
-    own.airy_radius /= (float)params->reduce;
-    own.star_length /= (float)params->reduce;
-    own.sharp_radius /= (float)params->reduce;
-    own.blur_limit /= (float)params->reduce;
-    return own;
-}
-
 int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *params,
                    const struct refocus_image *out)
 {
     struct rf_frame f = {.r = r, .out = out};
-    struct refocus_render_params own;
     struct rf_exact exact;
     struct rf_rect region;
-    int number = 0, status;
+    int status;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
@@ -259,40 +244,34 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         return REFOCUS_ERR_STATE;
     if (!rf_good_params(r, params))
         return REFOCUS_ERR_ARGUMENT;
-    while (1 << number < params->reduce)
-        number++;
-    if (!region_of(r, params, number, &region) || !rf_good_picture(out) ||
+    if (!region_of(r, params, &region) || !rf_good_picture(out) ||
         out->width != region.x1 - region.x0 || out->height != region.y1 - region.y0)
         return REFOCUS_ERR_ARGUMENT;
-    own = reduced(params);
     f.params = params;
     if ((status = rf_check_yuv(&f, region)))
         return status;
-    f.params = &own;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.fine = rf_aperture_is_fine(f.aperture);
     f.draws = rf_draws_lamps(&f);
-    f.focus = rf_focus_of(own.focus_disparity, own.max_blur_radius);
-    rf_focus_plan_make(&f.plan, &own, f.focus, r->photo[number].width, r->photo[number].height);
+    f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
+    rf_focus_plan_make(&f.plan, params, f.focus, r->photo.width, r->photo.height);
     if (f.plan.surface || f.plan.sharp || f.plan.picture)
         f.plan.number = ++r->renders;
     f.scale = rf_bin_scale_of(largest_blur(&f));
-    f.stars = own.star_spikes > 0 && own.star_strength > 0 && own.star_length > 0 &&
-              own.method == REFOCUS_METHOD_SWEEP && own.max_blur_radius > 0;
-    f.grain = own.grain > 0 && own.max_blur_radius > 0;
-    if (methods[own.method].exact) {
-        rf_exact_init(&exact, own.blend, own.sigma);
+    f.stars = params->star_spikes > 0 && params->star_strength > 0 && params->star_length > 0 &&
+              params->method == REFOCUS_METHOD_SWEEP && params->max_blur_radius > 0;
+    f.grain = params->grain > 0 && params->max_blur_radius > 0;
+    if (methods[params->method].exact) {
+        rf_exact_init(&exact, params->blend, params->sigma);
         f.exact = &exact;
     }
-    rf_reach_init(&f.reach, f.scale, largest_blur(&f), r->photo[number].pad,
+    rf_reach_init(&f.reach, f.scale, largest_blur(&f), r->photo.pad,
                   f.aperture->shape == RF_SHAPE_MASK);
     set_prefilter(&f);
     r->blurred = false;
-    rf_focus_plan_make(&r->last_plan, params,
-                       rf_focus_of(params->focus_disparity, params->max_blur_radius),
-                       r->photo[0].width, r->photo[0].height);
+    r->last_plan = f.plan;
     rf_run_begin(r);
-    run(&f, number, region);
+    run(&f, region);
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->blurred = true;

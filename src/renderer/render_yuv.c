@@ -25,10 +25,10 @@ int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
     if (!r->yuv.on)
         return REFOCUS_OK;
     if (rf_chroma_down(f->out->format) != r->yuv.down ||
-        f->params->method != REFOCUS_METHOD_SWEEP || f->params->reduce > 1 || has_look(f))
+        f->params->method != REFOCUS_METHOD_SWEEP || has_look(f))
         return REFOCUS_ERR_UNSUPPORTED;
-    if (region.x0 % 2 || (region.x1 % 2 && region.x1 < r->photo[0].width) ||
-        (region.y0 & odd_rows) || ((region.y1 & odd_rows) && region.y1 < r->photo[0].height))
+    if (region.x0 % 2 || (region.x1 % 2 && region.x1 < r->photo.width) || (region.y0 & odd_rows) ||
+        ((region.y1 & odd_rows) && region.y1 < r->photo.height))
         return REFOCUS_ERR_ARGUMENT;
     return REFOCUS_OK;
 }

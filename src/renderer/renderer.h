@@ -56,8 +56,7 @@ struct rf_rect {
     int x0, y0, x1, y1;
 };
 
-/* A photo as it was prepared: the caller's, [0], or that reduced to 1/2, 1/4 and 1/8. */
-enum { RF_PHOTOS = 4 };
+/* The photo as it was prepared. */
 #define RF_NO_BLEND UINT32_MAX
 
 struct rf_photo {
@@ -91,9 +90,7 @@ struct rf_made {
     bool weighed;          /* but with weights of `sigma` in place of its blur, */
     bool premultiplied;    /* and the light of both layers times them */
     float sigma;
-    int rays;  /* that lamps were widened for */
-    bool half; /* photo[1], which lies in memory of the background layer of photo[0] */
-    int photo;
+    int rays;              /* that lamps were widened for */
     struct rf_rect window; /* of that photo, to which all of it is limited */
     struct rf_rect exact;  /* where it is as if made for the whole photo */
     struct rf_focus_plan plan;
@@ -192,23 +189,21 @@ struct refocus_renderer {
     struct rf_pool pool;
     struct rf_run run;
 
-    /* The prepared photos, and memory for what a lens setting makes of one of them. */
+    /* The prepared photo, and memory for what a lens setting makes of it. */
     bool prepared;
-    bool previews; /* photos 1 to 3 are made too */
-    struct rf_photo photo[RF_PHOTOS];
+    struct rf_photo photo;
     uint16_t *seen_group, *behind_group;
     struct rf_made made;
     struct rf_in_place in_place;
-    struct rf_focus_plan last_plan; /* of the last render, in pixels of photo[0], */
+    struct rf_focus_plan last_plan; /* of the last render, */
     bool last_rims;                 /* with the rims, */
     bool blurred;                   /* if there was one */
 
     /*
-     * The window: the part of one of the photos that passes work on, set by rf_use(). What
+     * The window: the part of the photo that passes work on, set by rf_use(). What
      * follows is as if that part were all there is: its size, and its pixel (0, 0) in all
      * planes. It begins at (origin_x, origin_y) of the photo, a multiple of RF_TILE.
      */
-    int used; /* of r->photo */
     int origin_x, origin_y;
     int width, height;
     int pad;               /* pixels beyond each side that may be read */
@@ -266,17 +261,11 @@ struct refocus_renderer {
     struct rf_cat_shape cat_shape; /* that of the last aperture with one */
 };
 
-/* Pixels of `size` in photo i. */
-static inline int rf_reduced(int size, int i)
+/* Make a part of the photo the window. */
+void rf_use(struct refocus_renderer *r, struct rf_rect window);
+static inline struct rf_rect rf_whole(const struct refocus_renderer *r)
 {
-    return (size + (1 << i) - 1) >> i;
-}
-
-/* Make a part of a photo the window. */
-void rf_use(struct refocus_renderer *r, int photo, struct rf_rect window);
-static inline struct rf_rect rf_whole(const struct refocus_renderer *r, int photo)
-{
-    return (struct rf_rect){0, 0, r->photo[photo].width, r->photo[photo].height};
+    return (struct rf_rect){0, 0, r->photo.width, r->photo.height};
 }
 
 /* A worker's scratch: two rows of the largest picture with the margins of spread_row. */

@@ -12,7 +12,7 @@
 static void copy_disparities(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
     enum { SIDE = RF_DEQUANTISE_PATCH };
-    const struct rf_photo *photo = &r->photo[0];
+    const struct rf_photo *photo = &r->photo;
     const struct rf_in_place *in_place = &r->in_place;
     uint16_t patch[SIDE * SIDE];
 
@@ -35,7 +35,7 @@ enum { RUN = 256 };
 /* Signed blurs of the last render in place of disparities, then without their signs. */
 static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
-    const struct rf_photo *photo = &r->photo[0];
+    const struct rf_photo *photo = &r->photo;
     const uint32_t rims = r->last_rims ? photo->rims : 0;
     int16_t *blur = (int16_t *)out;
     uint16_t row[RUN];
@@ -67,7 +67,7 @@ int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out, p
         return REFOCUS_ERR_ARGUMENT;
     if (!r->prepared || (view == REFOCUS_VIEW_BLUR && !r->blurred))
         return REFOCUS_ERR_STATE;
-    photo = &r->photo[0];
+    photo = &r->photo;
     if (!rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
     copy_disparities(r, out, stride / 2);

@@ -28,13 +28,12 @@ static void place_planes(struct refocus_renderer *r, const struct rf_photo *phot
     r->behind.blur = (int16_t *)behind;
 }
 
-void rf_use(struct refocus_renderer *r, int number, struct rf_rect window)
+void rf_use(struct refocus_renderer *r, struct rf_rect window)
 {
-    const struct rf_photo *photo = &r->photo[number];
+    const struct rf_photo *photo = &r->photo;
     const struct rf_rect *const beyond = &r->in_place.beyond;
     const int pad = photo->pad;
 
-    r->used = number;
     r->origin_x = window.x0;
     r->origin_y = window.y0;
     r->width = window.x1 - window.x0;

@@ -20,7 +20,7 @@ static struct rf_thin_run run_of(const struct rf_thin *thin, uint32_t first, int
 static void find_band(void *context, int band, int worker)
 {
     struct refocus_renderer *r = context;
-    struct rf_thin_list *list = &r->photo[r->used].thin;
+    struct rf_thin_list *list = &r->photo.thin;
     const uint64_t capacity = rf_thin_capacity(r->width);
     struct rf_thin *thin = list->pixel + (uint64_t)band * capacity;
     const int y = rf_band_start(band);
@@ -51,7 +51,7 @@ static void find_band(void *context, int band, int worker)
 
 void rf_find_thin(struct refocus_renderer *r)
 {
-    struct rf_thin_list *list = &r->photo[r->used].thin;
+    struct rf_thin_list *list = &r->photo.thin;
 
     list->blend = RF_NO_BLEND;
     rf_pool_run(&r->pool, find_band, r, rf_bands(r));

@@ -14,7 +14,7 @@ enum { CELLS = RF_TILE / RF_CELL };
 
 const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty)
 {
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     const int row = ty + r->origin_y / RF_TILE, column = tx + r->origin_x / RF_TILE;
     const int across = (photo->width + RF_TILE - 1) / RF_TILE;
 
@@ -23,7 +23,7 @@ const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int t
 
 struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty, uint32_t *count)
 {
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     const struct rf_thin_run *run = rf_thin_run_of(r, tx, ty);
     const int row = ty + r->origin_y / RF_TILE;
 

@@ -157,7 +157,7 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
 /* The scene as the sweep takes it: rims of bright things have their depth (highlights/rims.h). */
 static struct scene with_rims(const struct scene *s, const struct refocus_renderer *r)
 {
-    const struct rf_photo *photo = &r->photo[r->used];
+    const struct rf_photo *photo = &r->photo;
     const size_t size = (size_t)s->width * (size_t)s->height * sizeof *s->disparity;
     struct scene patched = *s;
 

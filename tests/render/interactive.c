@@ -97,8 +97,7 @@ static double time_render(struct call call, const struct refocus_render_params *
 
     if (before) {
         first.params = *before;
-        first.out = part(call.out.plane[0], (width + before->reduce - 1) / before->reduce,
-                         (height + before->reduce - 1) / before->reduce);
+        first.out = part(call.out.plane[0], width, height);
     }
     for (int i = 0; i < 5; i++) {
         double start;
@@ -151,19 +150,6 @@ static void measure_times(struct call call, uint8_t *out)
     print_time("256x256, after the whole", time_render(call, &half));
     call.params.region_x = call.params.region_y = 0;
     call.params.region_width = call.params.region_height = 0;
-    for (int reduce = 2; reduce <= 8; reduce *= 2) {
-        char name[40];
-
-        call.params.reduce = reduce;
-        call.out = part(out, (width + reduce - 1) / reduce, (height + reduce - 1) / reduce);
-        snprintf(name, sizeof name, "1/%d, after another focus", reduce);
-        print_time(name, time_render(call, &tap));
-        if (reduce == 2) {
-            tap.reduce = 2;
-            print_time("1/2, after another focus at 1/2", time_render(call, &tap));
-            tap.reduce = 1;
-        }
-    }
 }
 
 static void parse(int argc, char **argv)
@@ -202,7 +188,6 @@ static void measure(void **state)
     for (int i = 0; i < 48; i++)
         small[i] = (uint8_t)(i * 97);
     limits.threads = threads;
-    limits.previews = 1;
     limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&call.renderer, &limits), REFOCUS_OK);
     refocus_renderer_get_info(call.renderer, &info);

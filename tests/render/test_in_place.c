@@ -198,9 +198,6 @@ static void refused(void **state)
     limits.in_place = 2;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
     limits.in_place = 1;
-    limits.previews = 1;
-    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
-    limits.previews = 0;
     limits.methods = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER);
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
     limits.methods = 0;

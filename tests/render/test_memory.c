@@ -148,15 +148,7 @@ static void formula(void **state)
     }
 }
 
-/* What reduced photos may add; the text of render.h. */
-static double stated_previews(int width, int height, float blur)
-{
-    const double p = 2 * (ceil((double)blur) + 2);
-
-    return (width + p + 400) * (height + p + 200);
-}
-
-/* And strip mode takes at the most. */
+/* What strip mode takes at the most; the text of render.h. */
 static double stated_in_place(int width, int height, float blur, int threads)
 {
     const double p = ceil((double)blur) + 2, m = 16 * ceil((p + 28) / 16);
@@ -167,7 +159,7 @@ static double stated_in_place(int width, int height, float blur, int threads)
            4.0 * threads * (width + 512) + 24 * p * p + 131072;
 }
 
-/* The figures that strip mode and reduced photos are for. */
+/* The figures that strip mode is for. */
 static void formula_of_modes(void **state)
 {
     static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1}, {16, 16},  {17, 33},
@@ -183,17 +175,10 @@ static void formula_of_modes(void **state)
     for (int s = 0; s < 9; s++) {
         for (int k = 0; k < 10; k++) {
             const int w = sides[s][0], h = sides[s][1], threads = k % 2 ? 1 : 64;
-            double plain, bytes;
+            double bytes;
 
             params = refocus_renderer_params_default(w, h, blurs[k]);
             params.threads = threads;
-            plain = (double)refocus_renderer_memory(&params);
-            params.previews = 1;
-            bytes = (double)refocus_renderer_memory(&params);
-            if (bytes < plain || bytes - plain > stated_previews(w, h, blurs[k]))
-                fail_msg("%d x %d, K = %g: previews take %.0f bytes more, header %.0f", w, h,
-                         (double)blurs[k], bytes - plain, stated_previews(w, h, blurs[k]));
-            params.previews = 0;
             params.in_place = 1;
             bytes = (double)refocus_renderer_memory(&params);
             if (bytes <= 0 || bytes > stated_in_place(w, h, blurs[k], threads))

@@ -1,12 +1,12 @@
 /* Whatever was rendered or cancelled before, a picture is that of a new renderer; and a
- * region that of the whole, a reduced picture that of the reduced photo. */
+ * region that of the whole. */
 #include "pictures.h"
 
 #include "renderer/renderer.h"
 
 enum { WIDTH = 403, HEIGHT = 299, MOST = 3 * WIDTH * HEIGHT };
 
-enum mode { PLAIN, PREVIEWS, IN_PLACE };
+enum mode { PLAIN, IN_PLACE };
 
 static const float blurs[] = {0, 1.5f, 3, 6};
 
@@ -14,7 +14,6 @@ static const float blurs[] = {0, 1.5f, 3, 6};
 struct setting {
     const struct style *style;
     float focus, blur, gain;
-    int reduce;
     int x, y, width, height; /* all 0: the whole */
 };
 
@@ -55,18 +54,13 @@ static void change(struct setting *s, uint32_t *state, enum mode mode)
         s->style = pick_style(state, mode == IN_PLACE);
     if (what & 8)
         s->gain = pick(state, 2) ? 1 : 4;
-    if (what & 16 && mode == PREVIEWS)
-        s->reduce = 1 << pick(state, 4);
-    if (what & 48 || s->reduce > 1) {
-        const int w = (WIDTH + s->reduce - 1) / s->reduce;
-        const int h = (HEIGHT + s->reduce - 1) / s->reduce;
-
+    if (what & 48) {
         s->x = s->y = s->width = s->height = 0;
         if (pick(state, 3)) {
-            s->width = 1 + (int)pick(state, (uint32_t)(w < 60 ? w : 60));
-            s->height = 1 + (int)pick(state, (uint32_t)(h < 60 ? h : 60));
-            s->x = (int)pick(state, (uint32_t)(w - s->width + 1));
-            s->y = (int)pick(state, (uint32_t)(h - s->height + 1));
+            s->width = 1 + (int)pick(state, 60);
+            s->height = 1 + (int)pick(state, 60);
+            s->x = (int)pick(state, (uint32_t)(WIDTH - s->width + 1));
+            s->y = (int)pick(state, (uint32_t)(HEIGHT - s->height + 1));
         }
     }
 }
@@ -75,15 +69,14 @@ static int render(struct refocus_renderer *renderer, const struct setting *s, ui
 {
     struct refocus_render_params params = style_params(s->style, s->focus, s->blur);
     struct refocus_aperture *aperture = style_aperture(s->style);
-    const int w = s->width ? s->width : (WIDTH + s->reduce - 1) / s->reduce;
-    const int h = s->height ? s->height : (HEIGHT + s->reduce - 1) / s->reduce;
+    const int w = s->width ? s->width : WIDTH;
+    const int h = s->height ? s->height : HEIGHT;
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * (ptrdiff_t)w);
     int status;
 
     params.aperture = aperture;
     params.highlight_gain = s->gain;
-    params.reduce = s->reduce;
     params.region_x = s->x;
     params.region_y = s->y;
     params.region_width = s->width;
@@ -101,7 +94,6 @@ static struct refocus_renderer *create(int threads, enum mode mode)
 
     limits.threads = threads;
     limits.methods = mode == IN_PLACE ? 0 : REFOCUS_METHODS_ALL;
-    limits.previews = mode == PREVIEWS;
     limits.in_place = mode == IN_PLACE;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     return renderer;
@@ -135,17 +127,17 @@ static void assert_same(const uint8_t *is, const uint8_t *should, const struct s
 {
     for (size_t i = 0; i < MOST; i++)
         if (is[i] != should[i])
-            fail_msg("seed %u, step %d, %s, focus %g, blur %g, gain %g, 1/%d, region %d,%d "
+            fail_msg("seed %u, step %d, %s, focus %g, blur %g, gain %g, region %d,%d "
                      "%dx%d: byte %zu is %d, should be %d",
                      seed, step, s->style->name, (double)s->focus, (double)s->blur, (double)s->gain,
-                     s->reduce, s->x, s->y, s->width, s->height, i, is[i], should[i]);
+                     s->x, s->y, s->width, s->height, i, is[i], should[i]);
 }
 
 static void sequence(uint32_t seed, int steps, enum mode mode)
 {
     struct picture p[2] = {picture_make(WIDTH, HEIGHT, seed),
                            picture_make(WIDTH, HEIGHT, seed + 1)};
-    struct setting s = {&styles[0], 0.5f, 6, 1, 1, 0, 0, 0, 0};
+    struct setting s = {&styles[0], 0.5f, 6, 1, 0, 0, 0, 0};
     uint8_t *out = malloc(MOST), *expected = malloc(MOST);
     struct refocus_renderer *renderer = create(2, mode);
     struct canceller canceller = {renderer, 0, 0};
@@ -173,7 +165,7 @@ static void sequence(uint32_t seed, int steps, enum mode mode)
                 s = other; /* the same again, to its end */
         }
         assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
-        fresh = create(1, mode == PREVIEWS ? PREVIEWS : PLAIN);
+        fresh = create(1, PLAIN);
         prepare(fresh, &p[shown]);
         assert_int_equal(render(fresh, &s, expected), REFOCUS_OK);
         refocus_renderer_destroy(&fresh);
@@ -205,7 +197,6 @@ static struct picture wide_bars(void)
     return p;
 }
 
-/* A region is that part of the whole, though only a window was worked on. */
 /* The background layer of a window, where it says that it is that of the whole photo.
  */
 static void assert_same_background(const struct refocus_renderer *part,
@@ -247,7 +238,6 @@ static void regions_of(struct picture p)
                             (float)pick(&random, 5) / 4,
                             blurs[1 + pick(&random, 3)],
                             i % 5 ? 1 : 4,
-                            1,
                             0,
                             0,
                             0,
@@ -286,119 +276,6 @@ static void regions(void **state)
     regions_of(wide_bars());
 }
 
-/* The photo at half its size, by what reduce.h says, from the curve of the standard. */
-static double linear(int code)
-{
-    const double v = code / 255.0;
-
-    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-}
-
-static uint8_t encode(double light)
-{
-    int code = 0;
-
-    while (code < 255 && (linear(code) + linear(code + 1)) / 2 < light)
-        code++;
-    /* the code whose interval, in codes and not in light, holds it */
-    while (code > 0) {
-        const double v = (code - 0.5) / 255;
-        const double edge = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-
-        if (light >= edge)
-            break;
-        code--;
-    }
-    return (uint8_t)code;
-}
-
-static struct picture half_of(const struct picture *p)
-{
-    const int width = (p->width + 1) / 2, height = (p->height + 1) / 2;
-    const uint8_t black[3] = {0, 0, 0};
-    struct picture half = picture_flat(width, height, black, 0);
-
-    for (int y = 0; y < height; y++) {
-        for (int x = 0; x < width; x++) {
-            int d[4], at[4], own, n = 0, least = 0, most = 0, sum = 0;
-            double light[3] = {0, 0, 0};
-
-            for (int i = 0; i < 4; i++) {
-                const int qx = 2 * x + i % 2 < p->width ? 2 * x + i % 2 : 2 * x;
-                const int qy = 2 * y + i / 2 < p->height ? 2 * y + i / 2 : 2 * y;
-
-                at[i] = qy * p->width + qx;
-                d[i] = p->disparity[at[i]];
-                least = d[i] < d[least] ? i : least;
-                most = d[i] > d[most] ? i : most;
-            }
-            own = -1;
-            for (int i = 0; i < 4; i++) /* the second nearest: the nearest of the others */
-                own = i != most && d[i] > own ? d[i] : own;
-            for (int i = 0; i < 4; i++) {
-                if (abs(d[i] - own) > 65535 / 32)
-                    continue;
-                n++;
-                sum += d[i];
-                for (int c = 0; c < 3; c++)
-                    light[c] += linear(p->rgb[3 * at[i] + c]);
-            }
-            half.disparity[y * width + x] = (uint16_t)((2 * sum + n) / (2 * n));
-            for (int c = 0; c < 3; c++)
-                half.rgb[3 * (y * width + x) + c] = encode(light[c] / n);
-        }
-    }
-    return half;
-}
-
-/* Within a code of the reduction in real numbers; and rendered as a photo of that size
- * is. */
-static void reduced(void **state)
-{
-    struct picture p[4] = {picture_make(WIDTH, HEIGHT, 21)};
-    struct refocus_renderer *renderer = create(2, PREVIEWS);
-    uint8_t *out = malloc(MOST), *expected = malloc(MOST);
-
-    (void)state;
-    assert_true(out && expected);
-    prepare(renderer, &p[0]);
-    for (int i = 1; i < 4; i++) {
-        struct setting s = {&styles[0], 0.4f, 0, 1, 1 << i, 0, 0, 0, 0};
-        struct refocus_renderer_params limits;
-        struct refocus_renderer *small;
-        size_t size;
-
-        p[i] = half_of(&p[i - 1]);
-        size = 3 * (size_t)p[i].width * (size_t)p[i].height;
-        assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
-        for (size_t k = 0; k < size; k++)
-            if (abs(out[k] - p[i].rgb[k]) > 1)
-                fail_msg("1/%d: byte %zu is %d, should be %d", s.reduce, k, out[k], p[i].rgb[k]);
-        memcpy(p[i].rgb, out, size);
-        limits = refocus_renderer_params_default(p[i].width, p[i].height, 6);
-        limits.methods = REFOCUS_METHODS_ALL;
-        assert_int_equal(refocus_renderer_create(&small, &limits), REFOCUS_OK);
-        prepare(small, &p[i]);
-        for (int k = 0; k < style_count; k++) {
-            s.style = &styles[k];
-            s.blur = 6;
-            if (left_out(k + 2 * i, 6) || s.style->rays == REFOCUS_RAYS_FULL || s.style->variant ||
-                s.style->method == REFOCUS_METHOD_SCATTER ||
-                s.style->method == REFOCUS_METHOD_INTERPOLATED)
-                continue; /* these have other lengths that are reduced too */
-            assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
-            render_style(small, &p[i], s.style, s.focus, s.blur / (float)s.reduce, expected);
-            assert_same_pixels(out, expected, p[i].width, p[i].height, s.style->name);
-        }
-        refocus_renderer_destroy(&small);
-    }
-    for (int i = 0; i < 4; i++)
-        picture_free(&p[i]);
-    refocus_renderer_destroy(&renderer);
-    free(out);
-    free(expected);
-}
-
 /* A dark picture with small lamps all over, before and behind. */
 static struct picture make_lamps(uint32_t seed)
 {
@@ -432,7 +309,7 @@ static void cancel_at_every_moment(struct refocus_render_params params)
     params.blend = REFOCUS_BLEND_GAMMA;
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
     memcpy(expected, out, sizeof out);
-    assert_true(renderer->photo[0].highlights[0].count > 40); /* rows of lamps */
+    assert_true(renderer->photo.highlights[0].count > 40); /* rows of lamps */
     renderer->run.user = &canceller;
     for (int n = 1; status != REFOCUS_OK; n += each) {
         /* another photo and another lens before */
@@ -481,37 +358,9 @@ static void every_moment(void **state)
     cancel_at_every_moment(params);
 }
 
-/* Refused without previews, and for other parts. */
-static void refused(void **state)
-{
-    struct picture p = picture_make(WIDTH, HEIGHT, 2);
-    uint8_t *out = malloc(MOST);
-
-    (void)state;
-    assert_non_null(out);
-    for (int previews = 0; previews < 2; previews++) {
-        struct refocus_renderer *renderer = create(1, previews ? PREVIEWS : PLAIN);
-
-        prepare(renderer, &p);
-        for (int reduce = -1; reduce <= 17; reduce++) {
-            const struct setting s = {&styles[0], 0.5f, 2, 1, reduce, 0, 0, 1, 1};
-            const int good =
-                reduce == 1 || (previews && (reduce == 2 || reduce == 4 || reduce == 8));
-
-            if (reduce != 0)
-                assert_int_equal(render(renderer, &s, out),
-                                 good ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
-        }
-        refocus_renderer_destroy(&renderer);
-    }
-    free(out);
-    picture_free(&p);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(sequences), cmocka_unit_test(regions),
-                                       cmocka_unit_test(every_moment), cmocka_unit_test(reduced),
-                                       cmocka_unit_test(refused)};
+                                       cmocka_unit_test(every_moment)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,7 +18,6 @@ static struct refocus_renderer *create(const struct picture *p, uint32_t cpu, in
     limits.cpu = cpu;
     limits.threads = threads;
     limits.thin = thin;
-    limits.previews = 1;
     status = refocus_renderer_create(&renderer, &limits);
     if (status == REFOCUS_ERR_UNSUPPORTED)
         return NULL;
@@ -30,22 +29,17 @@ static struct refocus_renderer *create(const struct picture *p, uint32_t cpu, in
 struct setting {
     float focus, blur, gain, sigma;
     uint32_t thin, blend, method;
-    int rays, blades, reduce, x, y, width, height;
+    int rays, blades, x, y, width, height;
 };
 
-static const struct setting plain = {.focus = FAR / 65535.0f,
-                                     .blur = 15,
-                                     .gain = 1,
-                                     .sigma = 400,
-                                     .thin = 1,
-                                     .rays = 64,
-                                     .reduce = 1};
+static const struct setting plain = {
+    .focus = FAR / 65535.0f, .blur = 15, .gain = 1, .sigma = 400, .thin = 1, .rays = 64};
 
 static int render(struct refocus_renderer *renderer, const struct setting *s, uint8_t *out)
 {
     struct refocus_render_params params = refocus_render_params_default(s->focus, s->blur);
-    const int w = s->width ? s->width : (WIDTH + s->reduce - 1) / s->reduce;
-    const int h = s->height ? s->height : (HEIGHT + s->reduce - 1) / s->reduce;
+    const int w = s->width ? s->width : WIDTH;
+    const int h = s->height ? s->height : HEIGHT;
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
     struct refocus_aperture *aperture = NULL;
     int status;
@@ -59,7 +53,6 @@ static int render(struct refocus_renderer *renderer, const struct setting *s, ui
     params.sigma = s->sigma;
     params.blend = s->blend;
     params.method = s->method;
-    params.reduce = s->reduce;
     params.region_x = s->x;
     params.region_y = s->y;
     params.region_width = s->width;
@@ -330,8 +323,6 @@ static void change(struct setting *s, uint32_t *seed)
         s->method = what & 1024 ? REFOCUS_METHOD_SEARCH : REFOCUS_METHOD_SWEEP;
     if (what & 32)
         s->blades = what & 2048 ? 0 : 5;
-    if (what & 64)
-        s->reduce = what & 1024 ? 1 : 2;
     if (what & 128)
         s->sigma = what & 2048 ? 400 : INFINITY;
     if (what & 512)
@@ -388,16 +379,15 @@ static void memory(void **state)
                                    {720, 540}, {2, 40000}, {1921, 1087}};
 
     (void)state;
-    for (int i = 0; i < 12; i++) {
-        const int w = sides[i / 2][0], h = sides[i / 2][1];
+    for (int i = 0; i < 6; i++) {
+        const int w = sides[i][0], h = sides[i][1];
         struct refocus_renderer_params params = refocus_renderer_params_default(w, h, 20);
         double bytes;
 
-        params.previews = i % 2;
         bytes = -(double)refocus_renderer_memory(&params);
         params.thin = 1;
         bytes += (double)refocus_renderer_memory(&params);
-        if (bytes < 0 || bytes > (6.0 * (w + 16) * (h + 16) + 4096) * (i % 2 ? 4 / 3.0 : 1))
+        if (bytes < 0 || bytes > (6.0 * (w + 16) * (h + 16) + 4096))
             fail_msg("%d x %d: %.0f bytes", w, h, bytes);
     }
 }

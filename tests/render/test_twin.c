@@ -31,17 +31,17 @@ static double compare(const struct picture *p, const char *name, const struct st
     struct refocus_aperture *aperture = style_aperture(style);
     struct refocus_renderer *renderer = prepared(p, K, 2);
     uint8_t *fixed = malloc(size), *exact = malloc(size);
-    struct twin_rim *rim = calloc(renderer->photo[0].rims + 1, sizeof *rim);
+    struct twin_rim *rim = calloc(renderer->photo.rims + 1, sizeof *rim);
     struct twin twin;
     double db;
 
     assert_true(fixed && exact && rim);
-    for (uint32_t i = 0; i < renderer->photo[0].rims; i++)
-        rim[i] = (struct twin_rim){renderer->photo[0].rim[i].x, renderer->photo[0].rim[i].y,
-                                   renderer->photo[0].rim[i].disparity};
+    for (uint32_t i = 0; i < renderer->photo.rims; i++)
+        rim[i] = (struct twin_rim){renderer->photo.rim[i].x, renderer->photo.rim[i].y,
+                                   renderer->photo.rim[i].disparity};
     params.aperture = aperture;
     render_style(renderer, p, style, focus, K, fixed);
-    twin_create(&twin, p, &params, rim, (int)renderer->photo[0].rims);
+    twin_create(&twin, p, &params, rim, (int)renderer->photo.rims);
     if (style->method == REFOCUS_METHOD_SWEEP)
         twin_sweep(&twin, exact);
     else
