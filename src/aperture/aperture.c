@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "planes/format.h"
+#include "image/format.h"
 
 const struct refocus_aperture rf_disc = {
     .id = 1, .shape = RF_SHAPE_DISC, .squeeze_x = 1, .squeeze_y = 1};

@@ -2,54 +2,56 @@
 
 #include <string.h>
 
-#include "planes/planes.h"
-#include "renderer/bands.h"
+#include "passes/planes.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 
 /* Dilated values are s + 2^15, so that 0 lies below all of them. */
 static void bias_row(const struct refocus_renderer *r, uint16_t *m, int y)
 {
-    const int16_t *s = r->front.blur + y * r->stride;
+    const int16_t *s = r->blur.at + y * r->view.stride;
 
-    for (int x = 0; x < r->width; x++)
+    for (int x = 0; x < r->view.width; x++)
         m[x] = (uint16_t)((uint16_t)s[x] ^ 0x8000);
-    m[-1] = m[r->width] = 0;
+    m[-1] = m[r->view.width] = 0;
 }
 
 /* Steps straight and diagonally from above, into one plane, or from below, into
  * another. */
 void rf_background_dilate(struct refocus_renderer *r, bool upwards)
 {
-    const int first = upwards ? r->height - 1 : 0, step = upwards ? -1 : 1;
-    uint16_t *row = r->behind.light[upwards] + first * r->stride;
+    const int first = upwards ? r->view.height - 1 : 0, step = upwards ? -1 : 1;
+    uint16_t *row = r->background.light.channel[upwards] + first * r->view.stride;
 
-    for (int i = 0; i < r->height; i++, row += step * r->stride) {
-        if (i % 16 == 0 && rf_cancelled(r))
+    for (int i = 0; i < r->view.height; i++, row += step * r->view.stride) {
+        if (i % 16 == 0 && rf_cancelled(&r->exec))
             return;
         bias_row(r, row, first + i * step);
         if (i > 0)
-            r->kernels.dilate_from(row, row - step * r->stride, r->width);
+            r->exec.kernels->dilate_from(row, row - step * r->view.stride, r->view.width);
     }
 }
 
 void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach, int y0,
                              int y1)
 {
-    const int w = r->width;
+    const int w = r->view.width;
     uint16_t *row = scratch + RF_SPREAD_MARGIN;
     uint16_t *spare = row + w + 2 * RF_SPREAD_MARGIN;
 
     for (int y = y0; y < y1; y++) {
-        const ptrdiff_t at = y * r->stride;
-        const uint16_t *down = r->behind.light[0] + at, *up = r->behind.light[1] + at;
+        const ptrdiff_t at = y * r->view.stride;
+        const uint16_t *down = r->background.light.channel[0] + at,
+                       *up = r->background.light.channel[1] + at;
         const uint16_t *dilated;
 
         for (int x = 0; x < w; x++)
             row[x] = down[x] > up[x] ? down[x] : up[x];
-        dilated = r->kernels.spread_row(row, spare, reach, w);
-        r->kernels.mark(r->behind.blur + at, r->front.blur + at, dilated, w);
-        r->behind.blur[at + w] = RF_NO_BLUR; /* a column more if the width is odd */
+        dilated = r->exec.kernels->spread_row(row, spare, reach, w);
+        r->exec.kernels->mark(r->background.blur.at + at, r->blur.at + at, dilated, w);
+        r->background.blur.at[at + w] = RF_NO_BLUR; /* a column more if the width is odd */
         for (int c = 0; c < 3; c++)
-            memcpy(r->behind.light[c] + at, r->smooth[c] + at, (size_t)w * 2);
+            memcpy(r->background.light.channel[c] + at, r->smooth.channel[c] + at, (size_t)w * 2);
     }
 }
 
@@ -59,11 +61,12 @@ static struct rf_level level_of(const struct refocus_renderer *r, int i)
     if (i > 0)
         return r->level[i - 1];
     return (struct rf_level){
-        .width = r->width,
-        .height = r->height,
-        .stride = r->stride,
-        .light = {r->behind.light[0], r->behind.light[1], r->behind.light[2]},
-        .blur = r->behind.blur,
+        .width = r->view.width,
+        .height = r->view.height,
+        .stride = r->view.stride,
+        .light = {r->background.light.channel[0], r->background.light.channel[1],
+                  r->background.light.channel[2]},
+        .blur = r->background.blur.at,
     };
 }
 
@@ -78,8 +81,8 @@ static void push_rows(struct refocus_renderer *r, int i, int y0, int y1)
         const uint16_t *const upper[3] = {fine.light[0] + a, fine.light[1] + a, fine.light[2] + a};
         const uint16_t *const lower[3] = {fine.light[0] + b, fine.light[1] + b, fine.light[2] + b};
 
-        r->kernels.push(out, coarse.blur + at, upper, lower, fine.blur + a, fine.blur + b,
-                        coarse.width);
+        r->exec.kernels->push(out, coarse.blur + at, upper, lower, fine.blur + a, fine.blur + b,
+                              coarse.width);
         if (coarse.width % 2)
             coarse.blur[at + coarse.width] = RF_NO_BLUR;
     }
@@ -144,10 +147,10 @@ static void pull_rows(struct refocus_renderer *r, int i, uint16_t *scratch, int 
             const int x = run.x0, parent = x / 2, pairs = (run.x1 - x + 1) / 2;
 
             for (int c = 0; c < 3; c++)
-                r->kernels.pull(fine.light[c] + at + x, fine.blur + at + x,
-                                coarse.light[c] + near + parent, coarse.light[c] + far + parent,
-                                scratch, pairs);
-            r->kernels.pull_blur(fine.blur + at + x, coarse.blur + near + parent, pairs);
+                r->exec.kernels->pull(fine.light[c] + at + x, fine.blur + at + x,
+                                      coarse.light[c] + near + parent,
+                                      coarse.light[c] + far + parent, scratch, pairs);
+            r->exec.kernels->pull_blur(fine.blur + at + x, coarse.blur + near + parent, pairs);
         }
     }
 }
@@ -179,11 +182,11 @@ static void pull_item(void *context, int band, int worker)
     struct refocus_renderer *r = fill->r;
     const int y0 = band * BAND, y1 = end_of(band, level_of(r, fill->level).height);
 
-    pull_rows(r, fill->level, rf_scratch(r, worker), y0, y1);
+    pull_rows(r, fill->level, rf_scratch(&r->exec, worker), y0, y1);
     if (fill->level == 0) {
         for (int c = 0; c < 3; c++)
-            rf_extend_rows(r, r->behind.light[c], y0, y1);
-        rf_extend_rows(r, r->behind.blur, y0, y1);
+            rf_extend_rows(&r->view, r->background.light.channel[c], y0, y1);
+        rf_extend_rows(&r->view, r->background.blur.at, y0, y1);
     }
 }
 
@@ -214,5 +217,7 @@ void rf_background_pull(struct refocus_renderer *r, int from, int to)
         run(&fill, pull_item, level_of(r, fill.level).height);
     if (r->levels == 0) /* a picture of one pixel: nothing is unknown */
         for (int c = 0; c < 4; c++)
-            rf_extend_rows(r, c < 3 ? (void *)r->behind.light[c] : r->behind.blur, 0, 1);
+            rf_extend_rows(&r->view,
+                           c < 3 ? (void *)r->background.light.channel[c] : r->background.blur.at,
+                           0, 1);
 }

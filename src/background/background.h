@@ -21,10 +21,10 @@
 #include "renderer/renderer.h"
 
 /* The dilation but for its steps along rows: from above, and from below. Both
- * directions may run at once. Uses the planes r->behind.light[0] and [1]. */
+ * directions may run at once. Uses the planes r->background.light.channel[0] and [1]. */
 void rf_background_dilate(struct refocus_renderer *r, bool upwards);
 
-/* The steps along rows, `reach` of them at the most, and the mark; copies r->smooth. */
+/* The steps along rows, `reach` of them at the most, and the mark; copies r->smooth.channel. */
 void rf_background_mark_rows(struct refocus_renderer *r, uint16_t *scratch, int reach, int y0,
                              int y1);
 

@@ -31,19 +31,19 @@ bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect nee
 {
     for (int i = 0; i <= r->levels; i++) {
         const int side = 1 << i;
-        const int width = i ? r->level[i - 1].width : r->width;
-        const int height = i ? r->level[i - 1].height : r->height;
+        const int width = i ? r->level[i - 1].width : r->view.width;
+        const int height = i ? r->level[i - 1].height : r->view.height;
 
         need = (struct rf_rect){clamp(need.x0, width), clamp(need.y0, height),
                                 clamp(need.x1, width), clamp(need.y1, height)};
         /* blocks of the whole photo's pyramid? */
-        if ((r->origin_x | r->origin_y) & (side - 1))
+        if ((r->view.x0 | r->view.y0) & (side - 1))
             return false;
         if ((int64_t)need.x0 * side < exact.x0 || (int64_t)need.y0 * side < exact.y0 ||
             (int64_t)need.x1 * side > exact.x1 || (int64_t)need.y1 * side > exact.y1)
             return false;
-        need = parents(i ? r->level[i - 1].blur : r->behind.blur,
-                       i ? r->level[i - 1].stride : r->stride, need);
+        need = parents(i ? r->level[i - 1].blur : r->background.blur.at,
+                       i ? r->level[i - 1].stride : r->view.stride, need);
         if (need.x1 <= need.x0)
             return true;
     }

@@ -7,7 +7,7 @@
 #include <refocus/image.h>
 #include "depth/fill.h"
 #include "depth/speckle.h"
-#include "planes/format.h"
+#include "image/format.h"
 
 enum {
     KNOWN_FLAGS = REFOCUS_DEPTH_ZERO_IS_UNKNOWN | REFOCUS_DEPTH_MAX_IS_UNKNOWN |

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "planes/format.h"
+#include "image/format.h"
 #include "renderer/params.h"
 
 enum {

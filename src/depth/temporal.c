@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "depth/temporal.h"
-#include "planes/format.h"
+#include "image/format.h"
 #include "renderer/params.h"
 #include "support/arena.h"
 

@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "depth/upsample.h"
-#include "planes/format.h"
+#include "image/format.h"
 
 enum {
     PAD = RF_UPSAMPLE_PAD,

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "depth/upsample.h"
-#include "planes/format.h"
+#include "image/format.h"
 #include "renderer/layout.h"
 #include "renderer/params.h"
 #include "support/arena.h"

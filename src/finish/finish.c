@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
-#include "methods/method.h"
+#include "gather/frame.h"
 
 void rf_finish_begin(struct rf_frame *f)
 {
@@ -31,8 +31,8 @@ static void copy_disparities(const struct refocus_renderer *r, int x, int y, int
     const struct rf_in_place *in_place = &r->in_place;
 
     if (in_place->on)
-        rf_dequantised_patch(&r->kernels, &in_place->map, in_place->code_step, x, y, width, height,
-                             out);
+        rf_dequantised_patch(r->exec.kernels, &in_place->map, in_place->code_step, x, y, width,
+                             height, out);
     for (int v = 0; v < height && !in_place->on; v++)
         memcpy(out + v * width, photo->disparity + (y + v) * photo->stride + x,
                (size_t)width * sizeof *out);

@@ -18,9 +18,10 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
-#include "methods/method.h"
-#include "planes/format.h"
-#include "renderer/bands.h"
+#include "gather/frame.h"
+#include "image/format.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 
 #define SMOOTHEST 0.71
 
@@ -95,7 +96,7 @@ static uint32_t count_blocks(const struct rf_frame *f, bool any_blur)
     uint32_t count = 0;
 
     memset(grain->blocks, 0, sizeof grain->blocks);
-    for (int y = 0; y + BLOCK <= photo->height && !rf_cancelled(f->r); y += BLOCK) {
+    for (int y = 0; y + BLOCK <= photo->height && !rf_cancelled(&f->r->exec); y += BLOCK) {
         for (int x = 0; x + BLOCK <= photo->width; x += BLOCK) {
             int mean;
             const int variance = block_variance(f, x, y, any_blur, &mean);
@@ -201,7 +202,7 @@ void rf_add_grain(const struct rf_frame *f, struct rf_rect rect)
 
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
-            const int lost = r->grain->lost[abs(r->front.blur[y * r->stride + x]) >> 5];
+            const int lost = r->grain->lost[abs(r->blur.at[y * r->view.stride + x]) >> 5];
             uint8_t *code[3];
             int64_t add;
             int change;
@@ -209,7 +210,7 @@ void rf_add_grain(const struct rf_frame *f, struct rf_rect rect)
             if (lost == 0)
                 continue;
             rf_pixel_codes(f, x, y, code);
-            add = amount * lost * noise_at(r->origin_x + x, r->origin_y + y, f->params->seed) *
+            add = amount * lost * noise_at(r->view.x0 + x, r->view.y0 + y, f->params->seed) *
                   sigma_at(r->grain, luma(*code[0], *code[1], *code[2]));
             change = (int)((llabs(add) + unit / 2) / unit);
             for (int c = 0; c < 3; c++)

@@ -13,8 +13,9 @@
 #include <string.h>
 
 #include "aperture/aperture.h"
-#include "methods/method.h"
-#include "renderer/bands.h"
+#include "gather/frame.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 
 enum { LANES = RF_TILE * RF_TILE };
 
@@ -76,7 +77,7 @@ void rf_find_stars(struct rf_frame *f)
         for (uint32_t i = 0; i < photo->highlights[part].count; i++) {
             const struct rf_highlight *lamp = &photo->highlights[part].lamp[i];
 
-            if (rf_cancelled_at(r, i))
+            if (rf_cancelled_at(&r->exec, i))
                 return;
             for (int k = 0; k < lamp->count; k++) {
                 struct rf_star *star = touched(r, lamp->x + k, lamp->y);
@@ -179,8 +180,8 @@ void rf_add_stars(const struct rf_frame *f, struct rf_rect rect)
 {
     const struct refocus_renderer *r = f->r;
     /* of the tile, in the photo */
-    const int x0 = r->origin_x + rect.x0 / RF_TILE * RF_TILE;
-    const int y0 = r->origin_y + rect.y0 / RF_TILE * RF_TILE;
+    const int x0 = r->view.x0 + rect.x0 / RF_TILE * RF_TILE;
+    const int y0 = r->view.y0 + rect.y0 / RF_TILE * RF_TILE;
     const struct spikes spikes = spikes_of(f->params);
     int64_t sum[3][LANES];
     bool any = false;

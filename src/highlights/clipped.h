@@ -2,7 +2,8 @@
 #ifndef RF_CLIPPED_H
 #define RF_CLIPPED_H
 
-#include "renderer/around.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 
 enum { RF_CLIPPED = RF_LIGHT_MAX * 94 / 100 }; /* light from which clipping begins to count */
 
@@ -15,10 +16,10 @@ static inline int rf_ramp(int64_t v, int64_t a, int64_t b)
 /* Of the front's channels at a pixel. */
 static inline int rf_brightest_at(const struct refocus_renderer *r, ptrdiff_t at)
 {
-    int most = r->front.light[0][at];
+    int most = r->light.channel[0][at];
 
-    most = r->front.light[1][at] > most ? r->front.light[1][at] : most;
-    return r->front.light[2][at] > most ? r->front.light[2][at] : most;
+    most = r->light.channel[1][at] > most ? r->light.channel[1][at] : most;
+    return r->light.channel[2][at] > most ? r->light.channel[2][at] : most;
 }
 
 #endif

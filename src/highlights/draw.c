@@ -88,7 +88,7 @@ static void set_chords(struct rf_disc_job *job, const struct rf_frame *f, const 
     const double unit = run->blur * (RF_LAMP_UNIT / (2 * 256.0 * 16384)) / run->rows;
 
     if (a->shape == RF_SHAPE_DISC) {
-        f->r->kernels.half_chords(job->right, run->radius, -run->middle, run->rows);
+        f->r->exec.kernels->half_chords(job->right, run->radius, -run->middle, run->rows);
         for (int y = 0; y < RF_TILE; y++)
             job->left[y] = (int16_t)-job->right[y];
         return;
@@ -148,7 +148,7 @@ static void add_disc(struct canvas *canvas, const struct rf_disc_job *job)
     const int seen = (job->to - job->from) << job->shift;
 
     if (!is_even(job)) {
-        canvas->sights.f->r->kernels.draw_disc(canvas->mean, job);
+        canvas->sights.f->r->exec.kernels->draw_disc(canvas->mean, job);
         return;
     }
     for (int c = 0; c < job->planes; c++)
@@ -213,9 +213,9 @@ static int part_of(struct rf_seen *part, const struct rf_lamp_sights *tile,
                    const struct rf_highlight *lamp, int i)
 {
     const struct refocus_renderer *r = tile->f->r;
-    const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
-    const int16_t *const blur = r->front.blur + y * r->stride + x;
-    const int first = i, end = rf_smaller(lamp->count, r->width - x);
+    const int x = lamp->x - r->view.x0, y = lamp->y - r->view.y0;
+    const int16_t *const blur = r->blur.at + y * r->view.stride + x;
+    const int first = i, end = rf_smaller(lamp->count, r->view.width - x);
     int least = blur[i], most = blur[i], sum = 0, shining = 0;
 
     for (; i < end; i++) {
@@ -240,8 +240,8 @@ static bool may_reach(const struct rf_lamp_sights *tile, const struct rf_highlig
                       int end)
 {
     const struct refocus_renderer *r = tile->f->r;
-    const int x = lamp->x - r->origin_x, y = lamp->y - r->origin_y;
-    const int16_t *const blur = r->front.blur + y * r->stride + x;
+    const int x = lamp->x - r->view.x0, y = lamp->y - r->view.y0;
+    const int16_t *const blur = r->blur.at + y * r->view.stride + x;
     struct rf_seen run;
     int most = 0;
 
@@ -257,8 +257,8 @@ static void draw_parts(struct canvas *canvas, const struct rf_highlight *lamp)
 {
     const struct rf_lamp_sights *tile = &canvas->sights;
     const struct refocus_renderer *r = tile->f->r;
-    const int x = lamp->x - r->origin_x, first = rf_larger(0, -x),
-              end = rf_smaller(lamp->count, r->width - x);
+    const int x = lamp->x - r->view.x0, first = rf_larger(0, -x),
+              end = rf_smaller(lamp->count, r->view.width - x);
 
     if (!may_reach(tile, lamp, first, end))
         return;
@@ -286,7 +286,7 @@ static struct rf_seen stack_of(const struct rf_lamp_sights *tile, const struct r
         for (int c = 0; c < 3; c++)
             run.light[c] += light_of(tile->f, lamp, c) * lamp->shining;
     }
-    place(&run, tile, -r->origin_x, top->y - r->origin_y, 0);
+    place(&run, tile, -r->view.x0, top->y - r->view.y0, 0);
     run.from += RF_LAMP_UNIT * x / rows;
     run.to = run.from + RF_LAMP_UNIT * count / rows;
     run.middle += rows - 1;
@@ -348,9 +348,9 @@ void rf_draw_lamps(const struct rf_frame *f, const struct rf_tile_plan *plan, in
 {
     const struct refocus_renderer *r = f->r;
     const int reach = plan->lamp / 256 + 1;
-    const int x0 = r->origin_x + tx * RF_TILE - reach - RF_LAMP_RUN;
-    const int y0 = rf_larger(r->origin_y + ty * RF_TILE - reach - RF_LAMP_STACK, 0);
-    const int y1 = r->origin_y + (ty + 1) * RF_TILE + reach;
+    const int x0 = r->view.x0 + tx * RF_TILE - reach - RF_LAMP_RUN;
+    const int y0 = rf_larger(r->view.y0 + ty * RF_TILE - reach - RF_LAMP_STACK, 0);
+    const int y1 = r->view.y0 + (ty + 1) * RF_TILE + reach;
     const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_LAMP_RUN);
     const int parts = rf_lamp_parts(r->photo.height);
     struct canvas canvas; /* large: not all of it set */

@@ -29,14 +29,14 @@
 #ifndef RF_DRAW_H
 #define RF_DRAW_H
 
-#include "methods/method.h"
+#include "gather/frame.h"
 
 /* Whether this frame's lamps are drawn. */
 bool rf_draws_lamps(const struct rf_frame *f);
 
 /* Of lamps of the window that are marked, takes what they have more than what is beside
  * them out of the light that is pre-filtered: that of tiles that r->bins say is then in
- * r->behind.light. */
+ * r->background.light.channel. */
 void rf_take_lamps_out(struct refocus_renderer *r);
 
 /* Adds lamps to the means of a tile, Q14 and 65535 at most, of so many planes. */

@@ -11,7 +11,8 @@
 #include <string.h>
 
 #include "highlights/lamps.h"
-#include "renderer/bands.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "support/compare.h"
 
 enum {
@@ -51,8 +52,8 @@ static bool may_be_clipped(const struct search *s, int x, int y, int n)
     const struct rf_lamp_photo *p = &s->lamps.photo;
     const ptrdiff_t at = y * p->stride + x;
 
-    return !p->light || s->lamps.r->kernels.brightest(p->light[0] + at, p->light[1] + at,
-                                                      p->light[2] + at, n) > RF_CLIPPED;
+    return !p->light || s->lamps.r->exec.kernels->brightest(p->light[0] + at, p->light[1] + at,
+                                                            p->light[2] + at, n) > RF_CLIPPED;
 }
 
 /* Which of n pixels of a row are, n at most 64: a bit each. */
@@ -261,8 +262,8 @@ static struct rf_lamp_photo photo_of(const struct refocus_renderer *r)
         p.order = rf_order_of(r->in_place.photo.format);
         p.to_light = r->transfer[r->blend].to_light;
     } else {
-        p.light = r->front.light;
-        p.stride = r->stride;
+        p.light = r->light.channel;
+        p.stride = r->view.stride;
     }
     return p;
 }
@@ -281,7 +282,7 @@ void rf_find_highlights(struct refocus_renderer *r, int y0, int y1, uint16_t *sc
     s.words = s.lamps.photo.across / 16 + 2 * PAD + 2;
     s.ready = first - BEFORE;
     for (int y = first; y * cell < y1; y++) {
-        if (rf_cancelled(r))
+        if (rf_cancelled(&r->exec))
             return;
         for (; s.ready <= y + MOST; s.ready++)
             make_bits(&s, s.ready);

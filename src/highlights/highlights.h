@@ -130,7 +130,7 @@ static inline int rf_lamp_parts_in(const struct refocus_renderer *r)
 /* Whether they hold any. */
 bool rf_has_highlights(const struct refocus_renderer *r);
 
-/* In the window, for the lens setting of r->front.blur and r->bins: tell edges from
+/* In the window, for the lens setting of r->blur.at and r->bins: tell edges from
  * lamps, and note in its tile how far a lamp is blurred; where lamps are drawn, how far its disc
  * reaches. False: there are none. */
 bool rf_mark_highlights(struct refocus_renderer *r, bool drawn);
@@ -150,10 +150,10 @@ void rf_put_lamps_in_front(struct refocus_renderer *r, double gap);
 /* Up to that gain, sums of 16 bits hold the light of 16 rays over 4. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
 
-/* Where lamps are not drawn: add what those in the window lost, gain 1 to 16, to r->smooth, up to
- * `most` there; spread over half a gap of the rays, so that no ray is alone in meeting it. The
- * pre-filter would spread it farther, and discs would have soft rims; what is dark beside a lamp in
- * the background layer stays dark. */
+/* Where lamps are not drawn: add what those in the window lost, gain 1 to 16, to r->smooth.channel,
+ * up to `most` there; spread over half a gap of the rays, so that no ray is alone in meeting it.
+ * The pre-filter would spread it farther, and discs would have soft rims; what is dark beside a
+ * lamp in the background layer stays dark. */
 void rf_add_highlights(struct refocus_renderer *r, float gain, double gap, int most);
 
 #endif

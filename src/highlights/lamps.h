@@ -3,7 +3,7 @@
 #define RF_LAMPS_H
 
 #include "highlights/clipped.h"
-#include "planes/format.h"
+#include "image/format.h"
 
 /* The photo's light, in planes or, in strip mode, as the caller's codes. */
 struct rf_lamp_photo {

@@ -7,7 +7,8 @@
 
 #include "highlights/clipped.h"
 #include "highlights/runs.h"
-#include "renderer/bands.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "support/compare.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
@@ -27,14 +28,14 @@ enum {
  * this one is the edge of that, and only its depth says otherwise. */
 static int edge_of(const struct refocus_renderer *r, int x, int y)
 {
-    const int own = abs(r->front.blur[y * r->stride + x]);
+    const int own = abs(r->blur.at[y * r->view.stride + x]);
     int sharpest = own;
 
     for (int j = -2; j <= 2; j++) {
         for (int i = -2; i <= 2; i++) {
-            const ptrdiff_t at =
-                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
-            const int blur = abs(r->front.blur[at]);
+            const ptrdiff_t at = rf_within(y + j, r->view.height - 1) * r->view.stride +
+                                 rf_within(x + i, r->view.width - 1);
+            const int blur = abs(r->blur.at[at]);
 
             if (blur < sharpest && rf_brightest_at(r, at) >= RF_CLIPPED)
                 sharpest = blur;
@@ -45,17 +46,17 @@ static int edge_of(const struct refocus_renderer *r, int x, int y)
 
 int rf_first_lamp_part(const struct refocus_renderer *r)
 {
-    return r->origin_y / RF_LAMP_ROWS;
+    return r->view.y0 / RF_LAMP_ROWS;
 }
 
 int rf_last_lamp_part(const struct refocus_renderer *r)
 {
-    return (r->origin_y + r->height - 1) / RF_LAMP_ROWS;
+    return (r->view.y0 + r->view.height - 1) / RF_LAMP_ROWS;
 }
 
 int rf_lamp_shine(const struct refocus_renderer *r, int x, int y)
 {
-    const int size = abs(r->front.blur[y * r->stride + x]);
+    const int size = abs(r->blur.at[y * r->view.stride + x]);
     const int from = rf_larger(EDGE_FROM, size / EDGE_PART);
 
     return 256 - rf_ramp(edge_of(r, x, y), from, 3 * from);
@@ -69,7 +70,7 @@ static int disc_reach(int size)
 
 static void note_reach(struct refocus_renderer *r, int x, int y, int reach)
 {
-    struct rf_bins *bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
+    struct rf_bins *bins = &r->bins[(size_t)(y / RF_TILE) * r->view.tiles_x + x / RF_TILE];
 
     bins->lamp = (int16_t)rf_larger(reach, bins->lamp);
 }
@@ -82,12 +83,12 @@ static int blur_of_most(struct refocus_renderer *r, const struct rf_highlight *l
 
     if (!rf_place_of(r, lamp, lamp->count / 2, &x, &y))
         return RF_NO_BLUR;
-    middle = r->front.blur[y * r->stride + x];
+    middle = r->blur.at[y * r->view.stride + x];
     for (int i = 0; i < lamp->count; i++) {
         const int shines = !rf_place_of(r, lamp, i, &x, &y) ? 0
                            : lamp->edges >> i & 1           ? rf_lamp_shine(r, x, y)
                                                             : 256;
-        const int blur = shines ? r->front.blur[y * r->stride + x] : 0;
+        const int blur = shines ? r->blur.at[y * r->view.stride + x] : 0;
 
         if (shines && 2 * abs(blur - middle) <= rf_blurs_alike(middle)) {
             sum += shines * blur;
@@ -114,7 +115,7 @@ static void mark(struct refocus_renderer *r, struct rf_highlight *lamp, bool dra
 
         if (!rf_place_of(r, lamp, i, &x, &y))
             continue;
-        blur = r->front.blur[y * r->stride + x];
+        blur = r->blur.at[y * r->view.stride + x];
         size = abs(blur);
         if (near.sharpest < size - EDGE_FROM)
             shines = rf_lamp_shine(r, x, y);
@@ -192,7 +193,7 @@ static void mark_part(void *context, int item, int worker)
 
     (void)worker;
     for (uint32_t i = 0; i < found->count; i++) {
-        if (rf_cancelled_at(r, i))
+        if (rf_cancelled_at(&r->exec, i))
             return;
         mark(r, &found->lamp[i], marks->drawn);
     }

@@ -6,7 +6,8 @@
 
 #include "highlights/clipped.h"
 #include "highlights/runs.h"
-#include "renderer/bands.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
@@ -33,7 +34,7 @@ static void for_each(const struct met *met, int part,
     const struct rf_highlights *found = &met->r->photo.highlights[part];
 
     for (uint32_t i = 0; i < found->count; i++) {
-        if (rf_cancelled_at(met->r, i))
+        if (rf_cancelled_at(&met->r->exec, i))
             return;
         then(met, &found->lamp[i]);
     }
@@ -60,7 +61,7 @@ static int reach_of(int blur, double gap)
 static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_bin_scale scale,
                   double gap)
 {
-    const int16_t own = r->front.blur[lamp_y * r->stride + lamp_x];
+    const int16_t own = r->blur.at[lamp_y * r->view.stride + lamp_x];
     const int reach = reach_of(own, gap);
 
     for (int y = lamp_y - reach; y <= lamp_y + reach; y++) {
@@ -68,10 +69,10 @@ static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_
             const int dx = x - lamp_x, dy = y - lamp_y;
             int16_t *s;
 
-            if (x < 0 || y < 0 || x >= r->width || y >= r->height ||
+            if (x < 0 || y < 0 || x >= r->view.width || y >= r->view.height ||
                 dx * dx + dy * dy > reach * reach + 1)
                 continue;
-            s = r->front.blur + y * r->stride + x;
+            s = r->blur.at + y * r->view.stride + x;
             if (*s > own + ALIKE && abs(*s) > BLURRED) {
                 *s = own;
                 rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, own);
@@ -93,8 +94,8 @@ static void note_dots(const struct met *met, const struct rf_highlight *lamp)
 
         if (!rf_place_of(r, lamp, i, &x, &y) || is_left_alone(lamp, i))
             continue;
-        bins = &r->bins[(size_t)(y / RF_TILE) * r->tiles_x + x / RF_TILE];
-        blur = abs(r->front.blur[y * r->stride + x]);
+        bins = &r->bins[(size_t)(y / RF_TILE) * r->view.tiles_x + x / RF_TILE];
+        blur = abs(r->blur.at[y * r->view.stride + x]);
         if (blur > dots && blur > bins->dots)
             bins->dots = (int16_t)blur;
     }
@@ -109,7 +110,7 @@ static void widen_all(const struct met *met, const struct rf_highlight *lamp)
         return;
     for (int i = 0, x, y; i < lamp->count; i++)
         if (rf_place_of(r, lamp, i, &x, &y) && !is_left_alone(lamp, i) &&
-            near.most > r->front.blur[y * r->stride + x] + ALIKE)
+            near.most > r->blur.at[y * r->view.stride + x] + ALIKE)
             widen(r, x, y, met->scale, met->gap);
 }
 
@@ -132,7 +133,7 @@ static void put_in_front(const struct met *met, const struct rf_highlight *lamp)
 
         if (!rf_place_of(r, lamp, i, &x, &y) || is_left_alone(lamp, i))
             continue;
-        reach = 1 + reach_of(r->front.blur[y * r->stride + x], met->gap);
+        reach = 1 + reach_of(r->blur.at[y * r->view.stride + x], met->gap);
         rf_put_in_front(r, (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
     }
 }
@@ -150,7 +151,7 @@ static void gain_of(const struct refocus_renderer *r, const struct rf_highlight 
                     ptrdiff_t at, int share, int gained[3])
 {
     /* from half a pixel of blur on, all of it from one pixel and a half on */
-    const int blurred = is_left_alone(lamp, i) ? 0 : rf_ramp(abs(r->front.blur[at]), 128, 384);
+    const int blurred = is_left_alone(lamp, i) ? 0 : rf_ramp(abs(r->blur.at[at]), 128, 384);
 
     for (int c = 0; c < 3; c++)
         gained[c] = (((lamp->added[c] * share) >> 8) * blurred) >> 8;
@@ -161,16 +162,16 @@ static void gain_of(const struct refocus_renderer *r, const struct rf_highlight 
 static int places_of(const struct refocus_renderer *r, int cx, int cy, int reach,
                      ptrdiff_t place[(2 * WIDEST + 1) * (2 * WIDEST + 1)])
 {
-    const int own = r->front.blur[cy * r->stride + cx];
+    const int own = r->blur.at[cy * r->view.stride + cx];
     int count = 0;
 
     for (int y = cy - reach; y <= cy + reach; y++) {
         for (int x = cx - reach; x <= cx + reach; x++) {
             const int dx = x - cx, dy = y - cy;
-            const ptrdiff_t at = y * r->stride + x;
+            const ptrdiff_t at = y * r->view.stride + x;
 
-            if (x >= 0 && y >= 0 && x < r->width && y < r->height &&
-                dx * dx + dy * dy <= reach * reach + 1 && abs(r->front.blur[at] - own) <= 256)
+            if (x >= 0 && y >= 0 && x < r->view.width && y < r->view.height &&
+                dx * dx + dy * dy <= reach * reach + 1 && abs(r->blur.at[at] - own) <= 256)
                 place[count++] = at;
         }
     }
@@ -189,14 +190,14 @@ static int spread_of(const struct rf_highlight *lamp, int blur, double gap)
 /* Sums of tiles that pixels within `reach` of (x, y) are met from have to hold their light. */
 static void note_light(struct refocus_renderer *r, int x, int y, int reach, int light)
 {
-    const int tx0 = rf_within(x - reach, r->width - 1) / RF_TILE;
-    const int tx1 = rf_within(x + reach, r->width - 1) / RF_TILE;
-    const int ty0 = rf_within(y - reach, r->height - 1) / RF_TILE;
-    const int ty1 = rf_within(y + reach, r->height - 1) / RF_TILE;
+    const int tx0 = rf_within(x - reach, r->view.width - 1) / RF_TILE;
+    const int tx1 = rf_within(x + reach, r->view.width - 1) / RF_TILE;
+    const int ty0 = rf_within(y - reach, r->view.height - 1) / RF_TILE;
+    const int ty1 = rf_within(y + reach, r->view.height - 1) / RF_TILE;
 
     for (int ty = ty0; ty <= ty1; ty++)
         for (int tx = tx0; tx <= tx1; tx++) {
-            struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+            struct rf_bins *bins = &r->bins[(size_t)ty * r->view.tiles_x + tx];
 
             bins->brightest = (uint16_t)(light > bins->brightest ? light : bins->brightest);
         }
@@ -212,16 +213,16 @@ static void add_spread(const struct met *met, const struct rf_highlight *lamp, i
 
     if (!rf_place_of(r, lamp, i, &x, &y))
         return;
-    at = y * r->stride + x;
-    reach = spread_of(lamp, r->front.blur[at], met->gap);
+    at = y * r->view.stride + x;
+    reach = spread_of(lamp, r->blur.at[at], met->gap);
     places = places_of(r, x, y, reach, place);
     gain_of(r, lamp, i, at, met->share, gained);
     for (int k = 0; k < places; k++) {
         for (int c = 0; c < planes; c++) {
-            const int sum = r->smooth[c][place[k]] + (gained[c] + places / 2) / places;
+            const int sum = r->smooth.channel[c][place[k]] + (gained[c] + places / 2) / places;
             const int light = sum < met->most ? sum : met->most;
 
-            r->smooth[c][place[k]] = (uint16_t)light;
+            r->smooth.channel[c][place[k]] = (uint16_t)light;
             brightest = light > brightest ? light : brightest;
         }
     }

@@ -5,7 +5,8 @@
 
 #include "focus/focus.h"
 #include "highlights/clipped.h"
-#include "renderer/bands.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "support/places.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
@@ -27,31 +28,31 @@ static bool is_bright(const struct refocus_renderer *r, ptrdiff_t at)
 /* Whether pixel (x, y) is the rim of the bright, nearer pixel at n. */
 static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 {
-    const ptrdiff_t p = y * r->stride + x;
-    const int middle = (r->disparity[p] + r->disparity[n]) / 2;
+    const ptrdiff_t p = y * r->view.stride + x;
+    const int middle = (r->disparity.at[p] + r->disparity.at[n]) / 2;
     int64_t sum[3] = {0, 0, 0}, along = 0, contrast = 0, own = 0;
     int count = 0;
 
     for (int j = -2; j <= 2; j++) {
         for (int i = -2; i <= 2; i++) {
-            const ptrdiff_t q =
-                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
+            const ptrdiff_t q = rf_within(y + j, r->view.height - 1) * r->view.stride +
+                                rf_within(x + i, r->view.width - 1);
 
-            if ((i > -2 && i < 2 && j > -2 && j < 2) || r->disparity[q] > middle)
+            if ((i > -2 && i < 2 && j > -2 && j < 2) || r->disparity.at[q] > middle)
                 continue;
             count++;
             for (int c = 0; c < 3; c++)
-                sum[c] += r->front.light[c][q];
+                sum[c] += r->light.channel[c][q];
         }
     }
     if (!count)
         return false;
     for (int c = 0; c < 3; c++) {
-        const int64_t far = sum[c] / count, near = r->front.light[c][n];
+        const int64_t far = sum[c] / count, near = r->light.channel[c][n];
 
-        along += (r->front.light[c][p] - far) * (near - far);
+        along += (r->light.channel[c][p] - far) * (near - far);
         contrast += (near - far) * (near - far);
-        own += r->front.light[c][p] * (near - far);
+        own += r->light.channel[c][p] * (near - far);
     }
     return contrast >= (int64_t)CONTRAST * CONTRAST && 20 * along > contrast && 5 * along > 2 * own;
 }
@@ -59,7 +60,7 @@ static bool is_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 static void add_rim(const struct refocus_renderer *r, struct rf_photo *photo, int x, int y,
                     uint16_t disparity)
 {
-    const struct rf_rim rim = {(uint16_t)(x + r->origin_x), (uint16_t)(y + r->origin_y), disparity};
+    const struct rf_rim rim = {(uint16_t)(x + r->view.x0), (uint16_t)(y + r->view.y0), disparity};
 
     rf_add_place(photo->rim, &photo->rims, photo->capacity, &rim, sizeof rim);
 }
@@ -69,10 +70,10 @@ static bool is_apart(const struct refocus_renderer *r, int x, int y, int own)
 {
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            const ptrdiff_t q =
-                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
+            const ptrdiff_t q = rf_within(y + j, r->view.height - 1) * r->view.stride +
+                                rf_within(x + i, r->view.width - 1);
 
-            if (abs(r->disparity[q] - own) <= JUMP && is_bright(r, q))
+            if (abs(r->disparity.at[q] - own) <= JUMP && is_bright(r, q))
                 return false;
         }
     return true;
@@ -83,7 +84,8 @@ static bool has_far(const struct refocus_renderer *r, struct rf_rect in, int own
 {
     for (int y = in.y0; y < in.y1; y++)
         for (int x = in.x0; x < in.x1; x++)
-            if (r->disparity[y * r->stride + x] < own - JUMP && is_bright(r, y * r->stride + x))
+            if (r->disparity.at[y * r->view.stride + x] < own - JUMP &&
+                is_bright(r, y * r->view.stride + x))
                 return true;
     return false;
 }
@@ -96,8 +98,8 @@ static bool may_be_behind(const struct refocus_renderer *r, struct rf_rect in, i
 
     for (int y = in.y0; y < in.y1; y++)
         for (int x = in.x0; x < in.x1; x++) {
-            const ptrdiff_t q = y * r->stride + x;
-            const int away = r->disparity[q] - own, light = rf_brightest_at(r, q);
+            const ptrdiff_t q = y * r->view.stride + x;
+            const int away = r->disparity.at[q] - own, light = rf_brightest_at(r, q);
 
             dark += light < DARK && abs(away) <= JUMP;
             bright += light >= LEVEL && abs(away) <= JUMP;
@@ -109,16 +111,16 @@ static bool may_be_behind(const struct refocus_renderer *r, struct rf_rect in, i
 /* Whether the bright pixel (x, y) is of something farther, whose disparity it gets. */
 static bool is_behind(const struct refocus_renderer *r, int x, int y, uint16_t *disparity)
 {
-    const int own = r->disparity[y * r->stride + x];
-    const struct rf_rect in = rf_around(r, x, y, AROUND);
+    const int own = r->disparity.at[y * r->view.stride + x];
+    const struct rf_rect in = rf_around(&r->view, x, y, AROUND);
     int far = 0, behind = 0;
 
-    if (!has_far(r, rf_around(r, x, y, 1), own) || !may_be_behind(r, in, own))
+    if (!has_far(r, rf_around(&r->view, x, y, 1), own) || !may_be_behind(r, in, own))
         return false;
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
-            const ptrdiff_t q = py * r->stride + px;
-            const int d = r->disparity[q];
+            const ptrdiff_t q = py * r->view.stride + px;
+            const int d = r->disparity.at[q];
 
             if (d >= own - JUMP || !is_bright(r, q) || !is_apart(r, px, py, own))
                 continue;
@@ -132,21 +134,21 @@ static bool is_behind(const struct refocus_renderer *r, int x, int y, uint16_t *
 /* Whether pixel (x, y) is the rim of the one at n. */
 static bool has_rim(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 {
-    return r->disparity[y * r->stride + x] + JUMP < r->disparity[n] && is_bright(r, n) &&
+    return r->disparity.at[y * r->view.stride + x] + JUMP < r->disparity.at[n] && is_bright(r, n) &&
            is_rim(r, x, y, n);
 }
 
 /* Whether it is that of one that is nearer than n, or as near and before it. */
 static bool has_other(const struct refocus_renderer *r, int x, int y, ptrdiff_t n)
 {
-    const struct rf_rect in = rf_around(r, x, y, 1);
+    const struct rf_rect in = rf_around(&r->view, x, y, 1);
 
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
-            const ptrdiff_t q = py * r->stride + px;
+            const ptrdiff_t q = py * r->view.stride + px;
 
-            if ((r->disparity[q] > r->disparity[n] ||
-                 (r->disparity[q] == r->disparity[n] && q < n)) &&
+            if ((r->disparity.at[q] > r->disparity.at[n] ||
+                 (r->disparity.at[q] == r->disparity.at[n] && q < n)) &&
                 has_rim(r, x, y, q))
                 return true;
         }
@@ -157,8 +159,8 @@ static bool has_other(const struct refocus_renderer *r, int x, int y, ptrdiff_t 
  * it. */
 static void find_around(const struct refocus_renderer *r, int x, int y, struct rf_photo *photo)
 {
-    const ptrdiff_t n = y * r->stride + x;
-    const struct rf_rect in = rf_around(r, x, y, 1);
+    const ptrdiff_t n = y * r->view.stride + x;
+    const struct rf_rect in = rf_around(&r->view, x, y, 1);
     uint16_t behind;
 
     if (is_behind(r, x, y, &behind)) {
@@ -169,7 +171,7 @@ static void find_around(const struct refocus_renderer *r, int x, int y, struct r
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++)
             if (has_rim(r, px, py, n) && !has_other(r, px, py, n))
-                add_rim(r, photo, px, py, r->disparity[n]);
+                add_rim(r, photo, px, py, r->disparity.at[n]);
 }
 
 enum { RUN = 32 }; /* most runs of pixels hold nothing bright at a jump */
@@ -178,14 +180,14 @@ enum { RUN = 32 }; /* most runs of pixels hold nothing bright at a jump */
  * extremes only. */
 static void take_row(const struct refocus_renderer *r, int x0, int y, int16_t row[RUN + 2])
 {
-    const uint16_t *d = r->disparity + rf_within(y, r->height - 1) * r->stride;
+    const uint16_t *d = r->disparity.at + rf_within(y, r->view.height - 1) * r->view.stride;
 
-    if (x0 > 0 && x0 + RUN < r->width)
+    if (x0 > 0 && x0 + RUN < r->view.width)
         for (int i = 0; i < RUN + 2; i++)
             row[i] = (int16_t)(d[x0 - 1 + i] ^ 0x8000);
     else
         for (int i = 0; i < RUN + 2; i++)
-            row[i] = (int16_t)(d[rf_within(x0 - 1 + i, r->width - 1)] ^ 0x8000);
+            row[i] = (int16_t)(d[rf_within(x0 - 1 + i, r->view.width - 1)] ^ 0x8000);
 }
 
 static inline int16_t min16(int16_t a, int16_t b)
@@ -222,19 +224,20 @@ void rf_find_rims(struct refocus_renderer *r, struct rf_rect part)
     struct rf_photo *photo = &r->photo;
 
     for (int y = part.y0; y < part.y1; y++) {
-        const ptrdiff_t at = y * r->stride;
+        const ptrdiff_t at = y * r->view.stride;
 
-        if (rf_cancelled(r))
+        if (rf_cancelled(&r->exec))
             return;
         for (int x0 = part.x0; x0 < part.x1; x0 += RUN) {
             const int n = part.x1 - x0 < RUN ? part.x1 - x0 : RUN;
             uint32_t bits;
 
-            if (r->kernels.brightest(r->front.light[0] + at + x0, r->front.light[1] + at + x0,
-                                     r->front.light[2] + at + x0, n) < LEVEL)
+            if (r->exec.kernels->brightest(r->light.channel[0] + at + x0,
+                                           r->light.channel[1] + at + x0,
+                                           r->light.channel[2] + at + x0, n) < LEVEL)
                 continue;
             bits = find_jumps(r, x0, y) & (UINT32_MAX >> (RUN - n));
-            if (bits && rf_cancelled(r))
+            if (bits && rf_cancelled(&r->exec))
                 return;
             for (; bits; bits &= bits - 1) {
                 const int x = x0 + __builtin_ctz(bits);
@@ -253,12 +256,12 @@ void rf_patch_rims(struct refocus_renderer *r, const struct rf_focus_plan *plan,
 
     for (uint32_t i = 0; i < photo->rims; i++) {
         const struct rf_rim *rim = &photo->rim[i];
-        const int x = rim->x - r->origin_x, y = rim->y - r->origin_y;
-        int16_t *s = r->front.blur + y * r->stride + x;
+        const int x = rim->x - r->view.x0, y = rim->y - r->view.y0;
+        int16_t *s = r->blur.at + y * r->view.stride + x;
 
-        if (i % 1024 == 0 && rf_cancelled(r))
+        if (i % 1024 == 0 && rf_cancelled(&r->exec))
             return;
-        if (x < 0 || y < 0 || x >= r->width || y >= r->height)
+        if (x < 0 || y < 0 || x >= r->view.width || y >= r->view.height)
             continue;
         rf_focus_row(plan, s, &rim->disparity, rim->x, rim->y, 1);
         rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, *s);

@@ -46,7 +46,7 @@ static inline uint32_t rf_rim_capacity(int width, int height)
  * window, in linear light. Pixels nine away from the part are looked at. */
 void rf_find_rims(struct refocus_renderer *r, struct rf_rect part);
 
-/* Put those in the window into r->front.blur and r->bins. */
+/* Put those in the window into r->blur.at and r->bins. */
 void rf_patch_rims(struct refocus_renderer *r, const struct rf_focus_plan *plan,
                    struct rf_bin_scale scale);
 

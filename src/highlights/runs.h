@@ -6,27 +6,29 @@
 #include <stdlib.h>
 
 #include "highlights/highlights.h"
-#include "renderer/around.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 
 /* Where in the window pixel i of a run is; false: not in it. */
 static inline bool rf_place_of(const struct refocus_renderer *r, const struct rf_highlight *lamp,
                                int i, int *x, int *y)
 {
-    *x = lamp->x + i - r->origin_x;
-    *y = lamp->y - r->origin_y;
-    return *x >= 0 && *y >= 0 && *x < r->width && *y < r->height;
+    *x = lamp->x + i - r->view.x0;
+    *y = lamp->y - r->view.y0;
+    return *x >= 0 && *y >= 0 && *x < r->view.width && *y < r->view.height;
 }
 
 /* The pixels of a run that are in the window, and so many around them there; empty: none are. */
 static inline struct rf_rect rf_around_run(const struct refocus_renderer *r,
                                            const struct rf_highlight *lamp, int by)
 {
-    const int x0 = lamp->x - r->origin_x, x1 = x0 + lamp->count, y = lamp->y - r->origin_y;
+    const int x0 = lamp->x - r->view.x0, x1 = x0 + lamp->count, y = lamp->y - r->view.y0;
 
-    if (y < 0 || y >= r->height || x1 <= 0 || x0 >= r->width)
+    if (y < 0 || y >= r->view.height || x1 <= 0 || x0 >= r->view.width)
         return (struct rf_rect){0, 0, 0, 0};
-    return (struct rf_rect){rf_within(x0 - by, r->width), rf_within(y - by, r->height),
-                            rf_within(x1 + by, r->width), rf_within(y + by + 1, r->height)};
+    return (struct rf_rect){rf_within(x0 - by, r->view.width), rf_within(y - by, r->view.height),
+                            rf_within(x1 + by, r->view.width),
+                            rf_within(y + by + 1, r->view.height)};
 }
 
 /* The least and the greatest blur somewhere. */
@@ -40,7 +42,7 @@ static inline struct rf_blurs rf_blurs_in(const struct refocus_renderer *r, stru
     struct rf_blurs in = {INT16_MAX, INT16_MIN, INT16_MAX};
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const int16_t *s = r->front.blur + y * r->stride;
+        const int16_t *s = r->blur.at + y * r->view.stride;
 
         for (int x = rect.x0; x < rect.x1; x++) {
             in.least = s[x] < in.least ? s[x] : in.least;

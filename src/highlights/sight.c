@@ -96,16 +96,16 @@ static enum rf_hidden hidden_in_ranges(const struct refocus_renderer *r, const s
                                        struct rf_rect at)
 {
     const int low = slab->low, high = low + slab->width;
-    const int border = rf_range_border(r->pad), each = RF_TILE / RF_CELL;
+    const int border = rf_range_border(r->view.pad), each = RF_TILE / RF_CELL;
     const int first = rf_larger(at.x0 >> 2, -border),
-              end = rf_smaller(at.x1 >> 2, r->tiles_x * each - 1 + border),
-              last = rf_smaller(at.y1 >> 2, r->tiles_y * each - 1 + border);
+              end = rf_smaller(at.x1 >> 2, r->view.tiles_x * each - 1 + border),
+              last = rf_smaller(at.y1 >> 2, r->view.tiles_y * each - 1 + border);
     bool none = true, all = true;
 
     for (int y = rf_larger(at.y0 >> 2, -border); y <= last && (none || all);
          y += RF_STRIP / RF_CELL)
         for (int x = first; x <= end; x += each) {
-            const uint32_t range = r->range[y * r->range_stride + x];
+            const uint32_t range = r->range.at[y * r->range.stride + x];
             const int least = rf_range_least(range), most = rf_range_most(range);
 
             none = none && (most < low || least > high);
@@ -123,7 +123,8 @@ static bool may_meet(const struct refocus_renderer *r, const struct rf_slab *sla
     const int x = rf_larger(at.x1 - wide + 1, -far);
 
     return wide > LARGE || high > LARGE ||
-           r->kernels.meets(r->front.blur + at.y0 * r->stride + x, r->stride, wide, high, slab);
+           r->exec.kernels->meets(r->blur.at + at.y0 * r->view.stride + x, r->view.stride, wide,
+                                  high, slab);
 }
 
 static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_lamp_sights *tile,
@@ -239,14 +240,15 @@ static void set_shade(struct rf_lamp_shade *shade, const struct rf_lamp_sights *
     const struct rf_seen *run = &shade->look.run;
     const struct rf_slab *slab = &tile->slab[shade->look.slab];
     const struct screen screen = screen_of(slab, run);
-    const int16_t *const blur = r->front.blur + tile->ty * RF_TILE * r->stride + tile->tx * RF_TILE;
+    const int16_t *const blur =
+        r->blur.at + tile->ty * RF_TILE * r->view.stride + tile->tx * RF_TILE;
     struct rf_disc_way way;
 
     shade->hidden = hidden_by(&screen, tile, run, job);
     if (shade->hidden != RF_HIDDEN_PARTLY)
         return;
     way = way_to(run, &screen, farthest_look(tile->f));
-    r->kernels.hide(shade->visible, blur, r->stride, &screen.slab, job, &way);
+    r->exec.kernels->hide(shade->visible, blur, r->view.stride, &screen.slab, job, &way);
     shade->hidden = hidden_in(shade->visible, job->first, job->end);
 }
 

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "methods/method.h"
+#include "gather/frame.h"
 #include "tiles/slab.h"
 
 enum {

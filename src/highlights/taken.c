@@ -6,7 +6,8 @@
 
 #include "highlights/clipped.h"
 #include "highlights/highlights.h"
-#include "renderer/bands.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "support/compare.h"
 
 enum {
@@ -25,14 +26,14 @@ struct chain {
 static struct chain chain_of(const struct refocus_renderer *r, struct rf_highlight *lamp,
                              const struct rf_highlight *end)
 {
-    struct chain chain = {lamp, 1, lamp->y - r->origin_y, lamp->x - r->origin_x - 1, 0};
+    struct chain chain = {lamp, 1, lamp->y - r->view.y0, lamp->x - r->view.x0 - 1, 0};
     int next = lamp->x + lamp->count;
 
     for (lamp++; lamp < end && lamp->y == chain.first->y && lamp->x == next; lamp++) {
         next += lamp->count;
         chain.count++;
     }
-    chain.right = next - r->origin_x;
+    chain.right = next - r->view.x0;
     return chain;
 }
 
@@ -41,12 +42,12 @@ static struct chain chain_of(const struct refocus_renderer *r, struct rf_highlig
 static bool may_take(const struct refocus_renderer *r, const struct chain *chain)
 {
     return chain->right - chain->left <= RF_LAMP_RUN + 1 && chain->left >= 0 &&
-           chain->right < r->width && chain->y > 0 && chain->y < r->height - 1;
+           chain->right < r->view.width && chain->y > 0 && chain->y < r->view.height - 1;
 }
 
 static bool is_blurred(const struct refocus_renderer *r, const struct chain *chain)
 {
-    const int16_t *const blur = r->front.blur + chain->y * r->stride;
+    const int16_t *const blur = r->blur.at + chain->y * r->view.stride;
     int most = 0;
 
     for (int x = chain->left + 1; x < chain->right; x++)
@@ -62,16 +63,16 @@ static int planes_of(const struct refocus_renderer *r)
 /* A tile of the photo, and a pixel around it, to where the pre-filter takes it from. */
 static void copy_tile(struct refocus_renderer *r, int tx, int ty)
 {
-    struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+    struct rf_bins *bins = &r->bins[(size_t)ty * r->view.tiles_x + tx];
 
     if (bins->taken)
         return;
     bins->taken = true;
     for (int c = 0; c < planes_of(r); c++)
         for (int y = ty * RF_TILE - 1; y <= (ty + 1) * RF_TILE; y++) {
-            const ptrdiff_t at = y * r->stride + tx * RF_TILE - 1;
+            const ptrdiff_t at = y * r->view.stride + tx * RF_TILE - 1;
 
-            memcpy(r->behind.light[c] + at, r->front.light[c] + at,
+            memcpy(r->background.light.channel[c] + at, r->light.channel[c] + at,
                    (RF_TILE + 2) * sizeof(uint16_t));
         }
 }
@@ -88,8 +89,8 @@ static void copy_around(struct refocus_renderer *r, const struct chain *chain)
 static void take_run(struct refocus_renderer *r, struct rf_highlight *lamp,
                      const struct chain *chain)
 {
-    const int x = lamp->x - r->origin_x;
-    const ptrdiff_t row = chain->y * r->stride;
+    const int x = lamp->x - r->view.x0;
+    const ptrdiff_t row = chain->y * r->view.stride;
     int share[RF_LAMP_RUN];
 
     if (!lamp->shining)
@@ -97,10 +98,10 @@ static void take_run(struct refocus_renderer *r, struct rf_highlight *lamp,
     for (int i = 0; i < lamp->count; i++) {
         const int shines = lamp->edges >> i & 1 ? rf_lamp_shine(r, x + i, chain->y) : 256;
 
-        share[i] = shines * rf_ramp(abs(r->front.blur[row + x + i]), TAKEN_FROM, TAKEN_TO);
+        share[i] = shines * rf_ramp(abs(r->blur.at[row + x + i]), TAKEN_FROM, TAKEN_TO);
     }
     for (int c = 0; c < planes_of(r); c++) {
-        const uint16_t *const light = r->front.light[c] + row;
+        const uint16_t *const light = r->light.channel[c] + row;
         const int around = (light[chain->left] + light[chain->right] + 1) / 2;
         int sum = 0;
 
@@ -108,7 +109,7 @@ static void take_run(struct refocus_renderer *r, struct rf_highlight *lamp,
             const int more = rf_larger(light[x + i] - around, 0);
             const int taken = (more * share[i]) >> 16;
 
-            r->behind.light[c][row + x + i] = (uint16_t)(light[x + i] - taken);
+            r->background.light.channel[c][row + x + i] = (uint16_t)(light[x + i] - taken);
             sum += taken;
         }
         lamp->own[c] = (uint16_t)(256 * sum / lamp->shining);
@@ -133,7 +134,7 @@ static void take_part(void *context, int item, int worker)
     for (uint32_t n = 0; lamp < end; n++) {
         const struct chain chain = chain_of(r, lamp, end);
 
-        if (rf_cancelled_at(r, n))
+        if (rf_cancelled_at(&r->exec, n))
             return;
         lamp += chain.count;
         if (!may_take(r, &chain) || !is_blurred(r, &chain))

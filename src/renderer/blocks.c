@@ -11,8 +11,9 @@
 
 #include "background/background.h"
 #include "depth/dequantise.h"
-#include "planes/format.h"
-#include "renderer/bands.h"
+#include "image/format.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "renderer/layout.h"
 #include "renderer/load.h"
 #include "renderer/passes.h"
@@ -48,8 +49,8 @@ static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect bl
 
 static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
 {
-    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y, part.x1 - r->origin_x,
-                            part.y1 - r->origin_y};
+    return (struct rf_rect){part.x0 - r->view.x0, part.y0 - r->view.y0, part.x1 - r->view.x0,
+                            part.y1 - r->view.y0};
 }
 
 /* A part of a picture as a picture. */
@@ -96,11 +97,11 @@ void rf_find_rims_in_blocks(struct refocus_renderer *r)
 {
     const struct rf_in_place *in_place = &r->in_place;
 
-    for (int i = 0; i < blocks(r, in_place->block) && !rf_cancelled(r); i++) {
+    for (int i = 0; i < blocks(r, in_place->block) && !rf_cancelled(&r->exec); i++) {
         const struct rf_rect block = block_of(r, in_place->block, i);
 
         load(r, block, RF_TILE);
-        if (!rf_cancelled(r))
+        if (!rf_cancelled(&r->exec))
             rf_find_rims(r, in_window(r, block));
     }
 }
@@ -111,10 +112,10 @@ static void make_window(struct rf_frame *f, struct rf_rect block, int margin, en
     struct refocus_renderer *r = f->r;
 
     load(r, block, margin);
-    if (need == RF_NEED_LIGHT || rf_cancelled(r))
+    if (need == RF_NEED_LIGHT || rf_cancelled(&r->exec))
         return;
     rf_pass_blur(f, need == RF_NEED_LAYERS);
-    if (need == RF_NEED_BLUR || rf_cancelled(r))
+    if (need == RF_NEED_BLUR || rf_cancelled(&r->exec))
         return;
     rf_patch_rims(r, &f->plan, f->scale);
     rf_pass_smooth(f);
@@ -126,7 +127,8 @@ static void keep_known(struct refocus_renderer *r, struct rf_rect block)
     const struct rf_in_place *in_place = &r->in_place;
 
     for (int y = block.y0; y < block.y1; y++) {
-        const int16_t *blur = r->behind.blur + (y - r->origin_y) * r->stride - r->origin_x;
+        const int16_t *blur =
+            r->background.blur.at + (y - r->view.y0) * r->view.stride - r->view.x0;
         uint8_t *known = in_place->known + y * in_place->known_stride;
 
         for (int x = block.x0; x < block.x1; x += 8) {
@@ -152,8 +154,8 @@ static void keep_level(struct refocus_renderer *r, struct rf_rect block)
     const struct rf_level *to = &r->in_place.kept[RF_KEPT - 1];
     const int x0 = block.x0 >> RF_KEPT, y0 = block.y0 >> RF_KEPT;
     const int n = kept_pixels(block.x1 - block.x0);
-    const ptrdiff_t dx = (block.x0 - r->origin_x) >> RF_KEPT;
-    const ptrdiff_t dy = (block.y0 - r->origin_y) >> RF_KEPT;
+    const ptrdiff_t dx = (block.x0 - r->view.x0) >> RF_KEPT;
+    const ptrdiff_t dy = (block.y0 - r->view.y0) >> RF_KEPT;
 
     for (int y = 0; y < kept_pixels(block.y1 - block.y0); y++) {
         const ptrdiff_t in = (dy + y) * from->stride + dx, out = (y0 + y) * to->stride + x0;
@@ -174,13 +176,13 @@ static void mark(struct rf_frame *f)
     struct rf_level own[RF_LEVELS];
 
     in_place->levels = rf_pyramid(in_place->kept, r->photo.width, r->photo.height);
-    for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(r); i++) {
+    for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(&r->exec); i++) {
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
         make_window(f, block, in_place->mark_margin, RF_NEED_LAYERS);
         rf_pass_mark(f, RF_KEPT);
         keep_known(r, block);
-        if (!rf_cancelled(r))
+        if (!rf_cancelled(&r->exec))
             keep_level(r, block);
     }
     memcpy(own, r->level, sizeof own);
@@ -196,20 +198,21 @@ static void known_band(void *context, int band, int worker)
     const struct rf_in_place *in_place = &r->in_place;
 
     (void)worker;
-    for (int y = rf_band_start(band); y < rf_band_end(r, band); y++) {
-        const ptrdiff_t at = y * r->stride;
-        const uint8_t *known = in_place->known + (y + r->origin_y) * in_place->known_stride;
-        const int16_t *blur = r->front.blur + at;
-        int16_t *out = r->behind.blur + at;
+    for (int y = rf_band_start(band); y < rf_band_end(&r->view, band); y++) {
+        const ptrdiff_t at = y * r->view.stride;
+        const uint8_t *known = in_place->known + (y + r->view.y0) * in_place->known_stride;
+        const int16_t *blur = r->blur.at + at;
+        int16_t *out = r->background.blur.at + at;
 
-        for (int x = 0; x < r->width; x++) {
-            const int q = x + r->origin_x;
+        for (int x = 0; x < r->view.width; x++) {
+            const int q = x + r->view.x0;
 
             out[x] = known[q / 8] >> q % 8 & 1 ? blur[x] : RF_NO_BLUR;
         }
-        out[r->width] = RF_NO_BLUR; /* a column more if the width is odd */
+        out[r->view.width] = RF_NO_BLUR; /* a column more if the width is odd */
         for (int c = 0; c < 3; c++)
-            memcpy(r->behind.light[c] + at, r->smooth[c] + at, (size_t)r->width * 2);
+            memcpy(r->background.light.channel[c] + at, r->smooth.channel[c] + at,
+                   (size_t)r->view.width * 2);
     }
     rf_background_push_band(r, band, RF_KEPT - 1);
 }
@@ -227,9 +230,9 @@ static void make_behind(struct rf_frame *f)
         rf_pass_behind(f, r->levels);
         return;
     }
-    rf_pool_run(&r->pool, known_band, r, rf_bands(r));
+    rf_pool_run(&r->pool, known_band, r, rf_bands(&r->view));
     own = r->level[RF_KEPT - 1];
-    at = (r->origin_y >> RF_KEPT) * kept->stride + (r->origin_x >> RF_KEPT);
+    at = (r->view.y0 >> RF_KEPT) * kept->stride + (r->view.x0 >> RF_KEPT);
     for (int c = 0; c < 3; c++)
         r->level[RF_KEPT - 1].light[c] = kept->light[c] + at;
     r->level[RF_KEPT - 1].blur = kept->blur + at;
@@ -254,7 +257,7 @@ static void mark_once(struct rf_frame *f)
     mark(f);
     *m = (struct rf_made){.blur = true, .smooth = true, .plan = f->plan, .shift = f->scale.shift};
     rf_note_light(f);
-    m->behind = !rf_cancelled(f->r);
+    m->behind = !rf_cancelled(&f->r->exec);
 }
 
 void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
@@ -268,10 +271,10 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     rf_set_weights(f);
     if (need == RF_NEED_LAYERS) {
         rf_pass_lamps(f);
-        if (!rf_cancelled(r))
+        if (!rf_cancelled(&r->exec))
             mark_once(f);
     }
-    for (int i = 0; i < blocks(r, in_place->block) && !rf_cancelled(r); i++) {
+    for (int i = 0; i < blocks(r, in_place->block) && !rf_cancelled(&r->exec); i++) {
         const struct rf_rect b = block_of(r, in_place->block, i);
         const struct rf_rect part = {
             b.x0 > region.x0 ? b.x0 : region.x0, b.y0 > region.y0 ? b.y0 : region.y0,
@@ -281,17 +284,17 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         if (part.x0 >= part.x1 || part.y0 >= part.y1)
             continue;
         make_window(f, b, in_place->margin, need);
-        if (need == RF_NEED_LAYERS && !rf_cancelled(r))
+        if (need == RF_NEED_LAYERS && !rf_cancelled(&r->exec))
             make_behind(f);
-        if (need == RF_NEED_LAYERS && !rf_cancelled(r))
+        if (need == RF_NEED_LAYERS && !rf_cancelled(&r->exec))
             rf_pass_bright(f);
-        if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(r))
+        if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(&r->exec))
             rf_pass_weights(f);
         image = image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
                                                  part.x1 - region.x0, part.y1 - region.y0});
         f->out = &image;
         f->region = in_window(r, part);
-        if (!rf_cancelled(r))
+        if (!rf_cancelled(&r->exec))
             tiles(f);
     }
     f->out = out;

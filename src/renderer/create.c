@@ -91,6 +91,10 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->in_place.on = own.in_place;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);
+    r->exec.pool = &r->pool;
+    r->exec.run = &r->run;
+    r->exec.kernels = &r->kernels;
+    r->exec.scratch_size = rf_scratch_size(own.max_width);
     atomic_init(&r->run.state, RF_RUN_IDLE);
     status = rf_pool_start(&r->pool, rf_threads_for(&own), &own.parallel, &r->run);
     if (status) {

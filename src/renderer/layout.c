@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "depth/upsample.h"
-#include "methods/frame.h"
+#include "papers/papers.h"
 #include "support/arena.h"
 #include "tiles/ranges.h"
 
@@ -248,10 +248,10 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     }
     after = arena->used;
     arena->used = before; /* the pyramid is done with before there are weights */
-    r->weight_stride = rf_pitch_for(across, pad);
-    r->weight =
-        rf_arena_take(arena, (uint64_t)r->weight_stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
-    r->weight = r->weight ? r->weight + pad * (r->weight_stride + 1) : NULL;
+    r->weight.stride = rf_pitch_for(across, pad);
+    r->weight.at =
+        rf_arena_take(arena, (uint64_t)r->weight.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
+    r->weight.at = r->weight.at ? r->weight.at + pad * (r->weight.stride + 1) : NULL;
     after = arena->used > after ? arena->used : after;
     r->has_thin = params->thin && !params->in_place;
     if (r->has_thin) { /* and not begun while sources are drawn */
@@ -264,17 +264,18 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         take_veil(arena, &r->veil, w, h);
         take_thin(arena, &r->photo.thin, w, h);
     }
-    r->range_stride = rf_range_width(across, pad);
-    r->range = rf_arena_take(arena, (uint64_t)r->range_stride * (uint64_t)rf_range_width(down, pad),
-                             sizeof *r->range);
-    if (r->range)
-        r->range += rf_range_border(pad) * (r->range_stride + 1);
+    r->range.stride = rf_range_width(across, pad);
+    r->range.at =
+        rf_arena_take(arena, (uint64_t)r->range.stride * (uint64_t)rf_range_width(down, pad),
+                      sizeof *r->range.at);
+    if (r->range.at)
+        r->range.at += rf_range_border(pad) * (r->range.stride + 1);
     r->star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->star);
     r->grain = rf_arena_take(arena, 1, sizeof *r->grain);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
-    r->rays =
-        rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS, sizeof *r->rays);
-    r->scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
+    r->ray_sets.memory = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
+                                       sizeof *r->ray_sets.memory);
+    r->exec.scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
     if (params->in_place)
         return;

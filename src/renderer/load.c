@@ -1,9 +1,10 @@
 #include "renderer/load.h"
 
 #include "depth/dequantise.h"
-#include "planes/planes.h"
-#include "planes/yuv.h"
-#include "renderer/bands.h"
+#include "passes/planes.h"
+#include "passes/yuv.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "support/compare.h"
 
 struct job {
@@ -19,10 +20,11 @@ static void convert_band(void *context, int band, int worker)
     const struct job *job = context;
 
     if (job->r->yuv.on)
-        rf_yuv_convert_rows(job->r, job->photo, job->guide, (uint8_t *)rf_scratch(job->r, worker),
-                            rf_band_start(band), rf_band_end(job->r, band));
+        rf_yuv_convert_rows(job->r, job->photo, job->guide,
+                            (uint8_t *)rf_scratch(&job->r->exec, worker), rf_band_start(band),
+                            rf_band_end(&job->r->view, band));
     else
-        rf_convert_rows(job->r, job->photo, rf_band_start(band), rf_band_end(job->r, band));
+        rf_convert_rows(job->r, job->photo, rf_band_start(band), rf_band_end(&job->r->view, band));
 }
 
 static void disparity_band(void *context, int band, int worker)
@@ -31,7 +33,7 @@ static void disparity_band(void *context, int band, int worker)
     const int end = rf_smaller((band + 1) * RF_TILE, job->map->height);
 
     (void)worker;
-    rf_disparity_rows(job->disparity, job->r->stride, job->map, band * RF_TILE, end);
+    rf_disparity_rows(job->disparity, job->r->view.stride, job->map, band * RF_TILE, end);
 }
 
 void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo,
@@ -39,18 +41,18 @@ void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo
 {
     struct job job = {.r = r, .photo = photo, .guide = guide};
 
-    rf_pool_run(&r->pool, convert_band, &job, rf_bands(r));
+    rf_pool_run(&r->pool, convert_band, &job, rf_bands(&r->view));
 }
 
 /* The planes of pre-filtered light are free until something is rendered. */
 static void dequantise(struct refocus_renderer *r, const struct job *job, int step, ptrdiff_t first)
 {
     const struct rf_dequantiser d = {
-        .kernels = &r->kernels,
+        .kernels = r->exec.kernels,
         .code = job->disparity,
-        .stride = r->stride,
-        .spare = {r->smooth[1] + first, r->smooth[2] + first},
-        .spare_stride = {r->stride, r->stride},
+        .stride = r->view.stride,
+        .spare = {r->smooth.channel[1] + first, r->smooth.channel[2] + first},
+        .spare_stride = {r->view.stride, r->view.stride},
         .width = job->map->width,
         .height = job->map->height,
         .step = step,
@@ -62,8 +64,8 @@ static void dequantise(struct refocus_renderer *r, const struct job *job, int st
 void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map, int step,
                        int left, int above)
 {
-    const ptrdiff_t first = -above * r->stride - left;
-    struct job job = {.r = r, .map = map, .disparity = r->disparity + first};
+    const ptrdiff_t first = -above * r->view.stride - left;
+    struct job job = {.r = r, .map = map, .disparity = r->disparity.at + first};
 
     rf_pool_run(&r->pool, disparity_band, &job, (map->height + RF_TILE - 1) / RF_TILE);
     if (step)

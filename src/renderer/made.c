@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "background/background.h"
-#include "planes/yuv.h"
-#include "renderer/bands.h"
+#include "passes/yuv.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "renderer/render_yuv.h"
 #include "thin/thin.h"
 
@@ -19,10 +20,11 @@ static void reblend_band(void *context, int band, int worker)
     if (*blend == f->params->blend)
         return;
     if (r->yuv.on)
-        rf_yuv_reblend_rows(r, (uint8_t *)rf_scratch(r, worker), rf_band_start(band),
-                            rf_band_end(r, band));
+        rf_yuv_reblend_rows(r, (uint8_t *)rf_scratch(&r->exec, worker), rf_band_start(band),
+                            rf_band_end(&r->view, band));
     else
-        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band), rf_band_end(r, band));
+        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
+                        rf_band_end(&r->view, band));
     *blend = (uint8_t)f->params->blend;
 }
 
@@ -98,8 +100,8 @@ static void make_blur(struct rf_frame *f, bool layers)
 {
     struct refocus_renderer *r = f->r;
     struct rf_made *m = &r->made;
-    const struct rf_rect window = {r->origin_x, r->origin_y, r->origin_x + r->width,
-                                   r->origin_y + r->height};
+    const struct rf_rect window = {r->view.x0, r->view.y0, r->view.x0 + r->view.width,
+                                   r->view.y0 + r->view.height};
 
     if (!rf_same_lens(f) || !contains(m->window, window) || !contains(window, m->window) ||
         !has_same_thin(f) || (m->rims && !layers) ||
@@ -110,14 +112,14 @@ static void make_blur(struct rf_frame *f, bool layers)
                               .thin = made_thin(f),
                               .veil_blur = f->veil_blur};
         rf_pass_blur(f, layers);
-        if (rf_takes_apart(f) && !rf_cancelled(r))
+        if (rf_takes_apart(f) && !rf_cancelled(&r->exec))
             rf_take_thin_apart(f);
-        m->blur = !rf_cancelled(r);
+        m->blur = !rf_cancelled(&r->exec);
     }
     if (m->blur && layers && !m->rims) {
         m->blur = false; /* until all rims are in */
         rf_patch_rims(r, &f->plan, f->scale);
-        m->blur = m->rims = !rf_cancelled(r);
+        m->blur = m->rims = !rf_cancelled(&r->exec);
     }
 }
 
@@ -138,24 +140,24 @@ static void make_smooth(struct rf_frame *f)
         rf_pass_prefilter(f);
     } else {
         rf_pass_smooth(f);
-        m->ranges = !rf_cancelled(r);
+        m->ranges = !rf_cancelled(&r->exec);
         m->blur = m->ranges; /* else its cells may be gone */
     }
     rf_note_light(f);
-    m->smooth = !rf_cancelled(r);
+    m->smooth = !rf_cancelled(&r->exec);
 }
 
 /* `part` of the photo in the window. */
 static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
 {
-    return (struct rf_rect){part.x0 - r->origin_x, part.y0 - r->origin_y, part.x1 - r->origin_x,
-                            part.y1 - r->origin_y};
+    return (struct rf_rect){part.x0 - r->view.x0, part.y0 - r->view.y0, part.x1 - r->view.x0,
+                            part.y1 - r->view.y0};
 }
 
 /* How far beyond a tile something thick decides what becomes of what is thin in it. */
 static int thin_margin(const struct rf_frame *f)
 {
-    return rf_takes_apart(f) ? f->r->pad + 2 * RF_TILE : 0;
+    return rf_takes_apart(f) ? f->r->view.pad + 2 * RF_TILE : 0;
 }
 
 /* How far from the window's sides the mark and the smooth light are those of the whole
@@ -165,13 +167,13 @@ static struct rf_rect sure_part(const struct rf_frame *f)
 {
     const struct refocus_renderer *r = f->r;
     const struct rf_photo *photo = &r->photo;
-    const int margin = 2 * r->pad + 8 + thin_margin(f);
+    const int margin = 2 * r->view.pad + 8 + thin_margin(f);
 
     return (struct rf_rect){
-        r->origin_x ? margin : 0,
-        r->origin_y ? margin : 0,
-        r->origin_x + r->width < photo->width ? r->width - margin : INT_MAX,
-        r->origin_y + r->height < photo->height ? r->height - margin : INT_MAX,
+        r->view.x0 ? margin : 0,
+        r->view.y0 ? margin : 0,
+        r->view.x0 + r->view.width < photo->width ? r->view.width - margin : INT_MAX,
+        r->view.y0 + r->view.height < photo->height ? r->view.height - margin : INT_MAX,
     };
 }
 
@@ -186,14 +188,14 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
         return true;
     m->behind = false;
     rf_pass_mark(f, r->levels);
-    if (rf_cancelled(r))
+    if (rf_cancelled(&r->exec))
         return false;
     if (!contains(m->window, rf_whole(r)) &&
         !rf_background_is_exact(r, in_window(r, seen), sure_part(f)))
         return false;
     m->exact = contains(m->window, rf_whole(r)) ? m->window : seen;
     rf_pass_behind(f, r->levels);
-    m->behind = !rf_cancelled(r);
+    m->behind = !rf_cancelled(&r->exec);
     m->weighed = false;
     return m->behind;
 }
@@ -238,7 +240,7 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
     struct refocus_renderer *r = f->r;
     const struct rf_rect all = rf_whole(r);
     struct rf_rect window = parts->bins;
-    int around = 2 * r->pad, step = RF_TILE;
+    int around = 2 * r->view.pad, step = RF_TILE;
 
     if (rf_same_lens(f) && contains(r->made.window, all))
         window = all; /* much of it is there */
@@ -246,17 +248,17 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
         if (layers && !contains(window, all)) {
             while (step < around / 2)
                 step *= 2;
-            window = grown(r, parts->seen, 2 * r->pad + 8 + thin_margin(f) + around, step);
+            window = grown(r, parts->seen, 2 * r->view.pad + 8 + thin_margin(f) + around, step);
             window = around_both(window, grown(r, parts->bins, 0, step));
         }
         if (is_large(r, window))
             window = all;
         rf_use(r, window);
         make_blur(f, layers);
-        if (!layers || rf_cancelled(r))
+        if (!layers || rf_cancelled(&r->exec))
             return;
         make_smooth(f);
-        if (rf_cancelled(r) || make_behind(f, parts->seen) || rf_cancelled(r))
+        if (rf_cancelled(&r->exec) || make_behind(f, parts->seen) || rf_cancelled(&r->exec))
             return;
         around *= 2;
     }
@@ -267,14 +269,14 @@ static void make_weights(struct rf_frame *f)
 {
     struct rf_made *m = &f->r->made;
 
-    if (rf_cancelled(f->r) ||
+    if (rf_cancelled(&f->r->exec) ||
         (m->weighed && m->sigma == f->params->sigma && m->premultiplied == f->premultiplied))
         return;
     m->weighed = true;
     m->premultiplied = f->premultiplied;
     m->sigma = -1; /* until they are all there */
     rf_pass_weights(f);
-    if (!rf_cancelled(f->r))
+    if (!rf_cancelled(&f->r->exec))
         m->sigma = f->params->sigma;
 }
 
@@ -298,20 +300,20 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     f->region = region;
     if (r->yuv.on)
         rf_yuv_set_blend(r, f->params->blend);
-    rf_pool_run(&r->pool, reblend_band, f, rf_bands(r));
-    if (rf_cancelled(r))
+    rf_pool_run(&r->pool, reblend_band, f, rf_bands(&r->view));
+    if (rf_cancelled(&r->exec))
         return;
     r->blend = f->params->blend;
     rf_set_weights(f);
     if (layers)
         rf_pass_lamps(f);
-    if (!rf_cancelled(r))
+    if (!rf_cancelled(&r->exec))
         find_thin(f);
-    if (need == RF_NEED_LIGHT || rf_cancelled(r))
+    if (need == RF_NEED_LIGHT || rf_cancelled(&r->exec))
         return;
     if (!whole) {
-        parts.seen = grown(r, grown(r, region, 0, RF_TILE), r->pad + RF_CELL, 1);
-        parts.bins = grown(r, region, r->pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
+        parts.seen = grown(r, grown(r, region, 0, RF_TILE), r->view.pad + RF_CELL, 1);
+        parts.bins = grown(r, region, r->view.pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
     if (is_there(f, &parts, layers)) {
         rf_use(r, r->made.window);
@@ -322,7 +324,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
             r->made = (struct rf_made){0};
         make_in_window(f, &parts, layers);
     }
-    if (layers && !rf_cancelled(r) && !r->made.spread && f->bright != RF_WHITE) {
+    if (layers && !rf_cancelled(&r->exec) && !r->made.spread && f->bright != RF_WHITE) {
         rf_pass_bright(f);
         r->made.spread = true;
     }

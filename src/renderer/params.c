@@ -1,8 +1,8 @@
 #include "renderer/params.h"
 
 #include "aperture/aperture.h"
-#include "planes/format.h"
-#include "planes/planes.h"
+#include "image/format.h"
+#include "passes/planes.h"
 
 static bool in(double value, double least, double most)
 {

@@ -6,8 +6,9 @@
 
 #include "background/background.h"
 #include "highlights/draw.h"
-#include "planes/yuv.h"
-#include "renderer/bands.h"
+#include "passes/yuv.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "renderer/render_yuv.h"
 #include "thin/thin.h"
 #include "tiles/ranges.h"
@@ -66,7 +67,7 @@ static void find_item(void *context, int item, int worker)
     const int height = r->photo.height, rows = rows_of_item(r);
     const int y0 = item * rows, y1 = y0 + rows;
 
-    rf_find_highlights(r, y0, y1 < height ? y1 : height, rf_scratch(r, worker));
+    rf_find_highlights(r, y0, y1 < height ? y1 : height, rf_scratch(&r->exec, worker));
 }
 
 void rf_pass_lamps(struct rf_frame *f)
@@ -81,7 +82,7 @@ void rf_pass_lamps(struct rf_frame *f)
     rf_forget_highlights(r);
     rf_pool_run(&r->pool, find_item, r, (photo->height + rows - 1) / rows);
     rf_sort_highlights(r);
-    photo->highlights_blend = rf_cancelled(r) ? RF_NO_BLEND : r->blend;
+    photo->highlights_blend = rf_cancelled(&r->exec) ? RF_NO_BLEND : r->blend;
 }
 
 static void blur_band(void *context, int band, int worker)
@@ -89,7 +90,7 @@ static void blur_band(void *context, int band, int worker)
     const struct rf_frame *f = context;
 
     (void)worker;
-    rf_signed_blur_rows(f->r, &f->plan, rf_band_start(band), rf_band_end(f->r, band));
+    rf_signed_blur_rows(f->r, &f->plan, rf_band_start(band), rf_band_end(&f->r->view, band));
     rf_cell_rows(f->r, band);
     rf_bin_tiles(f->r, f->scale, band);
 }
@@ -99,14 +100,14 @@ static void chroma_blur_band(void *context, int band, int worker)
     const struct rf_frame *f = context;
 
     (void)worker;
-    rf_yuv_blur_rows(f->r, rf_band_start(band), rf_band_end(f->r, band));
+    rf_yuv_blur_rows(f->r, rf_band_start(band), rf_band_end(&f->r->view, band));
 }
 
 static void range_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
 
-    rf_range_rows(f->r, rf_scratch(f->r, worker), band);
+    rf_range_rows(f->r, rf_scratch(&f->r->exec, worker), band);
 }
 
 /* One step after the other. That of a band needs the step before of those beside it, too, and is
@@ -120,10 +121,12 @@ struct smooth {
 static void smooth_rows(const struct rf_frame *f, int step, int band, int worker)
 {
     struct refocus_renderer *r = f->r;
-    /* from the photo to r->smooth, and from there by way of the background's planes,
+    /* from the photo to r->smooth.channel, and from there by way of the background's planes,
      * which are not in use yet */
-    uint16_t *const *in = step == 0 ? r->front.light : step == 1 ? r->smooth : r->behind.light;
-    uint16_t *const *out = step == 1 ? r->behind.light : r->smooth;
+    uint16_t *const *in = step == 0   ? r->light.channel
+                          : step == 1 ? r->smooth.channel
+                                      : r->background.light.channel;
+    uint16_t *const *out = step == 1 ? r->background.light.channel : r->smooth.channel;
 
     if (r->yuv.on)
         rf_smooth_yuv_band(f, step, band, worker);
@@ -133,7 +136,7 @@ static void smooth_rows(const struct rf_frame *f, int step, int band, int worker
 
 static void smooth_from(struct smooth *smooth, int step, int band, int worker)
 {
-    const int last = rf_bands(smooth->f->r) - 1;
+    const int last = rf_bands(&smooth->f->r->view) - 1;
 
     smooth_rows(smooth->f, step, band, worker);
     if (step + 1 == smooth->steps)
@@ -148,14 +151,14 @@ static void smooth_band(void *context, int band, int worker)
     smooth_from(context, 0, band, worker);
 }
 
-/* All three steps or the first alone, so that the result is in r->smooth. */
+/* All three steps or the first alone, so that the result is in r->smooth.channel. */
 static void prefilter(struct rf_frame *f)
 {
     const int largest = f->focus.radius;
     struct smooth smooth = {.f = f,
                             .steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1};
 
-    rf_pool_run(&f->r->pool, smooth_band, &smooth, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, smooth_band, &smooth, rf_bands(&f->r->view));
 }
 
 /* How far apart rays are at a blur of 1. */
@@ -218,7 +221,7 @@ static void dilate_item(void *context, int upwards, int worker)
  * of a lens differ by K at most, those of tilts and fields by twice that. */
 static int mark_reach(const struct rf_frame *f)
 {
-    const int steps = (f->plan.plain ? 2 : 4) * f->r->pad;
+    const int steps = (f->plan.plain ? 2 : 4) * f->r->view.pad;
 
     return steps < 2 * RF_SPREAD_MARGIN - 1 ? steps : 2 * RF_SPREAD_MARGIN - 1;
 }
@@ -232,29 +235,30 @@ static void mark_band(void *context, int band, int worker)
 {
     const struct mark *mark = context;
     struct refocus_renderer *r = mark->f->r;
-    const int y0 = rf_band_start(band), y1 = rf_band_end(r, band), reach = mark_reach(mark->f);
+    const int y0 = rf_band_start(band), y1 = rf_band_end(&r->view, band),
+              reach = mark_reach(mark->f);
 
     if (r->yuv.on) {
-        rf_background_yuv_mark_rows(r, rf_scratch(r, worker), reach, y0, y1);
+        rf_background_yuv_mark_rows(r, rf_scratch(&r->exec, worker), reach, y0, y1);
         return;
     }
-    rf_background_mark_rows(r, rf_scratch(r, worker), reach, y0, y1);
+    rf_background_mark_rows(r, rf_scratch(&r->exec, worker), reach, y0, y1);
     rf_background_push_band(r, band, mark->levels);
 }
 
 void rf_pass_blur(struct rf_frame *f, bool layers)
 {
-    rf_pool_run(&f->r->pool, blur_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, blur_band, f, rf_bands(&f->r->view));
     if (!layers)
-        rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
+        rf_pool_run(&f->r->pool, range_band, f, rf_bands(&f->r->view));
 }
 
 void rf_pass_smooth(struct rf_frame *f)
 {
     mark_lamps(f);
-    rf_pool_run(&f->r->pool, range_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, range_band, f, rf_bands(&f->r->view));
     if (f->r->yuv.on)
-        rf_pool_run(&f->r->pool, chroma_blur_band, f, rf_bands(f->r));
+        rf_pool_run(&f->r->pool, chroma_blur_band, f, rf_bands(&f->r->view));
     rf_pass_prefilter(f);
 }
 
@@ -267,7 +271,9 @@ static void note_band(void *context, int band, int worker)
 
 static void bare_band(void *context, int band, int worker)
 {
-    rf_bare_rows(context, rf_scratch(context, worker), band);
+    struct refocus_renderer *r = context;
+
+    rf_bare_rows(r, rf_scratch(&r->exec, worker), band);
 }
 
 static void weigh_band(void *context, int band, int worker)
@@ -275,11 +281,11 @@ static void weigh_band(void *context, int band, int worker)
     const struct rf_frame *f = context;
 
     if (f->r->yuv.on && f->premultiplied)
-        rf_yuv_premultiply_rows(f->r, rf_scratch(f->r, worker), band);
+        rf_yuv_premultiply_rows(f->r, rf_scratch(&f->r->exec, worker), band);
     else if (f->r->yuv.on)
         rf_yuv_weigh_rows(f->r, band);
     else if (f->premultiplied)
-        rf_premultiply_rows(f->r, rf_scratch(f->r, worker), band);
+        rf_premultiply_rows(f->r, rf_scratch(&f->r->exec, worker), band);
     else
         rf_weigh_rows(f->r, band);
 }
@@ -292,15 +298,15 @@ void rf_pass_behind(struct rf_frame *f, int levels)
         rf_background_yuv_fill(r);
     else
         rf_background_pull(r, 0, levels);
-    rf_pool_run(&r->pool, note_band, r, rf_bands(r));
+    rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
     if (f->bright != RF_WHITE)
         rf_put_lamps_in_front(r, ray_gap(f->params));
-    rf_pool_run(&r->pool, bare_band, r, rf_bands(r));
+    rf_pool_run(&r->pool, bare_band, r, rf_bands(&r->view));
 }
 
 void rf_pass_weights(struct rf_frame *f)
 {
-    rf_pool_run(&f->r->pool, weigh_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, weigh_band, f, rf_bands(&f->r->view));
 }
 
 void rf_pass_mark(struct rf_frame *f, int levels)
@@ -308,7 +314,7 @@ void rf_pass_mark(struct rf_frame *f, int levels)
     struct mark mark = {f, levels};
 
     rf_pool_run(&f->r->pool, dilate_item, f, 2);
-    rf_pool_run(&f->r->pool, mark_band, &mark, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, mark_band, &mark, rf_bands(&f->r->view));
     if (!f->r->yuv.on)
         rf_background_push(f->r, RF_BAND_LEVELS, levels);
 }

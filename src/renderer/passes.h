@@ -16,7 +16,7 @@
 #ifndef RF_PASSES_H
 #define RF_PASSES_H
 
-#include "methods/method.h"
+#include "gather/frame.h"
 
 enum rf_need {
     RF_NEED_LIGHT, /* the light alone */

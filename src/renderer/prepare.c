@@ -4,10 +4,11 @@
 
 #include "depth/dequantise.h"
 #include "depth/upsample.h"
-#include "planes/format.h"
-#include "planes/planes.h"
-#include "planes/yuv.h"
-#include "renderer/bands.h"
+#include "image/format.h"
+#include "passes/planes.h"
+#include "passes/yuv.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "renderer/layout.h"
 #include "renderer/load.h"
 #include "renderer/params.h"
@@ -18,28 +19,29 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
                      const struct refocus_disparity *map)
 {
     struct rf_upsampler up = {
-        .kernels = &r->kernels,
+        .kernels = r->exec.kernels,
         .photo = photo,
         .map = map,
-        .columns = rf_upsample_samples(map->width, r->width),
-        .rows = rf_upsample_samples(map->height, r->height),
-        .coarse = r->behind.light[0],
-        .coarse_stride = r->stride,
-        .wide = r->behind.light[1],
-        .wide_stride = r->stride,
-        .settled = r->behind.light[2],
-        .settled_stride = r->stride,
+        .columns = rf_upsample_samples(map->width, r->view.width),
+        .rows = rf_upsample_samples(map->height, r->view.height),
+        .coarse = r->background.light.channel[0],
+        .coarse_stride = r->view.stride,
+        .wide = r->background.light.channel[1],
+        .wide_stride = r->view.stride,
+        .settled = r->background.light.channel[2],
+        .settled_stride = r->view.stride,
         .across = r->taps,
-        .down = r->taps + r->width,
-        .colour = {(uint8_t *)r->smooth[0], (uint8_t *)r->smooth[1], (uint8_t *)r->smooth[2]},
-        .colour_stride = r->stride * (ptrdiff_t)sizeof *r->smooth[0],
-        .sure = (uint8_t *)r->front.blur,
-        .sure_stride = r->stride * (ptrdiff_t)sizeof *r->front.blur,
-        .unsure = (uint16_t *)r->front.blur + (r->width + 1) / 2, /* behind `sure` */
-        .unsure_stride = r->stride,
+        .down = r->taps + r->view.width,
+        .colour = {(uint8_t *)r->smooth.channel[0], (uint8_t *)r->smooth.channel[1],
+                   (uint8_t *)r->smooth.channel[2]},
+        .colour_stride = r->view.stride * (ptrdiff_t)sizeof *r->smooth.channel[0],
+        .sure = (uint8_t *)r->blur.at,
+        .sure_stride = r->view.stride * (ptrdiff_t)sizeof *r->blur.at,
+        .unsure = (uint16_t *)r->blur.at + (r->view.width + 1) / 2, /* behind `sure` */
+        .unsure_stride = r->view.stride,
         .span = r->spans,
-        .out = r->disparity,
-        .out_stride = r->stride,
+        .out = r->disparity.at,
+        .out_stride = r->view.stride,
     };
 
     rf_upsample(&up, &r->pool);
@@ -48,7 +50,7 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
 static void take_in(struct refocus_renderer *r, const struct refocus_image *photo,
                     const struct refocus_disparity *disparity)
 {
-    const bool same_size = disparity->width == r->width && disparity->height == r->height;
+    const bool same_size = disparity->width == r->view.width && disparity->height == r->view.height;
     const struct refocus_image guide = r->yuv.on ? rf_yuv_guide(r) : *photo;
 
     rf_load_light(r, photo, same_size ? NULL : &guide);
@@ -56,7 +58,7 @@ static void take_in(struct refocus_renderer *r, const struct refocus_image *phot
         rf_load_disparity(r, disparity, rf_code_step(disparity), 0, 0);
     else
         upsample(r, &guide, disparity);
-    if (!rf_cancelled(r))
+    if (!rf_cancelled(&r->exec))
         rf_find_rims(r, rf_whole(r));
 }
 
@@ -91,7 +93,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
         rf_find_rims_in_blocks(r);
     } else {
         rf_use(r, rf_whole(r));
-        memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(r));
+        memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(&r->view));
         take_in(r, photo, disparity);
     }
     if (rf_run_end(r))

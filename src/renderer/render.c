@@ -3,14 +3,14 @@
 #include <math.h>
 
 #include "highlights/draw.h"
-#include "methods/frame.h"
-#include "methods/tile_rows.h"
-#include "planes/format.h"
-#include "planes/planes.h"
-#include "renderer/bands.h"
+#include "papers/papers.h"
+#include "gather/tile_rows.h"
+#include "image/format.h"
+#include "passes/planes.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "renderer/params.h"
 #include "renderer/passes.h"
-#include "renderer/rays.h"
 #include "renderer/render_yuv.h"
 #include "support/compare.h"
 #include "thin/thin.h"
@@ -95,7 +95,7 @@ static void tile_item(void *context, int item, int worker)
         rf_copy_yuv_tile(f, rect);
     else
         rf_copy_tile(f, rect); /* a pinhole */
-    if (!rf_cancelled(f->r))
+    if (!rf_cancelled(&f->r->exec))
         rf_finish_rect(f, rect);
 }
 
@@ -151,7 +151,7 @@ static bool may_take_apart(const struct rf_frame *f)
 static int veil_scale(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
-    const struct rf_ray_set *set = &f->r->set[f->r->preset];
+    const struct rf_ray_set *set = &f->r->ray_sets.set[f->r->ray_sets.preset];
     int64_t sum = 0;
 
     if (!may_take_apart(f) || (f->plan.plain && f->thin_bounds[0].veil_from > 65535) ||
@@ -197,13 +197,20 @@ static void run(struct rf_frame *f, struct rf_rect region)
 
     r->last_rims = layers;
     if (!pinhole)
-        rf_make_rays(r, f->aperture, f->params->rays, f->params->highlight_gain > 1 && !f->draws,
-                     f->params->max_blur_radius);
+        rf_ray_sets_make(&r->ray_sets,
+                         &(struct rf_ray_request){
+                             .aperture = f->aperture,
+                             .rays = f->params->rays,
+                             .denser = f->params->highlight_gain > 1 && !f->draws,
+                             .chroma = r->yuv.on,
+                             .max_blur_radius = f->params->max_blur_radius,
+                         },
+                         &r->run);
     if (f->params->cat_eye > 0) {
         rf_cat_eye_make(&r->cat_eye);
         rf_cat_shape_make(&r->cat_shape, f->aperture);
     }
-    if (rf_cancelled(r))
+    if (rf_cancelled(&r->exec))
         return;
     f->veil_blur = veil_blur(f->params);
     rf_set_thin_bounds(f);
@@ -216,14 +223,14 @@ static void run(struct rf_frame *f, struct rf_rect region)
     }
     rf_run_passes(f, region, need,
                   method->frame != NULL || r->yuv.on || (layers && !f->plan.plain));
-    if (rf_cancelled(r))
+    if (rf_cancelled(&r->exec))
         return;
     if (!method->frame || pinhole) {
         run_tiles(f);
         return;
     }
     method->frame(f);
-    if (rf_cancelled(r) || !f->grain)
+    if (rf_cancelled(&r->exec) || !f->grain)
         return;
     set_tiles(f);
     rf_finish_begin(f);

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-#include "planes/format.h"
-#include "planes/yuv.h"
+#include "image/format.h"
+#include "passes/yuv.h"
 
 /* What is made of R, G and B alone. */
 static bool has_look(const struct rf_frame *f)
@@ -37,7 +37,7 @@ int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
 static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_STEPS])
 {
     const struct refocus_renderer *r = f->r;
-    const struct rf_ray_set *set = &r->set[r->preset];
+    const struct rf_ray_set *set = &r->ray_sets.set[r->ray_sets.preset];
     const double times = 2 * sqrt((double)set->shared / set->count);
 
     for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
@@ -55,20 +55,21 @@ static int largest_blur(const struct rf_frame *f)
     return f->plan.plain ? (int)(farther * f->focus.radius >> 16) + 1 : INT16_MAX;
 }
 
-/* From the photo to r->smooth, and from there by way of the background's planes. */
+/* From the photo to r->smooth.channel, and from there by way of the background's planes. */
 void rf_smooth_yuv_band(const struct rf_frame *f, int step, int band, int worker)
 {
     struct refocus_renderer *r = f->r;
     const struct rf_yuv *yuv = &r->yuv;
-    uint16_t *const luma[] = {r->front.light[0], r->smooth[0], r->behind.light[0]};
+    uint16_t *const luma[] = {r->light.channel[0], r->smooth.channel[0],
+                              r->background.light.channel[0]};
     uint16_t *const chroma[] = {yuv->light, yuv->smooth, yuv->behind};
     const int to = step == 1 ? 2 : 1;
     int above[RF_PREFILTER_STEPS];
 
     set_chroma_above(f, above);
     rf_yuv_prefilter_luma(r, luma[to], luma[step], f->prefilter_above, f->prefilter_fades, step,
-                          rf_scratch(r, worker), band);
+                          rf_scratch(&r->exec, worker), band);
     if (step == 0 || largest_blur(f) > above[1]) /* else no tile would be touched */
         rf_yuv_prefilter_chroma(r, chroma[to], chroma[step], above, f->prefilter_fades, step,
-                                rf_scratch(r, worker), band);
+                                rf_scratch(&r->exec, worker), band);
 }

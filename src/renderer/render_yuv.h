@@ -2,7 +2,7 @@
 #ifndef RF_RENDER_YUV_H
 #define RF_RENDER_YUV_H
 
-#include "methods/method.h"
+#include "gather/frame.h"
 
 /* REFOCUS_OK if the prepared photo, in Y, U and V or not, can be rendered so into f->out;
  * REFOCUS_ERR_UNSUPPORTED, or REFOCUS_ERR_ARGUMENT for a region that splits samples. */

@@ -10,51 +10,29 @@
 
 #include "aperture/cat_eye.h"
 #include "aperture/cat_shape.h"
+#include "aperture/ray_set.h"
+#include "background/pyramid.h"
 #include "colour/transfer.h"
-#include "colour/yuv.h"
 #include "finish/finish.h"
 #include "focus/focus.h"
 #include "highlights/highlights.h"
 #include "highlights/rims.h"
+#include "image/chroma.h"
+#include "image/planes.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "kernels/kernels.h"
-#include "planes/prefilter.h"
-#include "support/pool.h"
+#include "passes/prefilter.h"
+#include "support/executor.h"
 #include "thin/thin.h"
 #include "thin/veil.h"
+#include "tiles/bins.h"
 
 enum {
-    RF_GROUP = 4,        /* planes that lie together */
-    RF_LEVELS = 18,      /* of the pyramid that fills the background, level 0 not counted */
-    RF_RAY_CLASSES = 12, /* a preset's own set and smaller ones; denser ones for lamps */
-    RF_FULL_RAYS = 255 * 255,
+    RF_GROUP = 4, /* planes that lie together */
 };
 
 #define RF_NO_METHOD UINT32_MAX
-
-/* Rays and runs of equal weight among them. */
-struct rf_ray_set {
-    struct refocus_ray *ray;
-    struct refocus_ray *before; /* those before the focus: the same, or as many others */
-    const int16_t *u, *v;       /* of those behind, by themselves; NULL of a full mask */
-    int count;
-    int shared; /* by chroma; see rf_shared_rays() */
-    uint64_t total_weight;
-    bool equal; /* all rays weigh the same */
-};
-
-/* Chroma of a photo of Y, U and V takes some rays of luma; those among rays first to end - 1, which
- * are of one chunk, are the first so many of them. */
-static inline int rf_shared_rays(const struct rf_ray_set *set, int first, int end)
-{
-    const int64_t shared = set->shared;
-
-    return (int)(shared * end / set->count - shared * first / set->count);
-}
-
-/* Pixels x0 <= x < x1, y0 <= y < y1. */
-struct rf_rect {
-    int x0, y0, x1, y1;
-};
 
 /* The photo as it was prepared. */
 #define RF_NO_BLEND UINT32_MAX
@@ -102,14 +80,6 @@ struct rf_made {
     int prefilter_above[RF_PREFILTER_STEPS];
 };
 
-/* A level of the background pyramid, without padding but with an even stride. */
-struct rf_level {
-    int width, height;
-    ptrdiff_t stride;
-    uint16_t *light[3];
-    int16_t *blur; /* RF_NO_BLUR: nothing known here */
-};
-
 /*
  * Strip mode: the photo stays with the caller, and planes hold a window of it at a time, that
  * of a block with a margin. What is known of the background is marked for the whole photo, a
@@ -131,63 +101,19 @@ struct rf_in_place {
     int levels;
 };
 
-/* A set of planes of one size. Pixel (x, y) is at [y * stride + x]; x and y may be
- * negative by as much as the padding. */
-struct rf_layer {
-    uint16_t *light[3]; /* Q12; R, G, B */
-    int16_t *blur;      /* signed blur s = K (df - d), Q7.8 pixels: near is negative */
-};
-
-/* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
-struct rf_bins {
-    uint64_t word[RF_BINS / 64];
-    int16_t least, most; /* Q7.8 */
-    int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none; */
-    int16_t dots;        /* of one that is small beside the gaps of the rays */
-    int16_t behind;      /* blur of the background in the middle, once that is filled */
-    uint16_t brightest;  /* light of either layer, as it is summed; or more */
-    bool taken;          /* lamps are taken out of its light, highlights/taken.c */
-};
-
-/*
- * A photo of Y, U and V. Luminance is in light[0] of the layers. Planes of chroma hold two
- * values for each sample, D_b and D_r of colour/yuv.h, side by side: a tile's are as wide as the
- * tile, and what is done to luma by rows is done to them in the same way. They take the place of
- * the layers' light[1], and use their stride; the blur of chroma, given twice, that of
- * smooth[2]. The codes that came in are kept: Y in place of alpha, U V in that of light[2].
- * front.light[1] and [2] are luminance, too, for those who ask for the brightest.
- */
-struct rf_yuv {
-    bool on;                       /* else it is of R, G and B, and the rest is not valid */
-    int down;                      /* rows of the photo to one of chroma: 1 << down */
-    uint32_t matrix, range, blend; /* that curve is for */
-    bool curve_made;
-    struct rf_yuv_curve curve;
-
-    /* Of the window, by rf_yuv_use(). */
-    int width, height; /* samples of chroma */
-    uint16_t *light;   /* of the photo, */
-    uint16_t *smooth;  /* pre-filtered */
-    uint16_t *behind;  /* and of the background */
-    int16_t *blur;
-    uint16_t *weight; /* eq. 5, of luma; in the background's light[2] */
-    uint8_t *y;       /* y_stride a row */
-    uint8_t *uv;      /* 2 width a row, rows uv_stride apart */
-    ptrdiff_t y_stride, uv_stride;
-};
-
 struct refocus_renderer {
     struct refocus_allocator allocator;
     struct refocus_log log;
     void *block;
     uint64_t memory;
-    uint32_t cpu; /* enum refocus_cpu, never AUTO */
-    struct rf_kernels kernels;
+    uint32_t cpu;              /* enum refocus_cpu, never AUTO */
+    struct rf_kernels kernels; /* of that set */
     int max_width, max_height;
     float max_blur_radius;
 
     struct rf_pool pool;
     struct rf_run run;
+    struct rf_executor exec; /* all three, as passes get them */
 
     /* The prepared photo, and memory for what a lens setting makes of it. */
     bool prepared;
@@ -200,36 +126,28 @@ struct refocus_renderer {
     bool blurred;                   /* if there was one */
 
     /*
-     * The window: the part of the photo that passes work on, set by rf_use(). What
-     * follows is as if that part were all there is: its size, and its pixel (0, 0) in all
-     * planes. It begins at (origin_x, origin_y) of the photo, a multiple of RF_TILE.
+     * The window, and its planes as if it were all there is: set by rf_use(). The background and
+     * what is made of it share memory: see layout.c.
      */
-    int origin_x, origin_y;
-    int width, height;
-    int pad;               /* pixels beyond each side that may be read */
-    struct rf_rect border; /* pixels beyond each side that rf_extend_rows() sets */
-    ptrdiff_t stride;      /* elements from row to row, of all padded planes */
-    ptrdiff_t pitch;       /* elements between the planes of a group; see layout.c */
-    uint32_t blend;        /* that the light planes are in */
-    uint16_t *disparity;   /* padded, its border is not set */
-    uint8_t *alpha;        /* alpha_stride a row */
-    ptrdiff_t alpha_stride;
-    struct rf_layer front;
+    struct rf_viewport view;
+    ptrdiff_t pitch; /* elements between the planes of a group; see layout.c */
+    uint32_t blend;  /* that the light planes are in */
+    struct rf_light_q12 light;
+    struct rf_light_q12 smooth; /* light, pre-filtered where rays lie far apart */
+    struct rf_blur_q8 blur;
+    struct rf_disparity_q16 disparity;
+    struct rf_alpha_u8 alpha;
+    struct rf_background background;
     struct rf_yuv yuv;
-    uint16_t *smooth[3];    /* front.light, pre-filtered where rays lie far apart */
-    struct rf_layer behind; /* the background layer */
     struct rf_level level[RF_LEVELS];
     int levels;
-    uint16_t *weight;        /* of smooth, eq. 5, once the background is filled: its memory */
-    ptrdiff_t weight_stride; /* is the pyramid's. Those of behind are where its blur was. */
-    uint32_t *range;         /* blurs around the cell of pixel (0, 0); see tiles/ranges.h */
-    ptrdiff_t range_stride;
-    int tiles_x, tiles_y;
+    struct rf_weight_q15 weight; /* of smooth, once the background is inpainted: its memory is the
+                                    pyramid's. Those of the background are where its blur was. */
+    struct rf_range_plane range;
     struct rf_bins *bins; /* of each tile */
 
     struct rf_taps *taps;  /* of the depth upsampler: of columns, then of rows */
     struct rf_span *spans; /* and its spans */
-    uint16_t *scratch;     /* rows of each worker; see rf_scratch() */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
@@ -248,15 +166,7 @@ struct refocus_renderer {
     uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
     uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
 
-    struct refocus_ray *rays; /* memory of all sets */
-    struct rf_ray_set set[RF_RAY_CLASSES];
-    int sets;              /* how many are filled, 0: none yet */
-    int preset;            /* the one that has as many rays as were asked for */
-    uint64_t set_aperture; /* what they were made for */
-    int set_rays;
-    bool set_denser;
-    bool set_shared; /* chroma's rays come first */
-    float set_blur;
+    struct rf_ray_sets ray_sets;
     struct rf_cat_eye cat_eye;     /* made when it is first asked for; */
     struct rf_cat_shape cat_shape; /* that of the last aperture with one */
 };
@@ -274,9 +184,15 @@ static inline uint64_t rf_scratch_size(int max_width)
     return 2 * ((uint64_t)max_width + 2 * RF_SPREAD_MARGIN);
 }
 
-static inline uint16_t *rf_scratch(const struct refocus_renderer *r, int worker)
+static inline void rf_run_begin(struct refocus_renderer *r)
 {
-    return r->scratch + (size_t)worker * rf_scratch_size(r->max_width);
+    atomic_store(&r->run.state, RF_RUN_RUNNING);
+}
+
+/* Whether the run that ends here was cancelled. */
+static inline bool rf_run_end(struct refocus_renderer *r)
+{
+    return atomic_exchange(&r->run.state, RF_RUN_IDLE) == RF_RUN_CANCELLED;
 }
 
 #endif

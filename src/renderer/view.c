@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
-#include "planes/format.h"
+#include "image/format.h"
 #include "renderer/renderer.h"
 #include "support/compare.h"
 
@@ -23,7 +23,7 @@ static void copy_disparities(const struct refocus_renderer *r, uint16_t *out, pt
             const int width = rf_smaller(SIDE, photo->width - x);
             const int height = rf_smaller(SIDE, photo->height - y);
 
-            rf_dequantised_patch(&r->kernels, &in_place->map, in_place->code_step, x, y, width,
+            rf_dequantised_patch(r->exec.kernels, &in_place->map, in_place->code_step, x, y, width,
                                  height, patch);
             for (int v = 0; v < height; v++)
                 memcpy(out + (y + v) * pitch + x, patch + v * width, (size_t)width * 2);

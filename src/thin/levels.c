@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "focus/focus.h"
-#include "methods/method.h"
+#include "gather/frame.h"
 #include "thin/thin.h"
 
 enum { MOST_FAR_ALPHA = 160 }; /* 255 = 1 */
@@ -22,7 +22,7 @@ int rf_thin_blur(const struct rf_frame *f, uint16_t disparity, int x, int y)
 
     if (f->plan.plain)
         return plain_blur(f->plan.focus, disparity);
-    rf_focus_row(&f->plan, &blur, &disparity, f->r->origin_x + x, f->r->origin_y + y, 1);
+    rf_focus_row(&f->plan, &blur, &disparity, f->r->view.x0 + x, f->r->view.y0 + y, 1);
     return blur;
 }
 
@@ -62,7 +62,7 @@ static bool is_near(const struct refocus_renderer *r, const struct rf_thin *thin
 {
     const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
 
-    return r->disparity[y * r->stride + x] == thin->near_disparity;
+    return r->disparity.at[y * r->view.stride + x] == thin->near_disparity;
 }
 
 /* What the map has far can hardly be covered by more than half: else its own texture was taken for

@@ -1,7 +1,8 @@
 /* strand.c: a strand of hair before something of a pattern (thin.h). */
 #include <stdlib.h>
 
-#include "renderer/around.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "thin/thin.h"
 
 enum {
@@ -29,13 +30,13 @@ static bool far_beside(const struct refocus_renderer *r, int x, int y, int own, 
     far[0] = far[1] = far[2] = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            const ptrdiff_t q =
-                rf_within(y + j, r->height - 1) * r->stride + rf_within(x + i, r->width - 1);
+            const ptrdiff_t q = rf_within(y + j, r->view.height - 1) * r->view.stride +
+                                rf_within(x + i, r->view.width - 1);
 
-            if (r->disparity[q] >= own - JUMP)
+            if (r->disparity.at[q] >= own - JUMP)
                 continue;
             for (int c = 0; c < 3; c++)
-                far[c] += r->front.light[c][q];
+                far[c] += r->light.channel[c][q];
             count++;
         }
     for (int c = 0; c < 3 && count; c++)
@@ -48,7 +49,7 @@ static void add_pixel(struct fit *fit, const struct refocus_renderer *r, ptrdiff
 {
     fit->count++;
     for (int c = 0; c < 3; c++) {
-        const int64_t light = r->front.light[c][at];
+        const int64_t light = r->light.channel[c][at];
 
         fit->f[c] += far[c];
         fit->c[c] += light;
@@ -64,7 +65,7 @@ static int near_in(const struct refocus_renderer *r, struct rf_rect in, int own)
 
     for (int y = in.y0; y < in.y1; y++)
         for (int x = in.x0; x < in.x1; x++)
-            count += abs(r->disparity[y * r->stride + x] - own) <= JUMP;
+            count += abs(r->disparity.at[y * r->view.stride + x] - own) <= JUMP;
     return count;
 }
 
@@ -73,22 +74,22 @@ static bool is_strand(const struct refocus_renderer *r, int x, int y, int own)
 {
     int count;
 
-    if (near_in(r, rf_around(r, x, y, 1), own) > CLOSE)
+    if (near_in(r, rf_around(&r->view, x, y, 1), own) > CLOSE)
         return false;
-    count = near_in(r, rf_around(r, x, y, REACH), own);
+    count = near_in(r, rf_around(&r->view, x, y, REACH), own);
     return count >= LEAST && count <= MOST;
 }
 
 static void add_strand(struct fit *fit, const struct refocus_renderer *r, int x, int y, int own)
 {
-    const struct rf_rect in = rf_around(r, x, y, REACH);
+    const struct rf_rect in = rf_around(&r->view, x, y, REACH);
 
     for (int qy = in.y0; qy < in.y1; qy++)
         for (int qx = in.x0; qx < in.x1; qx++) {
-            const ptrdiff_t q = qy * r->stride + qx;
+            const ptrdiff_t q = qy * r->view.stride + qx;
             int64_t far[3];
 
-            if (abs(r->disparity[q] - own) <= JUMP && far_beside(r, qx, qy, own, far))
+            if (abs(r->disparity.at[q] - own) <= JUMP && far_beside(r, qx, qy, own, far))
                 add_pixel(fit, r, q, far);
         }
 }
@@ -116,11 +117,11 @@ static int slope_of(const struct fit *fit)
 void rf_tell_strand(const struct refocus_renderer *r, struct rf_thin *thin, int tx, int ty)
 {
     const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
-    const ptrdiff_t at = y * r->stride + x;
+    const ptrdiff_t at = y * r->view.stride + x;
     struct fit fit = {.count = 0};
     int slope;
 
-    if (r->disparity[at] != thin->near_disparity || !is_strand(r, x, y, thin->near_disparity))
+    if (r->disparity.at[at] != thin->near_disparity || !is_strand(r, x, y, thin->near_disparity))
         return;
     add_strand(&fit, r, x, y, thin->near_disparity);
     slope = fit.count >= LEAST ? slope_of(&fit) : 0;
@@ -129,7 +130,7 @@ void rf_tell_strand(const struct refocus_renderer *r, struct rf_thin *thin, int 
     thin->alpha = (uint8_t)(255 - slope);
     for (int c = 0; c < 3; c++) {
         const int64_t own = (255 * fit.c[c] - slope * fit.f[c]) / (255 * fit.count);
-        const int64_t far = (r->front.light[c][at] - (own > 0 ? own : 0)) * 255 / slope;
+        const int64_t far = (r->light.channel[c][at] - (own > 0 ? own : 0)) * 255 / slope;
 
         thin->light[c] = (uint16_t)(far < 0 ? 0 : far < RF_LIGHT_MAX ? far : RF_LIGHT_MAX);
     }

@@ -5,9 +5,10 @@
 
 #include "thin/veil.h"
 #include "focus/focus.h"
-#include "methods/method.h"
-#include "planes/planes.h"
-#include "renderer/bands.h"
+#include "gather/frame.h"
+#include "passes/planes.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 #include "tiles/ranges.h"
 
 enum { CELLS = RF_TILE / RF_CELL };
@@ -15,7 +16,7 @@ enum { CELLS = RF_TILE / RF_CELL };
 const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty)
 {
     const struct rf_photo *photo = &r->photo;
-    const int row = ty + r->origin_y / RF_TILE, column = tx + r->origin_x / RF_TILE;
+    const int row = ty + r->view.y0 / RF_TILE, column = tx + r->view.x0 / RF_TILE;
     const int across = (photo->width + RF_TILE - 1) / RF_TILE;
 
     return &photo->thin.run[(size_t)row * across + column];
@@ -25,7 +26,7 @@ struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty, uin
 {
     const struct rf_photo *photo = &r->photo;
     const struct rf_thin_run *run = rf_thin_run_of(r, tx, ty);
-    const int row = ty + r->origin_y / RF_TILE;
+    const int row = ty + r->view.y0 / RF_TILE;
 
     *count = run->count;
     return photo->thin.pixel + (uint64_t)row * rf_thin_capacity(photo->width) + run->first;
@@ -33,7 +34,7 @@ struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty, uin
 
 struct rf_apart *rf_apart_of(const struct refocus_renderer *r, int tx, int ty)
 {
-    return &r->veil.apart[(size_t)ty * r->tiles_x + tx];
+    return &r->veil.apart[(size_t)ty * r->view.tiles_x + tx];
 }
 
 bool rf_takes_apart(const struct rf_frame *f)
@@ -65,7 +66,7 @@ static bool is_alone(const struct refocus_renderer *r, int tx, int ty, int blur)
 
     for (int y = ty - reach; y <= ty + reach; y++)
         for (int x = tx - reach; x <= tx + reach; x++)
-            if (x >= 0 && y >= 0 && x < r->tiles_x && y < r->tiles_y &&
+            if (x >= 0 && y >= 0 && x < r->view.tiles_x && y < r->view.tiles_y &&
                 is_filled(r, x, y, blur * 3 / 4))
                 return false;
     return true;
@@ -122,7 +123,7 @@ static void choose_band(void *context, int band, int worker)
 
     (void)worker;
     f->r->veil.swapped[band] = false;
-    for (int tx = 0; tx < f->r->tiles_x; tx++) {
+    for (int tx = 0; tx < f->r->view.tiles_x; tx++) {
         struct rf_apart *apart = rf_apart_of(f->r, tx, band);
 
         *apart = (struct rf_apart){.veils = false};
@@ -156,7 +157,7 @@ static void patch_tile(const struct rf_frame *f, int tx, int ty)
         const int y = ty * RF_TILE + thin[i].at / RF_TILE;
 
         if (is_apart(apart, i))
-            r->front.blur[y * r->stride + x] =
+            r->blur.at[y * r->view.stride + x] =
                 (int16_t)rf_thin_blur(f, thin[i].far_disparity, x, y);
     }
 }
@@ -168,7 +169,7 @@ static void patch_band(void *context, int band, int worker)
     bool any = false;
 
     (void)worker;
-    for (int tx = 0; tx < r->tiles_x; tx++) {
+    for (int tx = 0; tx < r->view.tiles_x; tx++) {
         if (!is_any(rf_apart_of(r, tx, band)))
             continue;
         any = true;
@@ -176,15 +177,15 @@ static void patch_band(void *context, int band, int worker)
     }
     if (!any)
         return;
-    rf_extend_rows(r, r->front.blur, rf_band_start(band), rf_band_end(r, band));
+    rf_extend_rows(&r->view, r->blur.at, rf_band_start(band), rf_band_end(&r->view, band));
     rf_cell_rows(r, band);
     rf_bin_tiles(r, f->scale, band);
 }
 
 void rf_take_thin_apart(struct rf_frame *f)
 {
-    rf_pool_run(&f->r->pool, choose_band, f, rf_bands(f->r));
-    rf_pool_run(&f->r->pool, patch_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, choose_band, f, rf_bands(&f->r->view));
+    rf_pool_run(&f->r->pool, patch_band, f, rf_bands(&f->r->view));
     if (f->veils)
         rf_veil_draw(f);
 }
@@ -192,7 +193,7 @@ void rf_take_thin_apart(struct rf_frame *f)
 void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][RF_TILE * RF_TILE])
 {
     const struct refocus_renderer *r = f->r;
-    const ptrdiff_t at = ty * RF_TILE * r->stride + tx * RF_TILE;
+    const ptrdiff_t at = ty * RF_TILE * r->view.stride + tx * RF_TILE;
     const struct rf_apart *apart = rf_apart_of(r, tx, ty);
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
@@ -200,7 +201,8 @@ void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][R
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < RF_TILE * RF_TILE; i++)
             mean[c][i] =
-                (uint16_t)(4 * r->front.light[c][at + i / RF_TILE * r->stride + i % RF_TILE]);
+                (uint16_t)(4 *
+                           r->light.channel[c][at + i / RF_TILE * r->view.stride + i % RF_TILE]);
     for (uint32_t i = 0; i < count; i++) {
         if (!is_apart(apart, i))
             continue;
@@ -212,9 +214,9 @@ void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][R
 static void swap_tile(const struct rf_frame *f, int tx, int ty)
 {
     const struct refocus_renderer *r = f->r;
-    const ptrdiff_t stride = r->stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
-    uint16_t *const red = r->front.light[0] + tile, *const green = r->front.light[1] + tile,
-                    *const blue = r->front.light[2] + tile;
+    const ptrdiff_t stride = r->view.stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
+    uint16_t *const red = r->light.channel[0] + tile, *const green = r->light.channel[1] + tile,
+                    *const blue = r->light.channel[2] + tile;
     const struct rf_apart *apart = rf_apart_of(r, tx, ty);
     uint32_t count;
     struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
@@ -235,7 +237,7 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
 
 static void swap_row(const struct rf_frame *f, int ty)
 {
-    for (int tx = 0; tx < f->r->tiles_x; tx++)
+    for (int tx = 0; tx < f->r->view.tiles_x; tx++)
         if (is_any(rf_apart_of(f->r, tx, ty)))
             swap_tile(f, tx, ty);
     f->r->veil.swapped[ty] = !f->r->veil.swapped[ty];
@@ -249,7 +251,7 @@ static void swap_band(void *context, int band, int worker)
 
 void rf_swap_thin_light(struct rf_frame *f)
 {
-    rf_pool_run(&f->r->pool, swap_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, swap_band, f, rf_bands(&f->r->view));
 }
 
 static void swap_band_back(void *context, int band, int worker)
@@ -264,8 +266,8 @@ static void swap_band_back(void *context, int band, int worker)
 /* The pool leaves out what comes after the run was cancelled. */
 void rf_swap_thin_light_back(struct rf_frame *f)
 {
-    rf_pool_run(&f->r->pool, swap_band_back, f, rf_bands(f->r));
-    for (int ty = 0; ty < f->r->tiles_y; ty++)
+    rf_pool_run(&f->r->pool, swap_band_back, f, rf_bands(&f->r->view));
+    for (int ty = 0; ty < f->r->view.tiles_y; ty++)
         if (f->r->veil.swapped[ty])
             swap_row(f, ty);
 }

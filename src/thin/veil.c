@@ -3,8 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "methods/method.h"
-#include "renderer/bands.h"
+#include "gather/frame.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
 
 enum { CELLS = RF_TILE / RF_VEIL_CELL };
 
@@ -24,14 +25,14 @@ static void add_tile(const struct rf_frame *f, int tx, int ty, struct sum sum[CE
 
     for (uint32_t i = 0; i < count; i++, thin++) {
         const int x = thin->at % RF_TILE, y = thin->at / RF_TILE;
-        const ptrdiff_t at = (ty * RF_TILE + y) * r->stride + tx * RF_TILE + x;
+        const ptrdiff_t at = (ty * RF_TILE + y) * r->view.stride + tx * RF_TILE + x;
         struct sum *cell = &sum[y / RF_VEIL_CELL * CELLS + x / RF_VEIL_CELL];
 
         if (!rf_has_bit(apart->veil, i))
             continue;
         for (int c = 0; c < 3; c++)
             cell->light[c] +=
-                r->front.light[c][at] - ((255 - thin->alpha) * thin->light[c] + 127) / 255;
+                r->light.channel[c][at] - ((255 - thin->alpha) * thin->light[c] + 127) / 255;
         cell->light[3] += (4096 * thin->alpha + 127) / 255;
         cell->weight += thin->alpha;
         cell->blur -= thin->alpha * rf_near_blur(f, thin, tx, ty);
@@ -73,11 +74,11 @@ static void gather_band(void *context, int ty, int worker)
 {
     const struct rf_frame *f = context;
     struct refocus_renderer *r = f->r;
-    struct rf_veil_source *out = r->veil.source + (ptrdiff_t)ty * r->tiles_x * CELLS * CELLS;
+    struct rf_veil_source *out = r->veil.source + (ptrdiff_t)ty * r->view.tiles_x * CELLS * CELLS;
     uint32_t sources = 0;
 
     (void)worker;
-    for (int tx = 0; tx < r->tiles_x; tx++) {
+    for (int tx = 0; tx < r->view.tiles_x; tx++) {
         struct sum sum[CELLS * CELLS] = {0};
 
         if (!rf_apart_of(r, tx, ty)->veils)
@@ -115,7 +116,7 @@ static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int32_
 static void draw(const struct refocus_renderer *r, int cx, int cy, int radius, const int32_t v[4],
                  int first, int end)
 {
-    const int cells = r->tiles_x * CELLS, rows = radius >> 8;
+    const int cells = r->view.tiles_x * CELLS, rows = radius >> 8;
 
     first = cy - rows > first ? cy - rows : first;
     end = cy + rows + 1 < end ? cy + rows + 1 : end;
@@ -133,8 +134,8 @@ static void draw_reflected(const struct refocus_renderer *r, const struct rf_vei
                            int first, int end)
 {
     const int rows = s->radius >> 8;
-    const int right = (r->width + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
-    const int below = (r->height + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
+    const int right = (r->view.width + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
+    const int below = (r->view.height + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
     const int x[] = {s->x, -1 - s->x, 2 * right - 1 - s->x};
     const int y[] = {s->y, -1 - s->y, 2 * below - 1 - s->y};
 
@@ -151,7 +152,7 @@ static void draw_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
     const struct refocus_renderer *r = f->r;
-    const int reach = (r->pad + RF_TILE) / RF_TILE + 1;
+    const int reach = (r->view.pad + RF_TILE) / RF_TILE + 1;
     const int first = band * CELLS, end = first + CELLS;
 
     (void)worker;
@@ -159,9 +160,9 @@ static void draw_band(void *context, int band, int worker)
            (size_t)CELLS * (size_t)r->veil.stride * sizeof *r->veil.cell);
     for (int ty = band - reach; ty <= band + reach; ty++) {
         const struct rf_veil_source *s =
-            r->veil.source + (ptrdiff_t)ty * r->tiles_x * CELLS * CELLS;
+            r->veil.source + (ptrdiff_t)ty * r->view.tiles_x * CELLS * CELLS;
 
-        if (ty < 0 || ty >= r->tiles_y)
+        if (ty < 0 || ty >= r->view.tiles_y)
             continue;
         for (uint32_t i = 0; i < r->veil.sources[ty]; i++)
             draw_reflected(r, &s[i], first, end);
@@ -169,7 +170,7 @@ static void draw_band(void *context, int band, int worker)
     for (int y = first; y < end; y++) {
         int32_t(*row)[4] = r->veil.cell + (ptrdiff_t)y * r->veil.stride;
 
-        for (int x = 1; x < r->tiles_x * CELLS; x++)
+        for (int x = 1; x < r->view.tiles_x * CELLS; x++)
             for (int c = 0; c < 4; c++)
                 row[x][c] += row[x - 1][c];
     }
@@ -177,8 +178,8 @@ static void draw_band(void *context, int band, int worker)
 
 void rf_veil_draw(struct rf_frame *f)
 {
-    rf_pool_run(&f->r->pool, gather_band, f, rf_bands(f->r));
-    rf_pool_run(&f->r->pool, draw_band, f, rf_bands(f->r));
+    rf_pool_run(&f->r->pool, gather_band, f, rf_bands(&f->r->view));
+    rf_pool_run(&f->r->pool, draw_band, f, rf_bands(&f->r->view));
 }
 
 static int clamp(int v, int most)
@@ -190,8 +191,8 @@ static int clamp(int v, int most)
 static bool get_cells(const struct refocus_renderer *r, int tx, int ty,
                       int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
 {
-    const int across = r->tiles_x * CELLS, down = r->tiles_y * CELLS;
-    const bool inside = tx > 0 && tx < r->tiles_x - 1;
+    const int across = r->view.tiles_x * CELLS, down = r->view.tiles_y * CELLS;
+    const bool inside = tx > 0 && tx < r->view.tiles_x - 1;
     int any = 0;
 
     for (int j = 0; j < RF_VEIL_CELLS; j++) {
@@ -222,5 +223,5 @@ void rf_veil_over(const struct refocus_renderer *r, int tx, int ty,
     int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
 
     if (get_cells(r, tx, ty, part))
-        r->kernels.lay_veil((uint16_t *const[3]){mean[0], mean[1], mean[2]}, part);
+        r->exec.kernels->lay_veil((uint16_t *const[3]){mean[0], mean[1], mean[2]}, part);
 }

@@ -7,7 +7,7 @@ enum {
 
 static int cells_x(const struct refocus_renderer *r)
 {
-    return r->tiles_x * EACH;
+    return r->view.tiles_x * EACH;
 }
 
 void rf_cell_rows(struct refocus_renderer *r, int ty)
@@ -15,8 +15,8 @@ void rf_cell_rows(struct refocus_renderer *r, int ty)
     const int n = cells_x(r);
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++)
-        r->kernels.cells(rf_cell_least(r, y), rf_cell_most(r, y),
-                         r->front.blur + y * RF_CELL * r->stride, r->stride, n);
+        r->exec.kernels->cells(rf_cell_least(r, y), rf_cell_most(r, y),
+                               r->blur.at + y * RF_CELL * r->view.stride, r->view.stride, n);
 }
 
 void rf_add_to_cell(struct refocus_renderer *r, int x, int y, int16_t blur)
@@ -69,13 +69,13 @@ struct window_rows {
 
 static struct window_rows window_rows(const struct refocus_renderer *r, int ty)
 {
-    const int rows = r->tiles_y * EACH, border = rf_range_border(r->pad);
+    const int rows = r->view.tiles_y * EACH, border = rf_range_border(r->view.pad);
 
     return (struct window_rows){
         .cells = cells_x(r),
         .border = border,
         .first = ty == 0 ? -border : ty * EACH,
-        .end = ty == r->tiles_y - 1 ? rows + border : (ty + 1) * EACH,
+        .end = ty == r->view.tiles_y - 1 ? rows + border : (ty + 1) * EACH,
         .last = rows - 1,
     };
 }
@@ -102,30 +102,30 @@ void rf_range_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
             join_strips(least, joined, rows.cells, lesser_row);
             join_strips(most, joined + 2 * rows.cells, rows.cells, greater_row);
         }
-        r->kernels.windows(r->range + y * r->range_stride - rows.border, least, most,
-                           (int16_t *)scratch, rows.cells, rows.border);
+        r->exec.kernels->windows(r->range.at + y * r->range.stride - rows.border, least, most,
+                                 (int16_t *)scratch, rows.cells, rows.border);
     }
 }
 
 /* They lie where the weights will be. */
 static int16_t *foreground_row(const struct refocus_renderer *r, int y)
 {
-    return (int16_t *)r->weight + y * r->weight_stride;
+    return (int16_t *)r->weight.at + y * r->weight.stride;
 }
 
 void rf_foreground_rows(struct refocus_renderer *r, int ty)
 {
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
-        const ptrdiff_t at = y * RF_CELL * r->stride;
+        const ptrdiff_t at = y * RF_CELL * r->view.stride;
 
-        r->kernels.foreground(foreground_row(r, y), r->front.blur + at, r->behind.blur + at,
-                              r->stride, cells_x(r));
+        r->exec.kernels->foreground(foreground_row(r, y), r->blur.at + at,
+                                    r->background.blur.at + at, r->view.stride, cells_x(r));
     }
 }
 
 void rf_put_in_front(struct refocus_renderer *r, struct rf_rect pixels)
 {
-    const int last_x = cells_x(r) - 1, last_y = r->tiles_y * EACH - 1;
+    const int last_x = cells_x(r) - 1, last_y = r->view.tiles_y * EACH - 1;
 
     for (int y = clamp(pixels.y0 / RF_CELL, last_y); y <= clamp(pixels.y1 / RF_CELL, last_y); y++)
         for (int x = clamp(pixels.x0 / RF_CELL, last_x); x <= clamp(pixels.x1 / RF_CELL, last_x);
@@ -144,7 +144,7 @@ void rf_bare_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
             cell[j] = foreground_row(r, clamp(y + j, rows.last));
         if (r->yuv.on)
             join_strips(cell, joined_rows(scratch, &rows), rows.cells, greater_row);
-        r->kernels.bare(r->range + y * r->range_stride - rows.border, cell, (int16_t *)scratch,
-                        rows.cells, rows.border);
+        r->exec.kernels->bare(r->range.at + y * r->range.stride - rows.border, cell,
+                              (int16_t *)scratch, rows.cells, rows.border);
     }
 }

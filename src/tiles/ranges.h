@@ -1,7 +1,7 @@
 /* ranges.h: how little and how much the blur is around each place.
  *
  * A strip of a tile that is shifted by a ray's offset lies within some cells of RF_CELL x RF_CELL
- * pixels. r->range holds, for the cell it begins in, the least and the greatest blur of
+ * pixels. r->range.at holds, for the cell it begins in, the least and the greatest blur of
  * all that it can lie in: kernels.h, windows. What is the same everywhere in a strip's sight, or
  * is not there at all, need not be looked for pixel by pixel.
  */
@@ -26,12 +26,12 @@ static inline int rf_range_width(int width, int pad)
  * will be. */
 static inline int16_t *rf_cell_least(const struct refocus_renderer *r, int y)
 {
-    return r->behind.blur + y * r->stride;
+    return r->background.blur.at + y * r->view.stride;
 }
 
 static inline int16_t *rf_cell_most(const struct refocus_renderer *r, int y)
 {
-    return rf_cell_least(r, y) + r->tiles_x * (RF_TILE / RF_CELL);
+    return rf_cell_least(r, y) + r->view.tiles_x * (RF_TILE / RF_CELL);
 }
 
 /* The cells of tile row ty. */

@@ -72,8 +72,8 @@ static void add_cells(struct rf_bins *bins, const struct refocus_renderer *r,
             add_bin(bins, first);
             add_bin(bins, last);
             if (last - first > 1)
-                add_cell(bins, scale, r->front.blur + RF_CELL * (y * r->stride + x), r->stride,
-                         first, last);
+                add_cell(bins, scale, r->blur.at + RF_CELL * (y * r->view.stride + x),
+                         r->view.stride, first, last);
         }
     }
 }
@@ -104,13 +104,13 @@ static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_b
 
 void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
 {
-    for (int tx = 0; tx < r->tiles_x; tx++)
-        r->bins[(size_t)ty * r->tiles_x + tx] = bins_of_tile(r, scale, tx, ty);
+    for (int tx = 0; tx < r->view.tiles_x; tx++)
+        r->bins[(size_t)ty * r->view.tiles_x + tx] = bins_of_tile(r, scale, tx, ty);
 }
 
 void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty, int16_t blur)
 {
-    struct rf_bins *bins = &r->bins[(size_t)ty * r->tiles_x + tx];
+    struct rf_bins *bins = &r->bins[(size_t)ty * r->view.tiles_x + tx];
 
     add_bin(bins, bin_of(scale, blur));
     bins->least = blur < bins->least ? blur : bins->least;
@@ -210,13 +210,13 @@ static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_
                               int tx, int ty)
 {
     const int x0 = rf_larger(tx - reach->tiles, 0);
-    const int x1 = rf_smaller(tx + reach->tiles, r->tiles_x - 1);
+    const int x1 = rf_smaller(tx + reach->tiles, r->view.tiles_x - 1);
     const int y0 = rf_larger(ty - reach->tiles, 0);
-    const int y1 = rf_smaller(ty + reach->tiles, r->tiles_y - 1);
+    const int y1 = rf_smaller(ty + reach->tiles, r->view.tiles_y - 1);
     struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
 
     for (int y = y0; y <= y1; y++) {
-        const struct rf_bins *row = &r->bins[(size_t)y * r->tiles_x];
+        const struct rf_bins *row = &r->bins[(size_t)y * r->view.tiles_x];
         const struct rf_kept *kept = reach->kept[abs(y - ty)];
 
         for (int x = x0; x <= tx; x++)

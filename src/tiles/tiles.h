@@ -53,7 +53,7 @@ void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
 /* The middle pixel of a tile, in padded planes. */
 static inline ptrdiff_t rf_tile_middle(const struct refocus_renderer *r, int tx, int ty)
 {
-    return (ty * RF_TILE + RF_TILE / 2) * r->stride + tx * RF_TILE + RF_TILE / 2;
+    return (ty * RF_TILE + RF_TILE / 2) * r->view.stride + tx * RF_TILE + RF_TILE / 2;
 }
 
 /* One more blur in a tile. */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "planes/planes.h"
+#include "passes/planes.h"
 
 static int wrong(const char *name, const char *what, double is, double should)
 {

@@ -1,7 +1,7 @@
 /* Kosloff & Barsky 2007: figure 2, and the series against the paper's single steps. */
 #include <time.h>
 
-#include "methods/diffusion.h"
+#include "papers/diffusion.h"
 #include "pictures.h"
 
 static double now(void)

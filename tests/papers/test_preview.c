@@ -1,6 +1,6 @@
 /* The two quick ones: NVIDIA's table against its formula, and the volume of attention of
  * Mulder & van Liere. */
-#include "methods/blurriness.h"
+#include "papers/blurriness.h"
 #include "pictures.h"
 
 static const double pi = 3.14159265358979323846;

@@ -3,8 +3,8 @@
  * and what `scatter` makes of a point. */
 #include <complex.h>
 
-#include "methods/lommel.h"
-#include "methods/scatter.h"
+#include "papers/lommel.h"
+#include "papers/scatter.h"
 #include "pictures.h"
 
 static const double pi = 3.14159265358979323846;

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "methods/method.h"
+#include "gather/frame.h"
 #include "metrics.h"
 #include "png_io.h"
 #include "tiles/tiles.h"
@@ -119,7 +119,8 @@ static void sweep_ray(const struct scene *s, const struct refocus_renderer *r,
     const int dx = (int)floor(ray->u / 32768.0 * behind + 0.5);
     const int dy = (int)floor(ray->v / 32768.0 * behind + 0.5);
     for (int c = 0; c < 3; c++)
-        sum[c] += r->behind.light[c][(y + dy) * r->stride + x + dx] / (double)RF_LIGHT_MAX;
+        sum[c] += r->background.light.channel[c][(y + dy) * r->view.stride + x + dx] /
+                  (double)RF_LIGHT_MAX;
 }
 
 static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
@@ -130,12 +131,12 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
     struct rf_reach reach;
     struct rf_tile_plan plan;
 
-    rf_reach_init(&reach, scale, largest, r->pad, false);
+    rf_reach_init(&reach, scale, largest, r->view.pad, false);
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++, out += 3) {
             const int tx = x / RF_TILE, ty = y / RF_TILE;
             const ptrdiff_t middle =
-                (ty * RF_TILE + RF_TILE / 2) * r->stride + tx * RF_TILE + RF_TILE / 2;
+                (ty * RF_TILE + RF_TILE / 2) * r->view.stride + tx * RF_TILE + RF_TILE / 2;
             double sum[3] = {0};
 
             if (x % RF_TILE == 0)
@@ -144,10 +145,10 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
                 memcpy(out, s->photo + 3 * pixel_at(s, x, y), 3);
                 continue;
             }
-            const struct rf_ray_set *set = rf_rays_for(r, plan.reach, false);
+            const struct rf_ray_set *set = rf_rays_for(&r->ray_sets, plan.reach, false);
             for (int n = 0; n < set->count; n++)
-                sweep_ray(s, r, &plan, &set->ray[n], x, y, r->behind.blur[middle] / 256.0, light,
-                          sum);
+                sweep_ray(s, r, &plan, &set->ray[n], x, y, r->background.blur.at[middle] / 256.0,
+                          light, sum);
             for (int c = 0; c < 3; c++)
                 out[c] = to_code(sum[c] / set->count);
         }

@@ -203,18 +203,19 @@ static void assert_same_background(const struct refocus_renderer *part,
                                    const struct refocus_renderer *whole)
 {
     const struct rf_rect e = part->made.exact;
-    const ptrdiff_t at = -part->origin_y * part->stride - part->origin_x;
+    const ptrdiff_t at = -part->view.y0 * part->view.stride - part->view.x0;
 
     if (!part->made.behind)
         return;
-    assert_true(whole->made.behind && part->stride == whole->stride);
+    assert_true(whole->made.behind && part->view.stride == whole->view.stride);
     for (int y = e.y0; y < e.y1; y++) {
         for (int x = e.x0; x < e.x1; x++) {
-            const ptrdiff_t p = y * part->stride + x;
-            int differ = part->behind.blur[at + p] != whole->behind.blur[p];
+            const ptrdiff_t p = y * part->view.stride + x;
+            int differ = part->background.blur.at[at + p] != whole->background.blur.at[p];
 
             for (int c = 0; c < 3; c++)
-                differ |= part->behind.light[c][at + p] != whole->behind.light[c][p];
+                differ |= part->background.light.channel[c][at + p] !=
+                          whole->background.light.channel[c][p];
             if (differ)
                 fail_msg("window %d,%d..%d,%d: the background at %d,%d is another",
                          part->made.window.x0, part->made.window.y0, part->made.window.x1,

@@ -1,0 +1,227 @@
+/* ray_set.c: draws the sets of rays for an aperture, and picks the one that suits a tile. */
+#include "aperture/ray_set.h"
+
+#include "aperture/aperture.h"
+#include "kernels/kernels.h"
+
+#include <string.h>
+
+/* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
+ * that a highlight reaches, whose disc would show the single rays, at most twice that. */
+static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
+enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
+
+static uint64_t total_weight(const struct rf_ray_set *set)
+{
+    uint64_t sum = 0;
+
+    for (int i = 0; i < set->count; i++)
+        sum += set->ray[i].weight;
+    return sum;
+}
+
+static int chunk_end(const struct rf_ray_set *set, int first)
+{
+    return set->count - first < RF_RAY_CHUNK ? set->count : first + RF_RAY_CHUNK;
+}
+
+static bool are_equal(const struct rf_ray_set *set)
+{
+    for (int i = 1; i < set->count; i++)
+        if (set->ray[i].weight != set->ray[0].weight)
+            return false;
+    return true;
+}
+
+/* By weight, so that few runs of equal ones are left, then down and across. */
+static bool comes_before(const struct refocus_ray *a, const struct refocus_ray *b)
+{
+    if (a->weight != b->weight)
+        return a->weight < b->weight;
+    return a->v != b->v ? a->v < b->v : a->u < b->u;
+}
+
+static void sift_down(struct refocus_ray *ray, int root, int count)
+{
+    const struct refocus_ray moved = ray[root];
+
+    for (int child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && comes_before(&ray[child], &ray[child + 1]))
+            child++;
+        if (!comes_before(&moved, &ray[child]))
+            break;
+        ray[root] = ray[child];
+    }
+    ray[root] = moved;
+}
+
+/* A heap sort: in place. */
+static void sort_rays(struct refocus_ray *ray, int count)
+{
+    for (int root = count / 2 - 1; root >= 0; root--)
+        sift_down(ray, root, count);
+    for (int end = count - 1; end > 0; end--) {
+        const struct refocus_ray last = ray[end];
+
+        ray[end] = ray[0];
+        ray[0] = last;
+        sift_down(ray, 0, end);
+    }
+}
+
+/* Rays that chroma shares become the first ones of each chunk. Of sets that lie on
+ * spirals or along a curve (aperture/rays.c) every second ray is as even a set. */
+static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
+{
+    struct refocus_ray *const ray = set->ray;
+    int chosen = 0, others = set->shared;
+
+    for (int n = 0; n < set->count; n++)
+        spare[rf_shared_rays(set, n, n + 1) ? chosen++ : others++] = ray[n];
+    chosen = 0;
+    others = set->shared;
+    for (int n = 0, end; n < set->count; n = end) {
+        const int shared = rf_shared_rays(set, n, end = chunk_end(set, n));
+
+        memcpy(ray + n, spare + chosen, (size_t)shared * sizeof *ray);
+        memcpy(ray + n + shared, spare + others, (size_t)(end - n - shared) * sizeof *ray);
+        chosen += shared;
+        others += end - n - shared;
+    }
+}
+
+/* Coordinates of a set's rays apart from each other; returns where memory goes on. */
+static struct refocus_ray *part_coordinates(struct rf_ray_set *set, struct refocus_ray *next)
+{
+    enum { EACH = sizeof *next / sizeof(int16_t) };
+    int16_t *const u = (int16_t *)(void *)next, *const v = u + set->count;
+
+    for (int i = 0; i < set->count; i++) {
+        u[i] = set->ray[i].u;
+        v[i] = set->ray[i].v;
+    }
+    set->u = u;
+    set->v = v;
+    return next + (2 * set->count + EACH - 1) / EACH;
+}
+
+/* Rays of chroma, whose samples lie two pixels apart, for so many of luma: all of a few. */
+static int chroma_rays(int rays)
+{
+    return rays < 48 ? rays : rays / 2;
+}
+
+/* Every pixel of the aperture mask is a ray. */
+static void make_full_set(struct rf_ray_sets *sets, const struct refocus_aperture *aperture,
+                          float max_blur_radius, struct rf_run *run)
+{
+    struct rf_ray_set *set = &sets->set[0];
+
+    set->ray = set->before = sets->memory;
+    set->count = rf_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, sets->memory, run);
+    sort_rays(set->ray, set->count);
+    set->total_weight = total_weight(set);
+    set->equal = are_equal(set);
+    set->u = set->v = NULL;
+    set->shared = set->count;
+    sets->preset = 0;
+}
+
+/* A set of `count` rays at `next`; returns where memory goes on. */
+static struct refocus_ray *make_set(struct rf_ray_set *set, const struct refocus_aperture *aperture,
+                                    int count, bool chroma, struct refocus_ray *next,
+                                    struct rf_run *run)
+{
+    set->ray = set->before = next;
+    set->count = count;
+    rf_aperture_rays(aperture, count, false, next, run);
+    set->total_weight = total_weight(set);
+    set->equal = true;
+    next += count;
+    if (rf_aperture_has_sides(aperture)) {
+        rf_aperture_rays(aperture, count, true, next, run);
+        set->before = next;
+        next += count;
+    }
+    set->shared = chroma_rays(count);
+    if (chroma)
+        share_rays(set, next);
+    return part_coordinates(set, next);
+}
+
+/* The set of as many rays as were asked for, those below it, and if asked for denser ones. */
+static int make_classes(struct rf_ray_sets *sets, const struct rf_ray_request *request,
+                        struct rf_run *run)
+{
+    struct refocus_ray *next = sets->memory;
+    bool own = false; /* the set of request->rays is there */
+    int made = 0;
+
+    for (int i = 0; i < CLASSES || !own; i++) {
+        int count = i < CLASSES ? class_rays[i] : request->rays;
+
+        if (!own && count >= request->rays) {
+            i -= count > request->rays; /* comes before this one */
+            count = request->rays;
+            own = true;
+            sets->preset = made;
+        } else if (own && (!request->denser || count > DENSER * request->rays)) {
+            break;
+        }
+        next = make_set(&sets->set[made++], request->aperture, count, request->chroma, next, run);
+    }
+    return made;
+}
+
+static bool are_for(const struct rf_ray_sets *sets, const struct rf_ray_request *request,
+                    float blur)
+{
+    return sets->sets && sets->aperture == request->aperture->id && sets->rays == request->rays &&
+           sets->denser == request->denser && sets->blur == blur && sets->shared == request->chroma;
+}
+
+void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *request,
+                      struct rf_run *run)
+{
+    const bool full = request->rays == REFOCUS_RAYS_FULL;
+    const float blur = full ? request->max_blur_radius : 0; /* sets of N do not depend on it */
+    int made = 1;
+
+    if (are_for(sets, request, blur))
+        return;
+    sets->sets = 0;
+    if (full)
+        make_full_set(sets, request->aperture, blur, run);
+    else
+        made = make_classes(sets, request, run);
+    if (rf_run_cancelled(run)) /* sets may be incomplete */
+        return;
+    sets->sets = made;
+    sets->aperture = request->aperture->id;
+    sets->rays = request->rays;
+    sets->denser = request->denser;
+    sets->shared = request->chroma;
+    sets->blur = blur;
+}
+
+/* N >= 1.3 pi reach^2 rays are as good as all. */
+const struct rf_ray_set *rf_rays_for(const struct rf_ray_sets *sets, int reach, bool lamp)
+{
+    const int64_t need = (int64_t)reach * reach * 4084 / 1000; /* Q16 */
+    const int last = lamp ? sets->sets - 1 : sets->preset;
+
+    for (int i = 0; i < last; i++)
+        if ((int64_t)sets->set[i].count << 16 >= need)
+            return &sets->set[i];
+    return &sets->set[last];
+}
+
+int rf_rays_alike(const struct rf_ray_set *set, int first)
+{
+    const int most = chunk_end(set, first) - first;
+    int n = set->equal ? most : 1;
+
+    while (n < most && set->ray[first + n].weight == set->ray[first].weight)
+        n++;
+    return n;
+}

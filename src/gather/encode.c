@@ -1,0 +1,143 @@
+#include "gather/frame.h"
+#include "image/format.h"
+
+static uint8_t *pixel(const struct rf_frame *f, int bytes, int x, int y)
+{
+    return f->out->plane[0] + (y - f->region.y0) * f->out->stride[0] +
+           (ptrdiff_t)(x - f->region.x0) * bytes;
+}
+
+/* Means above white come from highlights. */
+static uint8_t code_of(const uint8_t *to_code, uint64_t mean)
+{
+    return to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
+}
+
+void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect)
+{
+    const int bytes = rf_order_of(f->out->format).bytes;
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        const uint8_t *out = pixel(f, bytes, rect.x0, y);
+
+        __builtin_prefetch(out, 1);
+        __builtin_prefetch(out + (rect.x1 - rect.x0) * bytes - 1, 1);
+    }
+}
+
+void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        const uint8_t *alpha = f->r->alpha.at + y * f->r->alpha.stride;
+        uint8_t *out = pixel(f, o.bytes, rect.x0, y);
+
+        for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
+            const int at = y % RF_TILE * RF_TILE + x % RF_TILE;
+            const uint64_t w = sums->weight[at], half = w / 2;
+
+            out[o.r] = code_of(to_code, (4 * sums->light[0][at] + half) / w);
+            out[o.g] = code_of(to_code, (4 * sums->light[1][at] + half) / w);
+            out[o.b] = code_of(to_code, (4 * sums->light[2][at] + half) / w);
+            if (o.a >= 0)
+                out[o.a] = alpha[x];
+        }
+    }
+}
+
+/* One channel of a row of n pixels, each a constant number of bytes. */
+static inline void encode_channel(uint8_t *restrict out, const int bytes,
+                                  const uint16_t *restrict mean, const uint8_t *restrict to_code,
+                                  int n)
+{
+    if (n != RF_TILE) {
+        for (int x = 0; x < n; x++)
+            out[x * bytes] = to_code[mean[x]];
+        return;
+    }
+#pragma GCC unroll 16
+    for (int x = 0; x < RF_TILE; x++)
+        out[x * bytes] = to_code[mean[x]];
+}
+
+static void encode(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
+                   int pitch)
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
+    const int to[3] = {o.r, o.g, o.b}, n = rect.x1 - rect.x0, rows = rect.y1 - rect.y0;
+    const uint8_t *alpha = f->r->alpha.at + rect.y0 * f->r->alpha.stride + rect.x0;
+    uint8_t *out = pixel(f, o.bytes, rect.x0, rect.y0);
+
+    for (int c = 0; c < 3; c++)
+        for (int y = 0; y < rows; y++)
+            if (o.bytes == 3)
+                encode_channel(out + y * f->out->stride[0] + to[c], 3, mean[c] + y * pitch, to_code,
+                               n);
+            else
+                encode_channel(out + y * f->out->stride[0] + to[c], 4, mean[c] + y * pitch, to_code,
+                               n);
+    for (int y = 0; o.a >= 0 && y < rows; y++)
+        for (int x = 0; x < n; x++)
+            out[y * f->out->stride[0] + x * o.bytes + o.a] = alpha[y * f->r->alpha.stride + x];
+}
+
+void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
+{
+    encode(f, (struct rf_rect){x0, y, x0 + n, y + 1}, mean, 0);
+}
+
+void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
+                     uint16_t mean[3][RF_TILE * RF_TILE])
+{
+    const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
+
+    if (f->bright) /* means above white come from highlights */
+        f->r->exec.kernels->at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
+    encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at}, RF_TILE);
+}
+
+void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+
+    for (int y = rect.y0; y < rect.y1; y++) {
+        const uint8_t *alpha = f->r->alpha.at + y * f->r->alpha.stride;
+        uint8_t *out = pixel(f, o.bytes, rect.x0, y);
+
+        for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
+            const ptrdiff_t at = y * f->r->view.stride + x;
+
+            out[o.r] = to_code[4 * f->r->light.channel[0][at]];
+            out[o.g] = to_code[4 * f->r->light.channel[1][at]];
+            out[o.b] = to_code[4 * f->r->light.channel[2][at]];
+            if (o.a >= 0)
+                out[o.a] = alpha[x];
+        }
+    }
+}
+
+void rf_pixel_codes(const struct rf_frame *f, int x, int y, uint8_t *code[3])
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    uint8_t *out = pixel(f, o.bytes, x, y);
+
+    code[0] = out + o.r;
+    code[1] = out + o.g;
+    code[2] = out + o.b;
+}
+
+void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3])
+{
+    const struct rf_order o = rf_order_of(f->out->format);
+    uint8_t *out = pixel(f, o.bytes, x, y);
+
+    out[o.r] = rgb[0];
+    out[o.g] = rgb[1];
+    out[o.b] = rgb[2];
+    if (o.a >= 0)
+        out[o.a] = f->r->alpha.at[y * f->r->alpha.stride + x];
+}

@@ -1,0 +1,164 @@
+#include "gather/frame.h"
+#include "image/format.h"
+#include "passes/yuv.h"
+
+#include <string.h>
+
+/* Where samples of the result are. */
+struct row {
+    uint8_t *first;
+    int step;         /* bytes, */
+    ptrdiff_t stride; /* also those of rows */
+};
+
+/* Of Y (i = 0), U or V from pixel (x, y) on. */
+static struct row samples(const struct rf_frame *f, int i, int x, int y)
+{
+    const bool chroma = i > 0, nv21 = f->out->format == REFOCUS_FORMAT_NV21;
+    const int down = chroma ? f->r->yuv.down : 0;
+    const int row = (y - f->region.y0) >> down, column = (x - f->region.x0) >> chroma;
+    int plane = i, step = 1, at = column;
+
+    if (f->out->format == REFOCUS_FORMAT_YUYV) {
+        plane = 0;
+        step = chroma ? 4 : 2;
+        at = step * column + (chroma ? 2 * i - 1 : 0);
+    } else if (chroma && f->out->format != REFOCUS_FORMAT_I420) {
+        plane = 1;
+        step = 2;
+        at = 2 * column + ((i == 2) ^ nv21);
+    }
+    return (struct row){f->out->plane[plane] + row * f->out->stride[plane] + at, step,
+                        f->out->stride[plane]};
+}
+
+/* n pixels; that beside an odd row repeats its last. */
+static void put_yuyv(uint8_t *restrict out, const uint8_t *restrict y, const uint8_t *restrict uv,
+                     int n)
+{
+    const int even = n & ~1;
+
+    for (int x = 0; x < even; x++) {
+        out[2 * x] = y[x];
+        out[2 * x + 1] = uv[x];
+    }
+    if (even < n) {
+        out[2 * even] = out[2 * n] = y[even];
+        out[2 * even + 1] = uv[even];
+        out[2 * n + 1] = uv[n];
+    }
+}
+
+static void put_luma(uint8_t *out, const uint8_t *code, int n)
+{
+    if (n == RF_TILE)
+        memcpy(out, code, RF_TILE);
+    else
+        memcpy(out, code, (size_t)n);
+}
+
+/* n pairs of U and V. */
+static void put_chroma(struct row u, struct row v, const uint8_t *restrict uv, int n)
+{
+    if (u.step == 2 && v.first == u.first + 1) { /* NV12 */
+        put_luma(u.first, uv, 2 * n);
+        return;
+    }
+    for (int i = 0; i < n; i++) {
+        u.first[i * u.step] = uv[2 * i];
+        v.first[i * v.step] = uv[2 * i + 1];
+    }
+}
+
+/* Codes of a part of the picture. */
+struct codes {
+    const uint8_t *y, *uv; /* of its first pixel */
+    ptrdiff_t y_stride, uv_stride;
+};
+
+static void put(const struct rf_frame *f, struct rf_rect rect, const struct codes *codes)
+{
+    const int n = rect.x1 - rect.x0, down = f->r->yuv.down;
+    const bool yuyv = f->out->format == REFOCUS_FORMAT_YUYV;
+    const struct row luma = samples(f, 0, rect.x0, rect.y0);
+    const struct row u = samples(f, 1, rect.x0, rect.y0), v = samples(f, 2, rect.x0, rect.y0);
+
+    for (int y = 0; y < rect.y1 - rect.y0; y++) {
+        const uint8_t *from = codes->y + y * codes->y_stride;
+        uint8_t *to = luma.first + y * luma.stride;
+
+        if (yuyv)
+            put_yuyv(to, from, codes->uv + y * codes->uv_stride, n);
+        else
+            put_luma(to, from, n);
+    }
+    if (yuyv)
+        return;
+    for (int y = 0; y < (rect.y1 - rect.y0 + down) >> down; y++)
+        put_chroma((struct row){u.first + y * u.stride, u.step, u.stride},
+                   (struct row){v.first + y * v.stride, v.step, v.stride},
+                   codes->uv + y * codes->uv_stride, (n + 1) / 2);
+}
+
+void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect)
+{
+    const struct rf_yuv *yuv = &f->r->yuv;
+    const struct codes codes = {
+        .y = yuv->y + rect.y0 * yuv->y_stride + rect.x0,
+        .uv = yuv->uv + (rect.y0 >> yuv->down) * yuv->uv_stride + rect.x0,
+        .y_stride = yuv->y_stride,
+        .uv_stride = yuv->uv_stride,
+    };
+
+    put(f, rect, &codes);
+}
+
+/* Repeat what is there over the pixel beside an odd edge, which shares its sample. */
+static void repeat_edge(struct rf_decode_job *job, int w, int h)
+{
+    if (w % 2)
+        for (int y = 0; y < h; y++)
+            job->luma[y * RF_TILE + w] = job->luma[y * RF_TILE + w - 1];
+    if (job->down && h % 2)
+        memcpy(job->luma + h * RF_TILE, job->luma + (h - 1) * RF_TILE,
+               RF_TILE * sizeof job->luma[0]);
+}
+
+/* Rows of codes, w long; whole ones by copies of a fixed size. */
+static void take(uint8_t *to, const uint8_t *from, ptrdiff_t stride, int w, int rows)
+{
+    for (int y = 0; y < rows; y++, to += RF_TILE, from += stride) {
+        if (w == RF_TILE)
+            memcpy(to, from, RF_TILE);
+        else
+            memcpy(to, from, (size_t)w);
+    }
+}
+
+void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                         struct rf_decode_job *job)
+{
+    const struct refocus_renderer *r = f->r;
+    const struct rf_yuv *yuv = &r->yuv;
+    const int x0 = tx * RF_TILE, y0 = ty * RF_TILE, c0 = y0 >> yuv->down;
+    const int w = r->view.width - x0 < RF_TILE ? r->view.width - x0 : RF_TILE;
+    const int h = r->view.height - y0 < RF_TILE ? r->view.height - y0 : RF_TILE;
+    const int rows = (h + yuv->down) >> yuv->down;
+
+    job->curve = &yuv->curve;
+    job->down = yuv->down;
+    job->own_luma =
+        (f->premultiplied ? r->light.channel[0] : r->smooth.channel[0]) + y0 * r->view.stride + x0;
+    job->own_chroma = (f->premultiplied ? yuv->light : yuv->smooth) + c0 * r->view.stride + x0;
+    for (int p = 0; p < 2; p++)
+        job->within[p] = f->premultiplied ? rf_yuv_within(r, p) : 0;
+    job->stride = r->view.stride;
+    take(job->y, yuv->y + y0 * yuv->y_stride + x0, yuv->y_stride, w, h);
+    take(job->uv, yuv->uv + c0 * yuv->uv_stride + x0, yuv->uv_stride, w + w % 2, rows);
+    repeat_edge(job, w, h);
+    r->exec.kernels->decode(job);
+    put(f, rect,
+        &(struct codes){job->y + (rect.y0 - y0) * RF_TILE + rect.x0 - x0,
+                        job->uv + ((rect.y0 - y0) >> yuv->down) * RF_TILE + rect.x0 - x0, RF_TILE,
+                        RF_TILE});
+}

@@ -1,0 +1,140 @@
+/* method.h: what a renderer calls for each tile. */
+#ifndef RF_FRAME_H
+#define RF_FRAME_H
+
+#include "aperture/aperture.h"
+#include "focus/focus.h"
+#include "passes/planes.h"
+#include "renderer/renderer.h"
+#include "thin/thin.h"
+#include "tiles/tiles.h"
+
+/* Curve and weights of eq. 5 in double precision, of 8-bit codes. */
+struct rf_exact {
+    double light[256];
+    double boundary[256]; /* light in the middle between code c and c + 1 */
+    double weight[256];
+};
+void rf_exact_init(struct rf_exact *exact, uint32_t blend, double sigma);
+
+enum { RF_LIVE_RAYS = 64 }; /* more are for stills that are to be as good as can be */
+
+/* One refocus_render() call. */
+struct rf_frame {
+    struct refocus_renderer *r;
+    const struct refocus_render_params *params;
+    const struct refocus_image *out;
+    const struct refocus_aperture *aperture;
+    struct rf_focus focus;
+    struct rf_focus_plan plan;
+    struct rf_bin_scale scale;
+    struct rf_rect region; /* of the window (renderer.h); out covers just this */
+    struct rf_reach reach;
+    int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
+    int prefilter_above[RF_PREFILTER_STEPS];    /* |s| that each step begins at, Q7.8 */
+    bool prefilter_fades;                       /* they come in gradually: rf_prefilter_rows() */
+    int veils;     /* thin things may be taken apart, thin/thin.h, and drawn with discs
+                      of this part of their blur, Q8; 0: they are not */
+    int veil_blur; /* from this blur before the focus on, Q7.8, more and more of them */
+    bool holds;    /* what is thin and in focus may be laid over what is not */
+    struct rf_thin_bounds thin_bounds[RF_THIN_LEVELS]; /* rf_set_thin_bounds() */
+    bool weighted;                                     /* eq. 5 weights differ from 1, */
+    bool premultiplied;           /* and little enough for light times weight in 16 bits */
+    bool fine;                    /* the opening is: rf_aperture_is_fine() */
+    int row_gap;                  /* see methods/tile_rows.h */
+    bool stars, grain;            /* lamps have spikes; blur has grain */
+    bool finish_ready;            /* both are found out */
+    bool draws;                   /* lamps are drawn, highlights/draw.h; or else */
+    enum rf_bright bright;        /* light was given back to them: it exceeds RF_LIGHT_MAX */
+    const struct rf_exact *exact; /* of methods in double precision, else NULL */
+};
+
+/* Beyond that sigma all weights of eq. 5 round to 1. */
+static inline bool rf_weighs(const struct refocus_render_params *params)
+{
+    return params->sigma < 1e6f;
+}
+
+static inline bool rf_is_sweep(const struct rf_frame *f)
+{
+    return f->params->method == REFOCUS_METHOD_SWEEP;
+}
+
+/* Whether rays take the background for what is deepest in sight: kernels->sort_rays. */
+static inline bool rf_looks_beneath(const struct rf_frame *f)
+{
+    return f->params->rays != REFOCUS_RAYS_FULL && f->params->rays <= RF_LIVE_RAYS;
+}
+
+/*
+ * Sums over the rays of the pixels of a tile. Exact: Q12 light, four times white at the
+ * most, times Q15 weight (or 1) times a ray weight, 65,025 rays at the most, stays
+ * below 2^14 2^15 2^8 2^16 = 2^53.
+ */
+struct rf_sums {
+    uint64_t light[3][RF_TILE * RF_TILE];
+    uint64_t weight[RF_TILE * RF_TILE];
+};
+
+/* Weight of the pixel at `at` of light planes: eq. 5, or 1. */
+static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const light[3],
+                                    ptrdiff_t at)
+{
+    uint16_t most = light[0][at];
+
+    if (!f->weighted)
+        return 1;
+    most = light[1][at] > most ? light[1][at] : most;
+    most = light[2][at] > most ? light[2][at] : most;
+    most = most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
+    return f->r->light_weight[most];
+}
+
+/* Offset of a ray in whole pixels: round half up of u s, Q15 times Q7.8. */
+static inline int rf_offset(int u, int s)
+{
+    return (u * s + (1 << 22)) >> 23;
+}
+
+/* Signed blur of the nearest and the farthest plane, Q7.8. */
+static inline int rf_nearest_blur(const struct rf_frame *f)
+{
+    return -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >> 16);
+}
+
+static inline int rf_farthest_blur(const struct rf_frame *f)
+{
+    return (int)(((uint32_t)f->focus.disparity * f->focus.radius + (1 << 15)) >> 16);
+}
+
+/* A tile of the output picture will be written soon. */
+void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect);
+
+/* Means of a tile into the output picture. */
+void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);
+
+void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
+                     uint16_t mean[3][RF_TILE * RF_TILE]);
+
+/* n Q14 means of row y from column x0 on, at most RF_MEAN_MAX. */
+void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3]);
+
+/* Pixels that come out as they went in. */
+void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
+
+/* The same for a photo of Y, U and V, from job->luma and job->chroma. */
+void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
+                         struct rf_decode_job *job);
+void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect);
+/* Where the output has the codes R, G, B of a pixel. */
+void rf_pixel_codes(const struct rf_frame *f, int x, int y, uint8_t *code[3]);
+
+/* One pixel given as codes; alpha is the photo's. */
+void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
+
+/* rect: at most RF_TILE x RF_TILE, inside one tile. */
+typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker);
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile,
+    rf_gather_tile;
+
+#endif

@@ -1,0 +1,210 @@
+/* search.c: randomized intersection search, Yang et al. 2016, section "Randomized
+ * Intersection Searching".
+ *
+ * A ray (u, v) of pixel p starts with the disparity found where it would meet the
+ * nearest plane, d = 1: at p + (u, v) K (df - 1), the same offset for every pixel. A
+ * guess d leads to the pixel q = p + (u, v) K (df - d) (eq. 4). If the disparity at q
+ * confirms the guess to half a pixel, |u| K |d_q - d| <= 1/2, q is an intersection. If
+ * not, d_q is the next guess. After T tests the last pixel looked at is taken, unless
+ * it is no intersection and farther than p: then p itself is (or, by option, the
+ * mirrored pixel, or the background layer).
+ */
+#include "gather/frame.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
+
+#include <string.h>
+
+struct hit {
+    ptrdiff_t at;
+    int blur; /* that led there */
+    bool valid;
+};
+
+static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
+                         const struct refocus_ray *ray, ptrdiff_t start, int within, int tests)
+{
+    const int16_t *s = r->blur.at;
+    struct hit hit = {p, s[p + start], false};
+    int next = hit.blur;
+
+    while (tests-- > 0 && !hit.valid) {
+        int apart;
+
+        hit.blur = next;
+        hit.at = p + rf_offset(ray->v, hit.blur) * r->view.stride + rf_offset(ray->u, hit.blur);
+        next = s[hit.at];
+        apart = next - hit.blur;
+        hit.valid = apart <= within && -apart <= within;
+    }
+    return hit;
+}
+
+/* Where the light of a ray comes from: a pixel of *light. */
+static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p, const struct refocus_ray *ray,
+                         struct hit hit, uint16_t *const **light)
+{
+    const struct refocus_renderer *r = f->r;
+
+    *light = r->light.channel;
+    if (hit.valid || r->blur.at[hit.at] <= r->blur.at[p])
+        return hit.at;
+    if (f->params->background) {
+        const int s = r->background.blur.at[p];
+
+        *light = r->background.light.channel;
+        return p + rf_offset(ray->v, s) * r->view.stride + rf_offset(ray->u, s);
+    }
+    if (f->params->mirror)
+        return p - rf_offset(ray->v, hit.blur) * r->view.stride - rf_offset(ray->u, hit.blur);
+    return p;
+}
+
+/* Some rays of equal weight, and the cells of their first guesses. */
+struct chunk {
+    struct rf_search_rays rays;
+    int32_t cell[RF_RAY_CHUNK];
+};
+
+static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struct refocus_ray *ray,
+                      int n)
+{
+    const struct refocus_renderer *r = f->r;
+    struct rf_search_rays *rays = &chunk->rays;
+
+    rays->rays = n;
+    for (int i = 0; i < n; i++) {
+        rays->u[i] = ray[i].u;
+        rays->v[i] = ray[i].v;
+    }
+    r->exec.kernels->aim(rays->start, chunk->cell, rays->u, rays->v, rf_nearest_blur(f),
+                         (int32_t)r->view.stride, (int32_t)r->range.stride, n);
+    r->exec.kernels->tolerances(rays->within, rays->u, rays->v, n);
+}
+
+/* The paper's own rule, by kernels: rays that are settled for the strip as a whole are
+ * added as those of the sweep that need no test, the others are searched. */
+static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx, int y,
+                         uint32_t *const sum[3])
+{
+    const struct refocus_renderer *r = f->r;
+    const struct rf_search_rays *rays = &chunk->rays;
+    const ptrdiff_t at = y * r->view.stride + tx * RF_TILE;
+    uint8_t settled[RF_RAY_CHUNK];
+    int32_t offset[RF_RAY_CHUNK];
+    struct rf_search_rays left;
+    struct rf_sorted_rays sorted;
+    const struct rf_sweep_job sweep = {
+        .blur = r->blur.at + at,
+        .stride = r->view.stride,
+        .pitch = r->pitch,
+        .rays = &sorted,
+        .steps = 16,
+        .lanes = RF_STRIP_LANES,
+    };
+    const struct rf_search_job search = {
+        .blur = r->blur.at + at,
+        .light = {r->light.channel[0] + at, r->light.channel[1] + at, r->light.channel[2] + at},
+        .stride = r->view.stride,
+        .tests = f->params->iterations,
+        .rays = &left,
+    };
+    int add = 0, test = 0;
+
+    r->exec.kernels->settle(settled, offset,
+                            r->range.at + y / RF_CELL * r->range.stride + tx * (RF_TILE / RF_CELL),
+                            chunk->cell, rays, f->params->iterations, (int32_t)r->view.stride,
+                            (int32_t)r->range.stride);
+    for (int n = 0; n < rays->rays; n++) {
+        left.start[test] = rays->start[n];
+        left.u[test] = rays->u[n];
+        left.v[test] = rays->v[n];
+        left.within[test] = rays->within[n];
+        sorted.tests[add] = 0;
+        sorted.last[add] = r->light.channel[0] + at + offset[n];
+        test += !settled[n];
+        add += settled[n];
+    }
+    left.rays = test;
+    sorted.rays = add;
+    if (add)
+        r->exec.kernels->sweep((uint32_t *const[4]){sum[0], sum[1], sum[2], NULL}, &sweep);
+    if (test)
+        r->exec.kernels->search(sum, &search);
+}
+
+static void search_runs(const struct rf_frame *f, int tx, int ty, const struct rf_ray_set *set,
+                        struct rf_sums *sums)
+{
+    uint32_t run[3][RF_TILE * RF_TILE];
+    struct chunk chunk;
+
+    memset(run, 0, sizeof run);
+    for (int n = 0, rays; n < set->count; n += rays) {
+        const struct refocus_ray *ray = &set->ray[n];
+
+        if (rf_cancelled(&f->r->exec))
+            return;
+        rays = rf_rays_alike(set, n);
+        set_chunk(&chunk, f, ray, rays);
+        for (int i = 0; i < RF_TILE * RF_TILE; i += RF_STRIP_LANES)
+            search_strip(f, &chunk, tx, ty * RF_TILE + i / RF_TILE,
+                         (uint32_t *const[3]){run[0] + i, run[1] + i, run[2] + i});
+        if (n + rays < set->count && ray[rays].weight == ray->weight)
+            continue;
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < RF_TILE * RF_TILE; i++)
+                sums->light[c][i] += (uint64_t)ray->weight * run[c][i];
+        memset(run, 0, sizeof run);
+    }
+    for (int i = 0; i < RF_TILE * RF_TILE; i++)
+        sums->weight[i] = set->total_weight;
+}
+
+/* With weights, the mirrored pixel or the background layer: pixel by pixel. */
+static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
+                          const struct rf_ray_set *set, struct rf_sums *sums)
+{
+    const struct refocus_renderer *r = f->r;
+    const int nearest = rf_nearest_blur(f);
+
+    for (int n = 0; n < set->count; n++) {
+        const struct refocus_ray *ray = &set->ray[n];
+        const ptrdiff_t start =
+            rf_offset(ray->v, nearest) * r->view.stride + rf_offset(ray->u, nearest);
+        int32_t within;
+
+        if (rf_cancelled(&f->r->exec))
+            return;
+        r->exec.kernels->tolerances(&within, &ray->u, &ray->v, 1);
+        for (int y = rect.y0; y < rect.y1; y++) {
+            for (int x = rect.x0; x < rect.x1; x++) {
+                const ptrdiff_t p = y * r->view.stride + x;
+                const int i = y % RF_TILE * RF_TILE + x % RF_TILE;
+                const struct hit hit = search(r, p, ray, start, within, f->params->iterations);
+                uint16_t *const *light;
+                const ptrdiff_t q = resolve(f, p, ray, hit, &light);
+                const uint64_t w = (uint64_t)rf_weight_of(f, light, q) * ray->weight;
+
+                sums->weight[i] += w;
+                for (int c = 0; c < 3; c++)
+                    sums->light[c][i] += w * light[c][q];
+            }
+        }
+    }
+}
+
+void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+{
+    const struct rf_ray_set *set = &f->r->ray_sets.set[f->r->ray_sets.preset];
+    struct rf_sums sums;
+
+    (void)worker;
+    memset(&sums, 0, sizeof sums);
+    if (f->weighted || f->params->mirror || f->params->background)
+        search_pixels(f, rect, set, &sums);
+    else
+        search_runs(f, tx, ty, set, &sums);
+    if (!rf_cancelled(&f->r->exec)) /* else no weights */
+        rf_encode_tile(f, rect, &sums);
+}

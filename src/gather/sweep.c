@@ -1,0 +1,345 @@
+/* sweep.c: two layers, front-most hit, by a sweep over the disparities in reach.
+ *
+ * Yang et al. 2016 ask for the front-most q on the ray of p with q = p + u s(q) (eq. 4),
+ * relaxed to half a pixel. Over a tile, few signed blurs s can be met at all. They are
+ * covered, nearest first, by slabs one pixel wide. For one ray and one slab the offset
+ * u s_slab is the same for the whole tile; each pixel that is still without a hit looks
+ * there, and has one if the blur found lies in the slab. What is still free at the end
+ * looks past everything, into the background layer.
+ *
+ * This is plain C that states the arithmetic; sums are whole numbers, so their order does
+ * not matter.
+ */
+#include "highlights/draw.h"
+#include "gather/frame.h"
+#include "gather/sums.h"
+#include "gather/tile_rays.h"
+#include "gather/tile_rows.h"
+#include "image/viewport.h"
+#include "renderer/renderer.h"
+#include "thin/thin.h"
+#include "thin/veil.h"
+
+#include <string.h>
+
+enum { LANES = RF_TILE * RF_TILE };
+
+/* Where some rays see the slabs of a tile, and the background. */
+struct sight {
+    int rays;
+    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
+};
+
+/* Of one side of the focus, coordinates of rays apart: those of the set, or made for the tile. */
+struct aims {
+    const int16_t *u, *v;
+    int16_t memory[2][RF_RAY_CHUNK];
+};
+
+static void set_aims(struct aims *aims, const struct rf_ray_set *set, int first,
+                     const struct refocus_ray *ray, int rays)
+{
+    if (ray == set->ray + first && set->u) {
+        aims->u = set->u + first;
+        aims->v = set->v + first;
+        return;
+    }
+    for (int n = 0; n < rays; n++) {
+        aims->memory[0][n] = ray[n].u;
+        aims->memory[1][n] = ray[n].v;
+    }
+    aims->u = aims->memory[0];
+    aims->v = aims->memory[1];
+}
+
+static void set_sight(struct sight *sight, const struct rf_frame *f,
+                      const struct rf_tile_plan *plan, const struct rf_tile_rays *rays, int first,
+                      int behind)
+{
+    const struct refocus_renderer *r = f->r;
+    struct rf_ray_sides sides;
+    struct aims own[2];
+
+    rf_tile_rays_get(rays, first, sight->rays, &sides);
+    set_aims(&own[0], rays->set, first, sides.behind, sight->rays);
+    if (sides.before != sides.behind)
+        set_aims(&own[1], rays->set, first, sides.before, sight->rays);
+    for (int k = 0; k <= plan->slabs; k++) {
+        const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
+        const int seen = rf_scaled_blur(rays, blur);
+        const struct aims *aims = &own[blur < 0 && sides.before != sides.behind];
+
+        if (f->weighted && k < plan->slabs)
+            r->exec.kernels->aim(sight->weight_offset[k], sight->cell[k], aims->u, aims->v, seen,
+                                 (int32_t)r->weight.stride, (int32_t)r->range.stride, sight->rays);
+        r->exec.kernels->aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen,
+                             (int32_t)r->view.stride, (int32_t)r->range.stride, sight->rays);
+    }
+}
+
+/* One blur of the background for the tile, that of its middle, keeps the offsets of a ray
+ * constant; looking it up for each pixel measured no better. */
+static int behind_of(const struct refocus_renderer *r, int tx, int ty)
+{
+    return r->bins[(size_t)ty * r->view.tiles_x + tx].behind;
+}
+
+/* What is summed of a tile: light, plain or times weight, and weights. */
+union tally {
+    uint32_t sum[4][LANES];
+    uint64_t weighted[4][LANES]; /* where weights differ too much for 16 bits */
+};
+
+static bool has_wide_sums(const struct rf_frame *f)
+{
+    return f->weighted && !f->premultiplied;
+}
+
+/* Rows of a tile that are computed together. */
+struct strip {
+    int y, step, rows; /* y in the tile */
+    int first;         /* lane of the tally */
+};
+
+static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        const struct sight *sight, int tx, int ty, struct strip strip,
+                        union tally *run)
+{
+    enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
+    const struct refocus_renderer *r = f->r;
+    const int first = strip.first, y = ty * RF_TILE + strip.y, x = tx * RF_TILE;
+    const ptrdiff_t at = y * r->view.stride + x, weight_at = y * r->weight.stride + x;
+    const uint32_t *range =
+        r->range.at + (ty * CELLS + strip.y / RF_CELL) * r->range.stride + tx * CELLS;
+    /* the vectors of sweep_weighted hold 8 times white at the most */
+    rf_sweep_weighted_fn *const weighted =
+        f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : r->exec.kernels->sweep_weighted;
+    struct rf_sorted_rays sorted;
+    const struct rf_sort_job sort = {
+        .range = range,
+        .below = strip.step > 2 ? range + STRIP_CELLS * r->range.stride : NULL,
+        .front = r->smooth.channel[0] + at,
+        .behind = r->background.light.channel[0] + at,
+        .weight = f->weighted ? r->weight.at + weight_at : NULL,
+        .behind_weight = (const uint16_t *)r->background.blur.at + at,
+        .rays = sight->rays,
+        .slabs = plan->slabs,
+        .beneath = rf_looks_beneath(f),
+        .slab = plan->slab,
+        .joined = plan->joined,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->weight_offset,
+    };
+    const struct rf_sweep_job job = {
+        .blur = r->blur.at + at,
+        .stride = strip.step * r->view.stride,
+        .pitch = r->pitch,
+        .rays = &sorted,
+        .steps = rf_steps_of(plan),
+        .bright = f->bright,
+        .lanes = strip.rows * RF_TILE,
+        .weight = r->weight.at + weight_at,
+        .weight_stride = strip.step * r->weight.stride,
+    };
+
+    r->exec.kernels->sort_rays(&sorted, &sort);
+    if (has_wide_sums(f))
+        weighted((uint64_t *const[4]){run->weighted[0] + first, run->weighted[1] + first,
+                                      run->weighted[2] + first, run->weighted[3] + first},
+                 &job);
+    else
+        r->exec.kernels->sweep((uint32_t *const[4]){run->sum[0] + first, run->sum[1] + first,
+                                                    run->sum[2] + first,
+                                                    f->weighted ? run->sum[3] + first : NULL},
+                               &job);
+}
+
+/* All computed rows of a tile. */
+static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                         const struct sight *sight, int tx, int ty, struct rf_tile_rows rows,
+                         union tally *run)
+{
+    const int count = rows.step <= 2 ? rows.count / 2 : rows.count;
+
+    for (int i = 0; i < rows.count; i += count)
+        sweep_strip(f, plan, sight, tx, ty,
+                    (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE}, run);
+}
+
+static void clear_run(const struct rf_frame *f, union tally *run, int lanes)
+{
+    for (int c = 0; c < (f->weighted ? 4 : 3); c++)
+        if (has_wide_sums(f))
+            memset(run->weighted[c], 0, (size_t)lanes * sizeof run->weighted[c][0]);
+        else
+            memset(run->sum[c], 0, (size_t)lanes * sizeof run->sum[c][0]);
+}
+
+/* A run of rays of equal weight is at its end: it counts that often. */
+static void add_run(const struct rf_frame *f, const union tally *run, uint64_t ray_weight,
+                    uint64_t rays, struct rf_sums *sums)
+{
+    const bool wide = has_wide_sums(f);
+
+    for (int i = 0; i < LANES; i++) {
+        for (int c = 0; c < 3; c++)
+            sums->light[c][i] += ray_weight * (wide ? run->weighted[c][i] : run->sum[c][i]);
+        sums->weight[i] += ray_weight * (wide          ? run->weighted[3][i]
+                                         : f->weighted ? run->sum[3][i]
+                                                       : rays);
+    }
+}
+
+/* Rays come in runs of equal weight; a run is summed plainly and counts as often as it weighs.
+ * Sums of a run, 65,025 rays of Q12 light at the most, stay below 2^30. That of a set of equal
+ * rays is left in `run`; others are added up in `sums`. */
+static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                       const struct rf_tile_rays *tile_rays, int tx, int ty,
+                       struct rf_tile_rows rows, union tally *run, struct rf_sums *sums)
+{
+    const struct refocus_renderer *r = f->r;
+    const struct rf_ray_set *set = tile_rays->set;
+    const int behind = behind_of(r, tx, ty);
+    struct sight sight;
+    const int lanes = rows.count * RF_TILE;
+    int rays = 0; /* in this run */
+
+    clear_run(f, run, lanes);
+    for (int n = 0; n < set->count; n += sight.rays) {
+        const struct refocus_ray *ray = &set->ray[n];
+
+        if (rf_cancelled(&r->exec))
+            return;
+        sight.rays = rf_rays_alike(set, n);
+        rays += sight.rays;
+        set_sight(&sight, f, plan, tile_rays, n, behind);
+        sweep_strips(f, plan, &sight, tx, ty, rows, run);
+        if (!set->equal &&
+            (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight)) {
+            add_run(f, run, ray->weight, (uint64_t)rays, sums);
+            clear_run(f, run, lanes);
+            rays = 0;
+        }
+    }
+}
+
+/* Sums of rays that weigh the same to what means can be. */
+static void limit(union tally *run, int lanes, bool wide, uint32_t rays)
+{
+    for (int c = 0; c < 3; c++) {
+        if (!wide)
+            rf_limit_sums(run->sum[c], rays, lanes);
+        for (int i = 0; wide && i < lanes; i++) {
+            const uint64_t most = RF_MOST_MEAN * run->weighted[3][i];
+
+            run->weighted[c][i] = run->weighted[c][i] < most ? run->weighted[c][i] : most;
+        }
+    }
+}
+
+/* Means of channels `from` to `to` - 1 of a tile through an opening. */
+static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                        const struct rf_tile_rays *tile_rays, int tx, int ty,
+                        uint16_t mean[3][LANES], int from, int to)
+{
+    const struct refocus_renderer *r = f->r;
+    const uint32_t count = (uint32_t)tile_rays->set->count;
+    const int behind = behind_of(r, tx, ty);
+    const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind);
+    const uint16_t softness = rf_softness(f, plan, behind);
+    const int lanes = rows.count * RF_TILE;
+    uint16_t computed[LANES];
+    union tally run;
+
+    sweep_rays(f, plan, tile_rays, tx, ty, rows, &run, NULL);
+    if (rf_cancelled(&r->exec))
+        return;
+    if (!f->premultiplied && rf_exceeds_means(plan))
+        limit(&run, lanes, f->weighted, count);
+    for (int c = from; c < to; c++) {
+        uint16_t *out = rows.step > 1 ? computed : mean[c];
+
+        if (f->premultiplied)
+            r->exec.kernels->weighed_means(out, run.sum[c], run.sum[3], lanes);
+        else if (f->weighted)
+            r->exec.kernels->weighted_means(out, run.weighted[c], run.weighted[3], lanes);
+        else
+            r->exec.kernels->means(out, run.sum[c], rf_mean_scale(count), lanes);
+        if (softness)
+            r->exec.kernels->soften(out, rows.count, 1, rows.step == 1, softness);
+        if (rows.step > 1)
+            r->exec.kernels->between_rows(mean[c], computed, rows.step);
+    }
+}
+
+/* The same from rays that do not weigh the same. */
+static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                       const struct rf_tile_rays *rays, int tx, int ty, uint16_t mean[3][LANES],
+                       int from, int to)
+{
+    const uint64_t most = 4 * RF_MOST_MEAN;
+    const uint64_t unit = f->premultiplied ? 8192 : 4; /* of Q13 times Q12, or Q12 */
+    const uint16_t softness = rf_softness(f, plan, behind_of(f->r, tx, ty));
+    struct rf_sums sums;
+    union tally run;
+
+    memset(&sums, 0, sizeof sums);
+    sweep_rays(f, plan, rays, tx, ty, (struct rf_tile_rows){1, RF_TILE}, &run, &sums);
+    if (rf_cancelled(&f->r->exec)) /* else no weights */
+        return;
+    for (int c = from; c < to; c++) {
+        for (int i = 0; i < LANES; i++) {
+            const uint64_t w = sums.weight[i], v = (unit * sums.light[c][i] + w / 2) / w;
+
+            mean[c][i] = (uint16_t)(v < most ? v : most);
+        }
+        if (softness)
+            f->r->exec.kernels->soften(mean[c], RF_TILE, 1, true, softness);
+    }
+}
+
+void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+{
+    const struct refocus_renderer *r = f->r;
+    struct rf_tile_plan plan;
+    struct rf_tile_rays rays;
+    uint16_t mean[3][LANES];
+
+    (void)worker;
+    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
+    if (plan.sharp && f->veils && rf_has_veil(r, tx, ty)) {
+        rf_sharp_means(f, tx, ty, mean);
+        rf_veil_over(r, tx, ty, mean);
+        rf_encode_means(f, rect, mean);
+        return;
+    }
+    if (plan.sharp) {
+        rf_copy_tile(f, rect);
+        return;
+    }
+    rf_expect_tile(f, rect);
+    rf_tile_rays_make(&rays, f, rf_rays_for(&r->ray_sets, plan.reach, plan.dots), tx, ty);
+    for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
+        const int from = pass, to = pass ? 2 : 3; /* all of them, and green again */
+
+        if (pass)
+            rf_use_green_rays(&rays, f->params->fringe);
+        if (rays.set->equal)
+            sweep_means(f, &plan, &rays, tx, ty, mean, from, to);
+        else
+            sweep_sums(f, &plan, &rays, tx, ty, mean, from, to);
+    }
+    if (f->draws)
+        rf_draw_lamps(f, &plan, tx, ty, (uint16_t *const[3]){mean[0], mean[1], mean[2]}, 3);
+    if (f->holds)
+        rf_lay_held(f, tx, ty, mean);
+    if (f->veils)
+        rf_veil_over(r, tx, ty, mean);
+    if (f->draws && plan.lamp)
+        r->exec.kernels->at_most(mean[0], RF_MEAN_MAX, 3 * LANES);
+    if (!rf_cancelled(&r->exec))
+        rf_encode_means(f, rect, mean);
+}

@@ -1,0 +1,318 @@
+/* sweep_yuv.c: the sweep for a photo of Y, U and V.
+ *
+ * What sweep.c does for three planes is done here for luma and, with the same slabs,
+ * for chroma, whose samples lie two pixels apart: rays are half as long there across,
+ * and in 4:2:0 down, and some of them lie as densely among its samples as all do among
+ * pixels.
+ */
+#include "highlights/draw.h"
+#include "gather/frame.h"
+#include "gather/sums.h"
+#include "gather/tile_rows.h"
+
+#include <string.h>
+
+enum { LANES = RF_TILE * RF_TILE };
+
+/* Luma or chroma, from a tile's first element on. */
+struct plane {
+    const int16_t *blur;
+    const uint16_t *light, *behind;
+    int rows, steps;
+    struct rf_tile_rows computed;
+    int down; /* shift from rows of pixels */
+};
+
+struct tile {
+    const struct rf_frame *f;
+    struct rf_tile_plan plan;
+    const struct rf_ray_set *set;
+    int behind;                             /* blur of the background */
+    const uint32_t *range;                  /* of the tile's first pixel, */
+    const uint16_t *weight, *weight_behind; /* and weights of eq. 5, or NULL */
+    struct plane luma, chroma;
+};
+
+/* Some rays of one weight, where they see the slabs of the tile and the background, and
+ * what they have to look at. */
+struct sight {
+    int rays;
+    const int16_t *u, *v;
+    int16_t own_u[RF_RAY_CHUNK], own_v[RF_RAY_CHUNK];
+    int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    /* Of the first of them: */
+    int32_t chroma_offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int32_t chroma_pixel[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    struct rf_sorted_rays sorted;
+};
+
+static void set_rays(struct sight *sight, const struct rf_ray_set *set, int first)
+{
+    sight->rays = rf_rays_alike(set, first);
+    sight->u = set->u ? set->u + first : sight->own_u;
+    sight->v = set->u ? set->v + first : sight->own_v;
+    for (int n = 0; !set->u && n < sight->rays; n++) {
+        sight->own_u[n] = set->ray[first + n].u;
+        sight->own_v[n] = set->ray[first + n].v;
+    }
+}
+
+/* Sums of luma and of chroma, of rays of one weight: of light, or of light times
+ * weights of eq. 5 and those weights; and in `sum` of all rays. */
+struct sums {
+    uint32_t run[2][LANES], run_weight[2][LANES]; /* light times weight in 16 bits */
+    uint64_t weighted_run[2][LANES], weight_run[2][LANES];
+    uint64_t sum[2][LANES], weight[2][LANES];
+};
+
+/* Weights that differ too much for products of 16 bits. */
+static bool has_wide_sums(const struct tile *tile)
+{
+    return tile->weight && !tile->f->premultiplied;
+}
+
+static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_sorted_rays *rays,
+                        struct sums *sums)
+{
+    const struct refocus_renderer *r = tile->f->r;
+    const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
+    const struct rf_sweep1_job job = {
+        .blur = plane->blur,
+        .light = plane->light,
+        .apart = rf_row_at(plane->computed, 1) * r->view.stride,
+        .half = rf_row_at(plane->computed, plane->computed.count / 2) * r->view.stride,
+        .rows = plane->computed.count,
+        .steps = plane->steps,
+        .chroma = chroma,
+        .rays = rays,
+        .weight = tile->weight,
+        .down = plane->down,
+    };
+
+    if (has_wide_sums(tile))
+        r->exec.kernels->sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma],
+                                         &job);
+    else
+        r->exec.kernels->sweep1(sums->run[chroma], tile->weight ? sums->run_weight[chroma] : NULL,
+                                &job);
+}
+
+/* Rays, of which chroma shares the first so many. Strips of a tile together: of one
+ * plane, sorting each by itself costs more than it saves. */
+static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
+{
+    const struct refocus_renderer *r = tile->f->r;
+    const struct rf_sort_job job = {
+        .range = tile->range,
+        .front = tile->luma.light,
+        .behind = tile->luma.behind,
+        .rays = sight->rays,
+        .slabs = tile->plan.slabs,
+        .beneath = rf_looks_beneath(tile->f),
+        .slab = tile->plan.slab,
+        .joined = tile->plan.joined,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+        .weight = tile->weight,
+        .behind_weight = tile->weight_behind,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .shared = shared,
+        .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->chroma_offset,
+        .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->chroma_pixel,
+        .chroma_front = tile->chroma.light,
+        .chroma_behind = tile->chroma.behind,
+    };
+
+    for (int k = 0; k <= tile->plan.slabs; k++) {
+        const int blur = k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
+
+        r->exec.kernels->aim(sight->offset[k], sight->cell[k], sight->u, sight->v, blur,
+                             (int32_t)r->view.stride, (int32_t)r->range.stride, sight->rays);
+        r->exec.kernels->aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k], sight->u,
+                                    sight->v, blur, tile->chroma.down, (int32_t)r->view.stride,
+                                    shared);
+    }
+    r->exec.kernels->sort_rays(&sight->sorted, &job);
+}
+
+static void clear_run(const struct tile *tile, struct sums *sums)
+{
+    const struct plane *const plane[2] = {&tile->luma, &tile->chroma};
+
+    for (int p = 0; p < 2; p++) {
+        const size_t lanes = (size_t)plane[p]->computed.count * RF_TILE;
+
+        if (has_wide_sums(tile)) {
+            memset(sums->weighted_run[p], 0, lanes * sizeof sums->weighted_run[p][0]);
+            memset(sums->weight_run[p], 0, lanes * sizeof sums->weight_run[p][0]);
+        } else {
+            memset(sums->run[p], 0, lanes * sizeof sums->run[p][0]);
+            if (tile->weight)
+                memset(sums->run_weight[p], 0, lanes * sizeof sums->run_weight[p][0]);
+        }
+    }
+}
+
+/* A run of rays of a weight, of `rays[p]` of them. */
+static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight, const int rays[2])
+{
+    const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
+
+    for (int p = 0; p < 2; p++) {
+        for (int i = 0; i < lanes[p]; i++) {
+            const bool wide = has_wide_sums(tile);
+
+            sums->sum[p][i] += weight * (wide ? sums->weighted_run[p][i] : sums->run[p][i]);
+            sums->weight[p][i] += weight * (wide           ? sums->weight_run[p][i]
+                                            : tile->weight ? sums->run_weight[p][i]
+                                                           : (uint64_t)rays[p]);
+        }
+    }
+    clear_run(tile, sums);
+}
+
+/* As sweep_rays() of sweep.c. */
+static void sweep_rays(const struct tile *tile, struct sums *sums)
+{
+    const struct rf_ray_set *set = tile->set;
+    int rays[2] = {0, 0}; /* in this run */
+    struct sight sight;
+
+    clear_run(tile, sums);
+    for (int n = 0, end; n < set->count; n = end) {
+        const uint64_t weight = set->ray[n].weight;
+        int shared;
+
+        set_rays(&sight, set, n);
+        end = n + sight.rays;
+        shared = rf_shared_rays(set, n, end);
+        rays[0] += sight.rays;
+        rays[1] += shared;
+        sort_rays(tile, &sight, shared);
+        sweep_plane(tile, false, &sight.sorted, sums);
+        sweep_plane(tile, true, &sight.sorted, sums);
+        if (!set->equal && (end == set->count || set->ray[end].weight != weight)) {
+            add_run(tile, sums, weight, rays);
+            rays[0] = rays[1] = 0;
+        }
+    }
+}
+
+/* Means of rays that weigh the same, of some rows and then of those between. */
+static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
+                       uint16_t mean[LANES])
+{
+    const struct rf_kernels *kernels = tile->f->r->exec.kernels;
+    const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
+    const int rays = chroma ? tile->set->shared : tile->set->count;
+    const int lanes = plane->computed.count * RF_TILE;
+    const uint16_t softness = rf_softness(tile->f, &tile->plan, tile->behind);
+    uint16_t memory[LANES], *computed = plane->computed.step == 1 ? mean : memory;
+
+    for (int i = 0; tile->f->premultiplied && chroma && i < lanes; i++)
+        sums->run[1][i] *= 2; /* Q12 to Q13 */
+    if (!tile->weight && !chroma && rf_exceeds_means(&tile->plan))
+        rf_limit_sums(sums->run[0], (uint32_t)rays, lanes);
+    if (tile->f->premultiplied)
+        kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma], lanes);
+    else if (tile->weight)
+        kernels->weighted_means(computed, sums->weighted_run[chroma], sums->weight_run[chroma],
+                                lanes);
+    else
+        kernels->means(computed, sums->run[chroma], rf_mean_scale((uint64_t)rays), lanes);
+    if (softness)
+        kernels->soften(computed, plane->computed.count, chroma ? 2 : 1,
+                        plane->computed.count == plane->rows, softness);
+    if (computed == memory && plane->rows == RF_TILE)
+        kernels->between_rows(mean, computed, plane->computed.step);
+    else if (computed == memory)
+        kernels->between_chroma(mean, computed);
+}
+
+static void sweep_means(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
+{
+    const struct rf_frame *f = tile->f;
+
+    tile->luma.computed = rf_tile_rows(f, &tile->plan, tile->behind);
+    tile->chroma.computed =
+        tile->chroma.down ? rf_chroma_rows(f, &tile->plan, tile->behind) : tile->luma.computed;
+    sweep_rays(tile, sums);
+    take_means(tile, false, sums, means->luma);
+    take_means(tile, true, sums, means->chroma);
+}
+
+/* The same from rays that do not weigh the same. */
+static void sweep_sums(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
+{
+    const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
+    /* of Q12; of Q13, or Q12 of chroma, times Q12 */
+    const uint64_t plain[2] = {4, 4}, premultiplied[2] = {1 << 13, 1 << 14};
+    const uint64_t *unit = tile->f->premultiplied ? premultiplied : plain;
+    uint16_t *const mean[2] = {means->luma, means->chroma};
+
+    tile->luma.computed = (struct rf_tile_rows){1, tile->luma.rows};
+    tile->chroma.computed = (struct rf_tile_rows){1, tile->chroma.rows};
+    memset(sums->sum, 0, sizeof sums->sum);
+    memset(sums->weight, 0, sizeof sums->weight);
+    sweep_rays(tile, sums);
+    for (int p = 0; p < 2; p++)
+        for (int i = 0; i < lanes[p]; i++) {
+            const uint64_t w = sums->weight[p][i], v = (unit[p] * sums->sum[p][i] + w / 2) / w;
+
+            mean[p][i] = (uint16_t)(v < 4 * RF_MOST_MEAN ? v : 4 * RF_MOST_MEAN);
+        }
+}
+
+static void set_planes(struct tile *tile, int tx, int ty)
+{
+    const struct refocus_renderer *r = tile->f->r;
+    const struct rf_yuv *yuv = &r->yuv;
+    const ptrdiff_t origin = ty * RF_TILE * r->view.stride + tx * RF_TILE;
+    const ptrdiff_t at = (ty * RF_TILE >> yuv->down) * r->view.stride + tx * RF_TILE;
+
+    tile->range = r->range.at + RF_TILE / RF_CELL * (ty * r->range.stride + tx);
+    tile->weight = tile->f->weighted ? yuv->weight + origin : NULL;
+    tile->weight_behind = (const uint16_t *)r->background.blur.at + origin;
+    tile->luma = (struct plane){
+        .blur = r->blur.at + origin,
+        .light = r->smooth.channel[0] + origin,
+        .behind = r->background.light.channel[0] + origin,
+        .rows = RF_TILE,
+        .steps = rf_steps_of(&tile->plan),
+    };
+    tile->chroma = (struct plane){
+        .blur = yuv->blur + at,
+        .light = yuv->smooth + at,
+        .behind = yuv->behind + at,
+        .rows = RF_TILE >> yuv->down,
+        .steps = 65535 / RF_CHROMA_MAX, /* 8 */
+        .down = yuv->down,
+    };
+}
+
+void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+{
+    const struct refocus_renderer *r = f->r;
+    struct rf_decode_job means;
+    struct tile tile;
+    struct sums sums;
+
+    (void)worker;
+    tile.f = f;
+    tile.behind = r->bins[(size_t)ty * r->view.tiles_x + tx].behind;
+    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &tile.plan);
+    if (tile.plan.sharp) {
+        rf_copy_yuv_tile(f, rect);
+        return;
+    }
+    tile.set = rf_rays_for(&r->ray_sets, tile.plan.reach, tile.plan.dots);
+    set_planes(&tile, tx, ty);
+    if (tile.set->equal)
+        sweep_means(&tile, &sums, &means);
+    else
+        sweep_sums(&tile, &sums, &means);
+    if (f->draws)
+        rf_draw_lamps(f, &tile.plan, tx, ty, (uint16_t *const[3]){means.luma}, 1);
+    rf_encode_yuv_means(f, tx, ty, rect, &means);
+}

@@ -1,0 +1,62 @@
+#include "gather/tile_rays.h"
+
+#include <math.h>
+
+static void set_fringe(struct rf_tile_rays *rays, float fringe)
+{
+    const int part = (int)floorf(fabsf(fringe) * 256 + 0.5f);
+
+    rays->shorter_behind = fringe > 0 ? part : 0;
+    rays->shorter_before = fringe < 0 ? part : 0;
+}
+
+void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
+                       const struct rf_ray_set *set, int tx, int ty)
+{
+    const struct refocus_renderer *r = f->r;
+
+    rays->set = set;
+    rays->has_eye = f->params->cat_eye > 0;
+    rays->shorter_before = rays->shorter_behind = 0;
+    if (f->params->fringe != 0)
+        set_fringe(rays, f->params->fringe);
+    if (rays->has_eye) {
+        const int64_t w = r->photo.width, h = r->photo.height;
+        /* twice the distances from the middle */
+        const int64_t x = 2 * r->view.x0 + (2 * tx + 1) * RF_TILE - w;
+        const int64_t y = 2 * r->view.y0 + (2 * ty + 1) * RF_TILE - h;
+
+        const int amount = (int)floorf(f->params->cat_eye * 65536 + 0.5f);
+
+        rf_cat_eye_at(&r->cat_eye, x, y, w * w + h * h, amount, &rays->eye);
+        rays->has_eye = !rays->eye.is_round;
+        rays->shape = r->cat_shape.is_there ? &r->cat_shape : NULL;
+        if (rays->has_eye && rays->shape)
+            rf_cat_shape_at(rays->shape, x, y, w * w + h * h, amount, &rays->rim);
+    }
+}
+
+void rf_use_green_rays(struct rf_tile_rays *rays, float fringe)
+{
+    set_fringe(rays, -fringe);
+}
+
+static const struct refocus_ray *get(const struct rf_tile_rays *rays, const struct refocus_ray *ray,
+                                     int count, struct refocus_ray memory[RF_RAY_CHUNK])
+{
+    if (!rays->has_eye)
+        return ray;
+    for (int n = 0; n < count; n++)
+        memory[n] = rays->shape ? rf_cat_shape_ray(rays->shape, &rays->rim, &ray[n])
+                                : rf_cat_eye_ray(&rays->eye, &ray[n]);
+    return memory;
+}
+
+void rf_tile_rays_get(const struct rf_tile_rays *rays, int n, int count, struct rf_ray_sides *sides)
+{
+    const struct rf_ray_set *set = rays->set;
+
+    sides->behind = get(rays, set->ray + n, count, sides->memory[0]);
+    sides->before = set->before == set->ray ? sides->behind
+                                            : get(rays, set->before + n, count, sides->memory[1]);
+}

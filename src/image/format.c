@@ -1,0 +1,80 @@
+#include "image/format.h"
+
+enum { PLANES = 3 };
+
+/* Of each plane: bytes for each pair of columns, and rows to one of its own, as a shift. */
+static const struct layout {
+    int planes;
+    struct {
+        int pair, down;
+    } plane[PLANES];
+} layouts[] = {
+    [REFOCUS_FORMAT_NV12] = {2, {{0, 0}, {2, 1}}},
+    [REFOCUS_FORMAT_NV21] = {2, {{0, 0}, {2, 1}}},
+    [REFOCUS_FORMAT_I420] = {3, {{0, 0}, {1, 1}, {1, 1}}},
+    [REFOCUS_FORMAT_YUYV] = {1, {{4, 0}}},
+};
+
+int refocus_format_bytes(uint32_t format)
+{
+    switch (format) {
+    case REFOCUS_FORMAT_RGB8:
+    case REFOCUS_FORMAT_BGR8:
+        return 3;
+    case REFOCUS_FORMAT_RGBA8:
+    case REFOCUS_FORMAT_BGRA8:
+        return 4;
+    }
+    return 0;
+}
+
+int refocus_format_is_yuv(uint32_t format)
+{
+    return format < sizeof layouts / sizeof *layouts && layouts[format].planes > 0;
+}
+
+int refocus_format_planes(uint32_t format)
+{
+    if (refocus_format_bytes(format))
+        return 1;
+    return refocus_format_is_yuv(format) ? layouts[format].planes : 0;
+}
+
+ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane, int32_t width)
+{
+    if (plane < 0 || plane >= refocus_format_planes(format) || width < 1 ||
+        width > REFOCUS_MAX_SIDE)
+        return 0;
+    if (refocus_format_bytes(format))
+        return (ptrdiff_t)width * refocus_format_bytes(format);
+    if (layouts[format].plane[plane].pair)
+        return ((ptrdiff_t)width + 1) / 2 * layouts[format].plane[plane].pair;
+    return width;
+}
+
+int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height)
+{
+    if (plane < 0 || plane >= refocus_format_planes(format) || height < 1 ||
+        height > REFOCUS_MAX_SIDE)
+        return 0;
+    if (refocus_format_is_yuv(format) && layouts[format].plane[plane].down)
+        return height / 2 + height % 2;
+    return height;
+}
+
+bool rf_good_picture(const struct refocus_image *image)
+{
+    if (!image || !refocus_format_is_yuv(image->format))
+        return rf_good_image(image);
+    if (image->width < 1 || image->width > REFOCUS_MAX_SIDE || image->height < 1 ||
+        image->height > REFOCUS_MAX_SIDE || image->matrix > REFOCUS_MATRIX_BT709 ||
+        image->range > REFOCUS_RANGE_FULL)
+        return false;
+    for (int i = 0; i < refocus_format_planes(image->format); i++)
+        if (!image->plane[i] ||
+            !rf_good_stride(image->stride[i],
+                            refocus_plane_row_bytes(image->format, i, image->width),
+                            refocus_plane_rows(image->format, i, image->height)))
+            return false;
+    return true;
+}

@@ -1,0 +1,38 @@
+/* executor.h: what a pass runs with: threads, scratch rows for each, kernels, and a way to stop. */
+#ifndef RF_EXECUTOR_H
+#define RF_EXECUTOR_H
+
+#include <stdint.h>
+
+#include "support/pool.h"
+
+struct rf_kernels;
+
+struct rf_executor {
+    struct rf_pool *pool;
+    struct rf_run *run;
+    const struct rf_kernels *kernels; /* of the instruction set in use: kernels/kernels.h */
+    uint16_t *scratch;                /* scratch_size elements for each thread */
+    uint64_t scratch_size;
+};
+
+/* The scratch of a worker: two rows of the largest picture with the margins of spread_row. */
+static inline uint16_t *rf_scratch(const struct rf_executor *exec, int worker)
+{
+    return exec->scratch + (size_t)worker * exec->scratch_size;
+}
+
+/* Whether the call that is running was cancelled. Every loop that takes long asks at least once a
+ * millisecond or two. */
+static inline bool rf_cancelled(const struct rf_executor *exec)
+{
+    return rf_run_cancelled(exec->run);
+}
+
+/* Asks for the i-th of many small things: one in 64 looks. */
+static inline bool rf_cancelled_at(const struct rf_executor *exec, uint32_t i)
+{
+    return i % 64 == 0 && rf_cancelled(exec);
+}
+
+#endif

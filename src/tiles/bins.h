@@ -1,0 +1,27 @@
+/* bins.h: which circles of confusion occur in a tile. */
+#ifndef RF_BINS_H
+#define RF_BINS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "tiles/slab.h"
+
+/* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
+struct rf_bins {
+    uint64_t word[RF_BINS / 64];
+    int16_t least, most; /* Q7.8 */
+    int16_t lamp;        /* largest |s| of a highlight, Q7.8; 0: none; */
+    int16_t dots;        /* of one that is small beside the gaps of the rays */
+    int16_t behind;      /* blur of the background in the middle, once that is filled */
+    uint16_t brightest;  /* light of either layer, as it is summed; or more */
+    bool taken;          /* lamps are taken out of its light, highlights/taken.c */
+};
+
+/* The least and the greatest circle of confusion around each cell of a window; tiles/ranges.h. */
+struct rf_range_plane {
+    uint32_t *at; /* of the cell of pixel (0, 0) */
+    ptrdiff_t stride;
+};
+
+#endif
