@@ -15,6 +15,8 @@ enum {
     RF_BLEND_COUNT = 3, /* enum refocus_blend */
 };
 
+#define RF_NO_BLEND UINT32_MAX /* none of enum refocus_blend */
+
 struct rf_transfer {
     uint16_t to_light[256];           /* Q12 */
     uint8_t to_code[RF_MEAN_MAX + 4]; /* of a Q14 mean */

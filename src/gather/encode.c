@@ -28,10 +28,10 @@ void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect)
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
 {
     const struct rf_order o = rf_order_of(f->out->format);
-    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+    const uint8_t *to_code = f->transfer->to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const uint8_t *alpha = f->r->alpha.at + y * f->r->alpha.stride;
+        const uint8_t *alpha = f->alpha.at + y * f->alpha.stride;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
@@ -66,9 +66,9 @@ static void encode(const struct rf_frame *f, struct rf_rect rect, const uint16_t
                    int pitch)
 {
     const struct rf_order o = rf_order_of(f->out->format);
-    const uint8_t *const to_code = f->r->transfer[f->r->blend].to_code;
+    const uint8_t *const to_code = f->transfer->to_code;
     const int to[3] = {o.r, o.g, o.b}, n = rect.x1 - rect.x0, rows = rect.y1 - rect.y0;
-    const uint8_t *alpha = f->r->alpha.at + rect.y0 * f->r->alpha.stride + rect.x0;
+    const uint8_t *alpha = f->alpha.at + rect.y0 * f->alpha.stride + rect.x0;
     uint8_t *out = pixel(f, o.bytes, rect.x0, rect.y0);
 
     for (int c = 0; c < 3; c++)
@@ -81,7 +81,7 @@ static void encode(const struct rf_frame *f, struct rf_rect rect, const uint16_t
                                n);
     for (int y = 0; o.a >= 0 && y < rows; y++)
         for (int x = 0; x < n; x++)
-            out[y * f->out->stride[0] + x * o.bytes + o.a] = alpha[y * f->r->alpha.stride + x];
+            out[y * f->out->stride[0] + x * o.bytes + o.a] = alpha[y * f->alpha.stride + x];
 }
 
 void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
@@ -95,25 +95,25 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
     const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
     if (f->bright) /* means above white come from highlights */
-        f->r->exec.kernels->at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
+        f->exec->kernels->at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
     encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at}, RF_TILE);
 }
 
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
 {
     const struct rf_order o = rf_order_of(f->out->format);
-    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+    const uint8_t *to_code = f->transfer->to_code;
 
     for (int y = rect.y0; y < rect.y1; y++) {
-        const uint8_t *alpha = f->r->alpha.at + y * f->r->alpha.stride;
+        const uint8_t *alpha = f->alpha.at + y * f->alpha.stride;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
-            const ptrdiff_t at = y * f->r->view.stride + x;
+            const ptrdiff_t at = y * f->view->stride + x;
 
-            out[o.r] = to_code[4 * f->r->light.channel[0][at]];
-            out[o.g] = to_code[4 * f->r->light.channel[1][at]];
-            out[o.b] = to_code[4 * f->r->light.channel[2][at]];
+            out[o.r] = to_code[4 * f->light.channel[0][at]];
+            out[o.g] = to_code[4 * f->light.channel[1][at]];
+            out[o.b] = to_code[4 * f->light.channel[2][at]];
             if (o.a >= 0)
                 out[o.a] = alpha[x];
         }
@@ -139,5 +139,5 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
     out[o.g] = rgb[1];
     out[o.b] = rgb[2];
     if (o.a >= 0)
-        out[o.a] = f->r->alpha.at[y * f->r->alpha.stride + x];
+        out[o.a] = f->alpha.at[y * f->alpha.stride + x];
 }

@@ -15,7 +15,7 @@ struct row {
 static struct row samples(const struct rf_frame *f, int i, int x, int y)
 {
     const bool chroma = i > 0, nv21 = f->out->format == REFOCUS_FORMAT_NV21;
-    const int down = chroma ? f->r->yuv.down : 0;
+    const int down = chroma ? f->yuv->down : 0;
     const int row = (y - f->region.y0) >> down, column = (x - f->region.x0) >> chroma;
     int plane = i, step = 1, at = column;
 
@@ -78,7 +78,7 @@ struct codes {
 
 static void put(const struct rf_frame *f, struct rf_rect rect, const struct codes *codes)
 {
-    const int n = rect.x1 - rect.x0, down = f->r->yuv.down;
+    const int n = rect.x1 - rect.x0, down = f->yuv->down;
     const bool yuyv = f->out->format == REFOCUS_FORMAT_YUYV;
     const struct row luma = samples(f, 0, rect.x0, rect.y0);
     const struct row u = samples(f, 1, rect.x0, rect.y0), v = samples(f, 2, rect.x0, rect.y0);
@@ -102,7 +102,7 @@ static void put(const struct rf_frame *f, struct rf_rect rect, const struct code
 
 void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect)
 {
-    const struct rf_yuv *yuv = &f->r->yuv;
+    const struct rf_yuv *yuv = f->yuv;
     const struct codes codes = {
         .y = yuv->y + rect.y0 * yuv->y_stride + rect.x0,
         .uv = yuv->uv + (rect.y0 >> yuv->down) * yuv->uv_stride + rect.x0,
@@ -138,25 +138,24 @@ static void take(uint8_t *to, const uint8_t *from, ptrdiff_t stride, int w, int 
 void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                          struct rf_decode_job *job)
 {
-    const struct refocus_renderer *r = f->r;
-    const struct rf_yuv *yuv = &r->yuv;
+    const struct rf_yuv *yuv = f->yuv;
     const int x0 = tx * RF_TILE, y0 = ty * RF_TILE, c0 = y0 >> yuv->down;
-    const int w = r->view.width - x0 < RF_TILE ? r->view.width - x0 : RF_TILE;
-    const int h = r->view.height - y0 < RF_TILE ? r->view.height - y0 : RF_TILE;
+    const int w = f->view->width - x0 < RF_TILE ? f->view->width - x0 : RF_TILE;
+    const int h = f->view->height - y0 < RF_TILE ? f->view->height - y0 : RF_TILE;
     const int rows = (h + yuv->down) >> yuv->down;
 
     job->curve = &yuv->curve;
     job->down = yuv->down;
     job->own_luma =
-        (f->premultiplied ? r->light.channel[0] : r->smooth.channel[0]) + y0 * r->view.stride + x0;
-    job->own_chroma = (f->premultiplied ? yuv->light : yuv->smooth) + c0 * r->view.stride + x0;
+        (f->premultiplied ? f->light.channel[0] : f->smooth.channel[0]) + y0 * f->view->stride + x0;
+    job->own_chroma = (f->premultiplied ? yuv->light : yuv->smooth) + c0 * f->view->stride + x0;
     for (int p = 0; p < 2; p++)
-        job->within[p] = f->premultiplied ? rf_yuv_within(r, p) : 0;
-    job->stride = r->view.stride;
+        job->within[p] = f->premultiplied ? rf_yuv_within(f->r, p) : 0;
+    job->stride = f->view->stride;
     take(job->y, yuv->y + y0 * yuv->y_stride + x0, yuv->y_stride, w, h);
     take(job->uv, yuv->uv + c0 * yuv->uv_stride + x0, yuv->uv_stride, w + w % 2, rows);
     repeat_edge(job, w, h);
-    r->exec.kernels->decode(job);
+    f->exec->kernels->decode(job);
     put(f, rect,
         &(struct codes){job->y + (rect.y0 - y0) * RF_TILE + rect.x0 - x0,
                         job->uv + ((rect.y0 - y0) >> yuv->down) * RF_TILE + rect.x0 - x0, RF_TILE,

@@ -3,10 +3,19 @@
 #define RF_FRAME_H
 
 #include "aperture/aperture.h"
+#include "aperture/cat_eye.h"
+#include "aperture/cat_shape.h"
+#include "aperture/ray_set.h"
+#include "colour/transfer.h"
 #include "focus/focus.h"
-#include "passes/planes.h"
-#include "renderer/renderer.h"
+#include "gather/work_memory.h"
+#include "image/chroma.h"
+#include "image/planes.h"
+#include "image/viewport.h"
+#include "passes/prefilter.h"
+#include "support/executor.h"
 #include "thin/thin.h"
+#include "tiles/bins.h"
 #include "tiles/tiles.h"
 
 /* Curve and weights of eq. 5 in double precision, of 8-bit codes. */
@@ -19,9 +28,33 @@ void rf_exact_init(struct rf_exact *exact, uint32_t blend, double sigma);
 
 enum { RF_LIVE_RAYS = 64 }; /* more are for stills that are to be as good as can be */
 
-/* One refocus_render() call. */
+/* One refocus_render() call: the settings, and the planes of the window that the rays go through.
+ */
 struct rf_frame {
+    const struct rf_executor *exec;
+
+    /* The window and its planes, set by rf_set_planes(). */
+    const struct rf_viewport *view;
+    struct rf_light_q12 light;       /* of the photo */
+    struct rf_light_q12 smooth;      /* pre-filtered where rays lie far apart */
+    struct rf_blur_q8 blur;          /* circle of confusion of each pixel */
+    struct rf_background background; /* hidden background */
+    struct rf_weight_q15 weight;     /* eq. 5, of `smooth` */
+    struct rf_weight_q15 background_weight;
+    struct rf_disparity_q16 disparity;
+    struct rf_alpha_u8 alpha;
+    struct rf_range_plane range;
+    const struct rf_bins *bins;         /* of each tile, row by row */
+    const struct rf_yuv *yuv;           /* yuv->on: it is a photo of Y, U and V */
+    const struct rf_transfer *transfer; /* curve of the blend */
+    const uint16_t *light_weight;       /* eq. 5 by Q12 light, Q15 */
+    const struct rf_ray_sets *ray_sets;
+    const struct rf_cat_eye *cat_eye;
+    const struct rf_cat_shape *cat_shape;
+    struct rf_limits limits;
+    struct rf_work_memory *work;
     struct refocus_renderer *r;
+
     const struct refocus_render_params *params;
     const struct refocus_image *out;
     const struct refocus_aperture *aperture;
@@ -33,12 +66,8 @@ struct rf_frame {
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS];    /* |s| that each step begins at, Q7.8 */
     bool prefilter_fades;                       /* they come in gradually: rf_prefilter_rows() */
-    int veils;     /* thin things may be taken apart, thin/thin.h, and drawn with discs
-                      of this part of their blur, Q8; 0: they are not */
-    int veil_blur; /* from this blur before the focus on, Q7.8, more and more of them */
-    bool holds;    /* what is thin and in focus may be laid over what is not */
-    struct rf_thin_bounds thin_bounds[RF_THIN_LEVELS]; /* rf_set_thin_bounds() */
-    bool weighted;                                     /* eq. 5 weights differ from 1, */
+    struct rf_thin_pass thin;     /* thin structures that are composited over what rays see */
+    bool weighted;                /* eq. 5 weights differ from 1, */
     bool premultiplied;           /* and little enough for light times weight in 16 bits */
     bool fine;                    /* the opening is: rf_aperture_is_fine() */
     int row_gap;                  /* see methods/tile_rows.h */
@@ -87,7 +116,7 @@ static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const li
     most = light[1][at] > most ? light[1][at] : most;
     most = light[2][at] > most ? light[2][at] : most;
     most = most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
-    return f->r->light_weight[most];
+    return f->light_weight[most];
 }
 
 /* Offset of a ray in whole pixels: round half up of u s, Q15 times Q7.8. */

@@ -11,7 +11,6 @@
  */
 #include "gather/frame.h"
 #include "image/viewport.h"
-#include "renderer/renderer.h"
 
 #include <string.h>
 
@@ -21,10 +20,10 @@ struct hit {
     bool valid;
 };
 
-static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
-                         const struct refocus_ray *ray, ptrdiff_t start, int within, int tests)
+static struct hit search(const struct rf_frame *f, ptrdiff_t p, const struct refocus_ray *ray,
+                         ptrdiff_t start, int within, int tests)
 {
-    const int16_t *s = r->blur.at;
+    const int16_t *s = f->blur.at;
     struct hit hit = {p, s[p + start], false};
     int next = hit.blur;
 
@@ -32,7 +31,7 @@ static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
         int apart;
 
         hit.blur = next;
-        hit.at = p + rf_offset(ray->v, hit.blur) * r->view.stride + rf_offset(ray->u, hit.blur);
+        hit.at = p + rf_offset(ray->v, hit.blur) * f->view->stride + rf_offset(ray->u, hit.blur);
         next = s[hit.at];
         apart = next - hit.blur;
         hit.valid = apart <= within && -apart <= within;
@@ -44,19 +43,18 @@ static struct hit search(const struct refocus_renderer *r, ptrdiff_t p,
 static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p, const struct refocus_ray *ray,
                          struct hit hit, uint16_t *const **light)
 {
-    const struct refocus_renderer *r = f->r;
 
-    *light = r->light.channel;
-    if (hit.valid || r->blur.at[hit.at] <= r->blur.at[p])
+    *light = f->light.channel;
+    if (hit.valid || f->blur.at[hit.at] <= f->blur.at[p])
         return hit.at;
     if (f->params->background) {
-        const int s = r->background.blur.at[p];
+        const int s = f->background.blur.at[p];
 
-        *light = r->background.light.channel;
-        return p + rf_offset(ray->v, s) * r->view.stride + rf_offset(ray->u, s);
+        *light = f->background.light.channel;
+        return p + rf_offset(ray->v, s) * f->view->stride + rf_offset(ray->u, s);
     }
     if (f->params->mirror)
-        return p - rf_offset(ray->v, hit.blur) * r->view.stride - rf_offset(ray->u, hit.blur);
+        return p - rf_offset(ray->v, hit.blur) * f->view->stride - rf_offset(ray->u, hit.blur);
     return p;
 }
 
@@ -69,7 +67,6 @@ struct chunk {
 static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struct refocus_ray *ray,
                       int n)
 {
-    const struct refocus_renderer *r = f->r;
     struct rf_search_rays *rays = &chunk->rays;
 
     rays->rays = n;
@@ -77,9 +74,9 @@ static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struc
         rays->u[i] = ray[i].u;
         rays->v[i] = ray[i].v;
     }
-    r->exec.kernels->aim(rays->start, chunk->cell, rays->u, rays->v, rf_nearest_blur(f),
-                         (int32_t)r->view.stride, (int32_t)r->range.stride, n);
-    r->exec.kernels->tolerances(rays->within, rays->u, rays->v, n);
+    f->exec->kernels->aim(rays->start, chunk->cell, rays->u, rays->v, rf_nearest_blur(f),
+                          (int32_t)f->view->stride, (int32_t)f->range.stride, n);
+    f->exec->kernels->tolerances(rays->within, rays->u, rays->v, n);
 }
 
 /* The paper's own rule, by kernels: rays that are settled for the strip as a whole are
@@ -87,50 +84,49 @@ static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struc
 static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx, int y,
                          uint32_t *const sum[3])
 {
-    const struct refocus_renderer *r = f->r;
     const struct rf_search_rays *rays = &chunk->rays;
-    const ptrdiff_t at = y * r->view.stride + tx * RF_TILE;
+    const ptrdiff_t at = y * f->view->stride + tx * RF_TILE;
     uint8_t settled[RF_RAY_CHUNK];
     int32_t offset[RF_RAY_CHUNK];
     struct rf_search_rays left;
     struct rf_sorted_rays sorted;
     const struct rf_sweep_job sweep = {
-        .blur = r->blur.at + at,
-        .stride = r->view.stride,
-        .pitch = r->pitch,
+        .blur = f->blur.at + at,
+        .stride = f->view->stride,
+        .pitch = f->light.channel[1] - f->light.channel[0],
         .rays = &sorted,
         .steps = 16,
         .lanes = RF_STRIP_LANES,
     };
     const struct rf_search_job search = {
-        .blur = r->blur.at + at,
-        .light = {r->light.channel[0] + at, r->light.channel[1] + at, r->light.channel[2] + at},
-        .stride = r->view.stride,
+        .blur = f->blur.at + at,
+        .light = {f->light.channel[0] + at, f->light.channel[1] + at, f->light.channel[2] + at},
+        .stride = f->view->stride,
         .tests = f->params->iterations,
         .rays = &left,
     };
     int add = 0, test = 0;
 
-    r->exec.kernels->settle(settled, offset,
-                            r->range.at + y / RF_CELL * r->range.stride + tx * (RF_TILE / RF_CELL),
-                            chunk->cell, rays, f->params->iterations, (int32_t)r->view.stride,
-                            (int32_t)r->range.stride);
+    f->exec->kernels->settle(settled, offset,
+                             f->range.at + y / RF_CELL * f->range.stride + tx * (RF_TILE / RF_CELL),
+                             chunk->cell, rays, f->params->iterations, (int32_t)f->view->stride,
+                             (int32_t)f->range.stride);
     for (int n = 0; n < rays->rays; n++) {
         left.start[test] = rays->start[n];
         left.u[test] = rays->u[n];
         left.v[test] = rays->v[n];
         left.within[test] = rays->within[n];
         sorted.tests[add] = 0;
-        sorted.last[add] = r->light.channel[0] + at + offset[n];
+        sorted.last[add] = f->light.channel[0] + at + offset[n];
         test += !settled[n];
         add += settled[n];
     }
     left.rays = test;
     sorted.rays = add;
     if (add)
-        r->exec.kernels->sweep((uint32_t *const[4]){sum[0], sum[1], sum[2], NULL}, &sweep);
+        f->exec->kernels->sweep((uint32_t *const[4]){sum[0], sum[1], sum[2], NULL}, &sweep);
     if (test)
-        r->exec.kernels->search(sum, &search);
+        f->exec->kernels->search(sum, &search);
 }
 
 static void search_runs(const struct rf_frame *f, int tx, int ty, const struct rf_ray_set *set,
@@ -143,7 +139,7 @@ static void search_runs(const struct rf_frame *f, int tx, int ty, const struct r
     for (int n = 0, rays; n < set->count; n += rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        if (rf_cancelled(&f->r->exec))
+        if (rf_cancelled(f->exec))
             return;
         rays = rf_rays_alike(set, n);
         set_chunk(&chunk, f, ray, rays);
@@ -165,23 +161,22 @@ static void search_runs(const struct rf_frame *f, int tx, int ty, const struct r
 static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
                           const struct rf_ray_set *set, struct rf_sums *sums)
 {
-    const struct refocus_renderer *r = f->r;
     const int nearest = rf_nearest_blur(f);
 
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
         const ptrdiff_t start =
-            rf_offset(ray->v, nearest) * r->view.stride + rf_offset(ray->u, nearest);
+            rf_offset(ray->v, nearest) * f->view->stride + rf_offset(ray->u, nearest);
         int32_t within;
 
-        if (rf_cancelled(&f->r->exec))
+        if (rf_cancelled(f->exec))
             return;
-        r->exec.kernels->tolerances(&within, &ray->u, &ray->v, 1);
+        f->exec->kernels->tolerances(&within, &ray->u, &ray->v, 1);
         for (int y = rect.y0; y < rect.y1; y++) {
             for (int x = rect.x0; x < rect.x1; x++) {
-                const ptrdiff_t p = y * r->view.stride + x;
+                const ptrdiff_t p = y * f->view->stride + x;
                 const int i = y % RF_TILE * RF_TILE + x % RF_TILE;
-                const struct hit hit = search(r, p, ray, start, within, f->params->iterations);
+                const struct hit hit = search(f, p, ray, start, within, f->params->iterations);
                 uint16_t *const *light;
                 const ptrdiff_t q = resolve(f, p, ray, hit, &light);
                 const uint64_t w = (uint64_t)rf_weight_of(f, light, q) * ray->weight;
@@ -196,7 +191,7 @@ static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
 
 void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    const struct rf_ray_set *set = &f->r->ray_sets.set[f->r->ray_sets.preset];
+    const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
     struct rf_sums sums;
 
     (void)worker;
@@ -205,6 +200,6 @@ void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
         search_pixels(f, rect, set, &sums);
     else
         search_runs(f, tx, ty, set, &sums);
-    if (!rf_cancelled(&f->r->exec)) /* else no weights */
+    if (!rf_cancelled(f->exec)) /* else no weights */
         rf_encode_tile(f, rect, &sums);
 }

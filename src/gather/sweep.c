@@ -16,9 +16,7 @@
 #include "gather/tile_rays.h"
 #include "gather/tile_rows.h"
 #include "image/viewport.h"
-#include "renderer/renderer.h"
 #include "thin/thin.h"
-#include "thin/veil.h"
 
 #include <string.h>
 
@@ -58,7 +56,6 @@ static void set_sight(struct sight *sight, const struct rf_frame *f,
                       const struct rf_tile_plan *plan, const struct rf_tile_rays *rays, int first,
                       int behind)
 {
-    const struct refocus_renderer *r = f->r;
     struct rf_ray_sides sides;
     struct aims own[2];
 
@@ -72,18 +69,18 @@ static void set_sight(struct sight *sight, const struct rf_frame *f,
         const struct aims *aims = &own[blur < 0 && sides.before != sides.behind];
 
         if (f->weighted && k < plan->slabs)
-            r->exec.kernels->aim(sight->weight_offset[k], sight->cell[k], aims->u, aims->v, seen,
-                                 (int32_t)r->weight.stride, (int32_t)r->range.stride, sight->rays);
-        r->exec.kernels->aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen,
-                             (int32_t)r->view.stride, (int32_t)r->range.stride, sight->rays);
+            f->exec->kernels->aim(sight->weight_offset[k], sight->cell[k], aims->u, aims->v, seen,
+                                  (int32_t)f->weight.stride, (int32_t)f->range.stride, sight->rays);
+        f->exec->kernels->aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen,
+                              (int32_t)f->view->stride, (int32_t)f->range.stride, sight->rays);
     }
 }
 
 /* One blur of the background for the tile, that of its middle, keeps the offsets of a ray
  * constant; looking it up for each pixel measured no better. */
-static int behind_of(const struct refocus_renderer *r, int tx, int ty)
+static int behind_of(const struct rf_frame *f, int tx, int ty)
 {
-    return r->bins[(size_t)ty * r->view.tiles_x + tx].behind;
+    return f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
 }
 
 /* What is summed of a tile: light, plain or times weight, and weights. */
@@ -108,22 +105,21 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
                         union tally *run)
 {
     enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
-    const struct refocus_renderer *r = f->r;
     const int first = strip.first, y = ty * RF_TILE + strip.y, x = tx * RF_TILE;
-    const ptrdiff_t at = y * r->view.stride + x, weight_at = y * r->weight.stride + x;
+    const ptrdiff_t at = y * f->view->stride + x, weight_at = y * f->weight.stride + x;
     const uint32_t *range =
-        r->range.at + (ty * CELLS + strip.y / RF_CELL) * r->range.stride + tx * CELLS;
+        f->range.at + (ty * CELLS + strip.y / RF_CELL) * f->range.stride + tx * CELLS;
     /* the vectors of sweep_weighted hold 8 times white at the most */
     rf_sweep_weighted_fn *const weighted =
-        f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : r->exec.kernels->sweep_weighted;
+        f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : f->exec->kernels->sweep_weighted;
     struct rf_sorted_rays sorted;
     const struct rf_sort_job sort = {
         .range = range,
-        .below = strip.step > 2 ? range + STRIP_CELLS * r->range.stride : NULL,
-        .front = r->smooth.channel[0] + at,
-        .behind = r->background.light.channel[0] + at,
-        .weight = f->weighted ? r->weight.at + weight_at : NULL,
-        .behind_weight = (const uint16_t *)r->background.blur.at + at,
+        .below = strip.step > 2 ? range + STRIP_CELLS * f->range.stride : NULL,
+        .front = f->smooth.channel[0] + at,
+        .behind = f->background.light.channel[0] + at,
+        .weight = f->weighted ? f->weight.at + weight_at : NULL,
+        .behind_weight = f->background_weight.at + at,
         .rays = sight->rays,
         .slabs = plan->slabs,
         .beneath = rf_looks_beneath(f),
@@ -134,27 +130,27 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->weight_offset,
     };
     const struct rf_sweep_job job = {
-        .blur = r->blur.at + at,
-        .stride = strip.step * r->view.stride,
-        .pitch = r->pitch,
+        .blur = f->blur.at + at,
+        .stride = strip.step * f->view->stride,
+        .pitch = f->light.channel[1] - f->light.channel[0],
         .rays = &sorted,
         .steps = rf_steps_of(plan),
         .bright = f->bright,
         .lanes = strip.rows * RF_TILE,
-        .weight = r->weight.at + weight_at,
-        .weight_stride = strip.step * r->weight.stride,
+        .weight = f->weight.at + weight_at,
+        .weight_stride = strip.step * f->weight.stride,
     };
 
-    r->exec.kernels->sort_rays(&sorted, &sort);
+    f->exec->kernels->sort_rays(&sorted, &sort);
     if (has_wide_sums(f))
         weighted((uint64_t *const[4]){run->weighted[0] + first, run->weighted[1] + first,
                                       run->weighted[2] + first, run->weighted[3] + first},
                  &job);
     else
-        r->exec.kernels->sweep((uint32_t *const[4]){run->sum[0] + first, run->sum[1] + first,
-                                                    run->sum[2] + first,
-                                                    f->weighted ? run->sum[3] + first : NULL},
-                               &job);
+        f->exec->kernels->sweep((uint32_t *const[4]){run->sum[0] + first, run->sum[1] + first,
+                                                     run->sum[2] + first,
+                                                     f->weighted ? run->sum[3] + first : NULL},
+                                &job);
 }
 
 /* All computed rows of a tile. */
@@ -200,9 +196,8 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
                        const struct rf_tile_rays *tile_rays, int tx, int ty,
                        struct rf_tile_rows rows, union tally *run, struct rf_sums *sums)
 {
-    const struct refocus_renderer *r = f->r;
     const struct rf_ray_set *set = tile_rays->set;
-    const int behind = behind_of(r, tx, ty);
+    const int behind = behind_of(f, tx, ty);
     struct sight sight;
     const int lanes = rows.count * RF_TILE;
     int rays = 0; /* in this run */
@@ -211,7 +206,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     for (int n = 0; n < set->count; n += sight.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
-        if (rf_cancelled(&r->exec))
+        if (rf_cancelled(f->exec))
             return;
         sight.rays = rf_rays_alike(set, n);
         rays += sight.rays;
@@ -245,9 +240,8 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
                         const struct rf_tile_rays *tile_rays, int tx, int ty,
                         uint16_t mean[3][LANES], int from, int to)
 {
-    const struct refocus_renderer *r = f->r;
     const uint32_t count = (uint32_t)tile_rays->set->count;
-    const int behind = behind_of(r, tx, ty);
+    const int behind = behind_of(f, tx, ty);
     const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind);
     const uint16_t softness = rf_softness(f, plan, behind);
     const int lanes = rows.count * RF_TILE;
@@ -255,7 +249,7 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
     union tally run;
 
     sweep_rays(f, plan, tile_rays, tx, ty, rows, &run, NULL);
-    if (rf_cancelled(&r->exec))
+    if (rf_cancelled(f->exec))
         return;
     if (!f->premultiplied && rf_exceeds_means(plan))
         limit(&run, lanes, f->weighted, count);
@@ -263,15 +257,15 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
         if (f->premultiplied)
-            r->exec.kernels->weighed_means(out, run.sum[c], run.sum[3], lanes);
+            f->exec->kernels->weighed_means(out, run.sum[c], run.sum[3], lanes);
         else if (f->weighted)
-            r->exec.kernels->weighted_means(out, run.weighted[c], run.weighted[3], lanes);
+            f->exec->kernels->weighted_means(out, run.weighted[c], run.weighted[3], lanes);
         else
-            r->exec.kernels->means(out, run.sum[c], rf_mean_scale(count), lanes);
+            f->exec->kernels->means(out, run.sum[c], rf_mean_scale(count), lanes);
         if (softness)
-            r->exec.kernels->soften(out, rows.count, 1, rows.step == 1, softness);
+            f->exec->kernels->soften(out, rows.count, 1, rows.step == 1, softness);
         if (rows.step > 1)
-            r->exec.kernels->between_rows(mean[c], computed, rows.step);
+            f->exec->kernels->between_rows(mean[c], computed, rows.step);
     }
 }
 
@@ -282,13 +276,13 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
 {
     const uint64_t most = 4 * RF_MOST_MEAN;
     const uint64_t unit = f->premultiplied ? 8192 : 4; /* of Q13 times Q12, or Q12 */
-    const uint16_t softness = rf_softness(f, plan, behind_of(f->r, tx, ty));
+    const uint16_t softness = rf_softness(f, plan, behind_of(f, tx, ty));
     struct rf_sums sums;
     union tally run;
 
     memset(&sums, 0, sizeof sums);
     sweep_rays(f, plan, rays, tx, ty, (struct rf_tile_rows){1, RF_TILE}, &run, &sums);
-    if (rf_cancelled(&f->r->exec)) /* else no weights */
+    if (rf_cancelled(f->exec)) /* else no weights */
         return;
     for (int c = from; c < to; c++) {
         for (int i = 0; i < LANES; i++) {
@@ -297,22 +291,21 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }
         if (softness)
-            f->r->exec.kernels->soften(mean[c], RF_TILE, 1, true, softness);
+            f->exec->kernels->soften(mean[c], RF_TILE, 1, true, softness);
     }
 }
 
 void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    const struct refocus_renderer *r = f->r;
     struct rf_tile_plan plan;
     struct rf_tile_rays rays;
     uint16_t mean[3][LANES];
 
     (void)worker;
-    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &plan);
-    if (plan.sharp && f->veils && rf_has_veil(r, tx, ty)) {
-        rf_sharp_means(f, tx, ty, mean);
-        rf_veil_over(r, tx, ty, mean);
+    rf_plan_tile(f->r, f->scale, &f->reach, tx, ty, &plan);
+    if (plan.sharp && f->thin.disc_scale && rf_has_coverage(&f->thin, tx, ty)) {
+        rf_thin_sharp_means(&f->thin, tx, ty, mean);
+        rf_coverage_over(&f->thin, tx, ty, mean);
         rf_encode_means(f, rect, mean);
         return;
     }
@@ -321,7 +314,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         return;
     }
     rf_expect_tile(f, rect);
-    rf_tile_rays_make(&rays, f, rf_rays_for(&r->ray_sets, plan.reach, plan.dots), tx, ty);
+    rf_tile_rays_make(&rays, f, rf_rays_for(f->ray_sets, plan.reach, plan.dots), tx, ty);
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
         const int from = pass, to = pass ? 2 : 3; /* all of them, and green again */
 
@@ -334,12 +327,12 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     }
     if (f->draws)
         rf_draw_lamps(f, &plan, tx, ty, (uint16_t *const[3]){mean[0], mean[1], mean[2]}, 3);
-    if (f->holds)
-        rf_lay_held(f, tx, ty, mean);
-    if (f->veils)
-        rf_veil_over(r, tx, ty, mean);
+    if (f->thin.mattes)
+        rf_matte_over(&f->thin, tx, ty, mean);
+    if (f->thin.disc_scale)
+        rf_coverage_over(&f->thin, tx, ty, mean);
     if (f->draws && plan.lamp)
-        r->exec.kernels->at_most(mean[0], RF_MEAN_MAX, 3 * LANES);
-    if (!rf_cancelled(&r->exec))
+        f->exec->kernels->at_most(mean[0], RF_MEAN_MAX, 3 * LANES);
+    if (!rf_cancelled(f->exec))
         rf_encode_means(f, rect, mean);
 }

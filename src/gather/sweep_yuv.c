@@ -75,13 +75,12 @@ static bool has_wide_sums(const struct tile *tile)
 static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_sorted_rays *rays,
                         struct sums *sums)
 {
-    const struct refocus_renderer *r = tile->f->r;
     const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
     const struct rf_sweep1_job job = {
         .blur = plane->blur,
         .light = plane->light,
-        .apart = rf_row_at(plane->computed, 1) * r->view.stride,
-        .half = rf_row_at(plane->computed, plane->computed.count / 2) * r->view.stride,
+        .apart = rf_row_at(plane->computed, 1) * tile->f->view->stride,
+        .half = rf_row_at(plane->computed, plane->computed.count / 2) * tile->f->view->stride,
         .rows = plane->computed.count,
         .steps = plane->steps,
         .chroma = chroma,
@@ -91,18 +90,17 @@ static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_so
     };
 
     if (has_wide_sums(tile))
-        r->exec.kernels->sweep1_weighted(sums->weighted_run[chroma], sums->weight_run[chroma],
-                                         &job);
+        tile->f->exec->kernels->sweep1_weighted(sums->weighted_run[chroma],
+                                                sums->weight_run[chroma], &job);
     else
-        r->exec.kernels->sweep1(sums->run[chroma], tile->weight ? sums->run_weight[chroma] : NULL,
-                                &job);
+        tile->f->exec->kernels->sweep1(sums->run[chroma],
+                                       tile->weight ? sums->run_weight[chroma] : NULL, &job);
 }
 
 /* Rays, of which chroma shares the first so many. Strips of a tile together: of one
  * plane, sorting each by itself costs more than it saves. */
 static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
 {
-    const struct refocus_renderer *r = tile->f->r;
     const struct rf_sort_job job = {
         .range = tile->range,
         .front = tile->luma.light,
@@ -127,13 +125,14 @@ static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
     for (int k = 0; k <= tile->plan.slabs; k++) {
         const int blur = k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
 
-        r->exec.kernels->aim(sight->offset[k], sight->cell[k], sight->u, sight->v, blur,
-                             (int32_t)r->view.stride, (int32_t)r->range.stride, sight->rays);
-        r->exec.kernels->aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k], sight->u,
-                                    sight->v, blur, tile->chroma.down, (int32_t)r->view.stride,
-                                    shared);
+        tile->f->exec->kernels->aim(sight->offset[k], sight->cell[k], sight->u, sight->v, blur,
+                                    (int32_t)tile->f->view->stride, (int32_t)tile->f->range.stride,
+                                    sight->rays);
+        tile->f->exec->kernels->aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k],
+                                           sight->u, sight->v, blur, tile->chroma.down,
+                                           (int32_t)tile->f->view->stride, shared);
     }
-    r->exec.kernels->sort_rays(&sight->sorted, &job);
+    tile->f->exec->kernels->sort_rays(&sight->sorted, &job);
 }
 
 static void clear_run(const struct tile *tile, struct sums *sums)
@@ -203,7 +202,7 @@ static void sweep_rays(const struct tile *tile, struct sums *sums)
 static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
                        uint16_t mean[LANES])
 {
-    const struct rf_kernels *kernels = tile->f->r->exec.kernels;
+    const struct rf_kernels *kernels = tile->f->exec->kernels;
     const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
     const int rays = chroma ? tile->set->shared : tile->set->count;
     const int lanes = plane->computed.count * RF_TILE;
@@ -266,18 +265,17 @@ static void sweep_sums(struct tile *tile, struct sums *sums, struct rf_decode_jo
 
 static void set_planes(struct tile *tile, int tx, int ty)
 {
-    const struct refocus_renderer *r = tile->f->r;
-    const struct rf_yuv *yuv = &r->yuv;
-    const ptrdiff_t origin = ty * RF_TILE * r->view.stride + tx * RF_TILE;
-    const ptrdiff_t at = (ty * RF_TILE >> yuv->down) * r->view.stride + tx * RF_TILE;
+    const struct rf_yuv *yuv = tile->f->yuv;
+    const ptrdiff_t origin = ty * RF_TILE * tile->f->view->stride + tx * RF_TILE;
+    const ptrdiff_t at = (ty * RF_TILE >> yuv->down) * tile->f->view->stride + tx * RF_TILE;
 
-    tile->range = r->range.at + RF_TILE / RF_CELL * (ty * r->range.stride + tx);
+    tile->range = tile->f->range.at + RF_TILE / RF_CELL * (ty * tile->f->range.stride + tx);
     tile->weight = tile->f->weighted ? yuv->weight + origin : NULL;
-    tile->weight_behind = (const uint16_t *)r->background.blur.at + origin;
+    tile->weight_behind = tile->f->background_weight.at + origin;
     tile->luma = (struct plane){
-        .blur = r->blur.at + origin,
-        .light = r->smooth.channel[0] + origin,
-        .behind = r->background.light.channel[0] + origin,
+        .blur = tile->f->blur.at + origin,
+        .light = tile->f->smooth.channel[0] + origin,
+        .behind = tile->f->background.light.channel[0] + origin,
         .rows = RF_TILE,
         .steps = rf_steps_of(&tile->plan),
     };
@@ -293,20 +291,19 @@ static void set_planes(struct tile *tile, int tx, int ty)
 
 void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    const struct refocus_renderer *r = f->r;
     struct rf_decode_job means;
     struct tile tile;
     struct sums sums;
 
     (void)worker;
     tile.f = f;
-    tile.behind = r->bins[(size_t)ty * r->view.tiles_x + tx].behind;
-    rf_plan_tile(r, f->scale, &f->reach, tx, ty, &tile.plan);
+    tile.behind = f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
+    rf_plan_tile(f->r, f->scale, &f->reach, tx, ty, &tile.plan);
     if (tile.plan.sharp) {
         rf_copy_yuv_tile(f, rect);
         return;
     }
-    tile.set = rf_rays_for(&r->ray_sets, tile.plan.reach, tile.plan.dots);
+    tile.set = rf_rays_for(f->ray_sets, tile.plan.reach, tile.plan.dots);
     set_planes(&tile, tx, ty);
     if (tile.set->equal)
         sweep_means(&tile, &sums, &means);

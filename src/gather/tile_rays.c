@@ -13,7 +13,6 @@ static void set_fringe(struct rf_tile_rays *rays, float fringe)
 void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
                        const struct rf_ray_set *set, int tx, int ty)
 {
-    const struct refocus_renderer *r = f->r;
 
     rays->set = set;
     rays->has_eye = f->params->cat_eye > 0;
@@ -21,16 +20,16 @@ void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
     if (f->params->fringe != 0)
         set_fringe(rays, f->params->fringe);
     if (rays->has_eye) {
-        const int64_t w = r->photo.width, h = r->photo.height;
+        const int64_t w = f->view->photo_width, h = f->view->photo_height;
         /* twice the distances from the middle */
-        const int64_t x = 2 * r->view.x0 + (2 * tx + 1) * RF_TILE - w;
-        const int64_t y = 2 * r->view.y0 + (2 * ty + 1) * RF_TILE - h;
+        const int64_t x = 2 * f->view->x0 + (2 * tx + 1) * RF_TILE - w;
+        const int64_t y = 2 * f->view->y0 + (2 * ty + 1) * RF_TILE - h;
 
         const int amount = (int)floorf(f->params->cat_eye * 65536 + 0.5f);
 
-        rf_cat_eye_at(&r->cat_eye, x, y, w * w + h * h, amount, &rays->eye);
+        rf_cat_eye_at(f->cat_eye, x, y, w * w + h * h, amount, &rays->eye);
         rays->has_eye = !rays->eye.is_round;
-        rays->shape = r->cat_shape.is_there ? &r->cat_shape : NULL;
+        rays->shape = f->cat_shape->is_there ? f->cat_shape : NULL;
         if (rays->has_eye && rays->shape)
             rf_cat_shape_at(rays->shape, x, y, w * w + h * h, amount, &rays->rim);
     }

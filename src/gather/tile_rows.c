@@ -12,7 +12,7 @@ enum {
 int rf_row_gap(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
-    const struct rf_ray_set *set = &f->r->ray_sets.set[f->r->ray_sets.preset];
+    const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
     int gap, height = 1; /* half the opening's, Q15 */
 
     if (p->rays == REFOCUS_RAYS_FULL || p->rays > RF_LIVE_RAYS || p->cat_eye > 0 ||

@@ -7,27 +7,25 @@
  */
 #include "gather/frame.h"
 #include "image/viewport.h"
-#include "renderer/renderer.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static void gather(const struct rf_frame *f, int x, int y, struct rf_sums *sums)
 {
-    const struct refocus_renderer *r = f->r;
-    const ptrdiff_t p = y * r->view.stride + x;
-    const int s = r->blur.at[p], i = y % RF_TILE * RF_TILE + x % RF_TILE;
-    const struct rf_ray_set *set = rf_rays_for(&r->ray_sets, abs(s), false);
+    const ptrdiff_t p = y * f->view->stride + x;
+    const int s = f->blur.at[p], i = y % RF_TILE * RF_TILE + x % RF_TILE;
+    const struct rf_ray_set *set = rf_rays_for(f->ray_sets, abs(s), false);
     uint64_t light[3] = {0, 0, 0}, weight = 0;
 
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
-        const ptrdiff_t q = p + rf_offset(ray->v, s) * r->view.stride + rf_offset(ray->u, s);
-        const uint64_t w = (uint64_t)rf_weight_of(f, r->light.channel, q) * ray->weight;
+        const ptrdiff_t q = p + rf_offset(ray->v, s) * f->view->stride + rf_offset(ray->u, s);
+        const uint64_t w = (uint64_t)rf_weight_of(f, f->light.channel, q) * ray->weight;
 
         weight += w;
         for (int c = 0; c < 3; c++)
-            light[c] += w * r->light.channel[c][q];
+            light[c] += w * f->light.channel[c][q];
     }
     sums->weight[i] = weight;
     for (int c = 0; c < 3; c++)
@@ -43,7 +41,7 @@ void rf_gather_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
     (void)worker;
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
-            if (rf_cancelled(&f->r->exec))
+            if (rf_cancelled(f->exec))
                 return;
             gather(f, x, y, &sums);
         }

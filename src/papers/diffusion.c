@@ -83,23 +83,23 @@ static void radius_row(void *context, int y, int worker)
     const struct work *work = context;
 
     (void)worker;
-    for (int x = 0; x < work->f->r->view.width; x++)
+    for (int x = 0; x < work->f->view->width; x++)
         work->radius[y * work->stride + x] =
-            (float)abs(work->f->r->blur.at[y * work->f->r->view.stride + x]) / 256;
+            (float)abs(work->f->blur.at[y * work->f->view->stride + x]) / 256;
 }
 
 /* Cut the disparities into layers where the fewest pixels are, a least distance apart. */
 static void split_layers(struct work *work)
 {
-    const struct refocus_renderer *r = work->f->r;
+    const struct rf_frame *f = work->f;
     const int layers = work->f->params->layers, apart = 256 / (2 * layers);
     uint32_t count[256] = {0};
     bool cut[257] = {false}; /* cut[i]: a layer begins at bin i */
     uint8_t number[256];
 
-    for (int y = 0; y < r->view.height && !rf_cancelled(&r->exec); y++)
-        for (int x = 0; x < r->view.width; x++)
-            count[r->disparity.at[y * r->view.stride + x] >> 8]++;
+    for (int y = 0; y < f->view->height && !rf_cancelled(f->exec); y++)
+        for (int x = 0; x < f->view->width; x++)
+            count[f->disparity.at[y * f->view->stride + x] >> 8]++;
     for (int n = 1; n < layers; n++) {
         uint64_t least = UINT64_MAX;
         int best = 0;
@@ -124,10 +124,10 @@ static void split_layers(struct work *work)
         n += cut[i];
         number[i] = (uint8_t)n;
     }
-    for (int y = 0; y < r->view.height && !rf_cancelled(&r->exec); y++)
-        for (int x = 0; x < r->view.width; x++)
-            work->member[(size_t)y * (size_t)r->view.width + (size_t)x] =
-                number[r->disparity.at[y * r->view.stride + x] >> 8];
+    for (int y = 0; y < f->view->height && !rf_cancelled(f->exec); y++)
+        for (int x = 0; x < f->view->width; x++)
+            work->member[(size_t)y * (size_t)f->view->width + (size_t)x] =
+                number[f->disparity.at[y * f->view->stride + x] >> 8];
 }
 
 static void extrapolate_tile(void *context, int item, int worker)
@@ -157,16 +157,16 @@ static void cut_out_row(void *context, int item, int worker)
 
     (void)worker;
     for (int x = layer->box.x0; x < layer->box.x1; x++) {
-        const ptrdiff_t at = y * work->stride + x, p = y * f->r->view.stride + x;
-        const int ring = layer->rings[(size_t)y * (size_t)f->r->view.width + (size_t)x];
+        const ptrdiff_t at = y * work->stride + x, p = y * f->view->stride + x;
+        const int ring = layer->rings[(size_t)y * (size_t)f->view->width + (size_t)x];
         const float radius = ring == 0              ? work->radius[at]
                              : ring <= layer->reach ? work->weight[at]
                                                     : 0;
-        const double w = ring == 0 ? rf_weight_of(f, f->r->light.channel, p) : 0;
+        const double w = ring == 0 ? rf_weight_of(f, f->light.channel, p) : 0;
 
         work->weight[at] = conductance(work, radius);
         for (int c = 0; c < 3; c++)
-            work->plane[c][at] = (float)(w * f->r->light.channel[c][p]);
+            work->plane[c][at] = (float)(w * f->light.channel[c][p]);
         work->plane[3][at] = (float)w;
         work->plane[4][at] = ring == 0;
     }
@@ -190,15 +190,19 @@ static void diffuse_channel(void *context, int c, int worker)
 {
     const struct work *work = context;
     const struct rf_frame *f = work->f;
-    const struct rf_heat heat = {f->r,         work->layer.box, work->layer.span,
-                                 work->weight, work->own,       f->r->exec.kernels->series_row};
+    const struct rf_heat heat = {f,
+                                 work->layer.box,
+                                 work->layer.span,
+                                 work->weight,
+                                 work->own,
+                                 f->exec->kernels->series_row};
 
     (void)worker;
     if (c == 3 && !f->weighted) { /* then weight and alpha are the same */
         return;
     }
     if (f->params->solver == REFOCUS_SOLVER_ITERATED)
-        rf_diffuse_steps(f->r, &work->layer.box, work->weight, work->plane[c], work->scratch[0][c],
+        rf_diffuse_steps(f, &work->layer.box, work->weight, work->plane[c], work->scratch[0][c],
                          work->steps);
     else
         rf_diffuse_series(&heat, &work->series, work->plane[c], work->scratch[0][c],
@@ -229,18 +233,18 @@ static void composite_row(void *context, int item, int worker)
 /* Rows y0 - 1 to y1 of a plane to 0, sides and all. */
 static void clear(const struct work *work, float *plane, int y0, int y1)
 {
-    for (int y = y0 - 1; y <= y1 && !rf_cancelled(&work->f->r->exec); y++)
+    for (int y = y0 - 1; y <= y1 && !rf_cancelled(work->f->exec); y++)
         memset(plane + y * work->stride - 1, 0, sizeof(float) * (size_t)work->stride);
 }
 
 static void do_layer(struct work *work, int number)
 {
     struct rf_diffusion_layer *layer = &work->layer;
-    struct rf_pool *pool = &work->f->r->pool;
+    struct rf_pool *pool = work->f->exec->pool;
     int rows;
 
     layer->number = number;
-    if (!rf_layer_grow(layer) || rf_cancelled(&work->f->r->exec))
+    if (!rf_layer_grow(layer) || rf_cancelled(work->f->exec))
         return;
     rows = layer->box.y1 - layer->box.y0;
     clear(work, work->weight, layer->box.y0, layer->box.y1);
@@ -249,7 +253,7 @@ static void do_layer(struct work *work, int number)
         layer->edge_y = work->scratch[0][1];
         layer->edge_radius = work->scratch[0][2];
         rf_layer_list_edge(layer);
-        if (rf_cancelled(&work->f->r->exec)) /* the list may have no end */
+        if (rf_cancelled(work->f->exec)) /* the list may have no end */
             return;
         rf_pool_run(pool, extrapolate_tile, work, layer->tiles_x * layer->tiles_y);
     }
@@ -267,7 +271,7 @@ static void do_layer(struct work *work, int number)
         }
         rf_pool_run(pool, diffuse_channel, work, CHANNELS);
     }
-    if (!rf_cancelled(&work->f->r->exec))
+    if (!rf_cancelled(work->f->exec))
         rf_pool_run(pool, composite_row, work, rows);
 }
 
@@ -279,14 +283,14 @@ static void write_row(void *context, int item, int worker)
 
     (void)worker;
     for (int x = f->region.x0; x < f->region.x1; x++) {
-        const ptrdiff_t at = y * work->stride + x, p = y * f->r->view.stride + x;
+        const ptrdiff_t at = y * work->stride + x, p = y * f->view->stride + x;
         /* where almost nothing is, the picture */
         const double own = work->below[4][at] < 0.05 ? 0.05 - work->below[4][at] : 0;
-        const double w = own * rf_weight_of(f, f->r->light.channel, p);
+        const double w = own * rf_weight_of(f, f->light.channel, p);
         double light[3];
 
         for (int c = 0; c < 3; c++)
-            light[c] = work->below[c][at] + w * f->r->light.channel[c][p];
+            light[c] = work->below[c][at] + w * f->light.channel[c][p];
         if (work->below[3][at] + w > 0)
             rf_write_real(f, x, y, light, work->below[3][at] + w);
         else
@@ -296,12 +300,12 @@ static void write_row(void *context, int item, int worker)
 
 static void measure(struct work *work)
 {
-    const struct refocus_renderer *r = work->f->r;
+    const struct rf_frame *f = work->f;
     double steps;
 
     work->most_radius = 0;
-    for (int y = 0; y < r->view.height && !rf_cancelled(&r->exec); y++)
-        for (int x = 0; x < r->view.width; x++)
+    for (int y = 0; y < f->view->height && !rf_cancelled(f->exec); y++)
+        for (int x = 0; x < f->view->width; x++)
             work->most_radius = fmaxf(work->most_radius, work->radius[y * work->stride + x]);
     steps = (double)work->most_radius * work->most_radius / (2 * work->f->params->conductivity);
     work->steps = (int)ceil(steps);
@@ -309,32 +313,32 @@ static void measure(struct work *work)
 
 void rf_diffusion_frame(struct rf_frame *f)
 {
-    const struct rf_limits limits = rf_limits_of(f->r);
-    struct rf_arena arena = {f->r->work, 0};
+    const struct rf_limits limits = f->limits;
+    struct rf_arena arena = {f->work->at, 0};
     struct work *work = lay_out(&limits, &arena, NULL);
 
-    f->r->work_owner = RF_NO_METHOD;
+    f->work->owner = RF_NO_METHOD;
     work->f = f;
-    work->layer.r = f->r;
+    work->layer.f = f;
     work->layer.member = work->member;
     work->layer.radius = work->radius;
     work->layer.outside = work->weight;
     work->layer.stride = work->stride;
-    work->layer.tiles_x = (f->r->view.width + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
-    work->layer.tiles_y = (f->r->view.height + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
+    work->layer.tiles_x = (f->view->width + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
+    work->layer.tiles_y = (f->view->height + RF_EDGE_TILE - 1) / RF_EDGE_TILE;
     for (int c = 0; c < CHANNELS; c++)
-        clear(work, work->below[c], 0, f->r->view.height);
-    rf_pool_run(&f->r->pool, radius_row, work, f->r->view.height);
-    if (rf_cancelled(&f->r->exec))
+        clear(work, work->below[c], 0, f->view->height);
+    rf_pool_run(f->exec->pool, radius_row, work, f->view->height);
+    if (rf_cancelled(f->exec))
         return;
     measure(work);
     split_layers(work);
-    if (rf_cancelled(&f->r->exec))
+    if (rf_cancelled(f->exec))
         return;
     if (work->most_radius < 0.5f)
         work->most_radius = 1; /* nothing conducts */
     work->weight_per_square = f->params->conductivity / (work->most_radius * work->most_radius);
-    for (int i = 0; i < f->params->layers && !rf_cancelled(&f->r->exec); i++)
+    for (int i = 0; i < f->params->layers && !rf_cancelled(f->exec); i++)
         do_layer(work, i);
-    rf_pool_run(&f->r->pool, write_row, work, f->region.y1 - f->region.y0);
+    rf_pool_run(f->exec->pool, write_row, work, f->region.y1 - f->region.y0);
 }

@@ -19,8 +19,8 @@ struct rf_box {
  *
  * W is 0 outside of the box. *run is looked at between steps; CANCELLED ends early.
  */
-void rf_diffuse_steps(const struct refocus_renderer *r, const struct rf_box *box,
-                      const float *weight, float *plane, float *scratch, int steps);
+void rf_diffuse_steps(const struct rf_frame *f, const struct rf_box *box, const float *weight,
+                      float *plane, float *scratch, int steps);
 
 /* Coefficients of a series that gives the same without the steps: A^n for the matrix A of a
  * step. Its eigenvalues are in [1 - 2 W, 1], W the largest weight, and there
@@ -42,7 +42,7 @@ struct rf_span {
 
 /* Where heat flows: diffusion_solver.c has across and own. */
 struct rf_heat {
-    const struct refocus_renderer *r;
+    const struct rf_frame *f;
     struct rf_box box;
     const struct rf_span *span; /* of each row of the picture */
     const float *across, *own;
@@ -64,7 +64,7 @@ enum { RF_EDGE_TILE = 16 };
 
 /* A layer: pixels of one range of disparities, and around them. */
 struct rf_diffusion_layer {
-    const struct refocus_renderer *r;
+    const struct rf_frame *f;
     const uint8_t *member; /* layer number of each pixel, width a row */
     int number;
     const float *radius;  /* blur radius of each pixel */

@@ -2,7 +2,6 @@
  * Kosloff & Barsky 2007, sections 7.1 and 7.2. */
 #include "papers/diffusion.h"
 #include "image/viewport.h"
-#include "renderer/renderer.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,10 +13,10 @@ static int lesser(int a, int b)
 
 static bool is_member(const struct rf_diffusion_layer *layer, int x, int y)
 {
-    const struct refocus_renderer *r = layer->r;
+    const struct rf_frame *f = layer->f;
 
-    return x < 0 || y < 0 || x >= r->view.width || y >= r->view.height ||
-           layer->member[(size_t)y * (size_t)r->view.width + (size_t)x] == layer->number;
+    return x < 0 || y < 0 || x >= f->view->width || y >= f->view->height ||
+           layer->member[(size_t)y * (size_t)f->view->width + (size_t)x] == layer->number;
 }
 
 /* The least of three neighbours in the row before, and one more. */
@@ -35,7 +34,7 @@ static void from_row_before(uint16_t *restrict row, const uint16_t *restrict bef
  * and to the right, up and to the left. */
 static void number_rings(struct rf_diffusion_layer *layer)
 {
-    const int w = layer->r->view.width, h = layer->r->view.height;
+    const int w = layer->f->view->width, h = layer->f->view->height;
 
     for (int j = 0; j < 2 * h; j++) {
         const bool up = j >= h;
@@ -44,7 +43,7 @@ static void number_rings(struct rf_diffusion_layer *layer)
         const uint16_t *before = up ? row + w : row - w;
         int ring = UINT16_MAX - 1;
 
-        if (rf_cancelled(&layer->r->exec))
+        if (rf_cancelled(layer->f->exec))
             return;
         for (int x = 0; x < w && !up; x++)
             row[x] = layer->member[(size_t)y * (size_t)w + (size_t)x] == layer->number
@@ -64,11 +63,11 @@ static void number_rings(struct rf_diffusion_layer *layer)
 
 bool rf_layer_grow(struct rf_diffusion_layer *layer)
 {
-    const int w = layer->r->view.width, h = layer->r->view.height;
+    const int w = layer->f->view->width, h = layer->f->view->height;
     struct rf_box box = {w, h, 0, 0, layer->stride};
     float most = -1;
 
-    for (int y = 0; y < h && !rf_cancelled(&layer->r->exec); y++)
+    for (int y = 0; y < h && !rf_cancelled(layer->f->exec); y++)
         for (int x = 0; x < w; x++)
             if (layer->member[(size_t)y * (size_t)w + (size_t)x] == layer->number &&
                 layer->radius[y * layer->stride + x] > most)
@@ -79,7 +78,7 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
     layer->most = most;
     layer->reach = most < 0.5f ? 0 : (int)ceilf(1.5f * most) + 2;
     number_rings(layer);
-    for (int y = 0; y < h && !rf_cancelled(&layer->r->exec); y++) {
+    for (int y = 0; y < h && !rf_cancelled(layer->f->exec); y++) {
         struct rf_span *span = &layer->span[y];
 
         *span = (struct rf_span){w, 0};
@@ -104,14 +103,14 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
 
 void rf_layer_list_edge(struct rf_diffusion_layer *layer)
 {
-    const int w = layer->r->view.width, h = layer->r->view.height;
+    const int w = layer->f->view->width, h = layer->f->view->height;
     int count = 0, *link = &layer->first_tile;
 
     for (int t = 0; t < layer->tiles_x * layer->tiles_y; t++) {
         struct rf_edge_tile *tile = &layer->tile[t];
         const int x0 = t % layer->tiles_x * RF_EDGE_TILE, y0 = t / layer->tiles_x * RF_EDGE_TILE;
 
-        if (t % 64 == 0 && rf_cancelled(&layer->r->exec))
+        if (t % 64 == 0 && rf_cancelled(layer->f->exec))
             return;
         *tile = (struct rf_edge_tile){.first = count};
         for (int y = y0; y < lesser(y0 + RF_EDGE_TILE, h); y++) {
@@ -214,7 +213,7 @@ static void add_near(const struct rf_diffusion_layer *layer, int tx, int ty, int
 
 static bool is_outside(const struct rf_diffusion_layer *layer, int x, int y)
 {
-    const int ring = layer->rings[(size_t)y * (size_t)layer->r->view.width + (size_t)x];
+    const int ring = layer->rings[(size_t)y * (size_t)layer->f->view->width + (size_t)x];
 
     return ring > 0 && ring <= layer->reach;
 }
@@ -222,8 +221,8 @@ static bool is_outside(const struct rf_diffusion_layer *layer, int x, int y)
 void rf_layer_extrapolate_tile(const struct rf_diffusion_layer *layer, int tile)
 {
     const int tx = tile % layer->tiles_x, ty = tile / layer->tiles_x;
-    const int x0 = tx * RF_EDGE_TILE, x1 = lesser(x0 + RF_EDGE_TILE, layer->r->view.width);
-    const int y0 = ty * RF_EDGE_TILE, y1 = lesser(y0 + RF_EDGE_TILE, layer->r->view.height);
+    const int x0 = tx * RF_EDGE_TILE, x1 = lesser(x0 + RF_EDGE_TILE, layer->f->view->width);
+    const int y0 = ty * RF_EDGE_TILE, y1 = lesser(y0 + RF_EDGE_TILE, layer->f->view->height);
     struct sums node[NODES], sums;
     bool have_nodes = false;
 

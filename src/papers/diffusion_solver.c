@@ -26,17 +26,17 @@ static const float LIFT = 1 / 1024.0f;
      (w)[(x) - (stride)] * ((c)[(x) - (stride)] - (c)[x]) +                                        \
      (w)[(x) + (stride)] * ((c)[(x) + (stride)] - (c)[x]))
 
-void rf_diffuse_steps(const struct refocus_renderer *r, const struct rf_box *box,
-                      const float *weight, float *plane, float *scratch, int steps)
+void rf_diffuse_steps(const struct rf_frame *f, const struct rf_box *box, const float *weight,
+                      float *plane, float *scratch, int steps)
 {
     float *from = plane, *to = scratch;
 
-    for (int i = 0; i < steps + steps % 2 && !rf_cancelled(&r->exec); i++) {
+    for (int i = 0; i < steps + steps % 2 && !rf_cancelled(f->exec); i++) {
         for (int y = box->y0; y < box->y1; y++) {
             const float *c = from + y * box->stride, *w = weight + y * box->stride;
             float *restrict out = to + y * box->stride;
 
-            if (rf_cancelled(&r->exec))
+            if (rf_cancelled(f->exec))
                 return;
             if (i == steps) { /* an odd number: one more to copy back */
                 for (int x = box->x0; x < box->x1; x++)
@@ -141,10 +141,9 @@ void rf_diffuse_series(const struct rf_heat *heat, const struct rf_series *serie
     /* Some terms at once, each two rows behind the one before it, so that what they share is
      * still in the cache: B_k needs rows y - 1 .. y + 1 of B_(k+1), and takes the place of
      * row y of B_(k+2), which B_(k+1) needs for its rows up to y + 1. */
-    for (int last = series->terms - 1; last >= 0 && !rf_cancelled(&heat->r->exec);
-         last -= AT_ONCE) {
+    for (int last = series->terms - 1; last >= 0 && !rf_cancelled(heat->f->exec); last -= AT_ONCE) {
         for (int front = box->y0; front < box->y1 + 2 * (AT_ONCE - 1); front++) {
-            if (rf_cancelled(&heat->r->exec))
+            if (rf_cancelled(heat->f->exec))
                 return;
             for (int i = 0; i < AT_ONCE && last - i >= 0; i++) {
                 const int y = front - 2 * i;

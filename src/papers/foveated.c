@@ -117,7 +117,7 @@ static void list_borders(struct work *work, int most)
 {
     int n = 0;
 
-    for (int b = 0; b <= most && !rf_cancelled(&work->f->r->exec); b++) {
+    for (int b = 0; b <= most && !rf_cancelled(work->f->exec); b++) {
         work->border[b] = n;
         for (int y = -b; y <= b; y++) {
             for (int x = -b; x <= b; x++) {
@@ -142,22 +142,21 @@ static void blend(const struct rf_frame *f, ptrdiff_t q, uint32_t alpha, struct 
 {
     const uint32_t room = ONE - sums->alpha;
     const uint32_t a = alpha < room ? alpha : room;
-    const uint64_t w = (uint64_t)a * rf_weight_of(f, f->r->light.channel, q);
+    const uint64_t w = (uint64_t)a * rf_weight_of(f, f->light.channel, q);
 
     sums->alpha += a;
     sums->weight += w;
     for (int c = 0; c < 3; c++)
-        sums->light[c] += w * f->r->light.channel[c][q];
+        sums->light[c] += w * f->light.channel[c][q];
 }
 
 /* Border b: samples whose disc reaches from there to p, before (sign -1) or behind (1). */
 static void blend_border(const struct work *work, ptrdiff_t p, int b, int sign, struct sums *sums)
 {
-    const struct refocus_renderer *r = work->f->r;
 
     for (int i = work->border[b]; i < work->border[b + 1] && sums->alpha < ONE; i++) {
-        const ptrdiff_t q = p + work->offset[i].y * r->view.stride + work->offset[i].x;
-        const int s = r->blur.at[q] * sign;
+        const ptrdiff_t q = p + work->offset[i].y * work->f->view->stride + work->offset[i].x;
+        const int s = work->f->blur.at[q] * sign;
 
         if (s >= 128 && border_of(s) >= b)
             blend(work->f, q, work->alpha[border_of(s)], sums);
@@ -166,13 +165,12 @@ static void blend_border(const struct work *work, ptrdiff_t p, int b, int sign, 
 
 static void exact(const struct work *work, int x, int y, double light[3])
 {
-    const struct refocus_renderer *r = work->f->r;
-    const ptrdiff_t p = y * r->view.stride + x;
+    const ptrdiff_t p = y * work->f->view->stride + x;
     struct sums sums = {{0, 0, 0}, 0, 0};
 
     for (int b = work->front_borders; b > 0; b--)
         blend_border(work, p, b, -1, &sums);
-    blend(work->f, p, work->alpha[border_of(r->blur.at[p])], &sums);
+    blend(work->f, p, work->alpha[border_of(work->f->blur.at[p])], &sums);
     for (int b = 1; b <= work->back_borders; b++)
         blend_border(work, p, b, 1, &sums);
     blend(work->f, p, ONE, &sums); /* hypo-intensity correction */
@@ -184,21 +182,20 @@ static void exact(const struct work *work, int x, int y, double light[3])
 static void first_level_row(void *context, int y, int worker)
 {
     const struct work *work = context;
-    const struct refocus_renderer *r = work->f->r;
 
     (void)worker;
-    for (int x = 0; x < r->view.width; x++) {
-        const ptrdiff_t p = y * r->view.stride + x;
-        const size_t at = (size_t)y * (size_t)r->view.width + (size_t)x;
-        const double w = rf_weight_of(work->f, r->light.channel, p);
+    for (int x = 0; x < work->f->view->width; x++) {
+        const ptrdiff_t p = y * work->f->view->stride + x;
+        const size_t at = (size_t)y * (size_t)work->f->view->width + (size_t)x;
+        const double w = rf_weight_of(work->f, work->f->light.channel, p);
 
         for (int side = 0; side < 2; side++) {
             const struct level *level = &work->pyramid[side][0];
-            const int s = side ? r->blur.at[p] : -r->blur.at[p];
+            const int s = side ? work->f->blur.at[p] : -work->f->blur.at[p];
             const float present = s >= 128;
 
             for (int c = 0; c < 3; c++)
-                level->plane[c][at] = present * (float)(w * r->light.channel[c][p]);
+                level->plane[c][at] = present * (float)(w * work->f->light.channel[c][p]);
             level->plane[3][at] = present * (float)w;
             level->plane[4][at] = present;
         }
@@ -246,9 +243,9 @@ static void halve_y_row(void *context, int y, int worker)
 
 static void make_pyramids(struct work *work)
 {
-    struct rf_pool *pool = &work->f->r->pool;
+    struct rf_pool *pool = work->f->exec->pool;
 
-    rf_pool_run(pool, first_level_row, work, work->f->r->view.height);
+    rf_pool_run(pool, first_level_row, work, work->f->view->height);
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i + 1 < work->levels; i++) {
             work->from = &work->pyramid[side][i];
@@ -289,10 +286,10 @@ static double level_variance(int i)
 static void fast(const struct work *work, int x, int y, double light[3])
 {
     const struct rf_frame *f = work->f;
-    const ptrdiff_t p = y * f->r->view.stride + x;
-    const int s = f->r->blur.at[p];
+    const ptrdiff_t p = y * f->view->stride + x;
+    const int s = f->blur.at[p];
     const double variance = s / 256.0 * (s / 256.0) / 4;
-    const double w = rf_weight_of(f, f->r->light.channel, p);
+    const double w = rf_weight_of(f, f->light.channel, p);
     double sum[CHANNELS] = {0, 0, 0, 0, 0}, part;
     int i = 0;
 
@@ -309,17 +306,16 @@ static void fast(const struct work *work, int x, int y, double light[3])
     /* where the level does not cover, the picture */
     part = sum[4] < 1 ? 1 - sum[4] : 0;
     for (int c = 0; c < 3; c++)
-        light[c] = (sum[c] + part * w * f->r->light.channel[c][p]) / (sum[3] + part * w);
+        light[c] = (sum[c] + part * w * f->light.channel[c][p]) / (sum[3] + part * w);
 }
 
 /* 1 in the volume, 0 outside, and between them across its side. */
 static double attention(const struct work *work, int x, int y)
 {
     const struct refocus_render_params *p = work->f->params;
-    const struct refocus_renderer *r = work->f->r;
     const double dx = x - work->centre_x, dy = y - work->centre_y;
     const double beyond = sqrt(dx * dx + dy * dy) - work->radius;
-    const double d = r->disparity.at[y * r->view.stride + x] / 65535.0;
+    const double d = work->f->disparity.at[y * work->f->view->stride + x] / 65535.0;
     const double deeper = fabs(d - p->focus_disparity) - p->attention_depth;
     double share = beyond <= 0 ? 1 : beyond < work->margin ? 1 - beyond / work->margin : 0;
 
@@ -340,7 +336,7 @@ static void write_rows(void *context, int item, int worker)
             const double share = attention(work, x, y);
             double a[3] = {0, 0, 0}, b[3] = {0, 0, 0};
 
-            if (rf_cancelled(&f->r->exec))
+            if (rf_cancelled(f->exec))
                 return;
             if (share > 0)
                 exact(work, x, y, a);
@@ -357,32 +353,31 @@ static void write_rows(void *context, int item, int worker)
 static void make_volume(struct work *work)
 {
     const struct refocus_render_params *p = work->f->params;
-    const struct refocus_renderer *r = work->f->r;
     double s, c, picture;
 
     rf_sincos_turns(p->picture_angle / 720.0, &s, &c);
     picture = s / c;
     rf_sincos_turns(p->attention_angle / 720.0, &s, &c);
-    work->radius = r->view.width / 2.0 * (s / c) / picture;
+    work->radius = work->f->view->width / 2.0 * (s / c) / picture;
     work->margin = work->radius / 4;
-    work->centre_x = p->attention_x * (r->view.width - 1);
-    work->centre_y = p->attention_y * (r->view.height - 1);
+    work->centre_x = p->attention_x * (work->f->view->width - 1);
+    work->centre_y = p->attention_y * (work->f->view->height - 1);
 }
 
 void rf_foveated_frame(struct rf_frame *f)
 {
-    const struct rf_limits limits = rf_limits_of(f->r);
-    struct rf_arena arena = {f->r->work, 0};
+    const struct rf_limits limits = f->limits;
+    struct rf_arena arena = {f->work->at, 0};
     struct work *work = lay_out(&limits, &arena, NULL);
 
-    f->r->work_owner = RF_NO_METHOD;
+    f->work->owner = RF_NO_METHOD;
     work->f = f;
-    size_levels(work, f->r->view.width, f->r->view.height);
+    size_levels(work, f->view->width, f->view->height);
     work->front_borders = border_of(rf_nearest_blur(f));
     work->back_borders = border_of(rf_farthest_blur(f));
     list_borders(work, work->front_borders > work->back_borders ? work->front_borders
                                                                 : work->back_borders);
     make_volume(work);
     make_pyramids(work);
-    rf_pool_run(&f->r->pool, write_rows, work, (f->region.y1 - f->region.y0 + ROWS - 1) / ROWS);
+    rf_pool_run(f->exec->pool, write_rows, work, (f->region.y1 - f->region.y0 + ROWS - 1) / ROWS);
 }

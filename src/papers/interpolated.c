@@ -156,20 +156,19 @@ static void write_row(void *context, int item, int worker)
 {
     const struct work *work = context;
     const struct rf_frame *f = work->f;
-    const struct refocus_renderer *r = f->r;
     const int y = f->region.y0 + item, x0 = f->region.x0, n = f->region.x1 - x0;
     const size_t length = (size_t)work->making.row_length;
     int16_t *row = (int16_t *)(void *)rf_target_scratch(&work->making, worker);
     int16_t *middle = row + length, *last = middle + length;
     uint16_t *share = (uint16_t *)(last + length), *means = share + length;
-    const uint16_t *d = r->disparity.at + y * r->view.stride + x0, *mean[3];
+    const uint16_t *d = f->disparity.at + y * f->view->stride + x0, *mean[3];
 
     for (int x = 0; x < n; x++)
         share[x] = work->share[(d[x] * (RF_BLURRINESS_SIZE - 1u) + 32767) >> 16];
     for (int c = 0; c < 3; c++) {
         enlarged_row(&work->target[0], c, y, row + 1, middle);
         enlarged_row(&work->target[1], c, y, row + 1, last);
-        interpolate(means + (size_t)c * length, r->light.channel[c] + y * r->view.stride + x0,
+        interpolate(means + (size_t)c * length, f->light.channel[c] + y * f->view->stride + x0,
                     middle + x0, last + x0, share, n);
         mean[c] = means + (size_t)c * length;
     }
@@ -189,13 +188,13 @@ static void make_shares(struct work *work)
 void rf_interpolated_frame(struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
-    const struct rf_limits limits = rf_limits_of(f->r);
-    struct rf_arena arena = {f->r->work, 0};
+    const struct rf_limits limits = f->limits;
+    struct rf_arena arena = {f->work->at, 0};
     struct work *work = lay_out(&limits, &arena, NULL);
     const double df = p->focus_disparity, c0 = p->sharp_radius;
     double last = c0 * p->last_ratio, middle = c0 * p->middle_ratio;
 
-    f->r->work_owner = RF_NO_METHOD;
+    f->work->owner = RF_NO_METHOD;
     work->f = f;
     if (last <= 0)
         last = p->max_blur_radius * (df > 0.5 ? df : 1 - df);
@@ -207,7 +206,7 @@ void rf_interpolated_frame(struct rf_frame *f)
     make_shares(work);
     work->making.f = f;
     rf_target_make(&work->making, &work->target[0], middle);
-    if (!rf_cancelled(&f->r->exec))
+    if (!rf_cancelled(f->exec))
         rf_target_make(&work->making, &work->target[1], last);
-    rf_pool_run(&f->r->pool, write_row, work, f->region.y1 - f->region.y0);
+    rf_pool_run(f->exec->pool, write_row, work, f->region.y1 - f->region.y0);
 }

@@ -8,7 +8,6 @@
  */
 #include "papers/trace.h"
 #include "image/viewport.h"
-#include "renderer/renderer.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,9 +23,9 @@ static uint32_t draw(uint32_t seed, uint32_t place, uint32_t cell)
 }
 
 /* A number for each pixel of the photo. */
-static uint32_t place_of(const struct refocus_renderer *r, int x, int y)
+static uint32_t place_of(const struct rf_frame *f, int x, int y)
 {
-    return (uint32_t)(y + r->view.y0) << 16 | (uint32_t)(x + r->view.x0);
+    return (uint32_t)(y + f->view->y0) << 16 | (uint32_t)(x + f->view->x0);
 }
 
 /* What the pixels of a tile drew of a cell: by member of the cell, the pixels that drew it. */
@@ -44,7 +43,7 @@ static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell, st
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
             const uint32_t member =
-                draw(f->params->seed, place_of(f->r, x, y), (uint32_t)cell) % members;
+                draw(f->params->seed, place_of(f, x, y), (uint32_t)cell) % members;
 
             drawn[y % RF_TILE * RF_TILE + x % RF_TILE] = (uint8_t)member;
             count[member]++;
@@ -83,7 +82,7 @@ static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_blur
 
 void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    const struct rf_blur_range reach = rf_blur_range_of(f->r, tx, ty);
+    const struct rf_blur_range reach = rf_blur_range_of(f, tx, ty);
     const int a = f->params->cell, side = (int)floor(f->params->max_blur_radius);
     const int cells = (2 * side + a) / a, first = -(cells * a / 2);
     struct rf_exact_sums sums;
@@ -95,7 +94,7 @@ void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
     for (int cell = 0; cell < cells * cells; cell++) {
         const int mx = first + cell % cells * a, my = first + cell / cells * a;
 
-        if (rf_cancelled(&f->r->exec))
+        if (rf_cancelled(f->exec))
             return;
         draw_all(f, rect, cell, &draws);
         for (int member = 0; member < a * a; member++)

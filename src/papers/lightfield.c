@@ -59,25 +59,24 @@ static int greater(int a, int b)
 static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0, int y1,
                  struct band *band)
 {
-    const struct refocus_renderer *r = f->r;
     const int near_s = rf_nearest_blur(f), far_s = rf_farthest_blur(f);
     const int xa = rf_offset(ray->u, near_s), xb = rf_offset(ray->u, far_s);
     const int ya = rf_offset(ray->v, near_s), yb = rf_offset(ray->v, far_s);
 
-    for (ptrdiff_t i = 0; i < (ptrdiff_t)(y1 - y0) * r->view.width; i++)
+    for (ptrdiff_t i = 0; i < (ptrdiff_t)(y1 - y0) * f->view->width; i++)
         band->seen[i] = HOLE;
     for (int y = y0 + lesser(ya, yb); y < y1 + greater(ya, yb); y++) {
-        const int16_t *s = r->blur.at + y * r->view.stride;
+        const int16_t *s = f->blur.at + y * f->view->stride;
 
-        if (rf_cancelled(&r->exec))
+        if (rf_cancelled(f->exec))
             return;
-        for (int x = lesser(xa, xb); x < r->view.width + greater(xa, xb); x++) {
+        for (int x = lesser(xa, xb); x < f->view->width + greater(xa, xb); x++) {
             const int px = x - rf_offset(ray->u, s[x]), py = y - rf_offset(ray->v, s[x]);
             int16_t *seen;
 
-            if (py < y0 || py >= y1 || px < 0 || px >= r->view.width)
+            if (py < y0 || py >= y1 || px < 0 || px >= f->view->width)
                 continue;
-            seen = &band->seen[(ptrdiff_t)(py - y0) * r->view.width + px];
+            seen = &band->seen[(ptrdiff_t)(py - y0) * f->view->width + px];
             if (s[x] < *seen)
                 *seen = s[x];
         }
@@ -87,28 +86,27 @@ static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0
 static void add(const struct rf_frame *f, const struct refocus_ray *ray, ptrdiff_t q, int at,
                 struct band *band)
 {
-    const uint64_t w = (uint64_t)rf_weight_of(f, f->r->light.channel, q) * ray->weight;
+    const uint64_t w = (uint64_t)rf_weight_of(f, f->light.channel, q) * ray->weight;
 
     band->weight[at] += w;
     for (int c = 0; c < 3; c++)
-        band->light[c][at] += w * f->r->light.channel[c][q];
+        band->light[c][at] += w * f->light.channel[c][q];
 }
 
 /* Add a row of a view to the sums, its holes filled. */
 static void add_row(const struct rf_frame *f, const struct refocus_ray *ray, int y, int row,
                     struct band *band)
 {
-    const struct refocus_renderer *r = f->r;
-    const int16_t *seen = band->seen + row * r->view.width;
+    const int16_t *seen = band->seen + row * f->view->width;
 
-    for (int x = 0; x < r->view.width;) {
+    for (int x = 0; x < f->view->width;) {
         int end = x, from = x;
 
-        while (end < r->view.width && seen[end] == HOLE)
+        while (end < f->view->width && seen[end] == HOLE)
             end++;
         if (end > x) { /* x .. end - 1 is a hole */
-            from = x > 0 && (end == r->view.width || seen[x - 1] >= seen[end]) ? x - 1 : end;
-            if (x == 0 && end == r->view.width)
+            from = x > 0 && (end == f->view->width || seen[x - 1] >= seen[end]) ? x - 1 : end;
+            if (x == 0 && end == f->view->width)
                 from = -1; /* nothing came to this row at all */
         } else {
             end = x + 1;
@@ -117,8 +115,8 @@ static void add_row(const struct rf_frame *f, const struct refocus_ray *ray, int
             const int p = from < 0 ? x : seen[x] == HOLE ? from : x;
             const int s = from < 0 ? 0 : seen[p];
 
-            add(f, ray, (y + rf_offset(ray->v, s)) * r->view.stride + p + rf_offset(ray->u, s),
-                row * r->view.width + x, band);
+            add(f, ray, (y + rf_offset(ray->v, s)) * f->view->stride + p + rf_offset(ray->u, s),
+                row * f->view->width + x, band);
         }
     }
 }
@@ -126,28 +124,27 @@ static void add_row(const struct rf_frame *f, const struct refocus_ray *ray, int
 static void do_band(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
-    const struct refocus_renderer *r = f->r;
-    const struct rf_limits limits = rf_limits_of(r);
-    struct rf_arena arena = {r->work + (size_t)worker * band_bytes(&limits), 0};
-    const struct rf_ray_set *set = &r->ray_sets.set[r->ray_sets.preset];
+    const struct rf_limits limits = f->limits;
+    struct rf_arena arena = {f->work->at + (size_t)worker * band_bytes(&limits), 0};
+    const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
     const int y0 = f->region.y0 + item * BAND;
     const int y1 = lesser(y0 + BAND, f->region.y1);
     struct band band;
 
-    lay_out(&band, r->view.width, &arena);
+    lay_out(&band, f->view->width, &arena);
     for (int c = 0; c < 3; c++)
-        memset(band.light[c], 0, sizeof(uint64_t) * BAND * (size_t)r->view.width);
-    memset(band.weight, 0, sizeof(uint64_t) * BAND * (size_t)r->view.width);
-    for (int n = 0; n < set->count && !rf_cancelled(&r->exec); n++) {
+        memset(band.light[c], 0, sizeof(uint64_t) * BAND * (size_t)f->view->width);
+    memset(band.weight, 0, sizeof(uint64_t) * BAND * (size_t)f->view->width);
+    for (int n = 0; n < set->count && !rf_cancelled(f->exec); n++) {
         warp(f, &set->ray[n], y0, y1, &band);
-        for (int y = y0; y < y1 && !rf_cancelled(&r->exec); y++)
+        for (int y = y0; y < y1 && !rf_cancelled(f->exec); y++)
             add_row(f, &set->ray[n], y, y - y0, &band);
     }
-    if (rf_cancelled(&r->exec))
+    if (rf_cancelled(f->exec))
         return;
     for (int y = y0; y < y1; y++) {
         for (int x = f->region.x0; x < f->region.x1; x++) {
-            const int at = (y - y0) * r->view.width + x;
+            const int at = (y - y0) * f->view->width + x;
             const uint64_t light[3] = {band.light[0][at], band.light[1][at], band.light[2][at]};
 
             rf_write_mean(f, x, y, light, band.weight[at]);
@@ -159,5 +156,5 @@ void rf_lightfield_frame(struct rf_frame *f)
 {
     const int rows = f->region.y1 - f->region.y0;
 
-    rf_pool_run(&f->r->pool, do_band, f, (rows + BAND - 1) / BAND);
+    rf_pool_run(f->exec->pool, do_band, f, (rows + BAND - 1) / BAND);
 }

@@ -1,23 +1,15 @@
 /* frame.h: methods that work on whole frames.
  *
- * Such a method runs its own passes on the renderer's pool and writes all pixels of
- * f->region. Its memory is r->work: what it says it needs for the renderer's limits, laid
+ * Such a method runs its own passes on the pool and writes all pixels of
+ * f->region. Its memory is f->work: what it says it needs for the renderer's limits, laid
  * out by the function that also counts it. Between two frames of one method the memory
- * keeps its content; when another method was at work, r->work_owner says so.
+ * keeps its content; when another method was at work, f->work->owner says so.
  */
 #ifndef RF_PAPERS_H
 #define RF_PAPERS_H
 
 #include "gather/frame.h"
-#include "image/viewport.h"
-#include "renderer/renderer.h"
 #include "support/arena.h"
-
-/* What memory must suffice for. */
-struct rf_limits {
-    int width, height, pad, threads;
-    float max_blur_radius;
-};
 
 typedef void rf_frame_fn(struct rf_frame *f);
 typedef uint64_t rf_work_fn_size(const struct rf_limits *limits);
@@ -27,17 +19,11 @@ rf_frame_fn rf_lightfield_frame, rf_scatter_frame, rf_foveated_frame, rf_interpo
 rf_work_fn_size rf_lightfield_work, rf_scatter_work, rf_foveated_work, rf_interpolated_work,
     rf_diffusion_work;
 
-static inline struct rf_limits rf_limits_of(const struct refocus_renderer *r)
-{
-    return (struct rf_limits){r->max_width, r->max_height, r->view.pad, r->pool.threads,
-                              r->max_blur_radius};
-}
-
 /* Pixel (x, y) of the region from Q12 light times weights, and the weights. */
 static inline void rf_write_mean(const struct rf_frame *f, int x, int y, const uint64_t light[3],
                                  uint64_t weight)
 {
-    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+    const uint8_t *to_code = f->transfer->to_code;
     uint8_t rgb[3];
 
     for (int c = 0; c < 3; c++)
@@ -50,7 +36,7 @@ static inline void rf_write_mean(const struct rf_frame *f, int x, int y, const u
 static inline void rf_write_real(const struct rf_frame *f, int x, int y, const double light[3],
                                  double weight)
 {
-    const uint8_t *to_code = f->r->transfer[f->r->blend].to_code;
+    const uint8_t *to_code = f->transfer->to_code;
     uint8_t rgb[3];
 
     for (int c = 0; c < 3; c++) {

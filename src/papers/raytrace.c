@@ -6,15 +6,14 @@
  */
 #include "papers/trace.h"
 #include "image/viewport.h"
-#include "renderer/renderer.h"
 
 #include <math.h>
 #include <string.h>
 
 void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    const struct rf_ray_set *set = &f->r->ray_sets.set[f->r->ray_sets.preset];
-    const struct rf_blur_range reach = rf_blur_range_of(f->r, tx, ty);
+    const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
+    const struct rf_blur_range reach = rf_blur_range_of(f, tx, ty);
     const double K = f->params->max_blur_radius;
     struct rf_exact_sums sums;
     struct rf_path path;
@@ -24,7 +23,7 @@ void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
     for (int n = 0; n < set->count; n++) {
         double u = set->ray[n].u / 32768.0, v = set->ray[n].v / 32768.0;
 
-        if (rf_cancelled(&f->r->exec))
+        if (rf_cancelled(f->exec))
             return;
         if (f->params->rays == REFOCUS_RAYS_FULL && K > 0) { /* Q15 back to mask pixels */
             u = fmax(-1, fmin(1, floor(u * K + 0.5) / K));

@@ -80,7 +80,7 @@ static void fill_table(void *context, int item, int worker)
     (void)worker;
     /* the largest first: they take longest */
     rf_spread_fill(&work->table[work->tables - 1 - item], work->spread, work->airy_radius,
-                   &work->f->r->run);
+                   work->f->exec->run);
 }
 
 /* Tables for this K, unless they are there already. */
@@ -89,11 +89,11 @@ static bool make_tables(struct work *work, struct rf_frame *f)
     const struct refocus_render_params *p = f->params;
     uint32_t *share = work->shares;
 
-    if (f->r->work_owner == REFOCUS_METHOD_SCATTER && work->tables &&
+    if (f->work->owner == REFOCUS_METHOD_SCATTER && work->tables &&
         work->radius == p->max_blur_radius && work->spread == p->spread &&
         (p->spread == REFOCUS_SPREAD_UNIFORM || work->airy_radius == p->airy_radius))
         return true;
-    f->r->work_owner = RF_NO_METHOD;
+    f->work->owner = RF_NO_METHOD;
     work->radius = p->max_blur_radius;
     work->spread = p->spread;
     work->airy_radius = p->airy_radius;
@@ -106,10 +106,10 @@ static bool make_tables(struct work *work, struct rf_frame *f)
         table->share = share;
         share += (2 * table->reach + 1) * (table->reach + 1);
     }
-    rf_pool_run(&f->r->pool, fill_table, work, work->tables);
-    if (rf_cancelled(&f->r->exec))
+    rf_pool_run(f->exec->pool, fill_table, work, work->tables);
+    if (rf_cancelled(f->exec))
         return false;
-    f->r->work_owner = REFOCUS_METHOD_SCATTER;
+    f->work->owner = REFOCUS_METHOD_SCATTER;
     return true;
 }
 
@@ -128,9 +128,8 @@ static void make_attenuation(struct work *work, double ratio)
 static uint32_t weight_of(const struct work *work, int x, int y)
 {
     const struct rf_frame *f = work->f;
-    const struct refocus_renderer *r = f->r;
-    const uint32_t w = rf_weight_of(f, r->light.channel, y * r->view.stride + x);
-    const uint32_t z = work->attenuation[r->disparity.at[y * r->view.stride + x] >> 8];
+    const uint32_t w = rf_weight_of(f, f->light.channel, y * f->view->stride + x);
+    const uint32_t z = work->attenuation[f->disparity.at[y * f->view->stride + x] >> 8];
 
     if (!f->weighted)
         return z;
@@ -157,12 +156,11 @@ static void add_row(struct work *work, const uint32_t *restrict a, const uint32_
 /* Spread the sample at (x, y) over rows y0 .. y1 - 1. */
 static void spread_sample(struct work *work, int x, int y, int y0, int y1)
 {
-    const struct refocus_renderer *r = work->f->r;
-    const ptrdiff_t q = y * r->view.stride + x;
-    const int blur = r->blur.at[q] < 0 ? -r->blur.at[q] : r->blur.at[q];
+    const ptrdiff_t q = y * work->f->view->stride + x;
+    const int blur = work->f->blur.at[q] < 0 ? -work->f->blur.at[q] : work->f->blur.at[q];
     const uint32_t w = weight_of(work, x, y);
-    const uint32_t value[4] = {w * r->light.channel[0][q], w * r->light.channel[1][q],
-                               w * r->light.channel[2][q], w};
+    const uint32_t value[4] = {w * work->f->light.channel[0][q], w * work->f->light.channel[1][q],
+                               w * work->f->light.channel[2][q], w};
     /* Q7 place among the tables */
     const int largest = work->radius * 256 < 1 ? 1 : (int)(work->radius * 256 + 0.5);
     const int place = (int)((int64_t)blur * (work->tables - 1) * 128 / largest);
@@ -171,14 +169,14 @@ static void spread_sample(struct work *work, int x, int y, int y0, int y1)
     const uint32_t t = blur < 128 ? 0 : place - i * 128 > 128 ? 128 : (uint32_t)(place - i * 128);
     const int reach = blur < 128 ? 0 : a->reach;
     const int x0 = x - reach < 0 ? 0 : x - reach;
-    const int x1 = x + reach >= r->view.width ? r->view.width : x + reach + 1;
+    const int x1 = x + reach >= work->f->view->width ? work->f->view->width : x + reach + 1;
 
     for (int row = y - reach < y0 ? y0 : y - reach; row < y1 && row <= y + reach; row++) {
         const int dy = row < y ? y - row : row - y;
 
         add_row(work, a->share + dy * (2 * a->reach + 1) + a->reach + x0 - x,
                 b->share + dy * (2 * b->reach + 1) + b->reach + x0 - x, t, x1 - x0,
-                (size_t)row * (size_t)r->view.width + (size_t)x0, value);
+                (size_t)row * (size_t)work->f->view->width + (size_t)x0, value);
     }
 }
 
@@ -186,17 +184,17 @@ static void spread_sample(struct work *work, int x, int y, int y0, int y1)
 static void spread_band(void *context, int item, int worker)
 {
     struct work *work = context;
-    const struct refocus_renderer *r = work->f->r;
-    const int y0 = item * BAND, y1 = y0 + BAND < r->view.height ? y0 + BAND : r->view.height;
+    const int y0 = item * BAND,
+              y1 = y0 + BAND < work->f->view->height ? y0 + BAND : work->f->view->height;
     const int reach = work->table[work->tables - 1].reach;
 
     (void)worker;
     for (int i = 0; i < 4; i++)
-        memset(work->sum[i] + (size_t)y0 * (size_t)r->view.width, 0,
-               sizeof(uint64_t) * (size_t)(y1 - y0) * (size_t)r->view.width);
-    for (int y = y0 - reach < 0 ? 0 : y0 - reach; y < y1 + reach && y < r->view.height; y++)
-        for (int x = 0; x < r->view.width; x++) {
-            if (x % AT_ONCE == 0 && rf_cancelled(&r->exec))
+        memset(work->sum[i] + (size_t)y0 * (size_t)work->f->view->width, 0,
+               sizeof(uint64_t) * (size_t)(y1 - y0) * (size_t)work->f->view->width);
+    for (int y = y0 - reach < 0 ? 0 : y0 - reach; y < y1 + reach && y < work->f->view->height; y++)
+        for (int x = 0; x < work->f->view->width; x++) {
+            if (x % AT_ONCE == 0 && rf_cancelled(work->f->exec))
                 return;
             spread_sample(work, x, y, y0, y1);
         }
@@ -222,12 +220,12 @@ static void make_star(struct work *work)
 
 static void add_sums(const struct work *work, int x, int y, double weight, double sum[4])
 {
-    const struct refocus_renderer *r = work->f->r;
-    const int cx = x < 0 ? 0 : x >= r->view.width ? r->view.width - 1 : x;
-    const int cy = y < 0 ? 0 : y >= r->view.height ? r->view.height - 1 : y;
+    const int cx = x < 0 ? 0 : x >= work->f->view->width ? work->f->view->width - 1 : x;
+    const int cy = y < 0 ? 0 : y >= work->f->view->height ? work->f->view->height - 1 : y;
 
     for (int i = 0; i < 4; i++)
-        sum[i] += weight * (double)work->sum[i][(size_t)cy * (size_t)r->view.width + (size_t)cx];
+        sum[i] +=
+            weight * (double)work->sum[i][(size_t)cy * (size_t)work->f->view->width + (size_t)cx];
 }
 
 /* Light comes to (x, y) from where a spike of that light reaches it. */
@@ -257,10 +255,10 @@ static void write_row(void *context, int item, int worker)
 
     (void)worker;
     for (int x = f->region.x0; x < f->region.x1; x++) {
-        const size_t at = (size_t)y * (size_t)f->r->view.width + (size_t)x;
+        const size_t at = (size_t)y * (size_t)f->view->width + (size_t)x;
         const uint64_t light[3] = {work->sum[0][at], work->sum[1][at], work->sum[2][at]};
 
-        if (x % AT_ONCE == 0 && rf_cancelled(&f->r->exec))
+        if (x % AT_ONCE == 0 && rf_cancelled(f->exec))
             return;
         if (work->spike_count)
             write_star(work, x, y);
@@ -271,8 +269,8 @@ static void write_row(void *context, int item, int worker)
 
 void rf_scatter_frame(struct rf_frame *f)
 {
-    const struct rf_limits limits = rf_limits_of(f->r);
-    struct rf_arena arena = {f->r->work, 0};
+    const struct rf_limits limits = f->limits;
+    struct rf_arena arena = {f->work->at, 0};
     struct work *work = lay_out(&limits, &arena, NULL);
 
     work->f = f;
@@ -280,6 +278,6 @@ void rf_scatter_frame(struct rf_frame *f)
         return;
     make_attenuation(work, f->params->depth_ratio);
     make_star(work);
-    rf_pool_run(&f->r->pool, spread_band, work, (f->r->view.height + BAND - 1) / BAND);
-    rf_pool_run(&f->r->pool, write_row, work, f->region.y1 - f->region.y0);
+    rf_pool_run(f->exec->pool, spread_band, work, (f->view->height + BAND - 1) / BAND);
+    rf_pool_run(f->exec->pool, write_row, work, f->region.y1 - f->region.y0);
 }

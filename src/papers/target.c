@@ -33,7 +33,6 @@ static void make_taps(struct rf_target_work *work, double variance)
  * side^2 / 6. */
 static void shape(struct rf_target_work *work, struct rf_target *target, double radius)
 {
-    const struct refocus_renderer *r = work->f->r;
     double variance = radius * radius / 4;
     int side = 1;
 
@@ -42,8 +41,8 @@ static void shape(struct rf_target_work *work, struct rf_target *target, double 
         target->shift++;
         side *= 2;
     }
-    target->width = (r->view.width + side - 1) / side;
-    target->height = (r->view.height + side - 1) / side;
+    target->width = (work->f->view->width + side - 1) / side;
+    target->height = (work->f->view->height + side - 1) / side;
     if (side > 1)
         variance -= (side * side - 1) / 12.0 + side * side / 6.0;
     make_taps(work, variance / (side * side));
@@ -59,17 +58,17 @@ static void add_row(uint32_t *restrict sum, const uint16_t *restrict row, int n)
 static void reduce(const struct rf_target_work *work, int c, int y, uint32_t *sum, float *out)
 {
     const struct rf_target *t = work->target;
-    const struct refocus_renderer *r = work->f->r;
     const int side = 1 << t->shift, whole = t->width * side;
     const float share = 1.0f / (float)(side * side);
 
     memset(sum, 0, (size_t)whole * sizeof *sum);
     for (int j = 0; j < side; j++)
         add_row(sum,
-                r->light.channel[c] + rf_clamp(y * side + j, r->view.height - 1) * r->view.stride,
-                r->view.width);
-    for (int x = r->view.width; x < whole; x++)
-        sum[x] = sum[r->view.width - 1];
+                work->f->light.channel[c] +
+                    rf_clamp(y * side + j, work->f->view->height - 1) * work->f->view->stride,
+                work->f->view->width);
+    for (int x = work->f->view->width; x < whole; x++)
+        sum[x] = sum[work->f->view->width - 1];
     for (int x = 0; x < t->width; x++) {
         uint32_t block = 0;
 
@@ -84,7 +83,6 @@ static void reduce_weighted(const struct rf_target_work *work, int y,
                             float *const out[RF_TARGET_CHANNELS])
 {
     const struct rf_target *t = work->target;
-    const struct refocus_renderer *r = work->f->r;
     const int side = 1 << t->shift;
     const float share = 1.0f / (float)(side * side);
 
@@ -93,13 +91,13 @@ static void reduce_weighted(const struct rf_target_work *work, int y,
 
         for (int i = 0; i < side * side; i++) {
             const ptrdiff_t at =
-                rf_clamp(y * side + i / side, r->view.height - 1) * r->view.stride +
-                rf_clamp(x * side + i % side, r->view.width - 1);
-            const double w = rf_weight_of(work->f, r->light.channel, at);
+                rf_clamp(y * side + i / side, work->f->view->height - 1) * work->f->view->stride +
+                rf_clamp(x * side + i % side, work->f->view->width - 1);
+            const double w = rf_weight_of(work->f, work->f->light.channel, at);
 
             sum[3] += w;
             for (int c = 0; c < 3; c++)
-                sum[c] += w * r->light.channel[c][at];
+                sum[c] += w * work->f->light.channel[c][at];
         }
         for (int c = 0; c < RF_TARGET_CHANNELS; c++)
             out[c][x] = (float)sum[c] * share;
@@ -165,7 +163,7 @@ static void down_row(void *context, int y, int worker)
 
 void rf_target_make(struct rf_target_work *work, struct rf_target *target, double radius)
 {
-    struct rf_pool *pool = &work->f->r->pool;
+    struct rf_pool *pool = work->f->exec->pool;
 
     shape(work, target, radius < REFOCUS_MAX_BLUR_RADIUS ? radius : REFOCUS_MAX_BLUR_RADIUS);
     work->target = target;

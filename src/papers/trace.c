@@ -80,18 +80,18 @@ static bool hit_range(double along, double reach, double df, struct rf_step *ste
     return low <= high;
 }
 
-struct rf_blur_range rf_blur_range_of(const struct refocus_renderer *r, int tx, int ty)
+struct rf_blur_range rf_blur_range_of(const struct rf_frame *f, int tx, int ty)
 {
-    const int tiles = (r->view.pad + RF_TILE - 1) / RF_TILE;
+    const int tiles = (f->view->pad + RF_TILE - 1) / RF_TILE;
     int least = INT16_MAX, most = INT16_MIN;
 
     for (int j = ty - tiles; j <= ty + tiles; j++) {
         for (int i = tx - tiles; i <= tx + tiles; i++) {
             const struct rf_bins *bins;
 
-            if (i < 0 || j < 0 || i >= r->view.tiles_x || j >= r->view.tiles_y)
+            if (i < 0 || j < 0 || i >= f->view->tiles_x || j >= f->view->tiles_y)
                 continue;
-            bins = &r->bins[(size_t)j * r->view.tiles_x + i];
+            bins = &f->bins[(size_t)j * f->view->tiles_x + i];
             least = bins->least < least ? bins->least : least;
             most = bins->most > most ? bins->most : most;
         }
@@ -131,24 +131,24 @@ void rf_path_of(const struct rf_frame *f, struct rf_blur_range reach, double u, 
 
         step->dx = (int16_t)(steep ? other : k);
         step->dy = (int16_t)(steep ? k : other);
-        step->offset = (ptrdiff_t)step->dy * f->r->view.stride + step->dx;
+        step->offset = (ptrdiff_t)step->dy * f->view->stride + step->dx;
         path->steps += hit_range(k / major * length, length * K, df, step);
     }
 }
 
 /* The front-most hit of the ray of pixel (x, y); false: it meets nothing. */
-static bool trace(const struct refocus_renderer *r, const struct rf_path *path, int x, int y,
-                  int *qx, int *qy)
+static bool trace(const struct rf_frame *f, const struct rf_path *path, int x, int y, int *qx,
+                  int *qy)
 {
-    const uint16_t *p = r->disparity.at + y * r->view.stride + x;
-    const bool inside = x >= r->view.pad && y >= r->view.pad && x < r->view.width - r->view.pad &&
-                        y < r->view.height - r->view.pad;
+    const uint16_t *p = f->disparity.at + y * f->view->stride + x;
+    const bool inside = x >= f->view->pad && y >= f->view->pad &&
+                        x < f->view->width - f->view->pad && y < f->view->height - f->view->pad;
 
     for (int i = 0; i < path->steps; i++) {
         const struct rf_step *step = &path->step[i];
-        const int tx = inside ? x + step->dx : clamp(x + step->dx, r->view.width - 1);
-        const int ty = inside ? y + step->dy : clamp(y + step->dy, r->view.height - 1);
-        const uint16_t d = inside ? p[step->offset] : r->disparity.at[ty * r->view.stride + tx];
+        const int tx = inside ? x + step->dx : clamp(x + step->dx, f->view->width - 1);
+        const int ty = inside ? y + step->dy : clamp(y + step->dy, f->view->height - 1);
+        const uint16_t d = inside ? p[step->offset] : f->disparity.at[ty * f->view->stride + tx];
 
         if ((uint16_t)(d - step->low) <= step->width) {
             *qx = tx;
@@ -163,27 +163,26 @@ static bool trace(const struct refocus_renderer *r, const struct rf_path *path, 
 static void mirror(const struct rf_frame *f, const struct rf_path *path, int x, int y, int *qx,
                    int *qy)
 {
-    const double d = f->r->disparity.at[y * f->r->view.stride + x] / 65535.0;
+    const double d = f->disparity.at[y * f->view->stride + x] / 65535.0;
     const double s = f->params->max_blur_radius * (f->params->focus_disparity - d);
 
-    *qx = clamp((int)floor(x - path->u * s + 0.5), f->r->view.width - 1);
-    *qy = clamp((int)floor(y - path->v * s + 0.5), f->r->view.height - 1);
+    *qx = clamp((int)floor(x - path->u * s + 0.5), f->view->width - 1);
+    *qy = clamp((int)floor(y - path->v * s + 0.5), f->view->height - 1);
 }
 
 void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, int y, double weight,
                  struct rf_exact_sums *sums)
 {
-    const struct refocus_renderer *r = f->r;
-    const uint8_t *to_code = r->transfer[r->blend].to_code;
+    const uint8_t *to_code = f->transfer->to_code;
     const int i = y % RF_TILE * RF_TILE + x % RF_TILE;
     int qx = x, qy = y, code[3], most = 0;
     ptrdiff_t at;
 
-    if (!path->central && !trace(r, path, x, y, &qx, &qy))
+    if (!path->central && !trace(f, path, x, y, &qx, &qy))
         mirror(f, path, x, y, &qx, &qy);
-    at = qy * r->view.stride + qx;
+    at = qy * f->view->stride + qx;
     for (int c = 0; c < 3; c++) {
-        code[c] = to_code[4 * r->light.channel[c][at]];
+        code[c] = to_code[4 * f->light.channel[c][at]];
         most = code[c] > most ? code[c] : most;
     }
     weight *= f->exact->weight[most];

@@ -11,7 +11,7 @@ enum { RF_MAX_STEPS = REFOCUS_MAX_BLUR_RADIUS + 3 };
 struct rf_step {
     int16_t dx, dy;
     uint16_t low, width; /* a hit if 0 <= d - low <= width; see `never` */
-    ptrdiff_t offset;    /* in r->disparity.at */
+    ptrdiff_t offset;    /* in f->disparity.at */
 };
 
 struct rf_path {
@@ -25,7 +25,7 @@ struct rf_path {
 struct rf_blur_range {
     double least, most;
 };
-struct rf_blur_range rf_blur_range_of(const struct refocus_renderer *r, int tx, int ty);
+struct rf_blur_range rf_blur_range_of(const struct rf_frame *f, int tx, int ty);
 
 /* The way of ray (u, v), the same for every pixel of a tile: the part of it where there can be
  * something. */

@@ -112,6 +112,7 @@ static void make_window(struct rf_frame *f, struct rf_rect block, int margin, en
     struct refocus_renderer *r = f->r;
 
     load(r, block, margin);
+    rf_set_planes(f);
     if (need == RF_NEED_LIGHT || rf_cancelled(&r->exec))
         return;
     rf_pass_blur(f, need == RF_NEED_LAYERS);

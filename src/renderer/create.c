@@ -87,7 +87,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
         own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
         REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
         REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
-    r->work_owner = RF_NO_METHOD;
+    r->work.owner = RF_NO_METHOD;
     r->in_place.on = own.in_place;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)
         rf_transfer_init(&r->transfer[blend], blend);

@@ -75,17 +75,19 @@ static void take_thin(struct rf_arena *arena, struct rf_thin_list *thin, int wid
 }
 
 /* What is drawn of them. Its sources lie in the pyramid, which comes later. */
-static void take_veil(struct rf_arena *arena, struct rf_veil *veil, int width, int height)
+static void take_coverage(struct rf_arena *arena, struct rf_coverage *coverage, int width,
+                          int height)
 {
     const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
     const uint64_t down = (uint64_t)(height + RF_TILE - 1) / RF_TILE;
 
-    veil->stride = (int)(across * (RF_TILE / RF_VEIL_CELL)) + 1;
-    veil->cell = rf_arena_take(arena, (uint64_t)veil->stride * down * (RF_TILE / RF_VEIL_CELL),
-                               sizeof *veil->cell);
-    veil->sources = rf_arena_take(arena, down, sizeof *veil->sources);
-    veil->apart = rf_arena_take(arena, across * down, sizeof *veil->apart);
-    veil->swapped = rf_arena_take(arena, down, sizeof *veil->swapped);
+    coverage->stride = (int)(across * (RF_TILE / RF_COVERAGE_CELL)) + 1;
+    coverage->cell =
+        rf_arena_take(arena, (uint64_t)coverage->stride * down * (RF_TILE / RF_COVERAGE_CELL),
+                      sizeof *coverage->cell);
+    coverage->sources = rf_arena_take(arena, down, sizeof *coverage->sources);
+    coverage->choice = rf_arena_take(arena, across * down, sizeof *coverage->choice);
+    coverage->swapped = rf_arena_take(arena, down, sizeof *coverage->swapped);
 }
 
 /* The photo, and what a lens setting makes of it. */
@@ -256,12 +258,13 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->has_thin = params->thin && !params->in_place;
     if (r->has_thin) { /* and not begun while sources are drawn */
         arena->used = before;
-        r->veil.source = rf_arena_take(arena, 16 * tiles, sizeof *r->veil.source);
+        r->coverage.source =
+            rf_arena_take(arena, RF_COVERAGE_SOURCES * tiles, rf_coverage_source_bytes());
         after = arena->used > after ? arena->used : after;
     }
     arena->used = after;
     if (r->has_thin) {
-        take_veil(arena, &r->veil, w, h);
+        take_coverage(arena, &r->coverage, w, h);
         take_thin(arena, &r->photo.thin, w, h);
     }
     r->range.stride = rf_range_width(across, pad);
@@ -281,7 +284,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         return;
     r->taps = rf_arena_take(arena, (uint64_t)w + h, sizeof *r->taps);
     r->spans = rf_arena_take(arena, (uint64_t)w + 2, sizeof *r->spans);
-    r->work = rf_arena_take(arena, work_bytes(params), 1);
+    r->work.at = rf_arena_take(arena, work_bytes(params), 1);
 }
 
 uint64_t rf_layout_size(const struct refocus_renderer_params *params)

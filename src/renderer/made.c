@@ -71,15 +71,17 @@ struct parts {
 /* What r->made.thin is for this frame: 0, or the size of discs and the blend. */
 static uint32_t made_thin(const struct rf_frame *f)
 {
-    return rf_takes_apart(f) ? (uint32_t)f->veils << 8 | (uint32_t)f->holds << 7 | (1 + f->r->blend)
-                             : 0;
+    return rf_thin_is_separated(&f->thin) ? (uint32_t)f->thin.disc_scale << 8 |
+                                                (uint32_t)f->thin.mattes << 7 | (1 + f->r->blend)
+                                          : 0;
 }
 
 static bool has_same_thin(const struct rf_frame *f)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->thin == made_thin(f) && (!rf_takes_apart(f) || m->veil_blur == f->veil_blur);
+    return m->thin == made_thin(f) &&
+           (!rf_thin_is_separated(&f->thin) || m->splat_blur == f->thin.splat_blur);
 }
 
 /* Whether all of that is there. */
@@ -110,10 +112,10 @@ static void make_blur(struct rf_frame *f, bool layers)
                               .plan = f->plan,
                               .shift = f->scale.shift,
                               .thin = made_thin(f),
-                              .veil_blur = f->veil_blur};
+                              .splat_blur = f->thin.splat_blur};
         rf_pass_blur(f, layers);
-        if (rf_takes_apart(f) && !rf_cancelled(&r->exec))
-            rf_take_thin_apart(f);
+        if (rf_thin_is_separated(&f->thin) && !rf_cancelled(&r->exec))
+            rf_pass_thin(f);
         m->blur = !rf_cancelled(&r->exec);
     }
     if (m->blur && layers && !m->rims) {
@@ -157,7 +159,7 @@ static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect
 /* How far beyond a tile something thick decides what becomes of what is thin in it. */
 static int thin_margin(const struct rf_frame *f)
 {
-    return rf_takes_apart(f) ? f->r->view.pad + 2 * RF_TILE : 0;
+    return rf_thin_is_separated(&f->thin) ? f->r->view.pad + 2 * RF_TILE : 0;
 }
 
 /* How far from the window's sides the mark and the smooth light are those of the whole
@@ -254,6 +256,7 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
         if (is_large(r, window))
             window = all;
         rf_use(r, window);
+        rf_set_planes(f);
         make_blur(f, layers);
         if (!layers || rf_cancelled(&r->exec))
             return;
@@ -285,9 +288,9 @@ static void find_thin(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
 
-    if (!rf_takes_apart(f) || r->photo.thin.blend == r->blend)
+    if (!rf_thin_is_separated(&f->thin) || r->photo.thin.blend == r->blend)
         return;
-    rf_find_thin(r);
+    rf_thin_find(&f->thin, r->blend);
 }
 
 void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need, bool whole)
@@ -297,6 +300,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     struct parts parts = {rf_whole(r), rf_whole(r)};
 
     rf_use(r, rf_whole(r));
+    rf_set_planes(f);
     f->region = region;
     if (r->yuv.on)
         rf_yuv_set_blend(r, f->params->blend);
@@ -317,6 +321,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     }
     if (is_there(f, &parts, layers)) {
         rf_use(r, r->made.window);
+        rf_set_planes(f);
         f->bright = layers ? r->made.bright : RF_WHITE;
     } else {
         /* the background takes smooth light without it */

@@ -200,13 +200,13 @@ void rf_pass_bright(struct rf_frame *f)
 /* The light is the photo's again afterwards, whatever happens; of the next as well. */
 void rf_pass_prefilter(struct rf_frame *f)
 {
-    if (rf_takes_apart(f))
-        rf_swap_thin_light(f);
+    if (rf_thin_is_separated(&f->thin))
+        rf_thin_swap_light(&f->thin);
     if (f->draws)
         rf_take_lamps_out(f->r);
     prefilter(f);
-    if (rf_takes_apart(f))
-        rf_swap_thin_light_back(f);
+    if (rf_thin_is_separated(&f->thin))
+        rf_thin_swap_light_back(&f->thin);
 }
 
 static void dilate_item(void *context, int upwards, int worker)
@@ -251,6 +251,27 @@ void rf_pass_blur(struct rf_frame *f, bool layers)
     rf_pool_run(&f->r->pool, blur_band, f, rf_bands(&f->r->view));
     if (!layers)
         rf_pool_run(&f->r->pool, range_band, f, rf_bands(&f->r->view));
+}
+
+static void thin_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
+
+    (void)worker;
+    if (!rf_thin_patch_band(&f->thin, band))
+        return;
+    rf_extend_rows(&r->view, r->blur.at, rf_band_start(band), rf_band_end(&r->view, band));
+    rf_cell_rows(r, band);
+    rf_bin_tiles(r, f->scale, band);
+}
+
+void rf_pass_thin(struct rf_frame *f)
+{
+    rf_thin_separate(&f->thin);
+    rf_pool_run(&f->r->pool, thin_band, f, rf_bands(&f->r->view));
+    if (f->thin.disc_scale)
+        rf_coverage_splat(&f->thin);
 }
 
 void rf_pass_smooth(struct rf_frame *f)

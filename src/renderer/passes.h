@@ -34,6 +34,7 @@ float rf_lamp_gain(
     const struct rf_frame *f); /* once there are: none if they are drawn; of luma what fits */
 void rf_pass_lamps(struct rf_frame *f); /* finds them, in all of the photo in use, once */
 void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
+void rf_pass_thin(struct rf_frame *f);              /* after rf_pass_blur() */
 void rf_pass_smooth(struct rf_frame *f);
 void rf_pass_prefilter(struct rf_frame *f);        /* of rf_pass_smooth() the smooth light alone */
 void rf_pass_mark(struct rf_frame *f, int levels); /* and up the pyramid, but of Y, U and V */

@@ -128,38 +128,19 @@ static void set_prefilter(struct rf_frame *f)
     }
 }
 
-/* Thin things are met well where rays lie closer than 1.8 pixels, and badly from 2.25 on. A full
- * mask draws what 64 rays draw, as it is there to tell what so few rays change. */
-static int veil_blur(const struct refocus_render_params *p)
-{
-    const int rays = p->rays == REFOCUS_RAYS_FULL ? 64 : p->rays;
-    const double blur = 256 * 1.8 * sqrt(rays / 3.14159265358979);
-
-    return blur > INT16_MAX ? INT16_MAX : blur < RF_VEIL_BLUR ? RF_VEIL_BLUR : (int)blur;
-}
-
-/* Whether what is thin is found. */
-static bool may_take_apart(const struct rf_frame *f)
-{
-    return f->params->thin && f->r->has_thin && f->params->method == REFOCUS_METHOD_SWEEP &&
-           !f->r->yuv.on && f->params->max_blur_radius > 0;
-}
-
-/* Discs of veils are as large as the opening's rays lie on the average: 1/2 for the
- * mean square of a disc's. Openings with fine structure have none, nor those that
- * differ from place to place. */
-static int veil_scale(const struct rf_frame *f)
+/* Thin structures of a photo of R, G and B, where the renderer has memory for them. */
+static void set_up_thin(struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
-    const struct rf_ray_set *set = &f->r->ray_sets.set[f->r->ray_sets.preset];
-    int64_t sum = 0;
 
-    if (!may_take_apart(f) || (f->plan.plain && f->thin_bounds[0].veil_from > 65535) ||
-        p->cat_eye > 0 || p->fringe != 0 || f->fine)
-        return 0;
-    for (int n = 0; n < set->count; n++)
-        sum += set->ray[n].u * set->ray[n].u + set->ray[n].v * set->ray[n].v;
-    return (int)(sqrt(2.0 * (double)(sum / set->count)) / 128 + 0.5);
+    rf_thin_set_up(&f->thin,
+                   &(struct rf_thin_settings){
+                       .on = p->thin && f->r->has_thin && p->method == REFOCUS_METHOD_SWEEP &&
+                             !f->r->yuv.on && p->max_blur_radius > 0,
+                       .splats = p->cat_eye <= 0 && p->fringe == 0 && !f->fine,
+                       .rays = p->rays,
+                       .set = &f->r->ray_sets.set[f->r->ray_sets.preset],
+                   });
 }
 
 /* What tile_item() reads of a rectangle of tiles. */
@@ -195,6 +176,7 @@ static void run(struct rf_frame *f, struct rf_rect region)
     const bool layers = method->layers || f->params->background;
     const enum rf_need need = pinhole ? RF_NEED_LIGHT : layers ? RF_NEED_LAYERS : RF_NEED_BLUR;
 
+    rf_set_planes(f);
     r->last_rims = layers;
     if (!pinhole)
         rf_ray_sets_make(&r->ray_sets,
@@ -212,10 +194,7 @@ static void run(struct rf_frame *f, struct rf_rect region)
     }
     if (rf_cancelled(&r->exec))
         return;
-    f->veil_blur = veil_blur(f->params);
-    rf_set_thin_bounds(f);
-    f->veils = veil_scale(f);
-    f->holds = may_take_apart(f);
+    set_up_thin(f);
     f->row_gap = pinhole ? 0 : rf_row_gap(f);
     if (r->in_place.on) {
         rf_run_blocks(f, region, need, run_tiles);

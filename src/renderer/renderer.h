@@ -15,6 +15,7 @@
 #include "colour/transfer.h"
 #include "finish/finish.h"
 #include "focus/focus.h"
+#include "gather/work_memory.h"
 #include "highlights/highlights.h"
 #include "highlights/rims.h"
 #include "image/chroma.h"
@@ -25,17 +26,13 @@
 #include "passes/prefilter.h"
 #include "support/executor.h"
 #include "thin/thin.h"
-#include "thin/veil.h"
 #include "tiles/bins.h"
 
 enum {
     RF_GROUP = 4, /* planes that lie together */
 };
 
-#define RF_NO_METHOD UINT32_MAX
-
 /* The photo as it was prepared. */
-#define RF_NO_BLEND UINT32_MAX
 
 struct rf_photo {
     int width, height;              /* pixels; 0: none prepared */
@@ -72,9 +69,9 @@ struct rf_made {
     struct rf_rect window; /* of that photo, to which all of it is limited */
     struct rf_rect exact;  /* where it is as if made for the whole photo */
     struct rf_focus_plan plan;
-    int shift;     /* of the bins */
-    uint32_t thin; /* as what thin things were taken apart, made_thin(), */
-    int veil_blur; /* and from where on */
+    int shift;      /* of the bins */
+    uint32_t thin;  /* as what thin things were taken apart, made_thin(), */
+    int splat_blur; /* and from where on */
     uint32_t blend;
     float gain;
     int prefilter_above[RF_PREFILTER_STEPS];
@@ -156,23 +153,24 @@ struct refocus_renderer {
     uint32_t weight_blend;
 
     bool has_thin; /* there is memory for what is thin: */
-    struct rf_veil veil;
+    struct rf_coverage coverage;
     struct rf_star *star; /* of this lens setting */
     int stars;
     struct rf_grain *grain; /* of this lens setting */
     uint32_t renders;       /* so far, that had maps of their own */
 
-    uint8_t *work;       /* memory of the methods that work on whole frames, one at a time */
-    uint32_t work_owner; /* whose tables are still in it, or RF_NO_METHOD */
-    uint32_t methods;    /* REFOCUS_METHOD_BIT of those that it suffices for */
+    struct rf_work_memory work;
+    uint32_t methods; /* REFOCUS_METHOD_BIT of those that it suffices for */
 
     struct rf_ray_sets ray_sets;
     struct rf_cat_eye cat_eye;     /* made when it is first asked for; */
     struct rf_cat_shape cat_shape; /* that of the last aperture with one */
 };
 
-/* Make a part of the photo the window. */
+/* Make a part of the photo the window; tell a frame of its planes. */
 void rf_use(struct refocus_renderer *r, struct rf_rect window);
+struct rf_frame;
+void rf_set_planes(struct rf_frame *f);
 static inline struct rf_rect rf_whole(const struct refocus_renderer *r)
 {
     return (struct rf_rect){0, 0, r->photo.width, r->photo.height};

@@ -1,6 +1,8 @@
 #include "renderer/layout.h"
 #include "passes/yuv.h"
 #include "renderer/renderer.h"
+#include "gather/frame.h"
+#include "tiles/ranges.h"
 #include "support/compare.h"
 
 /* Pixel (0, 0) of the window in a group of planes of a photo; see rf_use(). */
@@ -65,4 +67,43 @@ void rf_use(struct refocus_renderer *r, struct rf_rect part)
     place_planes(r, photo);
     rf_yuv_use(r);
     r->levels = rf_pyramid(r->level, width, height);
+}
+
+void rf_set_planes(struct rf_frame *f)
+{
+    struct refocus_renderer *r = f->r;
+
+    f->exec = &r->exec;
+    f->view = &r->view;
+    f->light = r->light;
+    f->smooth = r->smooth;
+    f->blur = r->blur;
+    f->background = r->background;
+    f->weight = r->weight;
+    f->background_weight =
+        (struct rf_weight_q15){(uint16_t *)r->background.blur.at, r->background.blur.stride};
+    f->disparity = r->disparity;
+    f->alpha = r->alpha;
+    f->range = r->range;
+    f->bins = r->bins;
+    f->yuv = &r->yuv;
+    f->transfer = &r->transfer[f->params->blend];
+    f->light_weight = r->light_weight;
+    f->ray_sets = &r->ray_sets;
+    f->cat_eye = &r->cat_eye;
+    f->cat_shape = &r->cat_shape;
+    f->limits = (struct rf_limits){r->max_width, r->max_height, r->view.pad, r->pool.threads,
+                                   r->max_blur_radius};
+    f->work = &r->work;
+    f->thin.exec = &r->exec;
+    f->thin.view = &r->view;
+    f->thin.plan = &f->plan;
+    f->thin.disparity = r->disparity;
+    f->thin.light = r->light;
+    f->thin.blur = r->blur;
+    f->thin.cell_most = rf_cell_most(r, 0);
+    f->thin.cell_stride = r->view.stride;
+    f->thin.bins = r->bins;
+    f->thin.list = &r->photo.thin;
+    f->thin.coverage = &r->coverage;
 }

@@ -1,8 +1,6 @@
-/* find.c: which pixels of the photo are mixtures, and of what: kernels/thin.h. */
-#include "thin/thin.h"
-
-#include "image/viewport.h"
-#include "renderer/renderer.h"
+/* find.c: finds the mixtures of a photo (kernels/thin.h has the rule) and lists them by tiles. */
+#include "colour/transfer.h"
+#include "thin/mixture.h"
 
 static struct rf_thin_run run_of(const struct rf_thin *thin, uint32_t first, int count)
 {
@@ -19,43 +17,43 @@ static struct rf_thin_run run_of(const struct rf_thin *thin, uint32_t first, int
 
 static void find_band(void *context, int band, int worker)
 {
-    struct refocus_renderer *r = context;
-    struct rf_thin_list *list = &r->photo.thin;
-    const uint64_t capacity = rf_thin_capacity(r->view.width);
+    const struct rf_thin_pass *t = context;
+    struct rf_thin_list *list = t->list;
+    const uint64_t capacity = rf_thin_capacity(t->view->width);
     struct rf_thin *thin = list->pixel + (uint64_t)band * capacity;
     const int y = rf_band_start(band);
     uint32_t count = 0;
 
     (void)worker;
-    for (int tx = 0; tx < r->view.tiles_x; tx++) {
+    for (int tx = 0; tx < t->view->tiles_x; tx++) {
         const int x = tx * RF_TILE;
-        const ptrdiff_t at = y * r->view.stride + x;
+        const ptrdiff_t at = y * t->view->stride + x;
         const struct rf_thin_tile tile = {
-            .disparity = r->disparity.at + at,
-            .light = {r->light.channel[0] + at, r->light.channel[1] + at, r->light.channel[2] + at},
-            .stride = r->view.stride,
+            .disparity = t->disparity.at + at,
+            .light = {t->light.channel[0] + at, t->light.channel[1] + at, t->light.channel[2] + at},
+            .stride = t->view->stride,
             .left = x,
             .above = y,
-            .right = r->view.width - x,
-            .below = r->view.height - y,
+            .right = t->view->width - x,
+            .below = t->view->height - y,
         };
         const uint64_t room = capacity - count;
         const int found =
-            r->exec.kernels->find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
+            t->exec->kernels->find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
 
         for (int i = 0; i < found; i++)
-            rf_tell_strand(r, &thin[count + (uint32_t)i], tx, band);
-        list->run[(size_t)band * r->view.tiles_x + tx] = run_of(thin + count, count, found);
+            rf_fit_strand(t, &thin[count + (uint32_t)i], tx, band);
+        list->run[(size_t)band * t->view->tiles_x + tx] = run_of(thin + count, count, found);
         count += (uint32_t)found;
     }
 }
 
-void rf_find_thin(struct refocus_renderer *r)
+void rf_thin_find(const struct rf_thin_pass *t, uint32_t blend)
 {
-    struct rf_thin_list *list = &r->photo.thin;
+    struct rf_thin_list *list = t->list;
 
     list->blend = RF_NO_BLEND;
-    rf_pool_run(&r->pool, find_band, r, rf_bands(&r->view));
-    if (!rf_cancelled(&r->exec))
-        list->blend = r->blend;
+    rf_pool_run(t->exec->pool, find_band, (void *)t, rf_bands(t->view));
+    if (!rf_cancelled(t->exec))
+        list->blend = blend;
 }

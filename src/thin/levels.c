@@ -1,13 +1,13 @@
-/* levels.c: which of what is thin is far before the focus, and which is in it (thin.h). */
+/* levels.c: which mixtures are far enough before the focus to be splatted, or in focus and matted.
+ */
+#include <math.h>
 #include <stdlib.h>
 
-#include "focus/focus.h"
-#include "gather/frame.h"
-#include "thin/thin.h"
+#include "thin/mixture.h"
 
 enum { MOST_FAR_ALPHA = 160 }; /* 255 = 1 */
 
-/* signed_blur of one. */
+/* Signed circle of confusion of one disparity, as the kernel signed_blur rounds it. */
 static int plain_blur(struct rf_focus focus, uint16_t disparity)
 {
     const int away = disparity - focus.disparity;
@@ -16,23 +16,23 @@ static int plain_blur(struct rf_focus focus, uint16_t disparity)
     return away > 0 ? -(int)(blur >> 16) : (int)(blur >> 16);
 }
 
-int rf_thin_blur(const struct rf_frame *f, uint16_t disparity, int x, int y)
+int rf_thin_blur(const struct rf_thin_pass *t, uint16_t disparity, int x, int y)
 {
     int16_t blur;
 
-    if (f->plan.plain)
-        return plain_blur(f->plan.focus, disparity);
-    rf_focus_row(&f->plan, &blur, &disparity, f->r->view.x0 + x, f->r->view.y0 + y, 1);
+    if (t->plan->plain)
+        return plain_blur(t->plan->focus, disparity);
+    rf_focus_row(t->plan, &blur, &disparity, t->view->x0 + x, t->view->y0 + y, 1);
     return blur;
 }
 
-int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+int rf_near_blur(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
-    return rf_thin_blur(f, thin->near_disparity, tx * RF_TILE, ty * RF_TILE);
+    return rf_thin_blur(t, thin->near_disparity, tx * RF_TILE, ty * RF_TILE);
 }
 
-/* Of a pixel of a tile. Cells beside each other, and those on a line, differ much; single pixels
- * would show as a weave. */
+/* The level of a pixel of a tile. Cells beside each other, and those on a line, differ much; levels
+ * that differ from pixel to pixel would show as a weave. */
 static int level_of(int at)
 {
     static const uint8_t level[4][4] = {
@@ -41,13 +41,13 @@ static int level_of(int at)
     return level[at / RF_TILE / RF_CELL][at % RF_TILE / RF_CELL];
 }
 
-static int veil_blur_of(const struct rf_frame *f, int level)
+static int splat_blur_of(const struct rf_thin_pass *t, int level)
 {
-    return f->veil_blur + f->veil_blur * level / 64;
+    return t->splat_blur + t->splat_blur * level / 64;
 }
 
-/* Q7.8: how much what is held may be blurred, and what is behind it must. */
-static int held_blur(int level)
+/* Q7.8: how much a matted structure may be blurred, and how much its background must. */
+static int matte_blur(int level)
 {
     return 112 + 9 * level;
 }
@@ -57,47 +57,47 @@ static int far_blur(int level)
     return 384 + 32 * level;
 }
 
-/* Whether the map has it near. */
-static bool is_near(const struct refocus_renderer *r, const struct rf_thin *thin, int tx, int ty)
+/* Whether the map gives the pixel the depth of N. */
+static bool is_near(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
 
-    return r->disparity.at[y * r->view.stride + x] == thin->near_disparity;
+    return t->disparity.at[y * t->view->stride + x] == thin->near_disparity;
 }
 
 /* What the map has far can hardly be covered by more than half: else its own texture was taken for
  * what is near. */
-bool rf_is_held(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int level = level_of(thin->at);
-    const struct rf_thin_bounds *b = &f->thin_bounds[level];
+    const struct rf_thin_bounds *b = &t->bounds[level];
 
-    if (thin->alpha > MOST_FAR_ALPHA && !is_near(f->r, thin, tx, ty))
+    if (thin->alpha > MOST_FAR_ALPHA && !is_near(t, thin, tx, ty))
         return false;
-    if (f->plan.plain)
-        return thin->near_disparity >= b->held_from && thin->near_disparity <= b->held_to &&
-               thin->far_disparity <= b->held_far;
-    return abs(rf_near_blur(f, thin, tx, ty)) <= held_blur(level) &&
-           rf_thin_blur(f, thin->far_disparity, tx * RF_TILE, ty * RF_TILE) >= far_blur(level);
+    if (t->plan->plain)
+        return thin->near_disparity >= b->matte_from && thin->near_disparity <= b->matte_to &&
+               thin->far_disparity <= b->matte_far;
+    return abs(rf_near_blur(t, thin, tx, ty)) <= matte_blur(level) &&
+           rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE) >= far_blur(level);
 }
 
-bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty)
+bool rf_is_splatted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int level = level_of(thin->at);
 
-    return f->plan.plain ? thin->near_disparity >= f->thin_bounds[level].veil_from
-                         : rf_near_blur(f, thin, tx, ty) <= -veil_blur_of(f, level);
+    return t->plan->plain ? thin->near_disparity >= t->bounds[level].splat_from
+                          : rf_near_blur(t, thin, tx, ty) <= -splat_blur_of(t, level);
 }
 
 /* The least disparity with at most a blur; 65536: none. */
-static int disparity_from(const struct rf_frame *f, int blur)
+static int disparity_from(const struct rf_thin_pass *t, int blur)
 {
     int low = 0, high = 65536;
 
     while (low < high) {
         const int middle = (low + high) / 2;
 
-        if (plain_blur(f->plan.focus, (uint16_t)middle) <= blur)
+        if (plain_blur(t->plan->focus, (uint16_t)middle) <= blur)
             high = middle;
         else
             low = middle + 1;
@@ -105,13 +105,46 @@ static int disparity_from(const struct rf_frame *f, int blur)
     return low;
 }
 
-void rf_set_thin_bounds(struct rf_frame *f)
+static void set_bounds(struct rf_thin_pass *t)
 {
-    for (int k = 0; k < RF_THIN_LEVELS && f->plan.plain; k++)
-        f->thin_bounds[k] = (struct rf_thin_bounds){
-            .veil_from = disparity_from(f, -veil_blur_of(f, k)),
-            .held_from = disparity_from(f, held_blur(k)),
-            .held_to = disparity_from(f, -held_blur(k) - 1) - 1,
-            .held_far = disparity_from(f, far_blur(k) - 1) - 1,
+    for (int k = 0; k < RF_THIN_LEVELS && t->plan->plain; k++)
+        t->bounds[k] = (struct rf_thin_bounds){
+            .splat_from = disparity_from(t, -splat_blur_of(t, k)),
+            .matte_from = disparity_from(t, matte_blur(k)),
+            .matte_to = disparity_from(t, -matte_blur(k) - 1) - 1,
+            .matte_far = disparity_from(t, far_blur(k) - 1) - 1,
         };
+}
+
+/* Rays hit thin structures often enough where they lie closer than 1.8 pixels, and miss many from
+ * 2.25 on. A full mask splats what 64 rays splat, as it is there to show what so few rays change.
+ */
+static int splat_blur(int rays)
+{
+    const double blur =
+        256 * 1.8 * sqrt((rays == REFOCUS_RAYS_FULL ? 64 : rays) / 3.14159265358979);
+
+    return blur > INT16_MAX ? INT16_MAX : blur < RF_COVERAGE_BLUR ? RF_COVERAGE_BLUR : (int)blur;
+}
+
+/* Discs are as large as the rays of the aperture lie from its middle on the average: the mean
+ * square of the radius of a disc's points is 1/2. */
+static int disc_scale(const struct rf_ray_set *set)
+{
+    int64_t sum = 0;
+
+    for (int n = 0; n < set->count; n++)
+        sum += set->ray[n].u * set->ray[n].u + set->ray[n].v * set->ray[n].v;
+    return (int)(sqrt(2.0 * (double)(sum / set->count)) / 128 + 0.5);
+}
+
+void rf_thin_set_up(struct rf_thin_pass *t, const struct rf_thin_settings *settings)
+{
+    t->splat_blur = splat_blur(settings->rays);
+    set_bounds(t);
+    t->mattes = settings->on;
+    t->disc_scale =
+        settings->on && settings->splats && !(t->plan->plain && t->bounds[0].splat_from > 65535)
+            ? disc_scale(settings->set)
+            : 0;
 }

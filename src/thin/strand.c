@@ -1,9 +1,7 @@
-/* strand.c: a strand of hair before something of a pattern (thin.h). */
+/* strand.c: fits the coverage of a strand of hair before a pattern by least squares (mixture.h). */
 #include <stdlib.h>
 
-#include "image/viewport.h"
-#include "renderer/renderer.h"
-#include "thin/thin.h"
+#include "thin/mixture.h"
 
 enum {
     REACH = 4,           /* pixels on each side that are looked at: */
@@ -23,20 +21,20 @@ struct fit {
 };
 
 /* F beside a pixel: the mean of the far ones of the eight around it. False: fewer than two. */
-static bool far_beside(const struct refocus_renderer *r, int x, int y, int own, int64_t far[3])
+static bool far_beside(const struct rf_thin_pass *t, int x, int y, int own, int64_t far[3])
 {
     int count = 0;
 
     far[0] = far[1] = far[2] = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            const ptrdiff_t q = rf_within(y + j, r->view.height - 1) * r->view.stride +
-                                rf_within(x + i, r->view.width - 1);
+            const ptrdiff_t q = rf_within(y + j, t->view->height - 1) * t->view->stride +
+                                rf_within(x + i, t->view->width - 1);
 
-            if (r->disparity.at[q] >= own - JUMP)
+            if (t->disparity.at[q] >= own - JUMP)
                 continue;
             for (int c = 0; c < 3; c++)
-                far[c] += r->light.channel[c][q];
+                far[c] += t->light.channel[c][q];
             count++;
         }
     for (int c = 0; c < 3 && count; c++)
@@ -44,12 +42,12 @@ static bool far_beside(const struct refocus_renderer *r, int x, int y, int own, 
     return count >= 2;
 }
 
-static void add_pixel(struct fit *fit, const struct refocus_renderer *r, ptrdiff_t at,
+static void add_pixel(struct fit *fit, const struct rf_thin_pass *t, ptrdiff_t at,
                       const int64_t far[3])
 {
     fit->count++;
     for (int c = 0; c < 3; c++) {
-        const int64_t light = r->light.channel[c][at];
+        const int64_t light = t->light.channel[c][at];
 
         fit->f[c] += far[c];
         fit->c[c] += light;
@@ -59,38 +57,38 @@ static void add_pixel(struct fit *fit, const struct refocus_renderer *r, ptrdiff
     }
 }
 
-static int near_in(const struct refocus_renderer *r, struct rf_rect in, int own)
+static int near_in(const struct rf_thin_pass *t, struct rf_rect in, int own)
 {
     int count = 0;
 
     for (int y = in.y0; y < in.y1; y++)
         for (int x = in.x0; x < in.x1; x++)
-            count += abs(r->disparity.at[y * r->view.stride + x] - own) <= JUMP;
+            count += abs(t->disparity.at[y * t->view->stride + x] - own) <= JUMP;
     return count;
 }
 
 /* One pixel wide, and no other near: a wire is told at once. */
-static bool is_strand(const struct refocus_renderer *r, int x, int y, int own)
+static bool is_strand(const struct rf_thin_pass *t, int x, int y, int own)
 {
     int count;
 
-    if (near_in(r, rf_around(&r->view, x, y, 1), own) > CLOSE)
+    if (near_in(t, rf_around(t->view, x, y, 1), own) > CLOSE)
         return false;
-    count = near_in(r, rf_around(&r->view, x, y, REACH), own);
+    count = near_in(t, rf_around(t->view, x, y, REACH), own);
     return count >= LEAST && count <= MOST;
 }
 
-static void add_strand(struct fit *fit, const struct refocus_renderer *r, int x, int y, int own)
+static void add_strand(struct fit *fit, const struct rf_thin_pass *t, int x, int y, int own)
 {
-    const struct rf_rect in = rf_around(&r->view, x, y, REACH);
+    const struct rf_rect in = rf_around(t->view, x, y, REACH);
 
     for (int qy = in.y0; qy < in.y1; qy++)
         for (int qx = in.x0; qx < in.x1; qx++) {
-            const ptrdiff_t q = qy * r->view.stride + qx;
+            const ptrdiff_t q = qy * t->view->stride + qx;
             int64_t far[3];
 
-            if (abs(r->disparity.at[q] - own) <= JUMP && far_beside(r, qx, qy, own, far))
-                add_pixel(fit, r, q, far);
+            if (abs(t->disparity.at[q] - own) <= JUMP && far_beside(t, qx, qy, own, far))
+                add_pixel(fit, t, q, far);
         }
 }
 
@@ -114,23 +112,23 @@ static int slope_of(const struct fit *fit)
     return (int)(slope < CLEAR ? slope : CLEAR);
 }
 
-void rf_tell_strand(const struct refocus_renderer *r, struct rf_thin *thin, int tx, int ty)
+void rf_fit_strand(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty)
 {
     const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
-    const ptrdiff_t at = y * r->view.stride + x;
+    const ptrdiff_t at = y * t->view->stride + x;
     struct fit fit = {.count = 0};
     int slope;
 
-    if (r->disparity.at[at] != thin->near_disparity || !is_strand(r, x, y, thin->near_disparity))
+    if (t->disparity.at[at] != thin->near_disparity || !is_strand(t, x, y, thin->near_disparity))
         return;
-    add_strand(&fit, r, x, y, thin->near_disparity);
+    add_strand(&fit, t, x, y, thin->near_disparity);
     slope = fit.count >= LEAST ? slope_of(&fit) : 0;
     if (!slope)
         return;
     thin->alpha = (uint8_t)(255 - slope);
     for (int c = 0; c < 3; c++) {
         const int64_t own = (255 * fit.c[c] - slope * fit.f[c]) / (255 * fit.count);
-        const int64_t far = (r->light.channel[c][at] - (own > 0 ? own : 0)) * 255 / slope;
+        const int64_t far = (t->light.channel[c][at] - (own > 0 ? own : 0)) * 255 / slope;
 
         thin->light[c] = (uint16_t)(far < 0 ? 0 : far < RF_LIGHT_MAX ? far : RF_LIGHT_MAX);
     }

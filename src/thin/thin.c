@@ -1,56 +1,43 @@
+/* thin.c: chooses which mixtures are separated, and exchanges their light with that behind them. */
 #include "thin/thin.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "thin/veil.h"
-#include "focus/focus.h"
-#include "gather/frame.h"
-#include "passes/planes.h"
-#include "image/viewport.h"
-#include "renderer/renderer.h"
-#include "tiles/ranges.h"
+#include "thin/mixture.h"
 
 enum { CELLS = RF_TILE / RF_CELL };
 
-const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty)
+const struct rf_thin_run *rf_thin_run_of(const struct rf_thin_pass *t, int tx, int ty)
 {
-    const struct rf_photo *photo = &r->photo;
-    const int row = ty + r->view.y0 / RF_TILE, column = tx + r->view.x0 / RF_TILE;
-    const int across = (photo->width + RF_TILE - 1) / RF_TILE;
+    const int row = ty + t->view->y0 / RF_TILE, column = tx + t->view->x0 / RF_TILE;
+    const int across = (t->view->photo_width + RF_TILE - 1) / RF_TILE;
 
-    return &photo->thin.run[(size_t)row * across + column];
+    return &t->list->run[(size_t)row * across + column];
 }
 
-struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty, uint32_t *count)
+struct rf_thin *rf_thin_of(const struct rf_thin_pass *t, int tx, int ty, uint32_t *count)
 {
-    const struct rf_photo *photo = &r->photo;
-    const struct rf_thin_run *run = rf_thin_run_of(r, tx, ty);
-    const int row = ty + r->view.y0 / RF_TILE;
+    const struct rf_thin_run *run = rf_thin_run_of(t, tx, ty);
+    const int row = ty + t->view->y0 / RF_TILE;
 
     *count = run->count;
-    return photo->thin.pixel + (uint64_t)row * rf_thin_capacity(photo->width) + run->first;
+    return t->list->pixel + (uint64_t)row * rf_thin_capacity(t->view->photo_width) + run->first;
 }
 
-struct rf_apart *rf_apart_of(const struct refocus_renderer *r, int tx, int ty)
+struct rf_thin_choice *rf_thin_choice_of(const struct rf_thin_pass *t, int tx, int ty)
 {
-    return &r->veil.apart[(size_t)ty * r->view.tiles_x + tx];
+    return &t->coverage->choice[(size_t)ty * t->view->tiles_x + tx];
 }
 
-bool rf_takes_apart(const struct rf_frame *f)
-{
-    return f->veils || f->holds;
-}
-
-/* Whether a tile holds some cells all of which is as near as a blur: nothing thin fills
- * many. */
-static bool is_filled(const struct refocus_renderer *r, int tx, int ty, int blur)
+/* Whether a tile has more than a few cells all of which is as near as a blur: nothing thin fills
+ * many cells. */
+static bool is_filled(const struct rf_thin_pass *t, int tx, int ty, int blur)
 {
     enum { FEW = 3 };
     int filled = 0;
 
     for (int j = 0; j < CELLS; j++) {
-        const int16_t *most = rf_cell_most(r, ty * CELLS + j) + tx * CELLS;
+        const int16_t *most = t->cell_most + (ty * CELLS + j) * t->cell_stride + tx * CELLS;
 
         for (int i = 0; i < CELLS; i++)
             filled += most[i] <= blur;
@@ -58,174 +45,162 @@ static bool is_filled(const struct refocus_renderer *r, int tx, int ty, int blur
     return filled > FEW;
 }
 
-/* Whether nothing that is nearly as near as a blur reaches a tile, but for what is
- * thin: what is drawn is laid over all. */
-static bool is_alone(const struct refocus_renderer *r, int tx, int ty, int blur)
+/* Whether nothing that is nearly as near as a blur reaches a tile, except thin structures: the
+ * coverage layer is composited over everything, so nothing may be before it. */
+static bool is_alone(const struct rf_thin_pass *t, int tx, int ty, int blur)
 {
     const int reach = (abs(blur) + 256 * RF_TILE - 1) / (256 * RF_TILE);
 
     for (int y = ty - reach; y <= ty + reach; y++)
         for (int x = tx - reach; x <= tx + reach; x++)
-            if (x >= 0 && y >= 0 && x < r->view.tiles_x && y < r->view.tiles_y &&
-                is_filled(r, x, y, blur * 3 / 4))
+            if (x >= 0 && y >= 0 && x < t->view->tiles_x && y < t->view->tiles_y &&
+                is_filled(t, x, y, blur * 3 / 4))
                 return false;
     return true;
 }
 
-/* Whether all of a tile are, or none, as far as its run can say. */
-static bool are_all_veils(const struct rf_frame *f, const struct rf_thin_run *run)
+/* Whether all mixtures of a tile are splatted, or none, as far as its run can say. */
+static bool are_all_splatted(const struct rf_thin_pass *t, const struct rf_thin_run *run)
 {
-    return f->plan.plain && run->least >= f->thin_bounds[RF_THIN_LEVELS - 1].veil_from;
+    return t->plan->plain && run->least >= t->bounds[RF_THIN_LEVELS - 1].splat_from;
 }
 
-static bool is_no_veil(const struct rf_frame *f, const struct rf_thin_run *run)
+static bool is_none_splatted(const struct rf_thin_pass *t, const struct rf_thin_run *run)
 {
-    return f->plan.plain && run->most < f->thin_bounds[0].veil_from;
+    return t->plan->plain && run->most < t->bounds[0].splat_from;
 }
 
-/* Of those of a tile that are to be drawn the farthest near disparity; 65536: none. */
-static int farthest_veil(const struct rf_frame *f, int tx, int ty)
+/* The farthest near disparity of the mixtures of a tile that are splatted; 65536: none is. */
+static int farthest_splatted(const struct rf_thin_pass *t, int tx, int ty)
 {
-    const struct rf_thin_run *run = rf_thin_run_of(f->r, tx, ty);
+    const struct rf_thin_run *run = rf_thin_run_of(t, tx, ty);
     uint32_t count;
-    const struct rf_thin *thin = rf_thin_of(f->r, tx, ty, &count);
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
     int least = 65536;
 
-    if (count == 0 || is_no_veil(f, run))
+    if (count == 0 || is_none_splatted(t, run))
         return least;
-    if (are_all_veils(f, run))
+    if (are_all_splatted(t, run))
         return run->least;
     for (uint32_t i = 0; i < count; i++)
-        if (rf_is_veil(f, &thin[i], tx, ty) && thin[i].near_disparity < least)
+        if (rf_is_splatted(t, &thin[i], tx, ty) && thin[i].near_disparity < least)
             least = thin[i].near_disparity;
     return least;
 }
 
-static void choose_veils(const struct rf_frame *f, int tx, int ty, struct rf_apart *apart)
+static void choose_splatted(const struct rf_thin_pass *t, int tx, int ty,
+                            struct rf_thin_choice *choice)
 {
-    const bool all = are_all_veils(f, rf_thin_run_of(f->r, tx, ty));
-    const int d = farthest_veil(f, tx, ty);
+    const bool all = are_all_splatted(t, rf_thin_run_of(t, tx, ty));
+    const int d = farthest_splatted(t, tx, ty);
     uint32_t count;
-    const struct rf_thin *thin = rf_thin_of(f->r, tx, ty, &count);
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
 
-    if (d > 65535 ||
-        !is_alone(f->r, tx, ty, rf_thin_blur(f, (uint16_t)d, tx * RF_TILE, ty * RF_TILE)))
+    if (d > 65535 || !is_alone(t, tx, ty, rf_thin_blur(t, (uint16_t)d, tx * RF_TILE, ty * RF_TILE)))
         return;
-    apart->veils = true;
+    choice->splats = true;
     for (uint32_t i = 0; i < count; i++)
-        if (all || rf_is_veil(f, &thin[i], tx, ty))
-            apart->veil[i / 64] |= UINT64_C(1) << i % 64;
+        if (all || rf_is_splatted(t, &thin[i], tx, ty))
+            choice->splat[i / 64] |= UINT64_C(1) << i % 64;
 }
 
 static void choose_band(void *context, int band, int worker)
 {
-    const struct rf_frame *f = context;
+    const struct rf_thin_pass *t = context;
 
     (void)worker;
-    f->r->veil.swapped[band] = false;
-    for (int tx = 0; tx < f->r->view.tiles_x; tx++) {
-        struct rf_apart *apart = rf_apart_of(f->r, tx, band);
+    t->coverage->swapped[band] = false;
+    for (int tx = 0; tx < t->view->tiles_x; tx++) {
+        struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, band);
 
-        *apart = (struct rf_apart){.veils = false};
-        if (f->veils)
-            choose_veils(f, tx, band, apart);
-        if (f->holds)
-            rf_choose_held(f, tx, band, apart);
+        *choice = (struct rf_thin_choice){.splats = false};
+        if (t->disc_scale)
+            choose_splatted(t, tx, band, choice);
+        if (t->mattes)
+            rf_choose_matted(t, tx, band, choice);
     }
 }
 
-static bool is_any(const struct rf_apart *apart)
+static bool is_any(const struct rf_thin_choice *choice)
 {
-    return apart->veils || apart->held;
+    return choice->splats || choice->mattes;
 }
 
-static bool is_apart(const struct rf_apart *apart, uint32_t i)
+static bool is_apart(const struct rf_thin_choice *choice, uint32_t i)
 {
-    return rf_has_bit(apart->veil, i) || rf_has_bit(apart->hold, i);
+    return rf_has_bit(choice->splat, i) || rf_has_bit(choice->matte, i);
 }
 
-/* F's blur where what is before it is drawn. */
-static void patch_tile(const struct rf_frame *f, int tx, int ty)
+/* Where N is composited, the planes have the circle of confusion of F. */
+static void patch_tile(const struct rf_thin_pass *t, int tx, int ty)
 {
-    const struct refocus_renderer *r = f->r;
-    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
+    const struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, ty);
     uint32_t count;
-    const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
 
     for (uint32_t i = 0; i < count; i++) {
         const int x = tx * RF_TILE + thin[i].at % RF_TILE;
         const int y = ty * RF_TILE + thin[i].at / RF_TILE;
 
-        if (is_apart(apart, i))
-            r->blur.at[y * r->view.stride + x] =
-                (int16_t)rf_thin_blur(f, thin[i].far_disparity, x, y);
+        if (is_apart(choice, i))
+            t->blur.at[y * t->view->stride + x] =
+                (int16_t)rf_thin_blur(t, thin[i].far_disparity, x, y);
     }
 }
 
-static void patch_band(void *context, int band, int worker)
+bool rf_thin_patch_band(const struct rf_thin_pass *t, int band)
 {
-    const struct rf_frame *f = context;
-    struct refocus_renderer *r = f->r;
     bool any = false;
 
-    (void)worker;
-    for (int tx = 0; tx < r->view.tiles_x; tx++) {
-        if (!is_any(rf_apart_of(r, tx, band)))
+    for (int tx = 0; tx < t->view->tiles_x; tx++) {
+        if (!is_any(rf_thin_choice_of(t, tx, band)))
             continue;
         any = true;
-        patch_tile(f, tx, band);
+        patch_tile(t, tx, band);
     }
-    if (!any)
-        return;
-    rf_extend_rows(&r->view, r->blur.at, rf_band_start(band), rf_band_end(&r->view, band));
-    rf_cell_rows(r, band);
-    rf_bin_tiles(r, f->scale, band);
+    return any;
 }
 
-void rf_take_thin_apart(struct rf_frame *f)
+void rf_thin_separate(const struct rf_thin_pass *t)
 {
-    rf_pool_run(&f->r->pool, choose_band, f, rf_bands(&f->r->view));
-    rf_pool_run(&f->r->pool, patch_band, f, rf_bands(&f->r->view));
-    if (f->veils)
-        rf_veil_draw(f);
+    rf_pool_run(t->exec->pool, choose_band, (void *)t, rf_bands(t->view));
 }
 
-void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][RF_TILE * RF_TILE])
+void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty,
+                         uint16_t mean[3][RF_TILE * RF_TILE])
 {
-    const struct refocus_renderer *r = f->r;
-    const ptrdiff_t at = ty * RF_TILE * r->view.stride + tx * RF_TILE;
-    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
+    const ptrdiff_t at = ty * RF_TILE * t->view->stride + tx * RF_TILE;
+    const struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, ty);
     uint32_t count;
-    const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
 
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < RF_TILE * RF_TILE; i++)
             mean[c][i] =
                 (uint16_t)(4 *
-                           r->light.channel[c][at + i / RF_TILE * r->view.stride + i % RF_TILE]);
+                           t->light.channel[c][at + i / RF_TILE * t->view->stride + i % RF_TILE]);
     for (uint32_t i = 0; i < count; i++) {
-        if (!is_apart(apart, i))
+        if (!is_apart(choice, i))
             continue;
         for (int c = 0; c < 3; c++)
             mean[c][thin[i].at] = (uint16_t)(4 * thin[i].light[c]);
     }
 }
 
-static void swap_tile(const struct rf_frame *f, int tx, int ty)
+static void swap_tile(const struct rf_thin_pass *t, int tx, int ty)
 {
-    const struct refocus_renderer *r = f->r;
-    const ptrdiff_t stride = r->view.stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
-    uint16_t *const red = r->light.channel[0] + tile, *const green = r->light.channel[1] + tile,
-                    *const blue = r->light.channel[2] + tile;
-    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
+    const ptrdiff_t stride = t->view->stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
+    uint16_t *const red = t->light.channel[0] + tile, *const green = t->light.channel[1] + tile,
+                    *const blue = t->light.channel[2] + tile;
+    const struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, ty);
     uint32_t count;
-    struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
+    struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
 
     for (uint32_t i = 0; i < count; i++) {
         const ptrdiff_t at = thin[i].at / RF_TILE * stride + thin[i].at % RF_TILE;
         const uint16_t light[3] = {red[at], green[at], blue[at]};
 
-        if (!is_apart(apart, i))
+        if (!is_apart(choice, i))
             continue;
         red[at] = thin[i].light[0];
         green[at] = thin[i].light[1];
@@ -235,12 +210,12 @@ static void swap_tile(const struct rf_frame *f, int tx, int ty)
     }
 }
 
-static void swap_row(const struct rf_frame *f, int ty)
+static void swap_row(const struct rf_thin_pass *t, int ty)
 {
-    for (int tx = 0; tx < f->r->view.tiles_x; tx++)
-        if (is_any(rf_apart_of(f->r, tx, ty)))
-            swap_tile(f, tx, ty);
-    f->r->veil.swapped[ty] = !f->r->veil.swapped[ty];
+    for (int tx = 0; tx < t->view->tiles_x; tx++)
+        if (is_any(rf_thin_choice_of(t, tx, ty)))
+            swap_tile(t, tx, ty);
+    t->coverage->swapped[ty] = !t->coverage->swapped[ty];
 }
 
 static void swap_band(void *context, int band, int worker)
@@ -249,25 +224,25 @@ static void swap_band(void *context, int band, int worker)
     swap_row(context, band);
 }
 
-void rf_swap_thin_light(struct rf_frame *f)
+void rf_thin_swap_light(const struct rf_thin_pass *t)
 {
-    rf_pool_run(&f->r->pool, swap_band, f, rf_bands(&f->r->view));
+    rf_pool_run(t->exec->pool, swap_band, (void *)t, rf_bands(t->view));
 }
 
 static void swap_band_back(void *context, int band, int worker)
 {
-    const struct rf_frame *f = context;
+    const struct rf_thin_pass *t = context;
 
     (void)worker;
-    if (f->r->veil.swapped[band])
-        swap_row(f, band);
+    if (t->coverage->swapped[band])
+        swap_row(t, band);
 }
 
-/* The pool leaves out what comes after the run was cancelled. */
-void rf_swap_thin_light_back(struct rf_frame *f)
+/* The pool hands out nothing after the run was cancelled: the bands that it left are done here. */
+void rf_thin_swap_light_back(const struct rf_thin_pass *t)
 {
-    rf_pool_run(&f->r->pool, swap_band_back, f, rf_bands(&f->r->view));
-    for (int ty = 0; ty < f->r->view.tiles_y; ty++)
-        if (f->r->veil.swapped[ty])
-            swap_row(f, ty);
+    rf_pool_run(t->exec->pool, swap_band_back, (void *)t, rf_bands(t->view));
+    for (int ty = 0; ty < t->view->tiles_y; ty++)
+        if (t->coverage->swapped[ty])
+            swap_row(t, ty);
 }

@@ -1,21 +1,40 @@
-/* thin.h: thin things, and the edges beside them, taken apart.
+/* thin.h: thin structures, and the depth edges beside them, are separated from what is behind them.
  *
- * A wire of two pixels that is blurred over forty is met by few rays, here by more and
- * there by less: it shows as streaks. And the pixels at its edge that have the depth of
- * what is behind stay there as a sharp line. All of them are mixtures of the wire, N,
- * and of what is behind, F,
+ * A wire of two pixels that is blurred over forty is hit by few rays, here by more and there by
+ * less, and shows as streaks. And the pixels at its edge that have the depth of what is behind stay
+ * there as a sharp line. All of them are mixtures of the wire, N, and of what is behind it, F,
  *
- *     C = alpha N + (1 - alpha) F
+ *     C = alpha N + (1 - alpha) F                                        coverage alpha
  *
- * So they are taken apart: the planes get F, at its depth, and alpha N is drawn over
- * the picture (veil.h). That is done where the near thing is thin, far before the
- * focus, and nothing thick that is as near reaches the tile.
+ * So they are separated: the planes get F, at its depth, and alpha N is composited over the
+ * picture, in one of two ways.
  *
- * F is the mean of the pixels around of the far surface that counts most, each by the
- * inverse square of its distance; N that of the near ones around by how much they
- * differ from F. alpha is the share of N - F in C - F, at least as much as keeps N
- * between black and white. Where C tells nothing, or is of another colour than such a
- * mixture, it is 1 if the map has the pixel near, else none.
+ * Splatted: far before the focus, where nothing thick that is as near reaches the tile, alpha N and
+ * alpha become discs of a coverage layer (coverage.h).
+ *
+ * Matted: in focus before something far, hair for example, its part of the pixels at its edge would
+ * be blurred with what is behind it, and the edge would show steps. It stays where it is,
+ *
+ *     out = alpha N + (1 - alpha) mean
+ *
+ * up to about half a pixel of its own blur, before what is blurred by two or more pixels, where
+ * nothing nearer reaches.
+ *
+ * F is the mean of the pixels around of the far surface that counts most, each by the inverse
+ * square of its distance; N that of the near ones around by how much they differ from F. alpha is
+ * the part of N - F in C - F, at least as much as keeps N between black and white. Where C tells
+ * nothing, or is of another colour than such a mixture, it is 1 if the map has the pixel near, else
+ * the pixel is no mixture.
+ *
+ * This header is all that other folders see. The passes run in this order:
+ *
+ *     rf_thin_find           once a photo and blend       reads light, disparity; writes the list
+ *     rf_thin_set_up         once a lens setting
+ *     rf_thin_separate       after circles of confusion   reads the list; writes the choice
+ *     rf_thin_patch_band                                  writes blur: that of F
+ *     rf_coverage_splat                                   writes the coverage layer
+ *     rf_thin_swap_light     before the pre-filter        exchanges light with the list
+ *     rf_thin_swap_light_back   after it
  */
 #ifndef RF_THIN_H
 #define RF_THIN_H
@@ -23,116 +42,141 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "aperture/ray_set.h"
+#include "focus/focus.h"
+#include "image/planes.h"
+#include "image/viewport.h"
 #include "kernels/thin.h"
+#include "support/executor.h"
+#include "tiles/bins.h"
 
-struct refocus_renderer;
-struct rf_frame;
-
-/* Those of a tile, of all that are in its row of tiles. */
+/* The mixtures of a tile, among all that are in its row of tiles. */
 struct rf_thin_run {
     uint32_t first;
     uint16_t count;
-    uint16_t least, most; /* near disparities; 65535 and 0 of none */
+    uint16_t least, most; /* near disparities; 65535 and 0 if there are no mixtures */
 };
 
-/* Room for those of a row of tiles: one pixel in four; further ones stay as they are.
- */
+/* Room for the mixtures of a row of tiles: one pixel in four. Further ones stay as they are. */
 static inline uint64_t rf_thin_capacity(int width)
 {
     return (uint64_t)((width + 15) / 16) * 64;
 }
 
+/* The mixtures of a photo. */
 struct rf_thin_list {
-    struct rf_thin *pixel;   /* rf_thin_capacity() for each row of tiles; while the planes
-                                have F, the light of each is that of the photo */
+    struct rf_thin *pixel;   /* rf_thin_capacity() for each row of tiles; while the light planes
+                                hold F, `light` of each holds that of the photo */
     struct rf_thin_run *run; /* of each tile */
     uint32_t blend;          /* that they were found in, or RF_NO_BLEND */
 };
 
-/* Find those of the photo in use, all of which is in the window, in r->blend. */
-void rf_find_thin(struct refocus_renderer *r);
-
 /*
- * Hair before letters: F, the mean of what is around, is neither that of a letter nor that of what
- * is between, and the pattern stays in what is laid over, as dashes. Along a strand of one pixel C
- * goes with f, the mean of the far pixels beside each,
+ * Nothing may jump as the focus moves, so not all pixels are separated at one blur. Each cell of
+ * 4 x 4 pixels of a tile has a level k. Its mixtures are splatted from a blur of
  *
- *     C = alpha N + (1 - alpha) f
+ *     splat_blur (1 + k / 64)
  *
- * so least squares tell 1 - alpha, the slope in all three channels, and alpha N. Where f varies,
- * and half of how C varies is told, alpha becomes that, and F = (C - alpha N) / (1 - alpha).
- */
-void rf_tell_strand(const struct refocus_renderer *r, struct rf_thin *thin, int tx, int ty);
-
-/* Those of a tile of the window. */
-const struct rf_thin_run *rf_thin_run_of(const struct refocus_renderer *r, int tx, int ty);
-struct rf_thin *rf_thin_of(const struct refocus_renderer *r, int tx, int ty, uint32_t *count);
-
-/*
- * What is thin and in focus, hair before something far, is held: its shares of the pixels at its
- * edge would be blurred with what is behind it, and its edge be in steps. It is taken apart too,
- * and laid over the picture where it is,
- *
- *     out = alpha N + (1 - alpha) mean
- *
- * up to half a pixel or so of its own blur, before what is blurred by two or so and more, where
- * nothing nearer reaches.
- *
- * Nothing is to jump as the focus moves, so that not all pixels are taken apart at one blur: those
- * of a level k, that of their cell of 4 x 4 pixels in the tile, are from veil_blur (1 + k / 64) on,
- * or held up to (112 + 9 k) / 256 pixels, before (384 + 32 k) / 256.
+ * before the focus on, and matted up to (112 + 9 k) / 256 pixels of their own blur, before what is
+ * blurred by (384 + 32 k) / 256 pixels and more.
  */
 enum { RF_THIN_LEVELS = 16 };
 
-/* Of a plan that is a lens's, disparities of a level: veils are near from one on, 65536: none;
- * what is held between two, and what is behind it at most one. */
+/* Where the blur is that of a lens alone: the disparities of a level. Mixtures are splatted that
+ * are as near as splat_from (65536: none), and matted that are between two others and before
+ * something at most as near as matte_far. */
 struct rf_thin_bounds {
-    int veil_from, held_from, held_to, held_far;
+    int splat_from, matte_from, matte_to, matte_far;
 };
 
-/* f->thin_bounds, from veil_blur. */
-void rf_set_thin_bounds(struct rf_frame *f);
-
-/* Blur of a disparity at a pixel, Q7.8; of what is near in one of a tile. */
-int rf_thin_blur(const struct rf_frame *f, uint16_t disparity, int x, int y);
-int rf_near_blur(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
-
-/* Whether that is far enough before the focus, or in it before what is not. */
-bool rf_is_veil(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
-bool rf_is_held(const struct rf_frame *f, const struct rf_thin *thin, int tx, int ty);
-
-/* Whether a frame takes anything apart. */
-bool rf_takes_apart(const struct rf_frame *f);
-
-/* After blurs, cells and bins, before rims: choose the tiles whose edges are taken
- * apart; there blurs become those of F, and the veil is drawn. */
-void rf_take_thin_apart(struct rf_frame *f);
-
-/* Which of those of a tile are taken apart, a bit each. */
-struct rf_apart {
-    bool veils, held; /* any */
-    uint64_t veil[4], hold[4];
+/* Which mixtures of a tile are separated, a bit each. */
+struct rf_thin_choice {
+    bool splats, mattes; /* any of them */
+    uint64_t splat[4], matte[4];
 };
 
-struct rf_apart *rf_apart_of(const struct refocus_renderer *r, int tx, int ty);
+/* The coverage layer that is composited over the picture; coverage.h has its parts. */
+struct rf_coverage_source;
+struct rf_coverage {
+    struct rf_coverage_source *source; /* 16 for each tile, in rows of tiles */
+    uint32_t *sources;                 /* of each row of tiles */
+    struct rf_thin_choice *choice;     /* of each tile */
+    bool *swapped;                     /* of each row of tiles: the light planes hold F */
+    int32_t (*cell)[4];                /* alpha N and alpha, Q12 times 2^RF_VEIL_SHIFT */
+    int stride;
+};
 
-static inline bool rf_has_bit(const uint64_t bits[4], uint32_t i)
+/* What the passes of this folder read and write. */
+struct rf_thin_pass {
+    const struct rf_executor *exec;
+    const struct rf_viewport *view;
+    const struct rf_focus_plan *plan;
+    struct rf_disparity_q16 disparity; /* read */
+    struct rf_light_q12 light;         /* read, and exchanged with the list */
+    struct rf_blur_q8 blur;            /* patched */
+    const int16_t *cell_most;          /* the greatest blur of each cell, */
+    ptrdiff_t cell_stride;             /* rows of cells so far apart; tiles/ranges.h */
+    const struct rf_bins *bins;        /* of each tile */
+    struct rf_thin_list *list;
+    struct rf_coverage *coverage;
+    int disc_scale; /* Q8: radius of a splatted disc, as part of its blur; 0: none is splatted */
+    int splat_blur; /* Q7.8: from this blur before the focus on, more and more are splatted */
+    bool mattes;    /* mixtures in focus may be matted */
+    struct rf_thin_bounds bounds[RF_THIN_LEVELS];
+};
+
+enum {
+    RF_COVERAGE_CELL = 4,        /* pixels of a cell of the coverage layer, across and down */
+    RF_COVERAGE_BLUR = 8 << 8,   /* Q7.8: two cells, the least blur that is splatted */
+    RF_COVERAGE_SOURCES = 4 * 4, /* cells of a tile */
+};
+uint64_t rf_coverage_source_bytes(void); /* of one source */
+
+/* Finds the mixtures of the photo, all of which is in the window, whose light is of `blend`. */
+void rf_thin_find(const struct rf_thin_pass *t, uint32_t blend);
+
+/* What a lens setting asks for. */
+struct rf_thin_settings {
+    bool on;
+    bool splats; /* discs are as good as rays: an aperture without fine structure, the same all over
+                    the picture */
+    int rays;    /* of the preset, or REFOCUS_RAYS_FULL */
+    const struct rf_ray_set *set; /* those rays */
+};
+
+/* Sets t->splat_blur, bounds, disc_scale and mattes, by t->plan. */
+void rf_thin_set_up(struct rf_thin_pass *t, const struct rf_thin_settings *settings);
+
+/* Whether anything is separated with these settings. */
+static inline bool rf_thin_is_separated(const struct rf_thin_pass *t)
 {
-    return bits[i / 64] >> i % 64 & 1;
+    return t->disc_scale || t->mattes;
 }
 
-/* Choose those of a tile that are held, if nothing nearer reaches it. */
-void rf_choose_held(const struct rf_frame *f, int tx, int ty, struct rf_apart *apart);
+/* Chooses the mixtures of each tile that are splatted, and those that are matted. Cells and bins
+ * are those of the circles of confusion before anything was patched. */
+void rf_thin_separate(const struct rf_thin_pass *t);
 
-/* Lay those held over the means of a tile, Q14. */
-void rf_lay_held(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][256]);
+/* Gives the chosen pixels of a row of tiles the circle of confusion of F. Returns whether there
+ * were any, so that borders, cells and bins of the row have to be made again. */
+bool rf_thin_patch_band(const struct rf_thin_pass *t, int band);
 
-/* Means of a tile, Q14, that nothing reaches but what is drawn: the photo, and F. */
-void rf_sharp_means(const struct rf_frame *f, int tx, int ty, uint16_t mean[3][256]);
+/* Splats what was chosen into the coverage layer. */
+void rf_coverage_splat(const struct rf_thin_pass *t);
 
-/* Exchange the light in the photo with that in the list, where they are: before the
+/* Exchange the light in the photo with that in the list, where they are separated: before the
  * pre-filter, and back after it, even if the run is cancelled. */
-void rf_swap_thin_light(struct rf_frame *f);
-void rf_swap_thin_light_back(struct rf_frame *f);
+void rf_thin_swap_light(const struct rf_thin_pass *t);
+void rf_thin_swap_light_back(const struct rf_thin_pass *t);
+
+/* Means of a tile in Q14 that no ray changes: the photo, and F where mixtures are separated. */
+void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty, uint16_t mean[3][256]);
+
+/* Composites the matted mixtures of a tile over its means, Q14. */
+void rf_matte_over(const struct rf_thin_pass *t, int tx, int ty, uint16_t mean[3][256]);
+
+/* Whether the coverage layer has anything over a tile; composites it over the means, Q14. */
+bool rf_has_coverage(const struct rf_thin_pass *t, int tx, int ty);
+void rf_coverage_over(const struct rf_thin_pass *t, int tx, int ty, uint16_t mean[3][256]);
 
 #endif

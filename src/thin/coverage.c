@@ -1,41 +1,45 @@
-#include "thin/veil.h"
+/* coverage.c: splats thin structures that are far before the focus into the coverage layer. */
+#include "thin/coverage.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "gather/frame.h"
-#include "image/viewport.h"
-#include "renderer/renderer.h"
+#include "thin/mixture.h"
 
-enum { CELLS = RF_TILE / RF_VEIL_CELL };
+enum { CELLS = RF_TILE / RF_COVERAGE_CELL };
+_Static_assert(CELLS *CELLS == RF_COVERAGE_SOURCES, "a source for each cell of a tile");
 
-/* Sums over a cell. */
+uint64_t rf_coverage_source_bytes(void)
+{
+    return sizeof(struct rf_coverage_source);
+}
+
+/* Sums over the pixels of a cell. */
 struct sum {
     int32_t light[4]; /* of alpha N, and of alpha: 4096 = 1 */
     int32_t blur, weight;
 };
 
-/* What is thin in a tile, by cells. */
-static void add_tile(const struct rf_frame *f, int tx, int ty, struct sum sum[CELLS * CELLS])
+/* Adds up the splatted mixtures of a tile by cells. */
+static void add_tile(const struct rf_thin_pass *t, int tx, int ty, struct sum sum[CELLS * CELLS])
 {
-    const struct refocus_renderer *r = f->r;
     uint32_t count;
-    const struct rf_thin *thin = rf_thin_of(r, tx, ty, &count);
-    const struct rf_apart *apart = rf_apart_of(r, tx, ty);
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
+    const struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, ty);
 
     for (uint32_t i = 0; i < count; i++, thin++) {
         const int x = thin->at % RF_TILE, y = thin->at / RF_TILE;
-        const ptrdiff_t at = (ty * RF_TILE + y) * r->view.stride + tx * RF_TILE + x;
-        struct sum *cell = &sum[y / RF_VEIL_CELL * CELLS + x / RF_VEIL_CELL];
+        const ptrdiff_t at = (ty * RF_TILE + y) * t->view->stride + tx * RF_TILE + x;
+        struct sum *cell = &sum[y / RF_COVERAGE_CELL * CELLS + x / RF_COVERAGE_CELL];
 
-        if (!rf_has_bit(apart->veil, i))
+        if (!rf_has_bit(choice->splat, i))
             continue;
         for (int c = 0; c < 3; c++)
             cell->light[c] +=
-                r->light.channel[c][at] - ((255 - thin->alpha) * thin->light[c] + 127) / 255;
+                t->light.channel[c][at] - ((255 - thin->alpha) * thin->light[c] + 127) / 255;
         cell->light[3] += (4096 * thin->alpha + 127) / 255;
         cell->weight += thin->alpha;
-        cell->blur -= thin->alpha * rf_near_blur(f, thin, tx, ty);
+        cell->blur -= thin->alpha * rf_near_blur(t, thin, tx, ty);
     }
 }
 
@@ -70,31 +74,31 @@ static void share(const int32_t light[4], int radius, int32_t each[4])
         each[c] = (int32_t)(((int64_t)light[c] * (1 << (RF_VEIL_SHIFT + 8 - 4))) / (2 * length));
 }
 
-static void gather_band(void *context, int ty, int worker)
+static void collect_band(void *context, int ty, int worker)
 {
-    const struct rf_frame *f = context;
-    struct refocus_renderer *r = f->r;
-    struct rf_veil_source *out = r->veil.source + (ptrdiff_t)ty * r->view.tiles_x * CELLS * CELLS;
+    const struct rf_thin_pass *t = context;
+    struct rf_coverage_source *out =
+        t->coverage->source + (ptrdiff_t)ty * t->view->tiles_x * CELLS * CELLS;
     uint32_t sources = 0;
 
     (void)worker;
-    for (int tx = 0; tx < r->view.tiles_x; tx++) {
+    for (int tx = 0; tx < t->view->tiles_x; tx++) {
         struct sum sum[CELLS * CELLS] = {0};
 
-        if (!rf_apart_of(r, tx, ty)->veils)
+        if (!rf_thin_choice_of(t, tx, ty)->splats)
             continue;
-        add_tile(f, tx, ty, sum);
+        add_tile(t, tx, ty, sum);
         for (int i = 0; i < CELLS * CELLS; i++) {
             if (!sum[i].weight)
                 continue;
             out[sources].x = (uint16_t)(tx * CELLS + i % CELLS);
             out[sources].y = (uint16_t)(ty * CELLS + i / CELLS);
-            out[sources].radius = (uint16_t)(sum[i].blur / sum[i].weight * f->veils >> 10);
+            out[sources].radius = (uint16_t)(sum[i].blur / sum[i].weight * t->disc_scale >> 10);
             share(sum[i].light, out[sources].radius, out[sources].each);
             sources++;
         }
     }
-    r->veil.sources[ty] = sources;
+    t->coverage->sources[ty] = sources;
 }
 
 /* Adds v, or takes it away, from cell x on, Q8. */
@@ -113,16 +117,16 @@ static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int32_
 }
 
 /* A disc in rows from `first` to `end` - 1. */
-static void draw(const struct refocus_renderer *r, int cx, int cy, int radius, const int32_t v[4],
+static void draw(const struct rf_thin_pass *t, int cx, int cy, int radius, const int32_t v[4],
                  int first, int end)
 {
-    const int cells = r->view.tiles_x * CELLS, rows = radius >> 8;
+    const int cells = t->view->tiles_x * CELLS, rows = radius >> 8;
 
     first = cy - rows > first ? cy - rows : first;
     end = cy + rows + 1 < end ? cy + rows + 1 : end;
     for (int y = first; y < end; y++) {
         const int half = chord(abs(y - cy) << 8, radius);
-        int32_t(*row)[4] = r->veil.cell + (size_t)y * r->veil.stride;
+        int32_t(*row)[4] = t->coverage->cell + (size_t)y * t->coverage->stride;
 
         step(row, cells, cx * 256 + 128 - half, v, 1);
         step(row, cells, cx * 256 + 128 + half, v, -1);
@@ -130,12 +134,12 @@ static void draw(const struct refocus_renderer *r, int cx, int cy, int radius, c
 }
 
 /* Beyond the picture's sides it goes on as its reflection. */
-static void draw_reflected(const struct refocus_renderer *r, const struct rf_veil_source *s,
+static void draw_reflected(const struct rf_thin_pass *t, const struct rf_coverage_source *s,
                            int first, int end)
 {
     const int rows = s->radius >> 8;
-    const int right = (r->view.width + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
-    const int below = (r->view.height + RF_VEIL_CELL - 1) / RF_VEIL_CELL;
+    const int right = (t->view->width + RF_COVERAGE_CELL - 1) / RF_COVERAGE_CELL;
+    const int below = (t->view->height + RF_COVERAGE_CELL - 1) / RF_COVERAGE_CELL;
     const int x[] = {s->x, -1 - s->x, 2 * right - 1 - s->x};
     const int y[] = {s->y, -1 - s->y, 2 * below - 1 - s->y};
 
@@ -144,42 +148,41 @@ static void draw_reflected(const struct refocus_renderer *r, const struct rf_vei
             continue;
         for (int i = 0; i < 3; i++)
             if (x[i] >= -rows - 1 && x[i] <= right + rows)
-                draw(r, x[i], y[j], s->radius, s->each, first, end);
+                draw(t, x[i], y[j], s->radius, s->each, first, end);
     }
 }
 
 static void draw_band(void *context, int band, int worker)
 {
-    const struct rf_frame *f = context;
-    const struct refocus_renderer *r = f->r;
-    const int reach = (r->view.pad + RF_TILE) / RF_TILE + 1;
+    const struct rf_thin_pass *t = context;
+    const int reach = (t->view->pad + RF_TILE) / RF_TILE + 1;
     const int first = band * CELLS, end = first + CELLS;
 
     (void)worker;
-    memset(r->veil.cell + (size_t)first * (size_t)r->veil.stride, 0,
-           (size_t)CELLS * (size_t)r->veil.stride * sizeof *r->veil.cell);
+    memset(t->coverage->cell + (size_t)first * (size_t)t->coverage->stride, 0,
+           (size_t)CELLS * (size_t)t->coverage->stride * sizeof *t->coverage->cell);
     for (int ty = band - reach; ty <= band + reach; ty++) {
-        const struct rf_veil_source *s =
-            r->veil.source + (ptrdiff_t)ty * r->view.tiles_x * CELLS * CELLS;
+        const struct rf_coverage_source *s =
+            t->coverage->source + (ptrdiff_t)ty * t->view->tiles_x * CELLS * CELLS;
 
-        if (ty < 0 || ty >= r->view.tiles_y)
+        if (ty < 0 || ty >= t->view->tiles_y)
             continue;
-        for (uint32_t i = 0; i < r->veil.sources[ty]; i++)
-            draw_reflected(r, &s[i], first, end);
+        for (uint32_t i = 0; i < t->coverage->sources[ty]; i++)
+            draw_reflected(t, &s[i], first, end);
     }
     for (int y = first; y < end; y++) {
-        int32_t(*row)[4] = r->veil.cell + (ptrdiff_t)y * r->veil.stride;
+        int32_t(*row)[4] = t->coverage->cell + (ptrdiff_t)y * t->coverage->stride;
 
-        for (int x = 1; x < r->view.tiles_x * CELLS; x++)
+        for (int x = 1; x < t->view->tiles_x * CELLS; x++)
             for (int c = 0; c < 4; c++)
                 row[x][c] += row[x - 1][c];
     }
 }
 
-void rf_veil_draw(struct rf_frame *f)
+void rf_coverage_splat(const struct rf_thin_pass *t)
 {
-    rf_pool_run(&f->r->pool, gather_band, f, rf_bands(&f->r->view));
-    rf_pool_run(&f->r->pool, draw_band, f, rf_bands(&f->r->view));
+    rf_pool_run(t->exec->pool, collect_band, (void *)t, rf_bands(t->view));
+    rf_pool_run(t->exec->pool, draw_band, (void *)t, rf_bands(t->view));
 }
 
 static int clamp(int v, int most)
@@ -188,16 +191,16 @@ static int clamp(int v, int most)
 }
 
 /* Cells around a tile; false: nothing is drawn there. */
-static bool get_cells(const struct refocus_renderer *r, int tx, int ty,
+static bool get_cells(const struct rf_thin_pass *t, int tx, int ty,
                       int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
 {
-    const int across = r->view.tiles_x * CELLS, down = r->view.tiles_y * CELLS;
-    const bool inside = tx > 0 && tx < r->view.tiles_x - 1;
+    const int across = t->view->tiles_x * CELLS, down = t->view->tiles_y * CELLS;
+    const bool inside = tx > 0 && tx < t->view->tiles_x - 1;
     int any = 0;
 
     for (int j = 0; j < RF_VEIL_CELLS; j++) {
         const int y = clamp(ty * CELLS + j - 1, down - 1);
-        int32_t(*const row)[4] = r->veil.cell + (ptrdiff_t)y * r->veil.stride;
+        int32_t(*const row)[4] = t->coverage->cell + (ptrdiff_t)y * t->coverage->stride;
 
         if (inside)
             memcpy(part[j], row[tx * CELLS - 1], sizeof part[j]);
@@ -210,18 +213,18 @@ static bool get_cells(const struct refocus_renderer *r, int tx, int ty,
     return any >> RF_VEIL_SHIFT != 0;
 }
 
-bool rf_has_veil(const struct refocus_renderer *r, int tx, int ty)
+bool rf_has_coverage(const struct rf_thin_pass *t, int tx, int ty)
 {
     int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
 
-    return get_cells(r, tx, ty, part);
+    return get_cells(t, tx, ty, part);
 }
 
-void rf_veil_over(const struct refocus_renderer *r, int tx, int ty,
-                  uint16_t mean[3][RF_TILE * RF_TILE])
+void rf_coverage_over(const struct rf_thin_pass *t, int tx, int ty,
+                      uint16_t mean[3][RF_TILE * RF_TILE])
 {
     int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
 
-    if (get_cells(r, tx, ty, part))
-        r->exec.kernels->lay_veil((uint16_t *const[3]){mean[0], mean[1], mean[2]}, part);
+    if (get_cells(t, tx, ty, part))
+        t->exec->kernels->lay_veil((uint16_t *const[3]){mean[0], mean[1], mean[2]}, part);
 }

@@ -1,0 +1,26 @@
+/* coverage.h: one disc of the coverage layer; private to this folder.
+ *
+ * Thin structures far before the focus are splatted: alpha N and alpha of cells of 4 x 4 pixels are
+ * added up and spread evenly over a disc, in cells, and between the middles of cells the layer is
+ * interpolated,
+ *
+ *     layer = sum of alpha N / pi s^2,  coverage = sum of alpha / pi s^2
+ *     out   = layer + (1 - coverage) mean
+ *
+ * A disc is drawn as the differences along its rows, so its cost is that of its height.
+ */
+#ifndef RF_COVERAGE_H
+#define RF_COVERAGE_H
+
+#include <stdint.h>
+
+#include "thin/thin.h"
+
+struct rf_coverage_source {
+    uint16_t x, y;   /* cell */
+    uint16_t radius; /* of its disc, cells in Q8 */
+    int32_t each[4]; /* what each cell of the disc gets of alpha N and of alpha, in the unit of
+                        struct rf_coverage */
+};
+
+#endif

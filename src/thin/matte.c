@@ -1,0 +1,73 @@
+/* matte.c: thin structures in focus are composited over their blurred background. */
+#include <stdlib.h>
+
+#include "thin/mixture.h"
+
+/* Whether nothing that is blurred before the focus reaches a tile by more than half a pixel. */
+static bool is_visible(const struct rf_thin_pass *t, int tx, int ty)
+{
+    const int reach = t->view->pad / RF_TILE + 1;
+
+    for (int y = ty - reach; y <= ty + reach; y++)
+        for (int x = tx - reach; x <= tx + reach; x++) {
+            int across, down, blur;
+
+            if (x < 0 || y < 0 || x >= t->view->tiles_x || y >= t->view->tiles_y)
+                continue;
+            blur = -t->bins[(size_t)y * t->view->tiles_x + x].least;
+            across = abs(x - tx) > 1 ? (abs(x - tx) - 1) * RF_TILE : 0;
+            down = abs(y - ty) > 1 ? (abs(y - ty) - 1) * RF_TILE : 0;
+            if (blur > 256 * 3 / 2 && blur > 256 * (across > down ? across : down))
+                return false;
+        }
+    return true;
+}
+
+/* Whether no mixture of a tile can be matted, as far as its run can say. */
+static bool is_none(const struct rf_thin_pass *t, const struct rf_thin_run *run)
+{
+    const struct rf_thin_bounds *all = &t->bounds[RF_THIN_LEVELS - 1]; /* the widest */
+
+    return !run->count ||
+           (t->plan->plain && (run->least > all->matte_to || run->most < all->matte_from));
+}
+
+void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
+{
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
+
+    if (is_none(t, rf_thin_run_of(t, tx, ty)) || !is_visible(t, tx, ty))
+        return;
+    for (uint32_t i = 0; i < count; i++)
+        if (rf_is_matted(t, &thin[i], tx, ty)) {
+            choice->matte[i / 64] |= UINT64_C(1) << i % 64;
+            choice->mattes = true;
+        }
+}
+
+/* The light in the list is F, that in the planes the photo's: alpha N = C - (1 - alpha) F. */
+void rf_matte_over(const struct rf_thin_pass *t, int tx, int ty,
+                   uint16_t mean[3][RF_TILE * RF_TILE])
+{
+    const ptrdiff_t tile = ty * RF_TILE * t->view->stride + tx * RF_TILE;
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
+    const struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, ty);
+
+    if (!choice->mattes)
+        return;
+    for (uint32_t i = 0; i < count; i++, thin++) {
+        const ptrdiff_t at = tile + thin->at / RF_TILE * t->view->stride + thin->at % RF_TILE;
+
+        if (!rf_has_bit(choice->matte, i))
+            continue;
+        for (int c = 0; c < 3; c++) {
+            const int left = 255 - thin->alpha;
+            const int light = 4 * t->light.channel[c][at] +
+                              (left * (mean[c][thin->at] - 4 * thin->light[c]) + 127) / 255;
+
+            mean[c][thin->at] = (uint16_t)(light < 0 ? 0 : light < UINT16_MAX ? light : UINT16_MAX);
+        }
+    }
+}

@@ -1,0 +1,43 @@
+/* mixture.h: the mixtures of a tile, and which of them are separated; private to this folder. */
+#ifndef RF_MIXTURE_H
+#define RF_MIXTURE_H
+
+#include "thin/thin.h"
+
+/* The mixtures of a tile of the window. */
+const struct rf_thin_run *rf_thin_run_of(const struct rf_thin_pass *t, int tx, int ty);
+struct rf_thin *rf_thin_of(const struct rf_thin_pass *t, int tx, int ty, uint32_t *count);
+
+/* Which of them are separated. */
+struct rf_thin_choice *rf_thin_choice_of(const struct rf_thin_pass *t, int tx, int ty);
+
+static inline bool rf_has_bit(const uint64_t bits[4], uint32_t i)
+{
+    return bits[i / 64] >> i % 64 & 1;
+}
+
+/* Circle of confusion, Q7.8, of a disparity at a pixel of the window, and of N of a mixture. */
+int rf_thin_blur(const struct rf_thin_pass *t, uint16_t disparity, int x, int y);
+int rf_near_blur(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty);
+
+/* Whether N is far enough before the focus to be splatted, or in focus before something that is not
+ * and so matted. */
+bool rf_is_splatted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty);
+bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty);
+
+/* Chooses the mixtures of a tile that are matted, if nothing nearer reaches it. */
+void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);
+
+/*
+ * Hair before letters: F, the mean of what is around, is neither the colour of a letter nor that of
+ * the paper between, and the pattern would stay in alpha N, as dashes. Along a strand of one pixel
+ * C goes with f, the mean of the far pixels beside each,
+ *
+ *     C = alpha N + (1 - alpha) f
+ *
+ * so least squares yield 1 - alpha, the slope in all three channels, and alpha N. Where f varies,
+ * and explains half of how C varies, alpha becomes that, and F = (C - alpha N) / (1 - alpha).
+ */
+void rf_fit_strand(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty);
+
+#endif
