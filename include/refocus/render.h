@@ -17,6 +17,7 @@
 #include <refocus/aperture.h>
 #include <refocus/focus.h>
 #include <refocus/image.h>
+#include <refocus/papers.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
@@ -82,11 +83,13 @@ struct refocus_renderer_params {
     uint64_t max_memory;   /**< bytes; creation fails above; 0 = no limit */
     struct refocus_allocator allocator; /**< all NULL: malloc and free */
     struct refocus_log log;             /**< message NULL: silent */
-    uint32_t methods;  /**< what may be rendered beside the methods that need no memory
-                            of their own (sweep, search, raytrace, jittered, blur):
+    uint32_t methods;  /**< those of `papers` that need memory of their own and may be rendered:
                             REFOCUS_METHOD_BIT() of each, or-ed */
     uint32_t reserved; /**< 0 */
-    struct refocus_parallel parallel; /**< parallel_for NULL: threads of its own */
+    struct refocus_parallel parallel;    /**< parallel_for NULL: threads of its own */
+    const struct refocus_papers *papers; /**< NULL: the methods are sweep and search, or
+                           refocus_papers() of papers.h: all of them. One of another build than this
+                           library is refused with REFOCUS_ERR_ARGUMENT */
     uint32_t in_place; /**< 1: strip mode, for little memory. The photo and its disparities,
                             which are of its size, are not copied: they stay as they are and
                             where they are until the next refocus_prepare() or the

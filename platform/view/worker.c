@@ -140,6 +140,7 @@ static int make_renderer(struct rf_session *s, struct refocus_renderer **rendere
     params.threads = s->setup.threads;
     params.cpu = s->setup.cpu;
     params.thin = 1;
+    params.papers = refocus_papers();
     return refocus_renderer_create(renderer, &params);
 }
 

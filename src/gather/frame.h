@@ -24,9 +24,10 @@ struct rf_exact {
     double boundary[256]; /* light in the middle between code c and c + 1 */
     double weight[256];
 };
-void rf_exact_init(struct rf_exact *exact, uint32_t blend, double sigma);
 
 enum { RF_LIVE_RAYS = 64 }; /* more are for stills that are to be as good as can be */
+
+struct rf_method;
 
 /* One refocus_render() call: the settings, and the planes of the window that the rays go through.
  */
@@ -55,6 +56,7 @@ struct rf_frame {
     struct rf_work_memory *work;
     struct refocus_renderer *r;
 
+    const struct rf_method *method;
     const struct refocus_render_params *params;
     const struct refocus_image *out;
     const struct refocus_aperture *aperture;
@@ -163,7 +165,6 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
 
 /* rect: at most RF_TILE x RF_TILE, inside one tile. */
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker);
-rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_raytrace_tile, rf_jittered_tile,
-    rf_gather_tile;
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile;
 
 #endif

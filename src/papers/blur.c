@@ -5,7 +5,7 @@
  * who hides whom: colours bleed over edges, and a blurred foreground ends as sharply as
  * its depth does.
  */
-#include "gather/frame.h"
+#include "papers/papers.h"
 #include "image/viewport.h"
 
 #include <stdlib.h>
@@ -32,7 +32,7 @@ static void gather(const struct rf_frame *f, int x, int y, struct rf_sums *sums)
         sums->light[c][i] = light[c];
 }
 
-void rf_gather_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+void rf_blur_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     struct rf_sums sums;
 

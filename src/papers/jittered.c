@@ -6,6 +6,7 @@
  * Mask pixels whose middle the aperture closes send no light. Draws are hashes of seed, place
  * and cell, so that a picture can be made again.
  */
+#include "papers/papers.h"
 #include "papers/trace.h"
 #include "image/viewport.h"
 

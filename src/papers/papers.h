@@ -1,22 +1,21 @@
-/* frame.h: methods that work on whole frames.
+/* papers.h: the methods of the papers, and what they share.
  *
- * Such a method runs its own passes on the pool and writes all pixels of
- * f->region. Its memory is f->work: what it says it needs for the renderer's limits, laid
- * out by the function that also counts it. Between two frames of one method the memory
- * keeps its content; when another method was at work, f->work->owner says so.
+ * Methods that work on whole frames run their own passes on f->exec and write all pixels of
+ * f->region. Their memory is f->work: as much as their work_bytes says for the renderer's limits,
+ * laid out by the function that also counts it. Between two frames of one method the memory keeps
+ * its content; when another method was at work, f->work->owner says so.
  */
 #ifndef RF_PAPERS_H
 #define RF_PAPERS_H
 
-#include "gather/frame.h"
+#include "gather/method.h"
 #include "support/arena.h"
 
-typedef void rf_frame_fn(struct rf_frame *f);
-typedef uint64_t rf_work_fn_size(const struct rf_limits *limits);
-
+rf_tile_fn rf_raytrace_tile, rf_jittered_tile, rf_blur_tile;
+rf_exact_init_fn rf_exact_init;
 rf_frame_fn rf_lightfield_frame, rf_scatter_frame, rf_foveated_frame, rf_interpolated_frame,
     rf_diffusion_frame;
-rf_work_fn_size rf_lightfield_work, rf_scatter_work, rf_foveated_work, rf_interpolated_work,
+rf_work_bytes_fn rf_lightfield_work, rf_scatter_work, rf_foveated_work, rf_interpolated_work,
     rf_diffusion_work;
 
 /* Pixel (x, y) of the region from Q12 light times weights, and the weights. */

@@ -4,6 +4,7 @@
  * aperture is followed from the nearest plane to the farthest (trace.c); what the rays see is
  * averaged by eq. 5 over the exact curve of the blend.
  */
+#include "papers/papers.h"
 #include "papers/trace.h"
 #include "image/viewport.h"
 

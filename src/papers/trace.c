@@ -10,6 +10,7 @@
  * for every pixel p. A ray that meets nothing is hidden: the surface of p is taken to be
  * symmetric about p, so the hidden pixel at l = |u| K (df - d_p) is replaced by the one at -l.
  */
+#include "papers/papers.h"
 #include "papers/trace.h"
 
 #include <math.h>

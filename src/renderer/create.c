@@ -5,13 +5,7 @@
 #include <string.h>
 
 #include "renderer/layout.h"
-
-/* Methods that need the whole photo. */
-#define FRAME_METHODS                                                                              \
-    (REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |  \
-     REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |                                                 \
-     REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |                                             \
-     REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION))
+#include "renderer/methods.h"
 
 static void *default_allocate(void *user, size_t size)
 {
@@ -25,6 +19,20 @@ static void default_release(void *user, void *memory)
     free(memory);
 }
 
+/* Whether the methods that are asked for are there, and do with the memory that there will be. */
+static bool good_methods(const struct refocus_renderer_params *params)
+{
+    if ((params->methods & ~REFOCUS_METHODS_ALL) ||
+        (params->papers && !rf_papers_fit(params->papers)))
+        return false;
+    for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++)
+        if ((params->methods & REFOCUS_METHOD_BIT(i)) &&
+            (!rf_method_of(params->papers, i) ||
+             (params->in_place && rf_method_info(i)->whole_photo)))
+            return false;
+    return true;
+}
+
 /* Parameters with defaults in place of what an older caller's struct does not have. */
 static bool read_params(struct refocus_renderer_params *own,
                         const struct refocus_renderer_params *params)
@@ -35,9 +43,8 @@ static bool read_params(struct refocus_renderer_params *own,
     return own->max_width >= 1 && own->max_width <= REFOCUS_MAX_SIDE && own->max_height >= 1 &&
            own->max_height <= REFOCUS_MAX_SIDE && own->max_blur_radius >= 0 &&
            own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
-           own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX512 &&
-           (own->methods & ~REFOCUS_METHODS_ALL) == 0 && own->reserved == 0 && own->in_place <= 1 &&
-           own->thin <= 1 && !(own->in_place && (own->methods & FRAME_METHODS)) &&
+           own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX512 && own->reserved == 0 &&
+           own->in_place <= 1 && own->thin <= 1 && good_methods(own) &&
            !own->allocator.allocate == !own->allocator.release;
 }
 
@@ -83,10 +90,8 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->max_width = own.max_width;
     r->max_height = own.max_height;
     r->max_blur_radius = own.max_blur_radius;
-    r->methods =
-        own.methods | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) |
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) |
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    r->papers = own.papers;
+    r->methods = rf_methods_of(own.papers, own.methods);
     r->work.owner = RF_NO_METHOD;
     r->in_place.on = own.in_place;
     for (int blend = 0; blend < RF_BLEND_COUNT; blend++)

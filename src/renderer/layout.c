@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "depth/upsample.h"
-#include "papers/papers.h"
+#include "renderer/methods.h"
 #include "support/arena.h"
 #include "tiles/ranges.h"
 
@@ -185,23 +185,18 @@ static void take_blocks(struct refocus_renderer *r, const struct refocus_rendere
 /* Bytes for the greediest of the methods that work on whole frames. */
 static uint64_t work_bytes(const struct refocus_renderer_params *params)
 {
-    static const struct {
-        uint32_t method;
-        rf_work_fn_size *size;
-    } needs[] = {{REFOCUS_METHOD_LIGHTFIELD, rf_lightfield_work},
-                 {REFOCUS_METHOD_SCATTER, rf_scatter_work},
-                 {REFOCUS_METHOD_FOVEATED, rf_foveated_work},
-                 {REFOCUS_METHOD_INTERPOLATED, rf_interpolated_work},
-                 {REFOCUS_METHOD_DIFFUSION, rf_diffusion_work}};
     const struct rf_limits limits = {params->max_width, params->max_height,
                                      rf_padding_for(params->max_blur_radius),
                                      rf_threads_for(params), params->max_blur_radius};
     uint64_t most = 0;
 
-    for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++) {
-        const uint64_t bytes =
-            params->methods & REFOCUS_METHOD_BIT(needs[i].method) ? needs[i].size(&limits) : 0;
+    for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
+        const struct rf_method *method = rf_method_of(params->papers, i);
+        uint64_t bytes;
 
+        if (!(params->methods & REFOCUS_METHOD_BIT(i)) || !method || !method->work_bytes)
+            continue;
+        bytes = method->work_bytes(&limits);
         most = bytes > most ? bytes : most;
     }
     return most;

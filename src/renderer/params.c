@@ -1,4 +1,5 @@
 #include "renderer/params.h"
+#include "renderer/methods.h"
 
 #include "aperture/aperture.h"
 #include "image/format.h"
@@ -82,13 +83,6 @@ static bool good_focus(const struct refocus_render_params *p)
            in(p->blur_limit, 0, REFOCUS_MAX_BLUR_RADIUS);
 }
 
-/* Methods that take the blur of a pixel as they find it. */
-static bool takes_any_focus(uint32_t method)
-{
-    return method == REFOCUS_METHOD_SWEEP || method == REFOCUS_METHOD_SEARCH ||
-           method == REFOCUS_METHOD_BLUR || method == REFOCUS_METHOD_DIFFUSION;
-}
-
 /* What only sweep can render. */
 static bool has_own_look(const struct refocus_render_params *p)
 {
@@ -121,14 +115,9 @@ bool rf_good_map(const struct refocus_disparity *map)
 
 bool rf_good_params(const struct refocus_renderer *r, const struct refocus_render_params *p)
 {
-    const uint32_t round_only = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER) |
-                                REFOCUS_METHOD_BIT(REFOCUS_METHOD_FOVEATED) |
-                                REFOCUS_METHOD_BIT(REFOCUS_METHOD_INTERPOLATED) |
-                                REFOCUS_METHOD_BIT(REFOCUS_METHOD_DIFFUSION);
-
     return p && p->struct_size == sizeof *p && p->method < REFOCUS_METHOD_COUNT &&
            (r->methods & REFOCUS_METHOD_BIT(p->method)) && good_rays(r, p) && good_scatter(p) &&
            good_ratios(p) && good_attention(p) && good_field(p) && good_focus(p) && good_look(p) &&
-           (takes_any_focus(p->method) || is_plain_focus(r, p)) &&
-           (!(round_only & REFOCUS_METHOD_BIT(p->method)) || has_round_aperture(p));
+           (rf_method_info(p->method)->any_focus || is_plain_focus(r, p)) &&
+           (!rf_method_info(p->method)->disc_only || has_round_aperture(p));
 }

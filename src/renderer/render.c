@@ -3,60 +3,17 @@
 #include <math.h>
 
 #include "highlights/draw.h"
-#include "papers/papers.h"
 #include "gather/tile_rows.h"
 #include "image/format.h"
 #include "passes/planes.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
+#include "renderer/methods.h"
 #include "renderer/params.h"
 #include "renderer/passes.h"
 #include "renderer/render_yuv.h"
 #include "support/compare.h"
 #include "thin/thin.h"
-
-struct method {
-    const char *name, *summary;
-    rf_tile_fn *tile;   /* called for each tile, or */
-    rf_frame_fn *frame; /* once for the whole frame */
-    bool layers;        /* it needs the pre-filter, the bins of tiles and the background */
-    bool exact;         /* it works in double precision */
-};
-
-static const struct method methods[REFOCUS_METHOD_COUNT] = {
-    [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
-                              .tile = rf_sweep_tile, .layers = true},
-    [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               .tile = rf_search_tile},
-    [REFOCUS_METHOD_RAYTRACE] = {"raytrace", "full image-space ray tracing, Yang et al. 2016; slow",
-                                 .tile = rf_raytrace_tile, .exact = true},
-    [REFOCUS_METHOD_JITTERED] = {"jittered",
-                                 "the same for a ray of each cell of the mask; slow, grainy",
-                                 .tile = rf_jittered_tile, .exact = true},
-    [REFOCUS_METHOD_LIGHTFIELD] = {"lightfield",
-                                   "views from all over the aperture, warped and added up",
-                                   .frame = rf_lightfield_frame},
-    [REFOCUS_METHOD_BLUR] = {"blur", "each pixel blurred by its own circle of confusion",
-                             .tile = rf_gather_tile},
-    [REFOCUS_METHOD_SCATTER] = {"scatter", "each pixel spread over its circle, Potmesil 1981",
-                                .frame = rf_scatter_frame},
-    [REFOCUS_METHOD_FOVEATED] = {"foveated", "exact at the centre of attention, Mulder 2000",
-                                 .frame = rf_foveated_frame},
-    [REFOCUS_METHOD_INTERPOLATED] = {"interpolated", "between three pictures, NVIDIA 2004; quick",
-                                     .frame = rf_interpolated_frame},
-    [REFOCUS_METHOD_DIFFUSION] = {"diffusion", "heat through a field of blur, Kosloff 2007",
-                                  .frame = rf_diffusion_frame},
-};
-
-const char *refocus_method_name(uint32_t method)
-{
-    return method < REFOCUS_METHOD_COUNT ? methods[method].name : NULL;
-}
-
-const char *refocus_method_summary(uint32_t method)
-{
-    return method < REFOCUS_METHOD_COUNT ? methods[method].summary : NULL;
-}
 
 /* The part of a photo to render; false if it is not inside. */
 static bool region_of(const struct refocus_renderer *r, const struct refocus_render_params *p,
@@ -90,7 +47,7 @@ static void tile_item(void *context, int item, int worker)
     if (f->params->max_blur_radius > 0 && f->r->yuv.on)
         rf_sweep_yuv_tile(f, tx, ty, rect, worker);
     else if (f->params->max_blur_radius > 0)
-        methods[f->params->method].tile(f, tx, ty, rect, worker);
+        f->method->tile(f, tx, ty, rect, worker);
     else if (f->r->yuv.on)
         rf_copy_yuv_tile(f, rect);
     else
@@ -171,7 +128,7 @@ static float largest_blur(const struct rf_frame *f)
 static void run(struct rf_frame *f, struct rf_rect region)
 {
     struct refocus_renderer *r = f->r;
-    const struct method *method = &methods[f->params->method];
+    const struct rf_method *method = f->method;
     const bool pinhole = f->params->max_blur_radius <= 0;
     const bool layers = method->layers || f->params->background;
     const enum rf_need need = pinhole ? RF_NEED_LIGHT : layers ? RF_NEED_LAYERS : RF_NEED_BLUR;
@@ -247,8 +204,9 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     f.stars = params->star_spikes > 0 && params->star_strength > 0 && params->star_length > 0 &&
               params->method == REFOCUS_METHOD_SWEEP && params->max_blur_radius > 0;
     f.grain = params->grain > 0 && params->max_blur_radius > 0;
-    if (methods[params->method].exact) {
-        rf_exact_init(&exact, params->blend, params->sigma);
+    f.method = rf_method_of(r->papers, params->method);
+    if (f.method->exact) {
+        f.method->exact(&exact, params->blend, params->sigma);
         f.exact = &exact;
     }
     rf_reach_init(&f.reach, f.scale, largest_blur(&f), r->photo.pad,

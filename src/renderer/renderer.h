@@ -160,7 +160,8 @@ struct refocus_renderer {
     uint32_t renders;       /* so far, that had maps of their own */
 
     struct rf_work_memory work;
-    uint32_t methods; /* REFOCUS_METHOD_BIT of those that it suffices for */
+    const struct refocus_papers *papers; /* or NULL */
+    uint32_t methods;                    /* REFOCUS_METHOD_BIT of those that it suffices for */
 
     struct rf_ray_sets ray_sets;
     struct rf_cat_eye cat_eye;     /* made when it is first asked for; */

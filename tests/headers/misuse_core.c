@@ -39,6 +39,7 @@ static void pictures(void)
 static void words(void)
 {
     assert_non_null(TAKES_NOTHING(refocus_version));
+    assert_non_null(TAKES_NOTHING(refocus_papers));
     GIVES_POINTER(refocus_strerror, INT32_MIN);
     GIVES_POINTER(refocus_strerror, INT32_MAX);
     GIVES_NULL(refocus_method_name, REFOCUS_METHOD_COUNT);

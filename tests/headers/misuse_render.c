@@ -94,6 +94,7 @@ static void creating(void)
         assert_null(renderer);
     }
     misuse_spoil(NULL, NULL);
+    most.papers = refocus_papers();
     most.methods = REFOCUS_METHODS_ALL;
     most.max_memory = 1;
     ANSWERS(REFOCUS_ERR_SIZE, refocus_renderer_create, &renderer, &most);

@@ -59,6 +59,7 @@ static int render_image(const struct quality_scene *scene, const struct quality_
     int status;
 
     limits.threads = settings->threads;
+    limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHOD_BIT(settings->render.method);
     limits.cpu = (uint32_t)settings->cpu;
     limits.thin = settings->render.thin;

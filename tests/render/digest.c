@@ -130,6 +130,8 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
     struct refocus_renderer *renderer;
     int status;
 
+    limits.papers = refocus_papers();
+
     limits.methods = REFOCUS_METHODS_ALL;
     limits.cpu = cpu;
     limits.threads = threads;
@@ -347,6 +349,8 @@ static void effects(void **state)
     for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++) {
         struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, blur);
         struct refocus_renderer *renderer;
+
+        limits.papers = refocus_papers();
 
         limits.methods = REFOCUS_METHODS_ALL;
         limits.cpu = cpu;

@@ -188,6 +188,7 @@ static void measure(void **state)
     for (int i = 0; i < 48; i++)
         small[i] = (uint8_t)(i * 97);
     limits.threads = threads;
+    limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&call.renderer, &limits), REFOCUS_OK);
     refocus_renderer_get_info(call.renderer, &info);

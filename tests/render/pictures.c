@@ -425,6 +425,7 @@ struct refocus_renderer *prepared(const struct picture *picture, float blur, int
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
+    limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);

@@ -1,4 +1,5 @@
 /* Each argument out of its documented range is refused, and nothing is written. */
+#include "gather/method.h"
 #include "pictures.h"
 
 enum { W = 20, H = 12 };
@@ -262,7 +263,15 @@ static void bad_settings(void **state)
     params = refocus_render_params_default(0.5f, 5);
     params.method = REFOCUS_METHOD_LIGHTFIELD;
     assert_int_equal(refocus_render(plain, &params, &image), REFOCUS_ERR_ARGUMENT);
+    for (uint32_t m = REFOCUS_METHOD_RAYTRACE; m < REFOCUS_METHOD_COUNT; m++) {
+        params.method = m; /* methods of the papers, which this renderer was not given */
+        assert_int_equal(refocus_render(plain, &params, &image), REFOCUS_ERR_ARGUMENT);
+    }
     refocus_renderer_destroy(&plain);
+    limits.methods = REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD);
+    assert_int_equal(refocus_renderer_create(&plain, &limits), REFOCUS_ERR_ARGUMENT);
+    limits.papers = &(struct refocus_papers){.version = "0.0.1", .frame_size = 1};
+    assert_int_equal(refocus_renderer_create(&plain, &limits), REFOCUS_ERR_ARGUMENT);
 
     /* Regions that reach over the side. */
     static const int region[][4] = {{1, 0, W, H},     {0, 1, W, H},

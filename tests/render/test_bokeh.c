@@ -338,6 +338,7 @@ static struct refocus_renderer *of_night(const struct picture *p, uint32_t in_pl
 
     limits.threads = 3;
     limits.in_place = in_place;
+    limits.papers = refocus_papers();
     limits.methods = in_place ? 0 : REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);

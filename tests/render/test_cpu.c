@@ -13,6 +13,7 @@ static struct refocus_renderer *with_cpu(const struct picture *p, float blur, ui
 
     limits.threads = 1;
     limits.cpu = cpu;
+    limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
     status = refocus_renderer_create(&renderer, &limits);
     if (status == REFOCUS_ERR_UNSUPPORTED) {

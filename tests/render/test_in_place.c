@@ -11,6 +11,7 @@ static struct refocus_renderer *create(const struct picture *p, float blur, int 
 
     limits.threads = 2;
     limits.in_place = (uint32_t)in_place;
+    limits.papers = refocus_papers();
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
     return renderer;
@@ -163,6 +164,7 @@ static void formats(void **state)
             refocus_image_packed(REFOCUS_FORMAT_RGBA8, out[in_place], W, H, 5 * W);
 
         limits.in_place = (uint32_t)in_place;
+        limits.papers = refocus_papers();
         assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
         assert_int_equal(refocus_prepare(renderer, &image, &disparity), REFOCUS_OK);
         assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
@@ -198,6 +200,7 @@ static void refused(void **state)
     limits.in_place = 2;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
     limits.in_place = 1;
+    limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHOD_BIT(REFOCUS_METHOD_SCATTER);
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
     limits.methods = 0;

@@ -223,6 +223,8 @@ static void formula_of_methods(void **state)
             struct refocus_renderer_params params = counted(&counter, w, h, blur, threads);
             const double without = (double)refocus_renderer_memory(&params);
 
+            params.papers = refocus_papers();
+
             params.methods = REFOCUS_METHOD_BIT(m);
             const double with = (double)refocus_renderer_memory(&params);
             if (with < without || with - without > extra(m, w, h, blur, threads))
@@ -300,6 +302,7 @@ static void nothing_while_rendering(void **state)
 
     (void)state;
     assert_non_null(out);
+    limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     const int calls = counter.calls;

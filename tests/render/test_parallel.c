@@ -103,6 +103,7 @@ static void same_bytes(void **state)
         int rendered = 0;
 
         limits.threads = callers[c].threads;
+        limits.papers = refocus_papers();
         limits.methods = REFOCUS_METHODS_ALL;
         limits.parallel.parallel_for = callers[c].loop;
         limits.parallel.user = &caller;

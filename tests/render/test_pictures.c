@@ -204,6 +204,7 @@ static void sizes(void **state)
 
     (void)state;
     limits.threads = 2;
+    limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&large, &limits), 0);
     for (int i = 0; i < 11; i++) {

@@ -93,6 +93,7 @@ static struct refocus_renderer *create(int threads, enum mode mode)
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
+    limits.papers = refocus_papers();
     limits.methods = mode == IN_PLACE ? 0 : REFOCUS_METHODS_ALL;
     limits.in_place = mode == IN_PLACE;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);

@@ -110,6 +110,7 @@ static uint64_t memory_of(const struct engine *engine, const struct refocus_imag
         photo->width, photo->height, engine->params.max_blur_radius);
 
     params.threads = engine->info.threads;
+    params.papers = refocus_papers();
     params.methods = REFOCUS_METHOD_BIT(method);
     params.thin = engine->params.thin;
     return refocus_renderer_memory(&params);

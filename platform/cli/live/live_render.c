@@ -16,6 +16,7 @@ static bool fit_renderer(struct live *live, int width, int height)
     refocus_renderer_destroy(&live->engine->renderer);
     params.threads = (int32_t)live->settings->engine.threads;
     params.cpu = (uint32_t)live->settings->engine.cpu;
+    params.papers = refocus_papers();
     params.methods = live->engine->methods;
     status = refocus_renderer_create(&live->engine->renderer, &params);
     live->create_ms = (double)(live_now_ns() - begin) / 1e6;

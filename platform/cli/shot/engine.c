@@ -114,6 +114,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
 
     params.threads = (int32_t)settings->threads;
     params.cpu = (uint32_t)settings->cpu;
+    params.papers = refocus_papers();
     params.methods = engine->methods;
     params.thin = engine->params.thin;
     engine->params.max_blur_radius = (float)blur;

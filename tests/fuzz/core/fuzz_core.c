@@ -271,6 +271,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int status;
 
     limits.threads = take_in(&in, wild_limits, 1, 3);
+    limits.papers = refocus_papers();
     limits.methods = wild_limits ? take(&in, 4) : REFOCUS_METHODS_ALL;
     limits.max_memory = 64 << 20;
     status = refocus_renderer_create(&renderer, &limits);
