@@ -1,29 +1,17 @@
-/* Apple's portrait JPEG: behind the main picture lie others, found by MPF. The one
- * whose own XMP says "disparity" is the depth; HDR gain map and portrait matte look
- * alike but are not. */
-#include "internal.h"
+/* apple.c: the depth of Apple's portrait JPEGs is found. Behind the main picture lie others, which
+ * an MPF index names. The one whose own XMP says "disparity" is the depth; the HDR gain map and
+ * the portrait matte look alike but are not. */
+#include "apple.h"
 
-#include <math.h>
 #include <string.h>
 
-void rf_depth_from_disparity(struct refocus_depth_map *map, double value_min, double value_max,
-                             double disparity_min, double disparity_max)
-{
-    map->meaning = REFOCUS_DEPTH_DISPARITY;
-    map->value_near = value_max;
-    map->value_far = value_min;
-    if (disparity_max > 0.0) {
-        map->near_m = 1.0 / disparity_max;
-        map->far_m = disparity_min > 0.0 ? 1.0 / disparity_min : INFINITY;
-        if (disparity_min < 0.0) {
-            /* Nothing is farther than infinity: d = 0 is where the disparity is. */
-            map->value_far +=
-                (value_max - value_min) * -disparity_min / (disparity_max - disparity_min);
-        }
-    }
-}
-
-#ifdef RF_HAVE_XMP
+#include "convert.h"
+#include "depth_values.h"
+#include "jpeg_walk.h"
+#include "mpf.h"
+#include "part.h"
+#include "reason.h"
+#include "xmp_parse.h"
 
 struct auxiliary {
     struct rf_bytes file;
@@ -191,4 +179,3 @@ int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mp
     }
     return status;
 }
-#endif

@@ -1,8 +1,11 @@
-/* Base64, RFC 4648, decoded where it stands. */
-#include "internal.h"
+/* base64.c: Base64 (RFC 4648) is decoded where it stands. */
+#include "base64.h"
 
-/* 0 to 63; 64 for '='; 65 for blanks, which are skipped; 66 for what does not belong.
- */
+#include <stdbool.h>
+#include <stdint.h>
+
+/* The value of a character: 0 to 63; 64 for '='; 65 for blanks, which are skipped; 66 for any
+ * other. */
 static int value_of(char c)
 {
     if (c >= 'A' && c <= 'Z') {

@@ -1,11 +1,16 @@
-/* Depth files of their own, and the words for how samples are read. */
-#include "internal.h"
-#include "read.h"
-
+/* depth_file.c: depth is read from a file of its own, by a unit such as "disparity" or "mm". */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* "m", "mm" or "N/m" as metres in a unit; 0 for anything else. */
+#include "convert.h"
+#include "load.h"
+#include "number.h"
+#include "read.h"
+#include "reason.h"
+#include "rows.h"
+
+/* The metres in a unit of "m", "mm" or "N/m"; 0 for any other text. */
 static double metres_in(const char *unit)
 {
     const size_t length = strlen(unit);
@@ -56,7 +61,8 @@ static void set_float_ends(struct refocus_depth_map *map, bool inverse)
     }
 }
 
-int rf_depth_unit(struct refocus_depth_map *map, const char *unit, double max_value)
+/* Give the map the meaning of a unit's words, for samples whose white is max_value. */
+static int set_unit(struct refocus_depth_map *map, const char *unit, double max_value)
 {
     const bool inverse = strcmp(unit, "inverse") == 0;
     double metres;
@@ -97,7 +103,7 @@ int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit)
          !rf_good_rows(map->stride, 4 * (int64_t)map->width, map->height))) {
         return REFOCUS_ERR_ARGUMENT;
     }
-    return rf_depth_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
+    return set_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
 }
 
 static int check_range(double near_m, double far_m, struct refocus_reason *reason)
@@ -148,7 +154,7 @@ static int apply_unit(struct rf_read *read, const char *unit, double max_value)
     map->stride = (ptrdiff_t)rf_raster_stride(&read->samples);
     map->sample = read->samples.sample;
     if (unit || !said) {
-        const int status = rf_depth_unit(map, unit ? unit : "disparity", max_value);
+        const int status = set_unit(map, unit ? unit : "disparity", max_value);
         if (status != REFOCUS_OK) {
             return rf_fail(read->reason, status,
                            "the depth unit is none of disparity, inverse, m, mm, or a "
@@ -191,7 +197,7 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
     }
     *depth = NULL;
     status = check_range(near_m, far_m, reason);
-    if (status == REFOCUS_OK && unit && rf_depth_unit(&probe, unit, 255.0) != REFOCUS_OK) {
+    if (status == REFOCUS_OK && unit && set_unit(&probe, unit, 255.0) != REFOCUS_OK) {
         status = rf_fail(reason, REFOCUS_ERR_ARGUMENT,
                          "the depth unit is none of disparity, inverse, m, mm, or a "
                          "number per metre such as 5000/m");

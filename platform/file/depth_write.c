@@ -1,15 +1,25 @@
-/* Depth into a JPEG that exists: GDepth in a standard and an extended XMP packet of our
- * own, in front of the first segment that is neither JFIF nor EXIF. All other bytes
+/* depth_write.c: depth is put into a JPEG that exists, as GDepth in a standard and an extended XMP
+ * packet of our own, in front of the first segment that is neither JFIF nor EXIF. All other bytes
  * stay. */
-#include "internal.h"
-
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include <refocus/platform/file.h>
+
+#include "formats.h"
+#include "jpeg_walk.h"
+#include "load.h"
+#include "md5.h"
+#include "orient.h"
+#include "own_xmp.h"
+#include "reason.h"
+#include "rows.h"
+#include "store.h"
 
 enum { MARKER_APP0 = 0xe0, MARKER_APP1 = 0xe1, CHUNK = 65000 };
 
-#define OPENING "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\" x:xmptk=\"" RF_XMP_TOOL "\">"
 #define RDF                                                                                        \
     "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"                          \
     "<rdf:Description rdf:about=\"\""
@@ -20,7 +30,7 @@ enum { MARKER_APP0 = 0xe0, MARKER_APP1 = 0xe1, CHUNK = 65000 };
     " xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" "                                            \
     "xmpNote:HasExtendedXMP=\""
 
-/* Text that grows; `failed` once memory ran out. */
+/* A text that grows; it has failed once memory ran out. */
 struct text {
     char *data;
     size_t size, room;
@@ -50,8 +60,8 @@ static void put_words(struct text *text, const char *words)
     put(text, words, strlen(words));
 }
 
-/* 12 digits: a reader that is off in the last bits writes the same ones again. The
- * locale's point becomes a dot. */
+/* With 12 digits a reader that is off in the last bits writes the same ones again. The locale's
+ * decimal point becomes a dot. */
 static void put_number(struct text *text, const char *name, double value)
 {
     char number[64];
@@ -85,9 +95,10 @@ static void put_base64(struct text *text, struct rf_bytes bytes)
     }
 }
 
-/* PNG of RangeInverse: 0 near, 65535 far, turned as the JPEG's pixels lie. */
-static int encode(const struct refocus_depth_write *depth, int orientation,
-                  struct refocus_blob *png, struct refocus_reason *reason)
+/* Write a PNG in the meaning RangeInverse: 0 is near, 65535 far, turned as the JPEG's pixels lie.
+ */
+static int encode(const struct rf_format *format, const struct refocus_depth_write *depth,
+                  int orientation, struct refocus_blob *png, struct refocus_reason *reason)
 {
     struct rf_read read = {.reason = reason};
     struct rf_raster raster = {.width = depth->width,
@@ -125,8 +136,7 @@ static int encode(const struct refocus_depth_write *depth, int orientation,
         rows.width = raster.width;
         rows.height = raster.height;
         rows.stride = (ptrdiff_t)rf_raster_stride(&raster);
-        (void)rows; /* a build without PNG does not look at it */
-        status = rf_write_png(&store, &rows, NULL, reason);
+        status = format->write(&store, &rows, NULL, reason);
         if (fclose(store.stream) != 0 || store.error) {
             status = status == REFOCUS_OK ? rf_fail_memory(reason) : status;
         }
@@ -144,7 +154,7 @@ static int encode(const struct refocus_depth_write *depth, int orientation,
 static void make_standard(struct text *text, const struct refocus_depth_write *depth,
                           int orientation, const char *guid)
 {
-    put_words(text, OPENING RDF GDEPTH NOTE);
+    put_words(text, RF_XMP_OPENING RDF GDEPTH NOTE);
     put_words(text, guid);
     put_words(text, "\" GDepth:Format=\"RangeInverse\" GDepth:Mime=\"image/png\"");
     if (depth->near_m > 0 && depth->far_m > depth->near_m) {
@@ -203,16 +213,11 @@ static void put_packets(struct rf_store *store, const struct text *standard,
     }
 }
 
-bool rf_xmp_is_ours(struct rf_bytes packet)
-{
-    return packet.size > sizeof OPENING && memcmp(packet.data, OPENING, sizeof OPENING - 1) == 0;
-}
-
 /* Whether a segment is of a packet that an earlier writing left; its GUID comes
  * first. */
 static bool is_old(struct rf_bytes segment, char guid[33])
 {
-    const size_t before = sizeof(OPENING RDF GDEPTH NOTE) - 1;
+    const size_t before = sizeof(RF_XMP_OPENING RDF GDEPTH NOTE) - 1;
     struct rf_bytes rest;
 
     if (rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, &rest) &&
@@ -283,18 +288,19 @@ static bool good(const struct refocus_depth_write *depth)
 }
 
 static int write_all(const char *path, struct rf_bytes file, int orientation,
-                     const struct refocus_depth_write *depth, struct refocus_reason *reason)
+                     const struct rf_format *png_format, const struct refocus_depth_write *depth,
+                     struct refocus_reason *reason)
 {
     struct text standard = {NULL, 0, 0, false}, extended = {NULL, 0, 0, false};
     struct refocus_blob png = {NULL, 0};
     struct rf_store store;
     char guid[33];
-    int status = encode(depth, orientation, &png, reason);
+    int status = encode(png_format, depth, orientation, &png, reason);
 
     if (status != REFOCUS_OK) {
         return status;
     }
-    put_words(&extended, OPENING RDF GDEPTH " GDepth:Data=\"");
+    put_words(&extended, RF_XMP_OPENING RDF GDEPTH " GDepth:Data=\"");
     put_base64(&extended, (struct rf_bytes){png.data, png.size});
     put_words(&extended, "\"" CLOSING);
     free(png.data);
@@ -323,6 +329,8 @@ int refocus_photo_write_depth(const char *path, const char *original,
                               const struct refocus_depth_write *depth,
                               struct refocus_reason *reason)
 {
+    const struct rf_format *const jpeg = rf_format_of_name(".jpg"), *const png =
+                                                                        rf_format_of_name(".png");
     struct refocus_reason unused;
     struct refocus_photo *photo = NULL;
     struct refocus_blob file = {NULL, 0};
@@ -333,10 +341,10 @@ int refocus_photo_write_depth(const char *path, const char *original,
     if (!path || !original || !good(depth)) {
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "the depth is out of its range");
     }
-#if !defined(RF_HAVE_JPEG) || !defined(RF_HAVE_PNG)
-    return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                   "depth in JPEG needs TurboJPEG and libpng, which this build lacks");
-#endif
+    if (!jpeg->read || !png->write) {
+        return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                       "depth in JPEG needs TurboJPEG and libpng, which this build lacks");
+    }
     status = rf_load(original, UINT32_MAX, reason, &file);
     if (status != REFOCUS_OK) {
         return status;
@@ -345,7 +353,7 @@ int refocus_photo_write_depth(const char *path, const char *original,
     status = refocus_photo_read_memory(&photo, file.data, file.size, NULL, reason);
     if (status == REFOCUS_OK) {
         status = write_all(path, (struct rf_bytes){file.data, file.size}, photo->info.orientation,
-                           depth, reason);
+                           png, depth, reason);
     }
     refocus_photo_free(&photo);
     free(file.data);

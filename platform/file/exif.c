@@ -1,10 +1,13 @@
-/* EXIF: a TIFF structure of one main directory and one for the camera's settings. Only
- * these two are ever followed, so that no chain of offsets, circular or not, can be
- * long. */
-#include "internal.h"
+/* exif.c: the EXIF block of a photo is read and corrected. It is a TIFF structure of one main
+ * directory and one for the camera's settings. Only these two are ever followed, so that no chain
+ * of offsets, circular or not, can be long. */
+#include "exif.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "reason.h"
 
 struct tiff {
     uint8_t *data;
@@ -232,22 +235,5 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
     if (orient) {
         read->orientation = exif.orientation;
     }
-    return REFOCUS_OK;
-}
-
-int rf_icc_take(struct rf_read *read, struct refocus_blob *profile)
-{
-    /* ICC.1, 7.2: a header of 128 bytes, the colour space at 16, "acsp" at 36 */
-    if (profile->size >= 128 && memcmp(profile->data + 16, "RGB ", 4) == 0 &&
-        memcmp(profile->data + 36, "acsp", 4) == 0) {
-        read->icc = *profile;
-    } else {
-        if (profile->data) {
-            rf_note(read->info, "ICC profile: not for RGB or damaged, passed over");
-        }
-        free(profile->data);
-    }
-    profile->data = NULL;
-    profile->size = 0;
     return REFOCUS_OK;
 }

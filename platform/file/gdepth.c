@@ -1,47 +1,21 @@
-/* Google's depth in XMP: GDepth the map, GImage the all-in-focus original, GFocus the
- * phone's own focus. https://developers.google.com/depthmap-metadata/reference */
-#include "internal.h"
+/* gdepth.c: Google's depth in XMP is read: GDepth is the map, GImage the all-in-focus original,
+ * GFocus the phone's own focus. https://developers.google.com/depthmap-metadata/reference */
+#include "gdepth.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base64.h"
+#include "convert.h"
+#include "part.h"
+#include "reason.h"
 
 /* Near and Far as the file says them, and its unit. */
 struct range {
     double near, far; /* both 0: not said */
     double metres;    /* in a unit; 0: no unit that is known */
 };
-
-void rf_xmp_free(struct rf_xmp *xmp)
-{
-    for (int key = 0; key < RF_XMP_KEYS; key++) {
-        free(xmp->value[key]);
-        xmp->value[key] = NULL;
-    }
-}
-
-int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp, enum rf_xmp_key key,
-                  const char *name, bool *found, double *value)
-{
-    *found = false;
-    *value = 0.0;
-    if (!xmp->value[key]) {
-        return REFOCUS_OK;
-    }
-    if (!rf_parse_number(xmp->value[key], value)) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no number", name);
-    }
-    *found = true;
-    return REFOCUS_OK;
-}
-
-double rf_xmp_simulated_f_number(const struct rf_xmp *xmp)
-{
-    const char *const text = xmp->value[RF_XMP_APPLE_APERTURE];
-    double value;
-
-    /* What is no number is passed over: the depth is as good without it. */
-    return text && rf_parse_number(text, &value) && value > 0.0 ? value : 0.0;
-}
 
 static int read_range(const struct rf_read *read, const struct rf_xmp *xmp, struct range *range)
 {

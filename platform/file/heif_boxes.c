@@ -1,8 +1,9 @@
-/* The rotation and mirroring that a HEIF container states for an item. libheif applies
- * them but does not tell them. ISO/IEC 23008-12, 6.5.10, 6.5.12 and 9.3; ISO/IEC
+/* heif_boxes.c: the rotation and mirroring that a HEIF container states for an item are found.
+ * libheif applies them but does not tell them. ISO/IEC 23008-12, 6.5.10, 6.5.12 and 9.3; ISO/IEC
  * 14496-12. */
-#include "internal.h"
+#include "heif_boxes.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 struct box {
@@ -26,7 +27,7 @@ static void skip(struct rf_bytes *bytes, size_t size)
     bytes->size -= size;
 }
 
-/* Take the next box off the front; false at the end and at what is no box. */
+/* Take the next box off the front; false at the end and where no box begins. */
 static bool next_box(struct rf_bytes *rest, struct box *box)
 {
     uint64_t size, head = 8;
@@ -87,7 +88,7 @@ static void apply_property(struct turn *turn, struct rf_bytes properties, uint32
         return;
     }
     if (strcmp(box.type, "irot") == 0) {
-        /* Quarter turns anticlockwise: what leads right led down before. */
+        /* Quarter turns anticlockwise: the step right was the step down before. */
         for (int i = box.content.data[0] & 3; i > 0; i--) {
             const struct turn before = *turn;
             *turn = (struct turn){before.down_x, before.down_y, -before.right_x, -before.right_y};
@@ -101,7 +102,7 @@ static void apply_property(struct turn *turn, struct rf_bytes properties, uint32
     }
 }
 
-/* Item property associations: which properties, counted from 1, each item has. */
+/* Item property associations say which properties, counted from 1, each item has. */
 static void apply_associations(struct turn *turn, struct rf_bytes ipma, struct rf_bytes properties,
                                uint32_t item)
 {

@@ -1,16 +1,19 @@
-/* Pixels of a JPEG by TurboJPEG, which needs no jumps. */
-#include "internal.h"
+/* jpeg_decode.c: the pixels of a JPEG are decoded by TurboJPEG, which needs no jumps. */
+#include "jpeg_decode.h"
 
 #include <limits.h>
 #include <string.h>
 #include <turbojpeg.h>
+
+#include "jpeg_walk.h"
+#include "reason.h"
 
 static int fail_jpeg(const struct rf_read *read, tjhandle jpeg)
 {
     return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged JPEG: %s", tjGetErrorStr2(jpeg));
 }
 
-/* TurboJPEG fills up what is missing with grey; the end of the picture must be there.
+/* TurboJPEG paints a missing rest grey without an error, so the end of the picture must be there.
  */
 static bool is_whole(struct rf_bytes file)
 {

@@ -1,20 +1,32 @@
-/* A JPEG photo: what its segments hold, and where its depth is. */
-#include "internal.h"
+/* jpeg_read.c: a JPEG photo is read: its segments are sorted, and its depth is looked for. */
+#include "jpeg_read.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+#include "apple.h"
+#include "exif.h"
+#include "gdepth.h"
+#include "icc.h"
+#include "jpeg_decode.h"
+#include "jpeg_walk.h"
+#include "mpf.h"
+#include "own_xmp.h"
+#include "reason.h"
+#include "xmp_extended.h"
+#include "xmp_parse.h"
 
 enum { MARKER_APP1 = 0xe1, MARKER_APP2 = 0xe2, ICC_CHUNKS = 255 };
 
 struct parts {
     struct rf_bytes exif, xmp, mpf;
-    struct rf_bytes older_xmp; /* what was there before our own packet was put in
-                                  front */
+    struct rf_bytes older_xmp; /* the packet in front of which our own was put */
     struct rf_bytes icc[ICC_CHUNKS];
     int icc_count; /* as the chunks say; -1: they disagree */
     size_t end;    /* the byte behind the main picture */
 };
 
-/* ICC.1, annex B.4: number of this chunk, counted from 1, and how many there are. */
+/* ICC.1, annex B.4: a chunk begins with its number, counted from 1, and the number of chunks. */
 static void take_icc(struct parts *parts, struct rf_bytes chunk)
 {
     int number, count;
@@ -119,7 +131,7 @@ static bool mentions_depth(struct rf_bytes packet)
     return false;
 }
 
-/* The standard packet and, when it names one, the extended packet. */
+/* Read the standard packet and, when it names one, the extended packet. */
 static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
                     struct rf_xmp *xmp)
 {
@@ -142,8 +154,7 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     return status;
 }
 
-/* Of the packet before ours: the all-in-focus original, when its main picture is
- * blurred. */
+/* Take the all-in-focus original from the packet before ours, when its main picture is blurred. */
 static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
                       struct rf_xmp *xmp)
 {
@@ -166,7 +177,7 @@ static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_byte
     return status;
 }
 
-/* Depth from the first container that holds some. */
+/* Take depth from the first container that holds some. */
 static int read_depth(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
     const struct rf_bytes main_picture = {file.data, parts->end};
@@ -199,7 +210,7 @@ static int read_depth(struct rf_read *read, struct rf_bytes file, const struct p
 }
 #endif
 
-/* The picture of an MPO that follows the first and is a whole JPEG. */
+/* Read the picture of an MPO that follows the first and is a whole JPEG. */
 static int read_second(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
     struct rf_mpf mpf;
@@ -212,7 +223,7 @@ static int read_second(struct rf_read *read, struct rf_bytes file, const struct 
             const uint64_t size = mpf.image[i].size;
 
             if (begin < parts->end || begin > file.size || size > file.size - begin || size < 4 ||
-                rf_sniff((struct rf_bytes){file.data + begin, (size_t)size}) != RF_CONTAINER_JPEG) {
+                !rf_is_jpeg((struct rf_bytes){file.data + begin, (size_t)size})) {
                 continue;
             }
             read->second = false;

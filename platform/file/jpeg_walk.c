@@ -1,5 +1,5 @@
-/* The segments of a JPEG, from SOI to EOI. */
-#include "internal.h"
+/* jpeg_walk.c: a JPEG is gone through segment by segment, from SOI to EOI. */
+#include "jpeg_walk.h"
 
 #include <string.h>
 
@@ -12,6 +12,11 @@ const char rf_jpeg_mpf_signature[4] = "MPF";
 enum { MARKER_TEM = 0x01, MARKER_RST0 = 0xd0, MARKER_RST7 = 0xd7 };
 enum { MARKER_SOI = 0xd8, MARKER_EOI = 0xd9 };
 
+bool rf_is_jpeg(struct rf_bytes file)
+{
+    return file.size >= 3 && memcmp(file.data, "\xff\xd8\xff", 3) == 0;
+}
+
 bool rf_jpeg_walk_begin(struct rf_jpeg_walk *walk, struct rf_bytes file)
 {
     memset(walk, 0, sizeof *walk);
@@ -20,8 +25,8 @@ bool rf_jpeg_walk_begin(struct rf_jpeg_walk *walk, struct rf_bytes file)
     return file.size >= 4 && file.data[0] == 0xff && file.data[1] == MARKER_SOI;
 }
 
-/* To the byte behind the next marker, over entropy-coded data and fill bytes; 0 at the
- * end of the file. */
+/* Go to the byte behind the next marker, over entropy-coded data and fill bytes; 0 at the end of
+ * the file. */
 static int next_marker(struct rf_jpeg_walk *walk)
 {
     const uint8_t *const data = walk->file.data;

@@ -1,13 +1,17 @@
-/* JPEG by TurboJPEG; EXIF and the ICC profile go in behind its JFIF segment. */
-#include "internal.h"
+/* jpeg_write.c: a JPEG is written by TurboJPEG; EXIF and the ICC profile go in behind its JFIF
+ * segment. */
+#include "jpeg_write.h"
 
 #include <limits.h>
 #include <string.h>
 #include <turbojpeg.h>
 
+#include "jpeg_walk.h"
+#include "reason.h"
+
 enum {
-    SEGMENT_MAX = 65533,   /* payload of a segment: 65535 less its own length */
-    JPEG_SIDE_MAX = 65500, /* of libjpeg */
+    SEGMENT_MAX = 65533,   /* payload of a segment: 65535 less the 2 bytes of its length */
+    JPEG_SIDE_MAX = 65500, /* the limit of libjpeg */
     ICC_CHUNK = SEGMENT_MAX - 14,
     DEFAULT_QUALITY = 95,
 };
@@ -93,7 +97,7 @@ static int compress(tjhandle jpeg, const struct rf_rows *rows, int quality, unsi
                        TJFLAG_ACCURATEDCT | (flipped ? TJFLAG_BOTTOMUP : 0));
 }
 
-/* Where the segments of ours belong: behind SOI and JFIF. */
+/* Our segments belong behind SOI and JFIF. */
 static size_t find_insertion(const unsigned char *bytes, unsigned long size)
 {
     size_t length;

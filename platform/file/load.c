@@ -1,10 +1,13 @@
-/* A whole file into memory. Not mapped: a file that shrinks meanwhile would end in
- * SIGBUS. */
-#include "internal.h"
+/* load.c: a whole file is read into memory. It is not mapped, as a file that shrinks meanwhile
+ * would end in SIGBUS. */
+#include "load.h"
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/stat.h>
+
+#include "reason.h"
 
 /* Room for one byte more than the size shows the end without a second allocation. */
 static size_t first_room(FILE *stream, uint64_t max_bytes)

@@ -1,5 +1,5 @@
-/* MD5, RFC 1321: the name that extended XMP goes by. Not for secrets. */
-#include "internal.h"
+/* md5.c: MD5 (RFC 1321), by which extended XMP names its packets; it keeps no secrets. */
+#include "md5.h"
 
 #include <string.h>
 

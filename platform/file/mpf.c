@@ -1,5 +1,6 @@
-/* CIPA DC-007, Multi-Picture Format: a TIFF directory with one entry an image. */
-#include "internal.h"
+/* mpf.c: the index of pictures in a file is read (CIPA DC-007, Multi-Picture Format): a TIFF
+ * directory with one entry a picture. */
+#include "mpf.h"
 
 #include <string.h>
 

@@ -1,8 +1,9 @@
-/* Decimal numbers from files. strtod() follows the locale and would take "0.5" for 0 in
- * many of them; files always mean a point. */
-#include "internal.h"
+/* number.c: decimal numbers are read out of files. strtod() follows the locale and would take
+ * "0.5" for 0 in many of them; files always mean a point. */
+#include "number.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 static const char *skip_blanks(const char *text)
@@ -10,7 +11,7 @@ static const char *skip_blanks(const char *text)
     return text + strspn(text, " \t\r\n");
 }
 
-/* Digits into *mantissa and, for what no longer fits, into *exponent. */
+/* Digits go into *mantissa; those that no longer fit are counted in *exponent. */
 static const char *read_digits(const char *text, uint64_t *mantissa, int *exponent, int step,
                                int *digits)
 {
@@ -44,7 +45,7 @@ static const char *read_exponent(const char *text, int *exponent)
     return text;
 }
 
-/* value * 10^exponent. Dividing by an exact power of ten rounds once; powers so small
+/* Returns value * 10^exponent. Dividing by an exact power of ten rounds once; powers so small
  * that doubles have few digits for them are taken in two halves. */
 static double scale(double value, int exponent)
 {

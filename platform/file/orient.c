@@ -1,10 +1,10 @@
-/* EXIF orientation: the picture is turned once, when it is read. */
-#include "internal.h"
+/* orient.c: pictures are turned upright by their EXIF orientation, once, when they are read. */
+#include "orient.h"
 
 #include <string.h>
 
-/* Where the upright picture's pixel (0, 0) lies in the stored one, and the steps, in
- * pixels, to its right and lower neighbours. From EXIF 2.3, table of tag 274. */
+/* The place of the upright picture's pixel (0, 0) in the stored one, and the steps, in pixels, to
+ * its right and lower neighbours; from EXIF 2.3, table of tag 274. */
 struct steps {
     ptrdiff_t origin, right, down;
 };
@@ -66,7 +66,6 @@ int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster, int o
     return REFOCUS_OK;
 }
 
-/* A point in parts of the stored width and height to parts of the upright ones. */
 void rf_orient_point(double *x, double *y, int orientation)
 {
     const double u = *x, v = *y;

@@ -1,9 +1,19 @@
-/* PFM: 32-bit floats, rows from the bottom up, byte order by the sign of the scale. */
-#include "internal.h"
-
+/* pfm.c: PFM, depth as 32-bit floats, is read and written. Rows run from the bottom up, and the
+ * sign of the scale says the byte order. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "format.h"
+#include "number.h"
+#include "reason.h"
+
+static bool recognise(struct rf_bytes file)
+{
+    return file.size >= 3 && file.data[0] == 'P' && (file.data[1] == 'f' || file.data[1] == 'F') &&
+           file.data[2] != '\0' && strchr("\t\n\v\f\r #", file.data[2]);
+}
 
 static bool is_blank(uint8_t c)
 {
@@ -52,7 +62,7 @@ static float load_float(const uint8_t *b, bool little_endian)
     return value;
 }
 
-int rf_read_pfm(struct rf_read *read, struct rf_bytes file)
+static int read_pfm(struct rf_read *read, struct rf_bytes file)
 {
     struct rf_raster *const raster = &read->samples;
     size_t position = 2, stride;
@@ -105,12 +115,14 @@ int rf_read_pfm(struct rf_read *read, struct rf_bytes file)
     return REFOCUS_OK;
 }
 
-int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows, struct refocus_reason *reason)
+static int write_pfm(struct rf_store *store, const struct rf_rows *rows,
+                     const struct refocus_write_options *options, struct refocus_reason *reason)
 {
     uint8_t *const row = malloc((size_t)rows->width * 4);
     char header[64];
     int n;
 
+    (void)options;
     if (!row) {
         return rf_fail_memory(reason);
     }
@@ -135,3 +147,13 @@ int rf_write_pfm(struct rf_store *store, const struct rf_rows *rows, struct refo
     free(row);
     return REFOCUS_OK;
 }
+
+const struct rf_format rf_format_pfm = {
+    .name = "PFM",
+    .endings = {".pfm"},
+    .writes_depth = true,
+    .only_depth = true,
+    .recognise = recognise,
+    .read = read_pfm,
+    .write = write_pfm,
+};

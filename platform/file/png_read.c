@@ -1,10 +1,15 @@
-/* PNG by libpng's row interface, with limits. libpng reports errors by a jump: what is
- * needed behind it lives in a struct, so that no local is lost. */
-#include "internal.h"
+/* png_read.c: a PNG is decoded by libpng's row interface, with limits. libpng reports errors by a
+ * jump: everything that is needed behind it lives in a struct, so that no local is lost. */
+#include "png_read.h"
 
 #include <png.h>
 #include <setjmp.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "exif.h"
+#include "icc.h"
+#include "reason.h"
 
 struct reader {
     const struct rf_read *read;
@@ -14,7 +19,7 @@ struct reader {
     png_infop info;
     struct rf_raster raster;
     struct refocus_blob exif, icc;
-    int status; /* of what is not libpng's own error */
+    int status; /* of errors that are not libpng's own */
 };
 
 static void on_error(png_structp png, png_const_charp words)
@@ -62,7 +67,7 @@ static void on_free(png_structp png, png_voidp memory)
     free(memory);
 }
 
-/* The samples as they are, but for palettes, small samples and transparency. */
+/* Samples stay as they are, but for palettes, small samples and transparency. */
 static void choose_samples(struct reader *reader)
 {
     png_structp const png = reader->png;
@@ -75,7 +80,7 @@ static void choose_samples(struct reader *reader)
     } else if (type == PNG_COLOR_TYPE_GRAY && bits < 8) {
         png_set_expand_gray_1_2_4_to_8(png);
     }
-    /* Palettes bring theirs with them. */
+    /* A palette brings its transparency with it. */
     png_set_strip_alpha(png);
     if (bits == 16 && *(const uint8_t *)&one == 1) {
         png_set_swap(png);
@@ -159,7 +164,7 @@ static bool run(struct reader *reader)
     png_set_chunk_cache_max(reader->png, 128);
     png_set_chunk_malloc_max(reader->png, (png_alloc_size_t)chunk);
     png_read_info(reader->png, reader->info);
-    /* Before libpng's row buffers, and with our words rather than libpng's. */
+    /* The check comes before libpng's row buffers, and with our words rather than libpng's. */
     status = rf_check_size(reader->read, png_get_image_width(reader->png, reader->info),
                            png_get_image_height(reader->png, reader->info), 1);
     if (status != REFOCUS_OK) {
@@ -171,7 +176,8 @@ static bool run(struct reader *reader)
     return true;
 }
 
-int rf_png_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster,
+/* The pixels and, unless their places are NULL, EXIF and the colour profile. */
+static int decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster,
                   struct refocus_blob *exif, struct refocus_blob *icc)
 {
     struct reader reader = {.read = read, .file = file};
@@ -203,13 +209,18 @@ int rf_png_decode(const struct rf_read *read, struct rf_bytes file, struct rf_ra
     return reader.status;
 }
 
+int rf_png_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster)
+{
+    return decode(read, file, raster, NULL, NULL);
+}
+
 int rf_read_png(struct rf_read *read, struct rf_bytes file)
 {
     struct refocus_blob exif = {NULL, 0}, icc = {NULL, 0};
     int status;
 
     memcpy(read->info->container, "PNG", 4);
-    status = rf_png_decode(read, file, &read->image, &exif, &icc);
+    status = decode(read, file, &read->image, &exif, &icc);
     /* IHDR comes first: its colour type is byte 25 of the file. */
     if (status == REFOCUS_OK && file.data[25] & PNG_COLOR_MASK_ALPHA) {
         rf_note(read->info, "PNG: transparency is dropped");

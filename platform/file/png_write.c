@@ -1,8 +1,11 @@
-/* PNG by libpng's row interface; see png_read.c about its jumps. */
-#include "internal.h"
+/* png_write.c: a PNG is written by libpng's row interface; png_read.c explains libpng's jumps. */
+#include "png_write.h"
 
 #include <png.h>
 #include <setjmp.h>
+#include <stdlib.h>
+
+#include "reason.h"
 
 struct writer {
     struct rf_store *store;

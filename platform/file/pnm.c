@@ -1,8 +1,28 @@
-/* PPM and PGM, plain and raw, 8 and 16 bits; written raw. */
-#include "internal.h"
-
+/* pnm.c: PPM and PGM, plain and raw, of 8 and 16 bits, are read; they are written raw. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "format.h"
+#include "reason.h"
+
+/* "P", the digit of the kind, and a blank or a comment. */
+static bool begins(struct rf_bytes file, char plain, char raw)
+{
+    return file.size >= 3 && file.data[0] == 'P' &&
+           (file.data[1] == plain || file.data[1] == raw) && file.data[2] != '\0' &&
+           strchr("\t\n\v\f\r #", file.data[2]);
+}
+
+static bool recognise_ppm(struct rf_bytes file)
+{
+    return begins(file, '3', '6');
+}
+
+static bool recognise_pgm(struct rf_bytes file)
+{
+    return begins(file, '2', '5');
+}
 
 struct scan {
     struct rf_bytes file;
@@ -30,7 +50,7 @@ static void skip_blanks(struct scan *scan)
     }
 }
 
-/* A decimal number, at most 2^32 - 1. */
+/* Read a decimal number, at most 2^32 - 1. */
 static bool scan_number(struct scan *scan, uint64_t *value)
 {
     size_t begin;
@@ -105,7 +125,7 @@ static int scan_raw(struct rf_read *read, struct scan *scan, struct rf_raster *r
     const uint8_t *from = scan->file.data + scan->position;
     int status;
 
-    /* Before memory is asked for: a header alone must not cost a gigabyte. */
+    /* This comes before memory is asked for: a header alone must not cost a gigabyte. */
     if (scan->file.size - scan->position < count * bytes) {
         return fail_short(read);
     }
@@ -143,7 +163,7 @@ static int scan_plain(struct rf_read *read, struct scan *scan, struct rf_raster 
     return status;
 }
 
-int rf_read_pnm(struct rf_read *read, struct rf_bytes file)
+static int read_pnm(struct rf_read *read, struct rf_bytes file)
 {
     struct scan scan = {file, 2};
     struct rf_raster *const raster = &read->image;
@@ -160,7 +180,7 @@ int rf_read_pnm(struct rf_read *read, struct rf_bytes file)
     return raw ? scan_raw(read, &scan, raster) : scan_plain(read, &scan, raster);
 }
 
-/* Rows in the byte order of the file: R, G, B, or 16 bits with the high byte first. */
+/* The file wants R, G, B, or 16 bits with the high byte first. */
 static void pack_row(uint8_t *to, const uint8_t *from, const struct rf_rows *rows)
 {
     const bool swap = rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8;
@@ -181,7 +201,8 @@ static void pack_row(uint8_t *to, const uint8_t *from, const struct rf_rows *row
     }
 }
 
-int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows, struct refocus_reason *reason)
+static int write_pnm(struct rf_store *store, const struct rf_rows *rows,
+                     const struct refocus_write_options *options, struct refocus_reason *reason)
 {
     const bool grey = rows->format == REFOCUS_FORMAT_NONE;
     const size_t row_bytes = (size_t)rows->width * (grey ? 2 : 3);
@@ -189,6 +210,7 @@ int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows, struct refo
     char header[64];
     int n;
 
+    (void)options;
     if (!row) {
         return rf_fail_memory(reason);
     }
@@ -202,3 +224,21 @@ int rf_write_ppm(struct rf_store *store, const struct rf_rows *rows, struct refo
     free(row);
     return REFOCUS_OK;
 }
+
+const struct rf_format rf_format_ppm = {
+    .name = "PPM",
+    .endings = {".ppm"},
+    .writes_pictures = true,
+    .recognise = recognise_ppm,
+    .read = read_pnm,
+    .write = write_pnm,
+};
+
+const struct rf_format rf_format_pgm = {
+    .name = "PGM",
+    .endings = {".pgm"},
+    .writes_depth = true,
+    .recognise = recognise_pgm,
+    .read = read_pnm,
+    .write = write_pnm,
+};

@@ -1,119 +1,44 @@
-/* Photos: told by their first bytes, read by their format, turned upright. */
-#include "internal.h"
+/* read.c: a photo is recognised by its first bytes, read by its format and turned upright. */
 #include "read.h"
 
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "convert.h"
+#include "formats.h"
+#include "load.h"
+#include "orient.h"
+#include "reason.h"
 
 const char *refocus_file_formats(void)
 {
     return RF_FORMATS;
 }
 
-static bool begins(struct rf_bytes file, const char *bytes, size_t size)
-{
-    return file.size >= size && memcmp(file.data, bytes, size) == 0;
-}
-
-/* ISO 14496-12: size, "ftyp", the main brand, a version, compatible brands. */
-static bool is_heif(struct rf_bytes file)
-{
-    static const char brands[][5] = {"heic", "heix", "hevc", "hevx",
-                                     "heim", "heis", "mif1", "msf1"};
-
-    if (file.size < 12 || memcmp(file.data + 4, "ftyp", 4) != 0) {
-        return false;
-    }
-    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++) {
-        if (memcmp(file.data + 8, brands[i], 4) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-enum rf_container rf_sniff(struct rf_bytes file)
-{
-    if (begins(file, "\xff\xd8\xff", 3)) {
-        return RF_CONTAINER_JPEG;
-    }
-    if (begins(file, "\x89PNG\r\n\x1a\n", 8)) {
-        return RF_CONTAINER_PNG;
-    }
-    if (is_heif(file)) {
-        return RF_CONTAINER_HEIC;
-    }
-    if (file.size >= 3 && file.data[0] == 'P' && strchr("\t\n\v\f\r #", file.data[2]) &&
-        file.data[2] != '\0') {
-        switch (file.data[1]) {
-        case '2':
-        case '3':
-        case '5':
-        case '6':
-            return RF_CONTAINER_PNM;
-        case 'f':
-        case 'F':
-            return RF_CONTAINER_PFM;
-        }
-    }
-    return RF_CONTAINER_UNKNOWN;
-}
-
-int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char *what,
-                   struct rf_raster *raster)
-{
-    int status;
-
-    (void)raster; /* unused without JPEG and PNG */
-    switch (rf_sniff(part)) {
-    case RF_CONTAINER_JPEG:
-        status = rf_jpeg_decode(read, part, raster);
-        break;
-    case RF_CONTAINER_PNG:
-        status = rf_png_decode(read, part, raster, NULL, NULL);
-        break;
-    default:
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is neither PNG nor JPEG",
-                       what);
-    }
-    if (status != REFOCUS_OK) {
-        struct refocus_reason inner = *read->reason;
-        inner.text[sizeof inner.text - 32] = '\0';
-        rf_fail(read->reason, status, "%s: %s", what, inner.text);
-    }
-    return status;
-}
-
 static int read_container(struct rf_read *read, struct rf_bytes file)
 {
-    if (read->second && rf_sniff(file) != RF_CONTAINER_JPEG &&
-        rf_sniff(file) != RF_CONTAINER_HEIC) {
+    const struct rf_format *const format = rf_format_of_content(file);
+
+    if (read->second && !(format && format->has_second)) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it is no stereo file; give an MPO, a stereo HEIC, or two "
                        "pictures");
     }
-    switch (rf_sniff(file)) {
-    case RF_CONTAINER_JPEG:
-        return rf_read_jpeg(read, file);
-    case RF_CONTAINER_PNG:
-        return rf_read_png(read, file);
-    case RF_CONTAINER_HEIC:
-        return rf_read_heic(read, file);
-    case RF_CONTAINER_PNM:
-        return rf_read_pnm(read, file);
-    case RF_CONTAINER_PFM:
-        if (!read->picture_always) {
-            return rf_read_pfm(read, file);
-        }
-        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                       "a PFM file is a depth map, not a photo; give it as the depth");
-    default:
-        if (file.size == 0) {
-            return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "it is empty");
-        }
+    if (!format && file.size == 0) {
+        return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "it is empty");
+    }
+    if (!format) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "its content is of no known format; known are %s", RF_FORMATS);
     }
+    if (format->only_depth && read->picture_always) {
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "a %s file is a depth map, not a photo; give it as the depth", format->name);
+    }
+    if (!format->read) {
+        return rf_fail_absent(read->reason, format->name, format->library);
+    }
+    return format->read(read, file);
 }
 
 static void set_limits(struct rf_read *read, const struct refocus_read_limits *limits)

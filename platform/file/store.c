@@ -1,16 +1,19 @@
-/* Files appear whole or not at all: written under a temporary name in the same folder,
- * brought to the disk, then renamed, which replaces what was there in one step. A file
+/* store.c: files appear whole or not at all. They are written under a temporary name in the same
+ * folder, brought to the disk, then renamed, which replaces an older file in one step. A file
  * that is replaced passes its owner and mode on; symbolic links stay and are followed. */
-#include "internal.h"
+#include "store.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "reason.h"
 
 /* Length of the folder's part of a path, its slash included. */
 static size_t folder_of(const char *path)
@@ -23,7 +26,7 @@ static size_t folder_of(const char *path)
 /* Links in its folders are followed by the system. */
 char *refocus_file_place(const char *path)
 {
-    enum { MOST = 40 }; /* as Linux; what is longer goes round */
+    enum { MOST = 40 }; /* as Linux; a longer chain goes round in a circle */
     const size_t size = path ? strlen(path) + 1 : 0;
     char *place = path ? malloc(size) : NULL, target[PATH_MAX];
 
@@ -53,8 +56,8 @@ char *refocus_file_place(const char *path)
     return place;
 }
 
-/* open() with O_EXCL rather than mkstemp(): the umask decides the permissions of new
- * files. What replaces another is nobody else's before it has that one's. */
+/* It uses open() with O_EXCL rather than mkstemp(), so that the umask decides the permissions of
+ * new files. A file that replaces another is nobody else's before it has that one's mode. */
 static int open_temporary(struct rf_store *store, size_t folder)
 {
     const unsigned process = (unsigned)getpid();
@@ -77,7 +80,7 @@ static int open_temporary(struct rf_store *store, size_t folder)
     return -1;
 }
 
-/* Owner, group and mode of the file that is replaced. Only root may give files away:
+/* Take the owner, group and mode of the file that is replaced. Only root may give files away:
  * others keep the group where they are in it, and else take from the group what
  * everybody does not have, as it is another one. Where a file system has no owners and
  * modes there is nothing to keep. */
@@ -98,7 +101,7 @@ static void take_over(int file, const char *path)
     fchmod(file, mode);
 }
 
-/* 0 or errno. What cannot be synced, as a pipe, is not on a disk. */
+/* Returns 0 or errno. A file that cannot be synced, such as a pipe, is not on a disk. */
 static int sync_file(int file)
 {
     while (fsync(file) != 0) {
@@ -109,7 +112,7 @@ static int sync_file(int file)
     return 0;
 }
 
-/* The new name too is on the disk then. An error comes too late: the file is whole and in
+/* Bring the new name to the disk, too. An error comes too late: the file is whole and in
  * its place, whatever becomes of it. */
 static void sync_folder(char *path)
 {

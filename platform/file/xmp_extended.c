@@ -1,13 +1,18 @@
-/* Extended XMP: a packet too large for one segment, in chunks that name the packet's
- * GUID, its length and their place in it. XMP specification part 3, 1.1.3.1. */
-#include "internal.h"
+/* xmp_extended.c: an extended XMP packet, too large for one segment, is put together from chunks
+ * that name the packet's GUID, its length and their place in it (XMP specification part 3,
+ * 1.1.3.1). */
+#include "xmp_extended.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+#include "jpeg_walk.h"
+#include "reason.h"
 
 enum { GUID_BYTES = 32, HEAD_BYTES = GUID_BYTES + 8 };
 
 struct chunk {
-    uint64_t length, offset; /* of the packet; of this chunk in it */
+    uint64_t length, offset; /* length of the packet; offset of this chunk in it */
     struct rf_bytes content;
 };
 
@@ -16,7 +21,7 @@ static uint32_t get32(const uint8_t *b)
     return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
 }
 
-/* The walk's next chunk of this GUID. */
+/* Find the walk's next chunk with this GUID; others are counted as strangers. */
 static bool next_chunk(struct rf_jpeg_walk *walk, const char *guid, struct chunk *chunk,
                        int *strangers)
 {
@@ -62,7 +67,7 @@ static int compare_places(const void *a, const void *b)
     return first->offset < second->offset ? -1 : first->offset > second->offset;
 }
 
-/* Where chunks lie: one after another, without gap and overlap, up to the length. */
+/* Chunks must lie one after another, without gap and overlap, up to the length. */
 static int check_places(const struct rf_read *read, struct place *places, size_t count,
                         uint64_t length)
 {
@@ -81,7 +86,7 @@ static int check_places(const struct rf_read *read, struct place *places, size_t
     return reached == length ? REFOCUS_OK : fail_chunks(read, "lacks a part");
 }
 
-/* Number of chunks and the packet's length, in which all chunks must agree. */
+/* Find the number of chunks and the packet's length, in which all chunks must agree. */
 static int survey(struct rf_read *read, struct rf_bytes jpeg, const char *guid, size_t *count,
                   uint64_t *length)
 {

@@ -2,9 +2,19 @@
 #ifndef RF_FUZZ_FILE_H
 #define RF_FUZZ_FILE_H
 
-#include "internal.h"
-
+#include <stdlib.h>
 #include <string.h>
+
+#include "base64.h"
+#include "convert.h"
+#include "exif.h"
+#include "format.h"
+#include "gdepth.h"
+#include "heif_boxes.h"
+#include "mpf.h"
+#include "number.h"
+#include "xmp_extended.h"
+#include "xmp_parse.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

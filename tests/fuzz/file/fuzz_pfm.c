@@ -5,9 +5,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const struct rf_bytes file = {data, size};
     struct fuzz_reading reading;
 
-    if (rf_sniff(file) == RF_CONTAINER_PFM) {
+    if (rf_format_pfm.recognise(file)) {
         fuzz_begin(&reading);
-        rf_read_pfm(&reading.read, file);
+        rf_format_pfm.read(&reading.read, file);
         fuzz_end(&reading);
     }
     return 0;

@@ -5,9 +5,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const struct rf_bytes file = {data, size};
     struct fuzz_reading reading;
 
-    if (rf_sniff(file) == RF_CONTAINER_PNM) {
+    if (rf_format_ppm.recognise(file) || rf_format_pgm.recognise(file)) {
         fuzz_begin(&reading);
-        if (rf_read_pnm(&reading.read, file) == REFOCUS_OK &&
+        if (rf_format_ppm.read(&reading.read, file) == REFOCUS_OK &&
             rf_raster_to_rgb8(&reading.read, &reading.read.image) != REFOCUS_OK) {
             abort(); /* the limits leave room for it */
         }

@@ -4,7 +4,8 @@
 #include "check.h"
 
 #include "../../kernels/guarded.h"
-#include "internal.h"
+#include "exif.h"
+#include "icc.h"
 
 enum {
     ASCII = 2,

@@ -1,6 +1,11 @@
 /* The library's own small parsers, on what files hold and on what they should not. */
 #include "check.h"
-#include "internal.h"
+#include "base64.h"
+#include "depth_values.h"
+#include "exif.h"
+#include "heif_boxes.h"
+#include "mpf.h"
+#include "number.h"
 
 #include <math.h>
 

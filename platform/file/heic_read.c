@@ -1,10 +1,21 @@
-/* HEIC by libheif, read only. libheif turns every image upright by the container's own
- * irot and imir; EXIF orientation says the same once more and is not applied. */
-#include "internal.h"
+/* heic_read.c: a HEIC photo is read by libheif. libheif turns every picture upright by the
+ * container's own irot and imir; EXIF orientation says the same once more and is not applied. */
+#include "heic_read.h"
 
 #include <libheif/heif.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "depth_values.h"
+#include "exif.h"
+#include "heif_boxes.h"
+#include "icc.h"
+#include "orient.h"
+#include "reason.h"
+#ifdef RF_HAVE_XMP
+#include "xmp_parse.h"
+#endif
 
 struct heic {
     struct rf_read *read;
@@ -36,7 +47,7 @@ static int fail_heif(const struct rf_read *read, struct heif_error error)
                    error.message);
 }
 
-/* Copy rows out of libheif; bytes is what a row needs. */
+/* Copy the rows of a plane out of libheif. */
 static int copy_plane(struct rf_read *read, const struct heif_image *image,
                       enum heif_channel channel, struct rf_raster *raster)
 {
@@ -103,7 +114,7 @@ static bool has_distance(const struct heif_depth_representation_info *about)
            isfinite(about->z_far) && about->z_near > 0.0 && about->z_near < about->z_far;
 }
 
-/* ISO/IEC 23008-2, depth representation information. False when it does not say enough.
+/* Read the depth representation information (ISO/IEC 23008-2). False when it does not say enough.
  */
 static bool set_meaning(struct rf_read *read, const struct heif_depth_representation_info *about)
 {
@@ -147,8 +158,8 @@ static bool set_meaning(struct rf_read *read, const struct heif_depth_representa
     }
 }
 
-/* Apple's XMP of the depth image, of which only the simulated aperture is wanted: what is
- * damaged there is passed over. */
+/* Only the simulated aperture is wanted of the XMP that Apple puts beside the depth image, so
+ * damage there is passed over. */
 static int read_simulated(struct heic *heic, const struct heif_image_handle *depth)
 {
     int status = REFOCUS_OK;
@@ -211,8 +222,7 @@ static int take_depth(struct heic *heic, heif_item_id item,
     if (set_meaning(read, about)) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_HEIF;
         if (rf_heif_orientation(heic->file, item) == 1) {
-            /* Then libheif has not turned it: it lies as the main picture was stored.
-             */
+            /* libheif has not turned it then: it lies as the main picture was stored. */
             status = rf_raster_orient(read, &read->samples, read->info->orientation);
         }
     } else {
@@ -292,8 +302,7 @@ static int read_exif(struct heic *heic)
         return rf_fail_memory(read->reason);
     }
     if (heif_image_handle_get_metadata(heic->primary, item, block).code == heif_error_Ok) {
-        /* ISO/IEC 23008-12, A.2.1: where the TIFF header is, counted from behind this.
-         */
+        /* ISO/IEC 23008-12, A.2.1: the offset of the TIFF header, counted from behind this. */
         skip = (size_t)block[0] << 24 | (size_t)block[1] << 16 | (size_t)block[2] << 8 | block[3];
         if (skip < size - 4) {
             tiff = (struct rf_bytes){block + 4 + skip, size - 4 - skip};
@@ -344,7 +353,7 @@ static void say_orientation(struct heic *heic)
     }
 }
 
-/* The other of two pictures instead of the main one. */
+/* Go on with the other of two pictures instead of the main one. */
 static int take_second(struct heic *heic)
 {
     heif_item_id id[2], main_id = 0;

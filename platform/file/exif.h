@@ -1,0 +1,20 @@
+/* exif.h: EXIF blocks: facts about the camera, made true for the upright photo. */
+#ifndef RF_FILE_EXIF_H
+#define RF_FILE_EXIF_H
+
+#include "bytes.h"
+#include "reading.h"
+
+struct rf_exif {
+    int orientation;                                     /* 1 to 8; 1 when there is none */
+    double focal_length_mm, focal_length_35mm, f_number; /* 0: not said */
+    char camera[96];
+};
+
+/* Read a TIFF block and make it true for the upright picture without a thumbnail: orientation 1,
+ * sides exchanged when it lay on its side, thumbnail unlinked. */
+bool rf_exif_parse(uint8_t *tiff, size_t size, struct rf_exif *exif);
+/* Copy a block into read->exif and its facts into read->info and read->orientation. */
+int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient);
+
+#endif

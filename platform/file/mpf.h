@@ -1,0 +1,19 @@
+/* mpf.h: the pictures that follow the main one in a file (CIPA DC-007, Multi-Picture Format). */
+#ifndef RF_FILE_MPF_H
+#define RF_FILE_MPF_H
+
+#include <stdbool.h>
+#include "bytes.h"
+
+enum { RF_MPF_MAX = 32 };
+struct rf_mpf_image {
+    uint64_t offset; /* from the begin of the MPF segment's TIFF header; 0: the main one */
+    uint64_t size;
+};
+struct rf_mpf {
+    int count;
+    struct rf_mpf_image image[RF_MPF_MAX];
+};
+bool rf_mpf_parse(struct rf_bytes tiff, struct rf_mpf *mpf);
+
+#endif
