@@ -1,10 +1,13 @@
-/* What a kind of source is to source.c, and what they all share. */
+/* backend.h: a kind of source, as source.c calls it, and the list of all kinds. */
 #ifndef RF_CAPTURE_BACKEND_H
 #define RF_CAPTURE_BACKEND_H
 
 #include <stdbool.h>
 #include <stdint.h>
 #include <refocus/platform/source.h>
+#include "clock.h"
+#include "failure.h"
+#include "layout.h"
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -27,13 +30,14 @@ struct refocus_source {
     uint32_t sequence; /* of the frame before */
 };
 
-/* Reasons are never NULL here. After an error of start, reopen or open nothing streams;
- * state of a failed open is freed by the backend itself. */
+/* Reasons are never NULL here. After an error of start, reopen or open nothing streams; the state
+ * of a failed open is freed by the backend itself. */
 struct rf_source_ops {
     const char *scheme; /* before the colon */
+    uint32_t kind;      /* enum refocus_source_kind */
     int (*open)(struct refocus_source *source, const char *rest, struct refocus_reason *reason);
     int (*get_mode)(struct refocus_source *source, int index, struct refocus_source_mode *mode);
-    /* By source->config; fills the mode. */
+    /* Start as source->config says; fills the mode. */
     int (*start)(struct refocus_source *source, struct refocus_source_mode *mode,
                  struct refocus_reason *reason);
     int (*wait)(struct refocus_source *source, int64_t deadline_ns, struct refocus_frame **frame,
@@ -48,59 +52,25 @@ struct rf_source_ops {
     int (*list)(refocus_source_found *found, void *user); /* or NULL */
 };
 
-extern const struct rf_source_ops rf_source_file, rf_source_y4m, rf_source_raw, rf_source_replay,
-    rf_source_v4l2, rf_source_libcamera;
+/* One line a kind: rf_source_NAME is defined in the file that implements it. */
+#define RF_SOURCE_LIST(SOURCE)                                                                     \
+    SOURCE(file)                                                                                   \
+    SOURCE(y4m)                                                                                    \
+    SOURCE(raw)                                                                                    \
+    SOURCE(replay)
 
-/* clock.c -------------------------------------------------------------------------- */
-
-int64_t rf_now_ns(void);
+#define RF_DECLARE_SOURCE(name) extern const struct rf_source_ops rf_source_##name;
+RF_SOURCE_LIST(RF_DECLARE_SOURCE)
+#undef RF_DECLARE_SOURCE
+/* Kinds that a build may lack; libcamera is in a module of its own, see modules.h. */
+extern const struct rf_source_ops rf_source_v4l2, rf_source_libcamera;
 
 /*
- * Wait until fd (or -1) has one of the events, or a moment of CLOCK_MONOTONIC. Returns
- * REFOCUS_OK, REFOCUS_ERR_TIMEOUT or REFOCUS_ERR_CANCELLED; *revents is what poll()
- * says.
+ * Wait until fd (or -1) has one of the events, or a moment of CLOCK_MONOTONIC. Returns REFOCUS_OK,
+ * REFOCUS_ERR_TIMEOUT or REFOCUS_ERR_CANCELLED; *revents receives the events that poll() reports.
  */
 int rf_source_poll(const struct refocus_source *source, int fd, short events, int64_t deadline_ns,
                    short *revents);
-
-/* Pacing of files and scripts: frame n is due at a moment. */
-struct rf_pace {
-    int64_t start_ns, period_ns;
-    bool fast;
-};
-void rf_pace_start(struct rf_pace *pace, double fps, bool fast);
-int64_t rf_pace_due(const struct rf_pace *pace, int64_t frame);
-
-/* clock.c, too --------------------------------------------------------------------- */
-
-#if defined(__GNUC__) || defined(__clang__)
-__attribute__((format(printf, 3, 4)))
-#endif
-int rf_capture_fail(struct refocus_reason *reason, int status, const char *format, ...);
-int rf_capture_fail_memory(struct refocus_reason *reason);
-/* Status of errno's value for a file or device, and words: "what: why; what to do". */
-int rf_capture_fail_errno(struct refocus_reason *reason, int error, const char *what);
-
-/* layout.c ------------------------------------------------------------------------- */
-
-/* Planes of a format; 0 for an unknown one. */
-int rf_format_planes(uint32_t format);
-/* Bytes of a row and number of rows of a plane. */
-int64_t rf_plane_row(uint32_t format, int plane, int width);
-int rf_plane_rows(uint32_t format, int plane, int height);
-/* Whether so many rows of so many bytes can lie so far apart in memory, in either direction. */
-bool rf_stride_fits(ptrdiff_t stride, int64_t row, int rows);
-/* Stride of plane > 0 that goes with the stride of plane 0. */
-int64_t rf_plane_stride(uint32_t format, int plane, int64_t stride);
-/* Bytes of a frame whose planes follow each other; 0 when a side is out of its
- * range. */
-uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height);
-/* Point a frame's planes into such memory. */
-void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_t stride);
-/* By name, not minding case; REFOCUS_FRAME_ANY for none. */
-uint32_t rf_format_by_name(const char *name);
-/* Zero the frame and put "not known" where that is not 0. */
-void rf_frame_clear(struct refocus_frame *frame);
 
 #ifdef __cplusplus
 }

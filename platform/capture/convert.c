@@ -5,6 +5,7 @@
 #include <string.h>
 #include <refocus/platform/convert.h>
 #include "backend.h"
+#include "samples.h"
 #include "sink.h"
 #ifdef RF_HAVE_JPEG
 #include <turbojpeg.h>

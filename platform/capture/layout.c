@@ -1,13 +1,13 @@
-/* How frames lie in memory. */
+/* layout.c: how frames lie in memory, by their format. */
 #include <math.h>
 #include <string.h>
 #include <strings.h>
-#include "backend.h"
+#include "layout.h"
 
 static const struct {
     const char *name;
     int planes;
-    int bits; /* of a pixel in plane 0 */
+    int bits; /* bits that a pixel takes in plane 0 */
 } formats[REFOCUS_FRAME_FORMAT_COUNT] = {
     [REFOCUS_FRAME_ANY] = {NULL, 0, 0},       [REFOCUS_FRAME_YUYV] = {"YUYV", 1, 16},
     [REFOCUS_FRAME_UYVY] = {"UYVY", 1, 16},   [REFOCUS_FRAME_NV12] = {"NV12", 2, 8},

@@ -1,10 +1,11 @@
+/* pattern.c: numbered names of files, such as frames-%04d.png. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "pictures.h"
+#include "pattern.h"
 
-/* Behind the conversion that begins at the percent sign, or NULL when it is not
- * ours. */
+/* The text behind the conversion that begins at the percent sign, or NULL when the conversion is
+ * not one of ours. */
 static const char *conversion(const char *percent, int *width, bool *zeros)
 {
     char *end;

@@ -1,9 +1,10 @@
-/* Pictures, or the samples of depth files, as frames. */
+/* pictures.c: the source `file:`: pictures, or the samples of depth files, as frames. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "pictures.h"
+#include "backend.h"
+#include "pattern.h"
 #include "ring.h"
 
 struct pictures {
@@ -224,6 +225,7 @@ static void close_pictures(struct refocus_source *source)
 
 const struct rf_source_ops rf_source_file = {
     .scheme = "file",
+    .kind = REFOCUS_SOURCE_KIND_FILE,
     .open = open_pictures,
     .get_mode = get_mode,
     .start = start,

@@ -1,10 +1,13 @@
-/* A camera by script: buffers of its own, a clock, and every fault that cameras
+/* replay.c: a camera by script, with buffers of its own, a clock, and every fault that cameras
  * have. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "replay.h"
+#include "backend.h"
+#include "replay_scene.h"
+#include "replay_script.h"
+#include "ring.h"
 
 enum { LONGEST_SCRIPT = 1 << 16, MOST_JPEG_BYTES = 1 << 24 };
 
@@ -493,6 +496,7 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
 
 const struct rf_source_ops rf_source_replay = {
     .scheme = "replay",
+    .kind = REFOCUS_SOURCE_KIND_SCRIPT,
     .open = open_replay,
     .get_mode = get_mode,
     .start = start,

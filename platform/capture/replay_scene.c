@@ -1,5 +1,7 @@
-/* A made-up scene in every format: a tilted floor, a wall, and discs before them. */
-#include "replay.h"
+/* replay_scene.c: a made-up scene is drawn in every format: a tilted floor, a wall, and discs
+ * before them. */
+#include "replay_scene.h"
+#include "layout.h"
 
 struct sample {
     int r, g, b;
@@ -25,7 +27,7 @@ static struct sample scene_at(int x, int y, int width, int height)
             sample.r = 60 + i * 40 + texture;
             sample.g = 200 - i * 30 - texture;
             sample.b = 40 + i * 17 + texture;
-            /* a rim that the sensor misses */
+            /* the sensor misses the left edge of a disc */
             sample.mm = dx * 8 < -radius * 7 ? 0 : mm;
         }
     }

@@ -1,8 +1,10 @@
-/* Scripts of the replay source; platform/README.md describes them. */
+/* replay_script.c: the script of a replay source is parsed; platform/README.md describes it. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "replay.h"
+#include "failure.h"
+#include "layout.h"
+#include "replay_script.h"
 
 static const struct {
     const char *name;

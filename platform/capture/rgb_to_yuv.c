@@ -1,6 +1,7 @@
-/* RGB8 pictures in the formats that sinks want. */
+/* rgb_to_yuv.c: RGB8 pictures become frames in the formats that sinks want. */
+#include "rgb_to_yuv.h"
 #include <string.h>
-#include "sink.h"
+#include "layout.h"
 
 /* BT.601 limited range in 1/65536: 219 Kr, 219 Kg, 219 Kb and so on, of 255. */
 static uint8_t luma(const uint8_t *p)
@@ -85,22 +86,6 @@ static void encode_rgb(const struct refocus_image *image, const struct refocus_f
         out[2] = rgb[blue ? 0 : 2];
         if (bytes == 4)
             out[3] = 255;
-    }
-}
-
-uint32_t rf_frame_format_of(uint32_t image_format)
-{
-    switch (image_format) {
-    case REFOCUS_FORMAT_NV12:
-        return REFOCUS_FRAME_NV12;
-    case REFOCUS_FORMAT_NV21:
-        return REFOCUS_FRAME_NV21;
-    case REFOCUS_FORMAT_I420:
-        return REFOCUS_FRAME_YUV420;
-    case REFOCUS_FORMAT_YUYV:
-        return REFOCUS_FRAME_YUYV;
-    default:
-        return REFOCUS_FRAME_ANY;
     }
 }
 

@@ -1,3 +1,4 @@
+/* ring.c: buffers of sources that have no driver to own them. */
 #include <stdlib.h>
 #include <string.h>
 #include "ring.h"

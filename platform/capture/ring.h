@@ -1,4 +1,4 @@
-/* Buffers of sources that have no driver to own them. */
+/* ring.h: buffers of sources that have no driver to own them. */
 #ifndef RF_CAPTURE_RING_H
 #define RF_CAPTURE_RING_H
 

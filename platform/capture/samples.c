@@ -1,6 +1,23 @@
-/* Y, U and V from one order in memory to another. */
+/* samples.c: samples of Y, U and V are copied from one order in memory to another. */
+#include "samples.h"
 #include <string.h>
-#include "sink.h"
+#include "layout.h"
+
+uint32_t rf_frame_format_of(uint32_t image_format)
+{
+    switch (image_format) {
+    case REFOCUS_FORMAT_NV12:
+        return REFOCUS_FRAME_NV12;
+    case REFOCUS_FORMAT_NV21:
+        return REFOCUS_FRAME_NV21;
+    case REFOCUS_FORMAT_I420:
+        return REFOCUS_FRAME_YUV420;
+    case REFOCUS_FORMAT_YUYV:
+        return REFOCUS_FRAME_YUYV;
+    default:
+        return REFOCUS_FRAME_ANY;
+    }
+}
 
 void rf_samples_of(struct rf_samples samples[3], uint32_t format, const uint8_t *const plane[3],
                    const ptrdiff_t stride[3])

@@ -1,11 +1,12 @@
-/* Sinks by name, and the one that drops everything. */
+/* sink.c: sinks are opened by name and checked in one place; the sink `null` drops everything. */
 #include <stdlib.h>
 #include <string.h>
 #include "modules.h"
-#include "pictures.h"
+#include "pattern.h"
+#include "samples.h"
 #include "sink.h"
 
-static const double most_fps = 10000; /* as of sources */
+static const double most_fps = 10000; /* the limit of sources, too */
 
 static const struct rf_sink_ops *const kinds[] = {
 #ifdef RF_HAVE_V4L2

@@ -1,4 +1,5 @@
-/* Streams into a file, a pipe or standard output, and sequences of pictures. */
+/* sink_files.c: the sinks `y4m:` and `raw:`, into a file, a pipe or standard output, and sequences
+ * of pictures. */
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -11,7 +12,9 @@
 #include <strings.h>
 #include <time.h>
 #include <unistd.h>
-#include "pictures.h"
+#include "pattern.h"
+#include "rgb_to_yuv.h"
+#include "samples.h"
 #include "sink.h"
 
 struct stream {

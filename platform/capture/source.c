@@ -1,4 +1,4 @@
-/* Sources by name; the same checks and counts for every backend. */
+/* source.c: sources are opened by name; checks and counts are the same for every kind. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,55 +7,61 @@
 #include "backend.h"
 #include "modules.h"
 
+#define RF_SOURCE_POINTER(name) &rf_source_##name,
 static const struct rf_source_ops *const backends[] = {
 #ifdef RF_HAVE_V4L2
     &rf_source_v4l2,
 #endif
-    &rf_source_file, &rf_source_y4m, &rf_source_raw, &rf_source_replay,
-};
+    RF_SOURCE_LIST(RF_SOURCE_POINTER)};
 enum { BACKENDS = sizeof backends / sizeof *backends };
+
+/* Kinds that a build may lack; all of them are cameras. */
+static const char *const optional[] = {"v4l2", "libcamera"};
+enum { OPTIONAL = sizeof optional / sizeof *optional };
 
 const char *refocus_source_backends(void)
 {
-    return ""
-#ifdef RF_HAVE_V4L2
-           "v4l2 "
-#endif
-#ifdef RF_HAVE_LIBCAMERA
-           "libcamera "
-#endif
-           "file y4m raw replay";
+    return RF_SOURCES;
+}
+
+/* The text behind the scheme and its colon, or NULL when the name is of another kind. */
+static const char *behind(const char *name, const char *scheme)
+{
+    const size_t length = strlen(scheme);
+
+    return strncmp(name, scheme, length) == 0 && name[length] == ':' ? name + length + 1 : NULL;
+}
+
+uint32_t refocus_source_kind(const char *name)
+{
+    for (int i = 0; name && i < BACKENDS; i++)
+        if (behind(name, backends[i]->scheme))
+            return backends[i]->kind;
+    for (int i = 0; name && i < OPTIONAL; i++)
+        if (behind(name, optional[i]))
+            return REFOCUS_SOURCE_KIND_CAMERA;
+    return REFOCUS_SOURCE_KIND_NONE;
 }
 
 static const struct rf_source_ops *find(const char *name, const char **rest)
 {
     for (int i = 0; i < BACKENDS; i++) {
-        const size_t length = strlen(backends[i]->scheme);
-
-        if (strncmp(name, backends[i]->scheme, length) == 0 && name[length] == ':') {
-            *rest = name + length + 1;
+        *rest = behind(name, backends[i]->scheme);
+        if (*rest)
             return backends[i];
-        }
     }
-#ifdef RF_HAVE_LIBCAMERA
-    if (strncmp(name, "libcamera:", strlen("libcamera:")) == 0) {
-        *rest = name + strlen("libcamera:");
-        return rf_libcamera();
-    }
-#endif
-    return NULL;
+    *rest = behind(name, "libcamera");
+    return *rest ? rf_libcamera() : NULL;
 }
 
 static int unknown(const char *name, struct refocus_reason *reason)
 {
-    static const char *const known[] = {"v4l2", "libcamera"};
-
-    for (int i = 0; i < 2; i++)
-        if (strncmp(name, known[i], strlen(known[i])) == 0 && name[strlen(known[i])] == ':')
+    for (int i = 0; i < OPTIONAL; i++)
+        if (behind(name, optional[i]))
             return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                    "this build has no %s, or its module is gone; there "
                                    "are %s",
-                                   known[i], refocus_source_backends());
+                                   optional[i], refocus_source_backends());
     return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                            "no such kind of source; give KIND:NAME with one of %s",
                            refocus_source_backends());

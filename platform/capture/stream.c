@@ -1,10 +1,10 @@
-/* Streams of frames out of one file: y4m, and raw without a header. */
+/* stream.c: the sources `y4m:` and `raw:`: streams of frames out of one file. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "ring.h"
-#include "sink.h"
+#include "samples.h"
 
 enum { LONGEST_HEADER = 1024 };
 
@@ -341,9 +341,9 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
 
 #define STREAM_OPS(word, open_function)                                                            \
     {                                                                                              \
-        .scheme = word, .open = open_function, .get_mode = get_mode, .start = start,               \
-        .wait = wait_frame, .release = release, .stop = stop, .reopen = reopen,                    \
-        .close = close_stream                                                                      \
+        .scheme = word, .kind = REFOCUS_SOURCE_KIND_FILE, .open = open_function,                   \
+        .get_mode = get_mode, .start = start, .wait = wait_frame, .release = release,              \
+        .stop = stop, .reopen = reopen, .close = close_stream                                      \
     }
 const struct rf_source_ops rf_source_y4m = STREAM_OPS("y4m", open_y4m);
 const struct rf_source_ops rf_source_raw = STREAM_OPS("raw", open_raw);

@@ -128,7 +128,11 @@ int list(refocus_source_found *found, void *user)
 extern "C" {
 extern REFOCUS_API const struct rf_source_ops rf_source_libcamera;
 const struct rf_source_ops rf_source_libcamera = {
-    "libcamera", open_camera, get_mode,    start,        wait_frame, release,
-    stop,        reopen,      set_control, close_camera, list,
+    "libcamera",  REFOCUS_SOURCE_KIND_CAMERA,
+    open_camera,  get_mode,
+    start,        wait_frame,
+    release,      stop,
+    reopen,       set_control,
+    close_camera, list,
 };
 }

@@ -465,6 +465,7 @@ static int list(refocus_source_found *found, void *user)
 
 const struct rf_source_ops rf_source_v4l2 = {
     .scheme = "v4l2",
+    .kind = REFOCUS_SOURCE_KIND_CAMERA,
     .open = open_camera,
     .get_mode = get_mode,
     .start = start,

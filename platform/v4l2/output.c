@@ -3,6 +3,8 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include "rgb_to_yuv.h"
+#include "samples.h"
 #include "sink.h"
 #include "v4l2.h"
 

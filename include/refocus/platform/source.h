@@ -133,6 +133,18 @@ struct refocus_source_counters {
     uint64_t restarts; /**< refocus_source_restart() that succeeded */
 };
 
+/** What a name of a source stands for. */
+enum refocus_source_kind {
+    REFOCUS_SOURCE_KIND_NONE = 0,   /**< no source */
+    REFOCUS_SOURCE_KIND_FILE = 1,   /**< file, y4m, raw: read as fast as is wanted */
+    REFOCUS_SOURCE_KIND_CAMERA = 2, /**< v4l2, libcamera: a device with a clock of its own */
+    REFOCUS_SOURCE_KIND_SCRIPT = 3, /**< replay: behaves as a camera does */
+};
+
+/** enum refocus_source_kind by the word before the colon, whether this build has that kind and
+ *  whether there is such a source or not. Thread-safe. */
+REFOCUS_API uint32_t refocus_source_kind(const char *name);
+
 /** A source. Opaque. */
 struct refocus_source;
 

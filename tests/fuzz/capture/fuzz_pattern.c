@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "with_failures.h"
-#include "pictures.h"
+#include "pattern.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "replay.h"
+#include "replay_script.h"
 
 enum { MOST_BYTES = 1 << 18, LONGEST_MS = 1 };
 

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <refocus/platform/convert.h>
 #include <refocus/platform/file.h>
-#include "sink.h"
+#include "layout.h"
+#include "rgb_to_yuv.h"
 
 static uint32_t seed = 1;
 

@@ -46,6 +46,9 @@ static void sources_of_nothing(void **state)
     refocus_source_interrupt(NULL);
     refocus_source_release(NULL, NULL);
     assert_null(refocus_frame_format_name(UINT32_MAX));
+    assert_int_equal(refocus_source_kind(NULL), REFOCUS_SOURCE_KIND_NONE);
+    assert_int_equal(refocus_source_kind("nothing:0"), REFOCUS_SOURCE_KIND_NONE);
+    assert_int_equal(refocus_source_kind("libcamera:0"), REFOCUS_SOURCE_KIND_CAMERA);
 
     source = started("replay::size 16x12;frames 2", REFOCUS_SOURCE_FAST);
     refocus_source_get_counters(source, NULL);

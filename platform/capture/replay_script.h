@@ -1,8 +1,10 @@
-/* The replay source: a script of frames and faults. */
-#ifndef RF_CAPTURE_REPLAY_H
-#define RF_CAPTURE_REPLAY_H
+/* replay_script.h: the script of a replay source: frames and faults. */
+#ifndef RF_CAPTURE_REPLAY_SCRIPT_H
+#define RF_CAPTURE_REPLAY_SCRIPT_H
 
-#include "ring.h"
+#include <stdbool.h>
+#include <stdint.h>
+#include <refocus/platform/file.h>
 
 enum rf_fault {
     RF_FAULT_NONE,
@@ -34,10 +36,10 @@ struct rf_script {
     int width, height;
     double fps;
     int64_t frames, stride; /* 0: endless; packed */
-    uint32_t sequence;      /* of the first frame */
+    uint32_t sequence;      /* number of the first frame */
     int64_t seed;
-    double random_percent; /* of the frames suffer a fault */
-    int start_errors;      /* so many starts fail first */
+    double random_percent; /* so many frames in a hundred suffer a fault */
+    int start_errors;      /* number of starts that fail first */
     char *from, *jpeg;     /* another source, a JPEG file; owned, or NULL */
     struct rf_event event[RF_MOST_EVENTS];
     int events;
@@ -47,9 +49,5 @@ struct rf_script {
  * reason names the line; rf_script_free() in any case. */
 int rf_script_parse(struct rf_script *script, char *text, struct refocus_reason *reason);
 void rf_script_free(struct rf_script *script);
-
-/* replay_scene.c: draw discs before a wall, or how far they are for GREY, Y16 and Z16
- * (mm), into such a frame. */
-void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width, int height);
 
 #endif
