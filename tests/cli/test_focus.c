@@ -7,18 +7,18 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <string.h>
-#include "live/live.h"
+#include "live/live_focus.h"
 
 static int64_t now;
 static struct live_range range; /* of the frames: not known */
 
 static void begin(struct live_focus *focus, double disparity)
 {
-    struct live_settings settings = {.lens = LENS_SETTINGS_NONE};
+    struct lens_settings lens = LENS_SETTINGS_NONE;
 
     now = 5000000000;
-    settings.lens.focus = disparity;
-    live_focus_init(focus, &settings);
+    lens.focus = disparity;
+    live_focus_init(focus, &lens);
     focus->blur = 8;
     focus->blur_most = 16;
 }

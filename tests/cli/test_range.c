@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <cmocka.h>
 #include <refocus/refocus.h>
-#include "live/live.h"
+#include "live/live_depth.h"
+#include "live/live_focus.h"
 
 enum { W = 160, H = 120, FPS = 30, WALL = 4000, FLOOR = 2500, PERSON = 1100 };
 static const int64_t period_ns = 1000000000 / FPS;
@@ -81,14 +82,14 @@ static void look(void)
 
 static void begin(double near_m, double far_m)
 {
-    struct live_settings settings = {.lens = LENS_SETTINGS_NONE};
+    struct lens_settings lens = LENS_SETTINGS_NONE;
 
     live_range_end(&room.ranger);
     memset(&room, 0, sizeof room);
     live_range_begin(&room.ranger, near_m, far_m);
-    settings.lens.focus_at[0] = W - 10; /* the wall */
-    settings.lens.focus_at[1] = 30;
-    live_focus_init(&room.focus, &settings);
+    lens.focus_at[0] = W - 10; /* the wall */
+    lens.focus_at[1] = 30;
+    live_focus_init(&room.focus, &lens);
     room.focus.blur = 10;
     room.focus.blur_most = 120;
     room.map = (struct refocus_depth_map){
@@ -213,7 +214,7 @@ static void a_focus_beyond_the_scene_stays_where_it_is(void **state)
     assert_true(fabs(1 / room.ranger.range.near - 2.5) < 0.1);
     assert_true(room.change < 0.03);
     map.range = room.ranger.range;
-    assert_int_equal(live_range_widen(&wide, &wider, &room.range), REFOCUS_OK);
+    assert_int_equal(live_depth_widen(&wide, &wider, &room.range), REFOCUS_OK);
     assert_ptr_equal(wider, &wide);
     for (int i = 0; i < W * H; i++) {
         const struct live_range *in = &map.range, *out = &wide.range;

@@ -1,11 +1,15 @@
-/* Where two cameras are, from JSON:
+/* live_calibration.c: the positions of two cameras are read from JSON:
  *
- *     {"depth":  {"width": 640, "height": 480, "fx": 570, "fy": 570, "cx": 320, "cy":
- * 240}, "colour": {"width": 1280, ...}, "rotation": [1, 0, 0,  0, 1, 0,  0, 0, 1],
+ *     {"depth":  {"width": 640, "height": 480, "fx": 570, "fy": 570, "cx": 320, "cy": 240},
+ *      "colour": {"width": 1280, ...},
+ *      "rotation": [1, 0, 0,  0, 1, 0,  0, 0, 1],
  *      "translation_m": [0.025, 0, 0]}
  */
+#include <jansson.h>
+#include <math.h>
 #include <stdlib.h>
-#include "live/live.h"
+#include "line/report.h"
+#include "live/live_calibration.h"
 
 static bool read_camera(const json_t *root, const char *name, struct refocus_pinhole *camera)
 {
@@ -52,7 +56,8 @@ static bool is_rotation(const double r[9])
     return true;
 }
 
-const char *live_parse_calibration(const json_t *root, struct refocus_calibration *c)
+/* The words for what is wrong with it, or NULL. */
+static const char *parse(const json_t *root, struct refocus_calibration *c)
 {
     if (!read_camera(root, "depth", &c->depth))
         return "\"depth\" with width, height, fx, fy, cx and cy";
@@ -70,7 +75,7 @@ int live_read_calibration(struct refocus_calibration **result, const char *file)
     struct refocus_calibration *c = calloc(1, sizeof *c);
     json_error_t error;
     json_t *root = json_load_file(file, 0, &error);
-    const char *wrong = c && root ? live_parse_calibration(root, c) : NULL;
+    const char *wrong = c && root ? parse(root, c) : NULL;
     int status = EXIT_DONE;
 
     if (!c)

@@ -1,5 +1,5 @@
-/* Commands, a line each, from standard input and from a socket that programs connect
- * to. */
+/* live_commands.c: commands, a line each, are taken from standard input and from a socket that
+ * programs connect to. */
 #include <errno.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -8,7 +8,8 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
-#include "live/live.h"
+#include "line/report.h"
+#include "live/live_commands.h"
 #include "live/live_lines.h"
 
 enum { MOST_CLIENTS = 8, WAKE = 0, LISTENER, FIRST, MOST_FDS = FIRST + 1 + MOST_CLIENTS };

@@ -1,8 +1,10 @@
+/* live_depth.c: depth maps wait for the frame that they go with. */
 #include <errno.h>
+#include <refocus/status.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include "live/live.h"
+#include "live/live_depth.h"
 
 void live_depths_init(struct live_depths *depths, bool every)
 {
@@ -162,4 +164,34 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
     depths->pinned = map ? (int)(map - depths->map) : -1;
     pthread_mutex_unlock(&depths->lock);
     return map;
+}
+
+int live_depth_widen(struct live_depth_map *wide, const struct live_depth_map **map,
+                     const struct live_range *range)
+{
+    const struct live_depth_map *const from = *map;
+    const size_t samples = (size_t)from->width * (size_t)from->height;
+    const double span = range->near - range->far;
+    const double scale = (from->range.near - from->range.far) / span;
+    const double offset = (from->range.far - range->far) / span * 65535 + 0.5;
+
+    if (!live_range_is_known(&from->range) ||
+        (range->near == from->range.near && range->far == from->range.far))
+        return REFOCUS_OK;
+    if (samples * 2 > wide->capacity) {
+        free(wide->disparity);
+        wide->disparity = malloc(samples * 2);
+        wide->capacity = wide->disparity ? samples * 2 : 0;
+    }
+    if (!wide->disparity)
+        return REFOCUS_ERR_MEMORY;
+    for (size_t i = 0; i < samples; i++)
+        wide->disparity[i] = (uint16_t)(from->disparity[i] * scale + offset);
+    wide->width = from->width;
+    wide->height = from->height;
+    wide->timestamp_ns = from->timestamp_ns;
+    wide->number = from->number;
+    wide->range = *range;
+    *map = wide;
+    return REFOCUS_OK;
 }

@@ -1,9 +1,10 @@
-/* Depth from the pictures themselves: every n-th one goes through a network, in a
- * thread of its own, while the others are rendered. */
+/* live_estimate.c: depth is made of the pictures themselves: every n-th one goes through a network,
+ * in a thread of its own, while the others are rendered. */
 #include <stdlib.h>
 #include <string.h>
-#include "live/live.h"
 #include "inputs/made.h"
+#include "line/report.h"
+#include "live/live_estimate.h"
 
 static const char prefix[] = "estimate:";
 

@@ -1,12 +1,12 @@
+/* live_focus.c: focus and blur of each frame, as commands and the camera's lens ask for them. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "live/live.h"
+#include "live/live_focus.h"
 
-void live_focus_init(struct live_focus *focus, const struct live_settings *settings)
+void live_focus_init(struct live_focus *focus, const struct lens_settings *lens)
 {
-    const struct lens_settings *lens = &settings->lens;
-
     memset(focus, 0, sizeof *focus);
     pthread_mutex_init(&focus->lock, NULL);
     focus->to.known = !isnan(lens->focus);

@@ -1,3 +1,4 @@
+/* live_lines.c: lines are put together from bytes that come in pieces. */
 #include <string.h>
 #include "live/live_lines.h"
 

@@ -1,7 +1,7 @@
-/* The thread that writes what is rendered. */
+/* live_output.c: the thread that writes what is rendered. */
 #include <string.h>
 #include <time.h>
-#include "live/live.h"
+#include "live/live_output.h"
 
 /* A device that went away is opened again until patience ends. */
 static bool reopen(struct live *live, const struct refocus_image *image,

@@ -1,8 +1,9 @@
+/* live_queue.c: a bounded queue of pictures between two threads. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include "live/live.h"
+#include "live/live_queue.h"
 
 /* A condition whose time-outs follow CLOCK_MONOTONIC. */
 static void init_condition(pthread_cond_t *condition)
@@ -15,12 +16,12 @@ static void init_condition(pthread_cond_t *condition)
     pthread_condattr_destroy(&attributes);
 }
 
-void live_queue_init(struct live_queue *queue, int policy)
+void live_queue_init(struct live_queue *queue, bool newest_wins)
 {
     memset(queue, 0, sizeof *queue);
     pthread_mutex_init(&queue->lock, NULL);
     init_condition(&queue->changed);
-    queue->newest_wins = policy == POLICY_NEWEST;
+    queue->newest_wins = newest_wins;
     queue->most = queue->newest_wins ? 1 : 2;
     for (int i = 0; i < LIVE_SLOTS; i++)
         queue->free[queue->free_count++] = i;

@@ -1,9 +1,10 @@
 /* The distances that disparities stand for: they follow what depth cameras see, in 1/m. A range
  * that moves changes no blur by itself, as focus and blur move with it (live_focus.c); what it
  * must not do is to leave out what is near, and to move with every noise. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "live/live.h"
+#include "live/live_range.h"
 
 enum { CODES = 65536, MOST_LOOKS = 40000, TAIL = 1024 };
 
@@ -154,34 +155,4 @@ void live_range_follow(struct live_ranger *ranger, const struct live_range *seen
         move(&ranger->far_end, &ranger->range.far, to.far, span, -1, seconds);
         spread(ranger, &ranger->range);
     }
-}
-
-int live_range_widen(struct live_depth_map *wide, const struct live_depth_map **map,
-                     const struct live_range *range)
-{
-    const struct live_depth_map *const from = *map;
-    const size_t samples = (size_t)from->width * (size_t)from->height;
-    const double span = range->near - range->far;
-    const double scale = (from->range.near - from->range.far) / span;
-    const double offset = (from->range.far - range->far) / span * 65535 + 0.5;
-
-    if (!live_range_is_known(&from->range) ||
-        (range->near == from->range.near && range->far == from->range.far))
-        return REFOCUS_OK;
-    if (samples * 2 > wide->capacity) {
-        free(wide->disparity);
-        wide->disparity = malloc(samples * 2);
-        wide->capacity = wide->disparity ? samples * 2 : 0;
-    }
-    if (!wide->disparity)
-        return REFOCUS_ERR_MEMORY;
-    for (size_t i = 0; i < samples; i++)
-        wide->disparity[i] = (uint16_t)(from->disparity[i] * scale + offset);
-    wide->width = from->width;
-    wide->height = from->height;
-    wide->timestamp_ns = from->timestamp_ns;
-    wide->number = from->number;
-    wide->range = *range;
-    *map = wide;
-    return REFOCUS_OK;
 }

@@ -1,7 +1,7 @@
-/* The thread that refocuses: depth to each frame, prepare, render, on to the output. */
+/* live_render.c: each frame gets its depth, is refocused, and goes on to the output. */
 #include <stdlib.h>
 #include "line/interrupt.h"
-#include "live/live.h"
+#include "live/live_render.h"
 
 /* A renderer for pictures of this size; the old one goes. */
 static bool fit_renderer(struct live *live, int width, int height)
@@ -76,7 +76,7 @@ static int refocus(struct live *live, const struct live_picture *picture,
     live->lens_dioptres = (double)picture->lens_dioptres;
     live->range = map->range;
     live_focus_frame(&live->focus, live->clock_ns, live->lens_dioptres, &live->range);
-    status = live_range_widen(&live->wide, &map, &live->range);
+    status = live_depth_widen(&live->wide, &map, &live->range);
     if (status != REFOCUS_OK)
         return status;
     disparity =

@@ -1,6 +1,7 @@
-/* What became of the frames, and how long it took. */
+/* live_report.c: the report at the end says what became of the frames and how long it took. */
 #include <stdio.h>
-#include "live/live.h"
+#include "line/report.h"
+#include "live/live_report.h"
 
 static json_t *stage_json(const struct live_stage *stage)
 {

@@ -1,6 +1,7 @@
-/* Depth that does not flicker: the temporal filter between pairing and preparing. */
+/* live_steady.c: depth is kept from flickering by the temporal filter, between pairing and
+ * preparing. */
 #include <stdlib.h>
-#include "live/live.h"
+#include "live/live_steady.h"
 
 static int fit(struct live_steady *steady, double strength, const struct live_depth_map *map)
 {

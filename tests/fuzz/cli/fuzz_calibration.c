@@ -4,7 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 #include "with_failures.h"
-#include "live/live.h"
+#include "line/report.h"
+#include "live/live_calibration.h"
 
 enum { MOST_SIDE = 64 };
 

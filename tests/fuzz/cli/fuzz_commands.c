@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "with_failures.h"
-#include "live/live.h"
+#include "live/live_focus.h"
 #include "live/live_lines.h"
 
 /* A frame: ten a second, so that pulls are seen under way, and a range that is not always known. */
@@ -35,11 +35,11 @@ static void obey(void *user, char *line)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const struct live_settings settings = {.lens = LENS_SETTINGS_NONE};
+    const struct lens_settings lens = LENS_SETTINGS_NONE;
     struct live_lines lines = {.length = 0};
     struct live_focus focus;
 
-    live_focus_init(&focus, &settings);
+    live_focus_init(&focus, &lens);
     focus.blur = 5;
     focus.blur_most = 10;
     for (size_t at = 0, piece = 1; at < size; at += piece, piece = piece % 61 + 7) {

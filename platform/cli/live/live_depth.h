@@ -1,0 +1,50 @@
+/* live_depth.h: depth maps on their way, and which of them goes with which frame. */
+#ifndef RF_CLI_LIVE_DEPTH_H
+#define RF_CLI_LIVE_DEPTH_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include "live/live_range.h"
+
+enum { LIVE_DEPTHS = 16 };
+
+struct live_depth_map {
+    uint16_t *disparity; /* packed */
+    size_t capacity;
+    int width, height;
+    struct live_range range;
+    int64_t timestamp_ns;
+    uint64_t number; /* 0: empty */
+};
+
+struct live_depths {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    struct live_depth_map map[LIVE_DEPTHS];
+    uint64_t count;    /* maps so far */
+    int pinned;        /* the one that is being used, or -1 */
+    int64_t needed_ns; /* maps from before this moment are needed no more */
+    bool every, ended;
+    bool still; /* there is one map for all times */
+};
+
+void live_depths_init(struct live_depths *depths, bool every);
+void live_depths_free(struct live_depths *depths);
+void live_depths_end(struct live_depths *depths);
+/* A map to fill that no one uses; NULL when it is over or there is no memory. */
+struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, int height);
+void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int64_t timestamp_ns,
+                     bool still);
+/*
+ * The map within half a frame of a moment. When there is none, *paired is false, and it is the
+ * newest map, or, when every frame counts, the one nearest in time, which does not depend on how
+ * far depth is ahead; NULL when there is no map at all. It may be used until the next call.
+ */
+const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
+                                              int64_t half_ns, bool *paired);
+/* Put a map of a wider range in place of a map, in memory that `wide` owns. */
+int live_depth_widen(struct live_depth_map *wide, const struct live_depth_map **map,
+                     const struct live_range *range);
+
+#endif

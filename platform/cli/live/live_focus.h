@@ -1,0 +1,51 @@
+/* live_focus.h: focus and blur as commands and the camera's lens ask for them. */
+#ifndef RF_CLI_LIVE_FOCUS_H
+#define RF_CLI_LIVE_FOCUS_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include "inputs/inputs.h"
+#include "live/live_range.h"
+
+/* Something to focus on. A point is looked up in the next frame, and is a distance from then on,
+ * or a disparity where distances are not known. */
+struct live_target {
+    bool known;             /* false: the disparity at the point has not been read yet */
+    bool dioptres;          /* value is 1/m, else a disparity */
+    bool follows_lens;      /* where the camera's own lens is, if it says so */
+    double value, point[2]; /* the point NAN: the centre */
+};
+
+struct live_focus {
+    pthread_mutex_t lock;
+    struct live_target from, to; /* a pull from one to the other */
+    int64_t begin_ns, duration_ns;
+    bool begun; /* at begin_ns; else it begins with the next frame */
+    int64_t now_ns;
+    struct live_range range; /* both of the present frame */
+    double blur, blur_most;
+    double stretch;    /* K as a multiple of --blur, after the range has moved; 1 once it has stood
+                          still for long */
+    int width, height; /* size of the pictures; 0: none has come */
+};
+
+void live_focus_init(struct live_focus *focus, const struct lens_settings *lens);
+/* A line of commands, which holds from the next frame on; false: it is not understood, and why.
+ * *quit is set by "quit". */
+bool live_focus_command(struct live_focus *focus, const char *line, bool *quit, char *why,
+                        size_t size);
+/* A frame, and when it was taken: pulls go on by that, and not by when it is worked on. The lens
+ * of its camera is given, or NAN, and the range of its disparities, which becomes as wide as it
+ * must be to hold what is in focus. */
+void live_focus_frame(struct live_focus *focus, int64_t now_ns, double lens_dioptres,
+                      struct live_range *range);
+/* Whether there is a point to look up in that frame, for live_focus_found(). */
+bool live_focus_point(struct live_focus *focus, double point[2]);
+void live_focus_found(struct live_focus *focus, const double point[2], double disparity);
+/* The disparity in focus and the blur that hold for that frame. */
+void live_focus_get(struct live_focus *focus, double *disparity, double *blur);
+/* The size of the pictures, beyond which points are refused. */
+void live_focus_size(struct live_focus *focus, int width, int height);
+
+#endif

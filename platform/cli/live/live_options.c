@@ -1,0 +1,302 @@
+/* live_options.c: the options of refocus live, and what is wrong with them together. */
+#include <string.h>
+#include <refocus/platform/source.h>
+#include "line/report.h"
+#include "live/live_estimate.h"
+#include "live/live_options.h"
+
+static const char *policy_name(uint32_t index)
+{
+    static const char *const names[] = {"newest", "every"};
+    return index < 2 ? names[index] : NULL;
+}
+
+static const char *policy_summary(uint32_t index)
+{
+    static const char *const summaries[] = {"a new frame replaces one that waits: least delay",
+                                            "each frame is rendered; the source waits or drops"};
+    return index < 2 ? summaries[index] : NULL;
+}
+
+static const char *format_name(uint32_t index)
+{
+    return index == 0 ? "any" : refocus_frame_format_name(index);
+}
+
+const struct option live_options[] = {
+    {.kind = OPTION_HEADING, .help = "In and out"},
+    {.kind = OPTION_TEXT,
+     .name = "--camera",
+     .argument = "SOURCE",
+     .offset = offsetof(struct live_settings, camera),
+     .help = "v4l2:/dev/video0, libcamera:0, file:frames-%04d.png, y4m:FILE, "
+             "raw:FILE,NV12,640x480,30 or replay:SCRIPT"},
+    {.kind = OPTION_TEXT,
+     .name = "--depth",
+     .argument = "SOURCE",
+     .offset = offsetof(struct live_settings, depth.file),
+     .help = "depth beside it: such a source of Y16, Z16 or GREY, the file of one fixed depth "
+             "map, or estimate:MODEL.onnx[,every=N][,preset=NAME], a network that sees every "
+             "N-th picture"},
+    DEPTH_UNIT_OPTIONS(struct live_settings, depth),
+    {.kind = OPTION_NUMBER,
+     .name = "--steady",
+     .argument = "S",
+     .offset = offsetof(struct live_settings, steady),
+     .least = 0,
+     .greatest = 0.95,
+     .help = "calm the flicker of depth: share of the past where nothing moves, 0 (default) "
+             "to 0.95"},
+    {.kind = OPTION_TEXT,
+     .name = "--calibration",
+     .argument = "FILE",
+     .offset = offsetof(struct live_settings, calibration),
+     .help = "JSON of two pinhole cameras, by which depth is registered onto colour"},
+    {.kind = OPTION_TEXT,
+     .letter = 'o',
+     .name = "--out",
+     .argument = "SINK",
+     .offset = offsetof(struct live_settings, out),
+     .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE[,FORMAT], frames-%04d.png or null "
+             "(default); FILE may be - for standard output, FORMAT own (as frames come), NV12, "
+             "NV21, YUV420, YUYV, UYVY, RGB24 (default), BGR24, RGBX or BGRX"},
+    {.kind = OPTION_FLAG,
+     .name = "--list",
+     .offset = offsetof(struct live_settings, list),
+     .help = "list the cameras, or the modes of --camera, and end"},
+    {.kind = OPTION_CHOICE,
+     .name = "--format",
+     .argument = "NAME",
+     .offset = offsetof(struct live_settings, format),
+     .choice = format_name,
+     .help = "pixels that the camera shall deliver"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--size",
+     .argument = "WxH",
+     .offset = offsetof(struct live_settings, size),
+     .least = 1,
+     .greatest = REFOCUS_MAX_SIDE,
+     .count = 2,
+     .help = "and how many of them; the nearest size that there is"},
+    {.kind = OPTION_NUMBER,
+     .name = "--fps",
+     .argument = "N",
+     .offset = offsetof(struct live_settings, fps),
+     .least = 0,
+     .above = true,
+     .greatest = 10000,
+     .help = "frames a second"},
+    {.kind = OPTION_HEADING, .help = "Focus and blur"},
+    {.kind = OPTION_NUMBER,
+     .name = "--focus",
+     .argument = "D",
+     .offset = offsetof(struct live_settings, lens.focus),
+     .least = 0,
+     .greatest = 1,
+     .help = "disparity in focus: 1 nearest, 0 farthest"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--focus-at",
+     .argument = "X,Y",
+     .offset = offsetof(struct live_settings, lens.focus_at),
+     .least = -INFINITY,
+     .greatest = INFINITY,
+     .count = 2,
+     .help = "focus on the surface at that pixel of the first frame, and stay at its distance; "
+             "without any --focus...: where the camera's lens is, if it says so, else the "
+             "centre"},
+    {.kind = OPTION_NUMBER,
+     .name = "--blur",
+     .argument = "K",
+     .offset = offsetof(struct live_settings, lens.blur),
+     .least = 0,
+     .greatest = REFOCUS_MAX_BLUR_RADIUS,
+     .help = "blur radius in pixels of what lies farthest from the focus, default 20; when the "
+             "range of distances moves, the lens stays, and goes back to K within some ten "
+             "seconds"},
+    {.kind = OPTION_NUMBER,
+     .name = "--blur-most",
+     .argument = "K",
+     .offset = offsetof(struct live_settings, blur_most),
+     .least = 0,
+     .greatest = REFOCUS_MAX_BLUR_RADIUS,
+     .help = "the most that the command 'blur' may ask for, and a range that widens; default "
+             "twice --blur"},
+    {.kind = OPTION_HEADING, .help = "Rendering"},
+    METHOD_OPTION(struct live_settings, engine),
+    METHOD_OPTIONS(struct live_settings, engine),
+    {.kind = OPTION_INTEGER,
+     .name = "--threads",
+     .argument = "N",
+     .offset = offsetof(struct live_settings, engine.threads),
+     .greatest = 64,
+     .help = "0 = one for each processor, the default; never changes a picture"},
+    {.kind = OPTION_CHOICE,
+     .name = "--cpu",
+     .argument = "NAME",
+     .offset = offsetof(struct live_settings, engine.cpu),
+     .choice = refocus_cpu_name,
+     .help = "instruction set"},
+    {.kind = OPTION_HEADING, .help = "Running"},
+    {.kind = OPTION_CHOICE,
+     .name = "--frames-policy",
+     .argument = "NAME",
+     .offset = offsetof(struct live_settings, policy),
+     .choice = policy_name,
+     .summary = policy_summary,
+     .help = "what becomes of frames that cannot be kept up with; default newest, and every "
+             "from files (file:, y4m:, raw:) to files"},
+    {.kind = OPTION_INTEGER,
+     .name = "--frames",
+     .argument = "N",
+     .offset = offsetof(struct live_settings, frames),
+     .least = 1,
+     .greatest = 1e15,
+     .help = "end after so many frames are written"},
+    {.kind = OPTION_NUMBER,
+     .name = "--duration",
+     .argument = "S",
+     .offset = offsetof(struct live_settings, duration),
+     .least = 0,
+     .above = true,
+     .greatest = 1e9,
+     .help = "end after so many seconds; from files to files those of the frames"},
+    {.kind = OPTION_NUMBER,
+     .name = "--patience",
+     .argument = "S",
+     .offset = offsetof(struct live_settings, patience),
+     .least = 0,
+     .greatest = 1e9,
+     .help = "how long to wait for a device that went away, default 10 s"},
+    {.kind = OPTION_FLAG,
+     .name = "--fast",
+     .offset = offsetof(struct live_settings, fast),
+     .help = "files and scripts: as fast as they can be read; always so from files to files"},
+    {.kind = OPTION_FLAG,
+     .name = "--loop",
+     .offset = offsetof(struct live_settings, loop),
+     .help = "files: from the beginning again at the end"},
+    {.kind = OPTION_FLAG,
+     .name = "--dmabuf",
+     .offset = offsetof(struct live_settings, dmabuf),
+     .help = "V4L2: buffers exported as DMA-BUF, each access bracketed by its sync ioctl"},
+    {.kind = OPTION_FLAG,
+     .name = "--no-commands",
+     .offset = offsetof(struct live_settings, no_commands),
+     .help = "leave standard input alone; always so where frames are read from it"},
+    {.kind = OPTION_TEXT,
+     .name = "--socket",
+     .argument = "FILE",
+     .offset = offsetof(struct live_settings, socket),
+     .help = "make a Unix socket there that takes commands, too, and answers each with ok or "
+             "refused and why"},
+    {.kind = OPTION_FLAG,
+     .name = "--json",
+     .offset = offsetof(struct live_settings, engine.json),
+     .help = "print a report as one JSON object; times in milliseconds"},
+    {.help = NULL},
+};
+
+const struct live_settings live_settings_none = {.depth = DEPTH_SETTINGS_NONE,
+                                                 .lens = LENS_SETTINGS_NONE,
+                                                 .engine = ENGINE_SETTINGS_NONE(1),
+                                                 .size = {NAN, NAN},
+                                                 .fps = NAN,
+                                                 .blur_most = NAN,
+                                                 .patience = 10,
+                                                 .policy = POLICY_DEFAULT,
+                                                 .out = "null"};
+
+static bool is_of_kind(const char *name, const char *kind)
+{
+    return strncmp(name, kind, strlen(kind)) == 0;
+}
+
+/* A single picture stays for ever, and a loop begins again. */
+static bool has_end(const struct live_settings *settings)
+{
+    const bool still = is_of_kind(settings->camera, "file:") && !strchr(settings->camera, '%');
+
+    return settings->frames > 0 || settings->duration > 0 || !(still || settings->loop);
+}
+
+/*
+ * From files to files no frame is left out, and where there is an end nothing waits for the clock:
+ * the same files and commands make the same frames. A photo that stays, as if it were a camera,
+ * keeps its pace.
+ */
+static void choose_pace(struct live_settings *settings)
+{
+    const bool files = refocus_source_kind(settings->camera) == REFOCUS_SOURCE_KIND_FILE &&
+                       (is_of_kind(settings->out, "y4m:") || is_of_kind(settings->out, "raw:") ||
+                        (strchr(settings->out, '%') && !is_of_kind(settings->out, "v4l2:")));
+
+    if (settings->policy == POLICY_DEFAULT)
+        settings->policy = files ? POLICY_EVERY : POLICY_NEWEST;
+    settings->offline = files && settings->policy == POLICY_EVERY && has_end(settings) &&
+                        refocus_source_kind(settings->depth.file) != REFOCUS_SOURCE_KIND_CAMERA;
+    settings->fast |= settings->offline;
+}
+
+/* Frames from standard input leave no room for commands there. */
+static bool is_standard_input(const char *name)
+{
+    return strcmp(name, "y4m:-") == 0 || is_of_kind(name, "raw:-,");
+}
+
+/* Some options are for one kind of source, and wrong where neither source is of that kind. */
+static int check_sources(const struct live_settings *settings)
+{
+    const char *const camera = settings->camera, *const depth = settings->depth.file;
+    const uint32_t of_camera = refocus_source_kind(camera), of_depth = refocus_source_kind(depth);
+    const bool files =
+        of_camera != REFOCUS_SOURCE_KIND_CAMERA ||
+        (of_depth != REFOCUS_SOURCE_KIND_NONE && of_depth != REFOCUS_SOURCE_KIND_CAMERA);
+
+    if (!files && (settings->fast || settings->loop))
+        return report_failure(EXIT_WRONG, settings->fast ? "--fast" : "--loop",
+                              "it is of files and scripts, not of cameras; leave it out");
+    if (settings->dmabuf && !is_of_kind(camera, "v4l2:") && !is_of_kind(depth, "v4l2:"))
+        return report_failure(EXIT_WRONG, "--dmabuf", "it is of V4L2 cameras; leave it out");
+    return EXIT_DONE;
+}
+
+int live_check_settings(struct live_settings *settings)
+{
+    int status = input_check_depth(&settings->depth);
+
+    if (status != EXIT_DONE)
+        return status;
+    if (!settings->camera)
+        return report_failure(EXIT_WRONG, "--camera", "no source is given; --list shows some");
+    if (!settings->depth.file)
+        return report_failure(EXIT_WRONG, "--depth",
+                              "no depth is given; give a source or a depth map");
+    if (live_estimate_is_meant(settings->depth.file)) {
+        status = live_estimate_parse(&settings->estimate, settings->depth.file);
+        if (status != EXIT_DONE)
+            return status;
+    }
+    if (!isnan(settings->lens.focus) && !isnan(settings->lens.focus_at[0]))
+        return report_failure(EXIT_WRONG, "--focus-at",
+                              "the focus is given twice; give --focus or --focus-at");
+    status = check_sources(settings);
+    if (status != EXIT_DONE)
+        return status;
+    if (settings->calibration && !refocus_source_kind(settings->depth.file))
+        return report_failure(EXIT_WRONG, "--calibration",
+                              "it goes with a depth camera, not with a fixed map");
+    if (isnan(settings->lens.blur))
+        settings->lens.blur = 20;
+    if (isnan(settings->blur_most))
+        settings->blur_most = fmin(settings->lens.blur * 2, REFOCUS_MAX_BLUR_RADIUS);
+    if (settings->blur_most < settings->lens.blur)
+        return report_failure(EXIT_WRONG, "--blur-most", "it is less than --blur %g",
+                              settings->lens.blur);
+    choose_pace(settings);
+    settings->no_commands |=
+        is_standard_input(settings->camera) || is_standard_input(settings->depth.file);
+    if (settings->engine.json && strcmp(settings->out + strcspn(settings->out, ":"), ":-") == 0)
+        return report_failure(EXIT_WRONG, "--json",
+                              "standard output is taken by --out; give a file there");
+    return EXIT_DONE;
+}

@@ -1,0 +1,9 @@
+/* live_render.h: pictures are refocused, each with its depth, until it is over. */
+#ifndef RF_CLI_LIVE_RENDER_H
+#define RF_CLI_LIVE_RENDER_H
+
+#include "live/live_state.h"
+
+void live_render(struct live *live);
+
+#endif
