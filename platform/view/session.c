@@ -2,6 +2,7 @@
 #include <string.h>
 #include <time.h>
 #include <refocus/status.h>
+#include "session.h"
 #include "worker.h"
 
 static int take_memory(struct rf_session *s)

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 #include <refocus/image.h>
-#include "session.h"
+#include "view_state.h"
 
 struct rf_show {
     const uint8_t *rgb; /* packed */

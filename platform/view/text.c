@@ -1,4 +1,4 @@
-#include "window.h"
+#include "text.h"
 
 /* Rows of three pixels from the top, the left one the highest bit of each octal digit.
  */

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <string.h>
 #include <refocus/status.h>
+#include "text.h"
 #include "window.h"
 
 /* From the session's thread. */

@@ -99,8 +99,4 @@ double rf_window_cpu_ms(void);
 /* A request was made now; cause is a literal. */
 void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause);
 
-/* text.c: capitals, digits and some signs, three pixels by five, enlarged. */
-void rf_text(SDL_Renderer *renderer, const char *text, int x, int y, int size);
-int rf_text_width(const char *text, int size);
-
 #endif

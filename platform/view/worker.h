@@ -3,7 +3,7 @@
 #define RF_VIEW_WORKER_H
 
 #include <pthread.h>
-#include "session.h"
+#include "view_state.h"
 
 /* Pixels of the reduced photo: a picture of them in a few hundredths of a second. */
 enum { PREVIEW_PIXELS = 600000, PREVIEW_RAYS = 32 };

@@ -2,11 +2,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "bench/bench.h"
+#include "bench/bench_frames.h"
+#include "bench/bench_kernels.h"
+#include "bench/bench_scene.h"
 #include "bench/bench_rays.h"
 #include "commands/commands.h"
 #include "shot/engine.h"
 #include "inputs/inputs.h"
+#include "inputs/lens.h"
 
 struct settings {
     struct depth_settings depth;

@@ -1,7 +1,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "bench/bench.h"
+#include "bench/bench_frames.h"
 
 enum { MOST_THREADS = 64 };
 

@@ -1,5 +1,5 @@
 #include <stdio.h>
-#include "bench/bench.h"
+#include "bench/bench_kernels.h"
 
 static int unsupported(uint32_t cpu)
 {

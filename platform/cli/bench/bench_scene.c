@@ -1,5 +1,5 @@
 #include <stdlib.h>
-#include "bench/bench.h"
+#include "bench/bench_scene.h"
 #include "line/report.h"
 
 static uint32_t hash(uint32_t x, uint32_t y)

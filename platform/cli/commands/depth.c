@@ -7,6 +7,7 @@
 #include "inputs/inputs.h"
 #include "line/interrupt.h"
 #include "inputs/made.h"
+#include "inputs/upsample.h"
 #include "outputs/outputs.h"
 #include "inputs/painted.h"
 #include "line/report.h"
@@ -80,7 +81,7 @@ static const struct option options[] = {
      .name = "--upsample",
      .argument = "HOW",
      .offset = offsetof(struct settings, depth.upsample),
-     .choice = made_upsampler,
+     .choice = upsample_name,
      .help = "how --full does it: the library's own way, or one of OpenCV's filters to "
              "compare with; the last three need the module refocus-ximgproc",
      .needs = "--full,--strokes"},

@@ -7,7 +7,7 @@
 #include "commands/keys.h"
 #include "outputs/outputs.h"
 #include "line/report.h"
-#include "line/settings.h"
+#include "settings/settings.h"
 #include "shot/shot.h"
 #include "views/stereo_views.h"
 

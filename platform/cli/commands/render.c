@@ -6,7 +6,7 @@
 #include "shot/engine.h"
 #include "inputs/inputs.h"
 #include "outputs/outputs.h"
-#include "line/settings.h"
+#include "settings/settings.h"
 #include "shot/shot.h"
 #include "views/stereo_views.h"
 #include "views/views.h"

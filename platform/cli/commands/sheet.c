@@ -5,8 +5,9 @@
 #include "commands/commands.h"
 #include "outputs/outputs.h"
 #include "line/report.h"
-#include "line/settings.h"
-#include "commands/sheet.h"
+#include "settings/settings.h"
+#include "commands/sheet_cells.h"
+#include "commands/sheet_picture.h"
 #include "shot/shot.h"
 
 struct settings {

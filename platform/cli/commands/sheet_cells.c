@@ -1,7 +1,7 @@
 /* What is in each cell of a contact sheet. */
 #include <stdio.h>
 #include <string.h>
-#include "commands/sheet.h"
+#include "commands/sheet_cells.h"
 
 const char *sheet_kind_name(uint32_t index)
 {

@@ -1,6 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
-#include "commands/sheet.h"
+#include "commands/sheet_picture.h"
 #include "outputs/text.h"
 
 enum { GAP = 4, PAPER = 16 };

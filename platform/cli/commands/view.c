@@ -8,7 +8,7 @@
 #include "inputs/painted.h"
 #include "line/interrupt.h"
 #include "line/report.h"
-#include "line/settings.h"
+#include "settings/settings.h"
 #include "outputs/outputs.h"
 #include "shot/shot.h"
 

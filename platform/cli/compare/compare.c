@@ -3,10 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include "commands/commands.h"
-#include "compare/compare.h"
+#include "compare/compare_picture.h"
 #include "compare/compare_list.h"
 #include "shot/engine.h"
 #include "inputs/inputs.h"
+#include "inputs/lens.h"
 #include "outputs/outputs.h"
 
 struct settings {

@@ -1,7 +1,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "compare/compare.h"
+#include "compare/compare_picture.h"
 #include "outputs/text.h"
 
 enum {

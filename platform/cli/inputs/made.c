@@ -1,15 +1,14 @@
-/* Depth that is made of pictures: of a stereo pair, or of one photo by a network. */
+/* made.c: depth is made of pictures: of a stereo pair, or of one photo by a network. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "inputs/inputs.h"
 #include "inputs/made.h"
 #include "line/report.h"
 
 #ifdef RF_HAVE_OPENCV
 #include <refocus/platform/opencv.h>
 
-/* The other picture of a pair: a file of its own, or the second one of the left
- * one's. */
+/* Read the other picture of a pair: a file of its own, or the second one in the left file. */
 static int read_right(struct refocus_photo **photo, const char *name, bool second)
 {
     struct refocus_reason reason = {""};
@@ -26,7 +25,7 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
     return EXIT_DONE;
 }
 
-/* Floats that grow towards the camera, as the depth of the photo. */
+/* Take floats that grow towards the camera as the depth of the photo. */
 static int take(struct input *input, float *samples, int width, int height,
                 const struct depth_settings *settings)
 {
@@ -47,7 +46,7 @@ static int take(struct input *input, float *samples, int width, int height,
     return input_convert(input, settings);
 }
 
-/* Two pictures in one, side by side: the halves. */
+/* Take the halves of a picture that holds two side by side. */
 static void halve(struct refocus_image *left, struct refocus_image *right)
 {
     left->width /= 2;
@@ -138,22 +137,6 @@ const char *made_preset(uint32_t index)
 {
     return refocus_cv_network_name(index);
 }
-const char *made_upsampler(uint32_t index)
-{
-    return index ? refocus_cv_filter_name(index - 1) : "core";
-}
-
-int made_upsample(uint32_t filter, const struct refocus_image *photo,
-                  const struct refocus_disparity *map, uint16_t *out, const char *name)
-{
-    struct refocus_cv_reason reason = {""};
-    const int status = refocus_cv_upsample_by(filter, photo, map, out, &reason);
-
-    if (status == REFOCUS_OK)
-        return EXIT_DONE;
-    return report_failure(EXIT_FAILED, name, "--upsample %s: %s", refocus_cv_filter_name(filter),
-                          reason.text[0] ? reason.text : refocus_strerror(status));
-}
 #else
 static int absent(const char *what)
 {
@@ -186,18 +169,4 @@ const char *made_preset(uint32_t index)
     return index == 0 ? "none" : NULL;
 }
 
-const char *made_upsampler(uint32_t index)
-{
-    return index ? NULL : "core";
-}
-
-int made_upsample(uint32_t filter, const struct refocus_image *photo,
-                  const struct refocus_disparity *map, uint16_t *out, const char *name)
-{
-    (void)filter;
-    (void)photo;
-    (void)map;
-    (void)out;
-    return absent(name);
-}
 #endif

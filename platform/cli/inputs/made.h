@@ -1,18 +1,11 @@
-/* Words for depth that is made of pictures. */
+/* made.h: depth that is made of pictures: of a stereo pair, or by a network. */
 #ifndef RF_CLI_MADE_H
 #define RF_CLI_MADE_H
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include <refocus/refocus.h>
-
-/* Ways of --upsample: "core" and those of OpenCV; NULL ends them. */
-const char *made_upsampler(uint32_t index);
-/* One of those of OpenCV, to width x height of the photo; an exit code, and prints
- * why. */
-int made_upsample(uint32_t filter, const struct refocus_image *photo,
-                  const struct refocus_disparity *map, uint16_t *out, const char *name);
+#include "inputs/inputs.h"
 
 /* How --estimate feeds its network; NAN: as the preset and the file say. */
 struct network_settings {
@@ -31,7 +24,16 @@ struct stereo_settings {
     int method;  /* enum refocus_stereo_method */
 };
 
-/* Presets of --preset; NULL ends them. */
+/* Words of --preset; NULL ends them. */
 const char *made_preset(uint32_t index);
+
+/* Read a photo and make its depth: from it and the right one of a stereo pair, which is NULL when
+ * they lie side by side in one picture, or within the file as two pictures; or by a network. These
+ * return exit codes and print why. */
+int input_read_stereo(struct input *input, const char *left, const char *right,
+                      const struct stereo_settings *how, const struct depth_settings *settings);
+int input_read_estimate(struct input *input, const char *photo, const char *model,
+                        const struct network_settings *network,
+                        const struct depth_settings *settings);
 
 #endif

@@ -1,8 +1,8 @@
-/* Options that would change nothing. */
+/* needs.c: which options a command line gives, and options that would change nothing. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include "line/options.h"
+#include "line/needs.h"
 #include "line/report.h"
 
 enum { TEXT_LENGTH = 256 };
@@ -67,7 +67,7 @@ int options_refuse_beside(const struct command *command, int argc, char **argv,
     return refuse(command, argc, argv, names, false, why);
 }
 
-/* Whether an option that others need has a value, from wherever. */
+/* Whether an option that others need has a value, wherever it comes from. */
 static bool has_value(const struct option *option, const void *settings)
 {
     const void *at = (const char *)settings + option->offset;
@@ -78,7 +78,7 @@ static bool has_value(const struct option *option, const void *settings)
     case OPTION_TEXT:
         return *(const char *const *)at != NULL;
     case OPTION_CHOICE:
-        return *(const int *)at > 0; /* the first word is that of none */
+        return *(const int *)at > 0; /* the first word stands for none */
     case OPTION_NUMBER:
     case OPTION_INTEGER:
     case OPTION_NUMBERS:
@@ -117,7 +117,7 @@ static int not_of(const struct option *option, int word)
                           option->needs ? option->needs : "");
 }
 
-/* Whether one of what an option needs has a value; false when it needs none. */
+/* Whether one of the options that it needs has a value; false when it needs none. */
 static bool is_met(const struct command *command, const char *needs, const void *settings)
 {
     char name[TEXT_LENGTH];

@@ -1,107 +1,15 @@
-/* Command lines by tables: one row of a table is one option, with its parsing, its
- * range and its help. */
+/* options.h: a command line is parsed by a table of options. */
 #ifndef RF_CLI_OPTIONS_H
 #define RF_CLI_OPTIONS_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-enum option_kind {
-    OPTION_HEADING, /* a line of the help */
-    OPTION_FLAG,    /* bool */
-    OPTION_NUMBER,  /* double */
-    OPTION_INTEGER, /* double that holds a whole number */
-    OPTION_NUMBERS, /* double[count], written with commas or as WxH */
-    OPTION_TEXT,    /* const char * into argv, not empty */
-    OPTION_CHOICE,  /* int, the index of a word */
-};
-
-struct option {
-    enum option_kind kind;
-    char letter;            /* short form, or 0 */
-    const char *name;       /* with its dashes */
-    const char *argument;   /* what the help calls the value */
-    size_t offset;          /* of the value in the settings; doubles that are NAN
-                               beforehand and still afterwards were not given */
-    double least, greatest; /* of numbers; least is not allowed itself when above is
-                               set */
-    bool above;
-    int count;                              /* of OPTION_NUMBERS */
-    const char *word;                       /* one word that stands for a number, or
-                                               NULL */
-    double word_value;                      /* and that number */
-    const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE; NULL ends them */
-    const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
-    const char *help;
-    bool elsewhere; /* of this run, not of the picture: not in files of settings */
-
-    /* Without what it would change nothing, which a command line that gives it is told:
-     * another option that has a value, or one of some words of a choice; where both are
-     * named either will do. */
-    const char *needs;                      /* name of the option, or several with
-                                               commas of which any will do, or NULL */
-    uint32_t of_words;                      /* bit i: word i of the choice; 0: any */
-    const char *of;                         /* name of the choice, */
-    const char *(*of_word)(uint32_t index); /* its words, */
-    size_t of_offset;                       /* and its value, an int; below 0:
-                                               several */
-};
-
-struct command {
-    const char *name;
-    const char *usage;            /* what follows the name */
-    const char *summary;          /* one line */
-    const char *notes;            /* paragraphs after the options, or NULL */
-    const struct option *options; /* ended by a row whose help is NULL */
-    int files_least, files_most;  /* how many names go with it */
-    int (*run)(int argc, char **argv);
-};
-
-/* What options_parse() returns beside exit codes: go on. */
-enum { OPTIONS_PARSED = -1 };
+#include "line/needs.h"
+#include "line/option.h"
 
 /*
- * Parse argv[1] and on into settings; names of files are moved to files[], which ends
- * with NULL. Returns OPTIONS_PARSED, or the exit code after --help or an error, which
- * it printed.
+ * Parse argv[1] and on into settings; names of files are moved to files[], which ends with NULL.
+ * Returns OPTIONS_PARSED, or the exit code after --help or an error, which it printed.
  */
 int options_parse(const struct command *command, int argc, char **argv, void *settings,
                   const char **files);
-
-/* Whether a command line that options_parse() took gives an option, by its name. */
-bool options_given(const struct command *command, int argc, char **argv, const char *name);
-
-/* EXIT_WRONG, saying why, when that command line gives one of these options, or one
- * beside these; EXIT_DONE when it does not. Names end with NULL. */
-int options_refuse(const struct command *command, int argc, char **argv, const char *const *names,
-                   const char *why);
-int options_refuse_beside(const struct command *command, int argc, char **argv,
-                          const char *const *names, const char *why);
-
-/* Give an option its value as the command line does; `name` is what errors call it. For
- * flags `text` is not used. Returns OPTIONS_PARSED or EXIT_WRONG. */
-int options_set(const struct option *option, const char *name, const char *text, void *settings);
-
-/* The row of an argument such as "--blur=3", "--blur" or "-o", or NULL; *value: what is
- * behind the "=" or the letter, or NULL. */
-const struct option *options_at(const struct command *command, const char *argument,
-                                const char **value);
-
-/* needs.c: the last step of options_parse(): OPTIONS_PARSED, or EXIT_WRONG when an
- * option is given without what it would change nothing. */
-int options_check_needs(const struct command *command, int argc, char **argv, const void *settings);
-
-/* The row of a name with its dashes, or NULL. */
-const struct option *options_find(const struct command *command, const char *name);
-
-/* The name of a row that is most like `name`, or NULL. */
-const char *options_nearest_name(const struct command *command, const char *name);
-
-void options_print_help(const struct command *command);
-
-/* The one of the words that is most like text, or NULL when none is. */
-const char *options_nearest(const char *text, const char *(*word)(const void *list, int i),
-                            const void *list);
 
 #endif

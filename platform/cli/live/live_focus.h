@@ -5,7 +5,7 @@
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include "inputs/inputs.h"
+#include "inputs/lens.h"
 #include "live/live_range.h"
 
 /* Something to focus on. A point is looked up in the next frame, and is a distance from then on,

@@ -1,5 +1,6 @@
 /* live_render.c: each frame gets its depth, is refocused, and goes on to the output. */
 #include <stdlib.h>
+#include "inputs/lens.h"
 #include "line/interrupt.h"
 #include "live/live_render.h"
 

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include "inputs/inputs.h"
+#include "inputs/lens.h"
 #include "shot/engine.h"
 
 /* "--depth estimate:MODEL,every=N,preset=NAME" */

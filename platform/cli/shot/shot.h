@@ -3,7 +3,8 @@
 #define RF_CLI_SHOT_H
 
 #include "inputs/inputs.h"
-#include "line/settings.h"
+#include "inputs/lens.h"
+#include "settings/settings.h"
 #include "shot/engine.h"
 
 /* What commands that make pictures of a photo take alike. */

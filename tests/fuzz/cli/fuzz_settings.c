@@ -6,7 +6,7 @@
 #include <string.h>
 #include "outputs/outputs.h"
 #include "line/report.h"
-#include "line/settings.h"
+#include "settings/settings.h"
 
 struct values {
     bool flag;

@@ -1,10 +1,11 @@
-/* Contact sheets: what is in each cell, and the picture of the cells. */
-#ifndef RF_CLI_SHEET_H
-#define RF_CLI_SHEET_H
+/* sheet_cells.h: the cells of a contact sheet. */
+#ifndef RF_CLI_SHEET_CELLS_H
+#define RF_CLI_SHEET_CELLS_H
 
 #include <refocus/refocus.h>
 #include "shot/engine.h"
 #include "inputs/inputs.h"
+#include "inputs/lens.h"
 
 enum sheet_kind { SHEET_FOCUS, SHEET_APERTURE, SHEET_SIGMA, SHEET_BEFORE_AFTER, SHEET_BOKEH };
 enum { SHEET_LIST = 16, SHEET_MOST = SHEET_LIST * SHEET_LIST };
@@ -47,15 +48,5 @@ int sheet_fill(struct sheet *sheet, const struct sheet_settings *settings,
 
 /* After sheet_begin(), whatever it returned. */
 void sheet_end(struct sheet *sheet);
-
-/* A picture for cells of that size, their captions and gaps; plane[0] is to be freed
- * and NULL when *why says why not. */
-struct refocus_image sheet_picture(const struct sheet *sheet, int cell_width, int cell_height,
-                                   const char **why);
-
-/* Put a picture, at least as large as a cell, into cell i: averaged over areas of
- * squared values, which is close to averaging light and stays within integers. */
-void sheet_picture_put(const struct refocus_image *picture, const struct sheet *sheet, int i,
-                       const struct refocus_image *full, int cell_width, int cell_height);
 
 #endif

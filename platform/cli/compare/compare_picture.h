@@ -1,6 +1,6 @@
-/* What `refocus compare` has rendered, and its picture of it. */
-#ifndef RF_CLI_COMPARE_H
-#define RF_CLI_COMPARE_H
+/* compare_picture.h: the renderings of `refocus compare`, side by side in one picture. */
+#ifndef RF_CLI_COMPARE_PICTURE_H
+#define RF_CLI_COMPARE_PICTURE_H
 
 #include <refocus/refocus.h>
 #include "compare/compare_list.h"

@@ -1,4 +1,4 @@
-/* Files of settings: one JSON object that describes a picture, whose members are
+/* settings.h: files of settings: one JSON object that describes a picture, whose members are
  * options.
  *
  *     {
@@ -20,17 +20,15 @@
 #ifndef RF_CLI_SETTINGS_H
 #define RF_CLI_SETTINGS_H
 
-#include "line/options.h"
-
-#define SETTINGS_NAME "--settings"
+#include "line/option.h"
 
 enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
 
-/* Rows of a table of options. */
-#define SETTINGS_OPTION(type, load)                                                                \
+/* Rows for tables of options. */
+#define SETTINGS_OPTION(type, member)                                                              \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = SETTINGS_NAME, .argument = "FILE",                            \
-        .offset = offsetof(type, load),                                                            \
+        .kind = OPTION_TEXT, .name = "--settings", .argument = "FILE", .load = settings_load,      \
+        .offset = offsetof(type, member),                                                          \
         .help = "JSON object of options; the command line overrules it", .elsewhere = true         \
     }
 #define SAVE_SETTINGS_OPTION(type, save)                                                           \
@@ -45,21 +43,19 @@ enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
  * printed. Texts live as long as the program. */
 int settings_load(const struct command *command, const char *file, void *settings);
 
-/* The same from memory; `file` is what errors call it. */
+/* Read it from memory; `file` is what errors call it. */
 int settings_read(const struct command *command, const char *file, const char *bytes, size_t size,
                   void *settings);
 
-/* Before the work: can a file of settings be written there, and is it none of the
- * inputs? */
+/* Check before the work that a file of settings can be written there, and is none of the inputs. */
 int settings_check(const char *file, const char *const *inputs, int input_count);
 
-/* "option value" in a line of each that says something else than in `usual`, where it
- * is not of a run and not among `names`, which end with NULL. To be freed; NULL without
- * memory. */
+/* A line "option value" for each option of the picture that says something else than in `usual`
+ * and is not among `names`, which end with NULL. To be freed; NULL without memory. */
 char *settings_text(const struct command *command, const void *settings, const void *usual,
                     const char *const *names);
 
-/* Write what `settings` says, whole or not at all; an exit code. */
+/* Write a file of these settings, whole or not at all; an exit code. */
 int settings_save(const struct command *command, const char *file, const void *settings);
 
 #endif

@@ -1,4 +1,5 @@
-#include "line/settings.h"
+/* settings.c: files of settings are read and written. */
+#include "settings/settings.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -30,7 +31,7 @@ static bool keep(json_t *root)
     return kept && json_array_append(kept, root) == 0;
 }
 
-/* What errors call a member of a file. */
+/* The name by which errors call a member of a file. */
 static const char *member_name(char what[LONGEST_VALUE], const char *file, const char *key)
 {
     char name[LONGEST_NAME];
@@ -48,7 +49,7 @@ static int damaged(const char *file, const char *key, const char *why)
     return report_failure(EXIT_FAILED, what, "%s", why);
 }
 
-/* A number as the command line has it; false: there is no text for it. */
+/* Write a number as the command line has it; false: there is no text for it. */
 static bool number_text(const json_t *value, char *text, size_t size)
 {
     if (json_is_integer(value))
@@ -58,7 +59,7 @@ static bool number_text(const json_t *value, char *text, size_t size)
     return snprintf(text, size, "%.17g", json_real_value(value)) > 0;
 }
 
-/* "1,2,3" of an array of numbers. */
+/* Write an array of numbers as "1,2,3". */
 static bool numbers_text(const json_t *array, char *text, size_t size)
 {
     const json_t *value;
@@ -245,7 +246,7 @@ static bool is_among(const char *name, const char *const *names)
     return false;
 }
 
-/* "name 1,2,3" into text with a line's end; what it takes of it. */
+/* Write a line "name 1,2,3"; returns its length. */
 static size_t line_of(const struct option *option, const json_t *json, char *text, size_t size)
 {
     char value[LONGEST_VALUE];

@@ -1,0 +1,117 @@
+/* lens.h: focus and blur, as the options and the photo say them. */
+#ifndef RF_CLI_LENS_H
+#define RF_CLI_LENS_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <jansson.h>
+#include <refocus/refocus.h>
+#include "inputs/inputs.h"
+#include "line/option.h"
+
+struct lens_settings {
+    double focus, focus_at[2], focus_distance, focus_rectangle[4];
+    double blur, f_number, focal_length, sensor_width;
+};
+
+#define LENS_SETTINGS_NONE                                                                         \
+    {                                                                                              \
+        .focus = NAN, .focus_at = {NAN, NAN}, .focus_distance = NAN, .focus_rectangle = {NAN},     \
+        .blur = NAN, .f_number = NAN, .focal_length = NAN, .sensor_width = NAN                     \
+    }
+
+/* Rows for tables of options, where the settings have a member of the type above. */
+#define FOCUS_OPTIONS(type, member)                                                                \
+    {.kind = OPTION_NUMBER,                                                                        \
+     .name = "--focus",                                                                            \
+     .argument = "D",                                                                              \
+     .offset = offsetof(type, member.focus),                                                       \
+     .least = 0,                                                                                   \
+     .greatest = 1,                                                                                \
+     .help = "disparity in focus: 1 nearest, 0 farthest"},                                         \
+        {.kind = OPTION_NUMBERS,                                                                   \
+         .name = "--focus-at",                                                                     \
+         .argument = "X,Y",                                                                        \
+         .offset = offsetof(type, member.focus_at),                                                \
+         .least = -INFINITY,                                                                       \
+         .greatest = INFINITY,                                                                     \
+         .count = 2,                                                                               \
+         .help = "focus on the surface at that pixel: the nearer one at an edge; without "         \
+                 "any --focus...: the point that the file names, else the centre"},                \
+        {.kind = OPTION_NUMBERS,                                                                   \
+         .name = "--focus-rectangle",                                                              \
+         .argument = "X,Y,W,H",                                                                    \
+         .offset = offsetof(type, member.focus_rectangle),                                         \
+         .least = 0,                                                                               \
+         .greatest = REFOCUS_MAX_SIDE,                                                             \
+         .count = 4,                                                                               \
+         .help = "focus on the nearest surface that has a quarter of that rectangle, "             \
+                 "pixels"},                                                                        \
+        {.kind = OPTION_NUMBER,                                                                    \
+         .name = "--focus-distance",                                                               \
+         .argument = "M",                                                                          \
+         .offset = offsetof(type, member.focus_distance),                                          \
+         .least = 0,                                                                               \
+         .above = true,                                                                            \
+         .greatest = INFINITY,                                                                     \
+         .help = "metres in focus, also 'inf'; near and far must be known"},                       \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = "--blur", .argument = "K",                                  \
+        .offset = offsetof(type, member.blur), .least = 0, .greatest = REFOCUS_MAX_BLUR_RADIUS,    \
+        .help = "blur radius in pixels of disparity 0 when 1 is in focus; without it "             \
+                "and --f-number: 1/50 of the larger side, at most 127"                             \
+    }
+#define LENS_OPTIONS(type, member)                                                                 \
+    {.kind = OPTION_NUMBER,                                                                        \
+     .name = "--f-number",                                                                         \
+     .argument = "N",                                                                              \
+     .offset = offsetof(type, member.f_number),                                                    \
+     .least = 0,                                                                                   \
+     .above = true,                                                                                \
+     .greatest = 1000,                                                                             \
+     .help = "blur of a lens of this f-number, at most 127 pixels; where the depth "               \
+             "has no metres, the blur that the file names, or the default, which "                 \
+             "stands for the f-number of the file, or f/2, made more or less"},                    \
+        {.kind = OPTION_NUMBER,                                                                    \
+         .name = "--focal-length",                                                                 \
+         .argument = "MM",                                                                         \
+         .offset = offsetof(type, member.focal_length),                                            \
+         .least = 0,                                                                               \
+         .above = true,                                                                            \
+         .greatest = 100000,                                                                       \
+         .help = "focal length for --f-number; default: the EXIF focal length in 35 mm "           \
+                 "terms, for the blur that a full-frame camera has at that f-number"},             \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = "--sensor-width", .argument = "MM",                         \
+        .offset = offsetof(type, member.sensor_width), .least = 0, .above = true,                  \
+        .greatest = 10000,                                                                         \
+        .help = "width of the sensor area that the picture shows, with --focal-length; "           \
+                "default: 36 mm for the larger side of the picture"                                \
+    }
+
+/* These return exit codes and print why it is not EXIT_DONE, unless they say otherwise. */
+
+int input_check_lens(const struct lens_settings *settings);
+
+/* Whether the settings say what is in focus. */
+bool input_focus_is_given(const struct lens_settings *settings);
+
+/* K by the settings; a warning says when --f-number could not be taken at its word. */
+int input_blur(const struct input *input, const struct lens_settings *settings, double *blur);
+
+/* K without a warning, and the f-number that has that blur; NAN: none was given. */
+int input_blur_and_f_number(const struct input *input, const struct lens_settings *settings,
+                            double *blur, double *f_number);
+
+/* How input_blur() came by K, for reports: "blur_from", and the "f_number" that has that blur. */
+json_t *input_blur_json(const struct input *input, const struct lens_settings *settings);
+
+/* df by the settings; prepared: the packed disparities of the photo's size. */
+int input_focus(const struct input *input, const struct lens_settings *settings,
+                const uint16_t *prepared, double *focus);
+
+/* The disparity of the surface at a pixel: refocus_focus_at_point(). */
+double input_surface_at(const uint16_t *disparity, int width, int height, int x, int y);
+
+#endif

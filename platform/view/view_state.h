@@ -1,0 +1,69 @@
+/* view_state.h: the state that a picture of the viewer depends on, and the picture itself. */
+#ifndef RF_VIEW_STATE_H
+#define RF_VIEW_STATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <refocus/render.h>
+#include <refocus/platform/strokes.h>
+
+enum rf_view_mode { RF_VIEW_RESULT, RF_VIEW_BEFORE, RF_VIEW_DEPTH, RF_VIEW_MODES };
+
+/* All that a picture depends on beside the photo and its depth. */
+struct rf_view_state {
+    float focus;         /* df; where focus_tap is set, what was found there */
+    uint64_t focus_tap;  /* 0: focus holds; else the number of the tap at tap_x, tap_y */
+    double tap_x, tap_y; /* pixel of the photo */
+    float blur;          /* K in pixels of the photo */
+    uint32_t method;     /* enum refocus_method */
+    uint32_t mode;       /* enum rf_view_mode */
+    bool hold;           /* quick pictures only, as long as something is being dragged */
+    bool peaking;        /* mark what is sharp */
+    bool selection;      /* mark what the last layer of the painting covers */
+    double x, y, scale;  /* photo pixel at the window's corner; window pixels a photo pixel */
+    int width, height;   /* of the window, 1 to 16384 */
+};
+
+/* A picture for the window: 0xffRRGGBB, packed. */
+struct rf_view_frame {
+    uint32_t *pixels;
+    int room;
+    struct rf_view_state of; /* with the focus that was found */
+    uint64_t request;        /* which one it answers */
+    bool full;               /* of the whole photo's resolution, not of a reduced one */
+    int strokes;             /* that the painting has */
+};
+
+/* What can be written; the callback gets it on the session's thread. */
+enum rf_view_save { RF_SAVE_PICTURE = 1, RF_SAVE_SETTINGS = 2, RF_SAVE_DEPTH = 4 };
+struct rf_view_result {
+    uint32_t what; /* enum rf_view_save, or-ed */
+    const struct refocus_image *picture;
+    const struct refocus_render_params *params;
+    const uint16_t *disparity; /* of the photo's size, packed */
+    const struct refocus_strokes *strokes;
+    const struct rf_view_state *state; /* with the focus that was found */
+};
+
+struct rf_session_setup {
+    const struct refocus_image *photo;   /* RGB8; the caller's, until the end */
+    const uint16_t *disparity;           /* of its size, packed; NULL: all 0. Copied */
+    struct refocus_strokes *strokes;     /* the painting so far, over those disparities,
+                                            or NULL: none. The caller's, but the
+                                            session's to change until its end */
+    struct refocus_render_params params; /* what the state does not say */
+    /* What else follows from a focus that was found: changes params, which have it, the
+     * method and the blur already; lengths in pixels are the photo's. From the
+     * session's thread; NULL: nothing. */
+    void (*aim)(void *user, const struct rf_view_state *state,
+                struct refocus_render_params *params);
+    void *aim_user;
+    int threads;
+    uint32_t cpu;
+    void (*notify)(void *user); /* a frame is there; from the session's thread */
+    void *notify_user;
+    void (*save)(void *user, const struct rf_view_result *result);
+    void *save_user;
+};
+
+#endif
