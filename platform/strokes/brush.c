@@ -1,6 +1,7 @@
+/* brush.c: distances from the path of a stroke, and the pixels under its brush. */
 #include <math.h>
 #include <string.h>
-#include "internal.h"
+#include "brush.h"
 
 struct rf_area rf_brush_area(const struct rf_stroke *stroke, double margin, int32_t width,
                              int32_t height)

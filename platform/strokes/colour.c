@@ -1,5 +1,6 @@
+/* colour.c: how likely a colour is the object's, from counts of both sides. */
 #include <string.h>
-#include "internal.h"
+#include "colour.h"
 
 void rf_likeness_clear(struct rf_likeness *likeness)
 {

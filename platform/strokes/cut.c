@@ -1,3 +1,4 @@
+/* cut.c: the least cut of a grid of pixels between object and background. */
 #include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-#include "internal.h"
+/* fill.c: a layer is filled with one disparity or a gradient of them. */
+#include "fill.h"
 
 static uint16_t code_of(double disparity)
 {

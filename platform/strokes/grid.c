@@ -1,3 +1,4 @@
+/* grid.c: one level of a selection is cut, refined and cleaned. */
 #include <string.h>
 #include "grid.h"
 

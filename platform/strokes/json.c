@@ -1,9 +1,9 @@
-/* The file of strokes. */
+/* json.c: the file of strokes is read and written. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "internal.h"
+#include "hold.h"
 
 #ifdef RF_HAVE_JANSSON
 #include <jansson.h>

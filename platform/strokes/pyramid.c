@@ -1,6 +1,9 @@
+/* pyramid.c: the photo at smaller and smaller sizes, each pixel the mean of four. */
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include "internal.h"
+#include <refocus/status.h>
+#include "pyramid.h"
 
 /* Differences are halved to fit: b - y lies within -223 and 223. */
 static struct rf_colour colour_of(int r, int g, int b)

@@ -1,50 +1,26 @@
+/* select.c: the object that strokes are painted over is found, from a coarse level of the photo to
+ * the finest. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+#include "brush.h"
 #include "grid.h"
+#include "select.h"
 
 /* Pixels of the level at which a selection begins: enough for thin parts, few enough
  * for a cut of all of them in some milliseconds. */
 enum { FIRST_PIXELS = 12000, ROUNDS = 3 };
 
-/* Levels that are not worth an exact cut: a coarser one has found the edge to a pixel
- * or two. */
+/* The finest levels are not worth an exact cut: a coarser one has found the edge to a pixel or
+ * two. */
 enum { SETTLED_LEVELS = 2 };
 
-/* Scores of where a pixel lies. */
+/* Scores for the place of a pixel. */
 enum { UNDER_BRUSH = RF_BIT, FARTHEST = -3 * RF_BIT, OUT_OF_REACH = -1000 };
 
 enum { PLACE, DISTANCE, STACK, STATES }; /* which scratch; STATES is the first of two */
 
-void *rf_selector_scratch(struct rf_selector *selector, int which, int64_t count, size_t size)
-{
-    void *more;
-    size_t bytes;
-
-    if (count <= 0)
-        count = 1;
-    if ((uint64_t)count > SIZE_MAX / 2 / size)
-        return NULL;
-    bytes = (size_t)count * size;
-    if (bytes <= selector->scratch[which].size)
-        return selector->scratch[which].memory;
-    more = malloc(bytes);
-    if (!more)
-        return NULL;
-    free(selector->scratch[which].memory);
-    selector->scratch[which].memory = more;
-    selector->scratch[which].size = bytes;
-    return more;
-}
-
-void rf_selector_free(struct rf_selector *selector)
-{
-    rf_cut_free(&selector->cut);
-    for (size_t i = 0; i < sizeof selector->scratch / sizeof *selector->scratch; i++)
-        free(selector->scratch[i].memory);
-}
-
-/* What the strokes can reach, in whole pixels of the coarsest level that is needed. */
+/* Find the area that the strokes can reach, in whole pixels of the coarsest level that is needed.
+ */
 static int choose_area(const struct rf_pyramid *pyramid, const struct rf_stroke *strokes, int count,
                        struct rf_area *area)
 {

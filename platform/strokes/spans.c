@@ -1,6 +1,7 @@
+/* spans.c: the pixels that a layer covers, as spans of each row. */
 #include <stdlib.h>
 #include <string.h>
-#include "internal.h"
+#include "spans.h"
 
 void rf_spans_free(struct rf_spans *spans)
 {

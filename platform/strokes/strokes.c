@@ -1,9 +1,12 @@
-/* The painting: a list of strokes, the layers that they make, and what they look like
- * from above. */
+/* strokes.c: the painting is a list of strokes, the layers that they make, and the disparities that
+ * are seen from above. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "internal.h"
+#include "brush.h"
+#include "fill.h"
+#include "hold.h"
+#include "select.h"
 
 /* The strokes of a layer follow each other in the list. */
 struct layer {

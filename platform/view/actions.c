@@ -1,7 +1,7 @@
 #include <math.h>
 #include <time.h>
 #include <refocus/status.h>
-#include "window.h"
+#include "actions.h"
 
 static double clamp(double value, double least, double most)
 {

@@ -1,5 +1,6 @@
 #include <math.h>
-#include "window.h"
+#include "actions.h"
+#include "input.h"
 
 static const struct {
     SDL_Keycode key;

@@ -1,8 +1,9 @@
 #include <math.h>
 #include <string.h>
 #include <refocus/status.h>
+#include "actions.h"
+#include "input.h"
 #include "text.h"
-#include "window.h"
 
 /* From the session's thread. */
 static void notify(void *user)

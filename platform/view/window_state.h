@@ -1,6 +1,6 @@
-/* What the files of the window share. */
-#ifndef RF_VIEW_WINDOW_H
-#define RF_VIEW_WINDOW_H
+/* window_state.h: the state of the window: what is shown, which tool is active, what is pressed. */
+#ifndef RF_VIEW_WINDOW_STATE_H
+#define RF_VIEW_WINDOW_STATE_H
 
 #include <SDL.h>
 #include "view.h"
@@ -78,25 +78,5 @@ struct rf_window {
     struct rf_pending pending[RF_PENDING];
     int pending_count;
 };
-
-/* input.c: events, and the buttons along the lower border. */
-void rf_window_event(struct rf_window *w, const SDL_Event *event);
-int rf_window_buttons(const struct rf_window *w);
-SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label, bool *on);
-
-/* actions.c: what they do. */
-void rf_window_act(struct rf_window *w, enum rf_action action);
-void rf_window_show(struct rf_window *w, const char *cause);
-void rf_window_tap(struct rf_window *w, double x, double y);
-void rf_window_blur(struct rf_window *w, double blur);
-void rf_window_zoom(struct rf_window *w, double factor, double x, double y);
-void rf_window_pan(struct rf_window *w, double dx, double dy);
-void rf_window_fit(struct rf_window *w);
-void rf_window_stroke(struct rf_window *w, double x, double y, uint32_t kind);
-void rf_window_stroke_to(struct rf_window *w, double x, double y);
-void rf_window_gradient(struct rf_window *w, double x, double y);
-double rf_window_cpu_ms(void);
-/* A request was made now; cause is a literal. */
-void rf_window_asked(struct rf_window *w, uint64_t request, const char *cause);
 
 #endif
