@@ -5,6 +5,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include <refocus/platform/file.h>
+
 #define RF_FORMAT_POINTER(name) &rf_format_##name,
 static const struct rf_format *const formats[] = {RF_FORMAT_LIST(RF_FORMAT_POINTER)};
 enum { FORMATS = sizeof formats / sizeof *formats };
@@ -33,22 +35,31 @@ const struct rf_format *rf_format_of_name(const char *path)
     return NULL;
 }
 
-void rf_list_endings(char *text, size_t size, bool depth)
+const char *refocus_file_ending(int depth, int index)
 {
-    const char *known[3 * FORMATS];
-    size_t used = 0;
-    int count = 0;
-
+    if (index < 0) {
+        return NULL;
+    }
     for (int i = 0; i < FORMATS; i++) {
-        for (const char *const *ending = formats[i]->endings; *ending; ending++) {
-            if (depth ? formats[i]->writes_depth : formats[i]->writes_pictures) {
-                known[count++] = *ending;
+        const bool fits = depth ? formats[i]->writes_depth : formats[i]->writes_pictures;
+
+        for (const char *const *ending = formats[i]->endings; fits && *ending; ending++) {
+            if (index-- == 0) {
+                return *ending;
             }
         }
     }
-    for (int i = 0; i < count && used < size; i++) {
-        const char *const before = i == 0 ? "" : i + 1 < count ? ", " : " or ";
+    return NULL;
+}
 
-        used += (size_t)snprintf(text + used, size - used, "%s%s", before, known[i]);
+void rf_list_endings(char *text, size_t size, bool depth)
+{
+    size_t used = 0;
+
+    for (int i = 0; refocus_file_ending(depth, i) && used < size; i++) {
+        const char *const before = i == 0 ? "" : refocus_file_ending(depth, i + 1) ? ", " : " or ";
+
+        used += (size_t)snprintf(text + used, size - used, "%s%s", before,
+                                 refocus_file_ending(depth, i));
     }
 }

@@ -59,6 +59,8 @@ static void reading(void)
     REFUSED(refocus_file_read, NAME, 10, NULL, NULL);
     ANSWERS(REFOCUS_ERR_SIZE, refocus_file_read, "/proc/self/maps", 0, &blob, NULL);
     assert_non_null(TAKES_NOTHING(refocus_file_formats));
+    GIVES_NULL(refocus_file_ending, 0, -1);
+    GIVES_NULL(refocus_file_ending, 1, INT32_MAX);
 }
 
 static void units(void)

@@ -51,7 +51,7 @@ enum { REFOCUS_INFO_LINES = 24, REFOCUS_INFO_LENGTH = 160 };
 
 /** What a file says of itself. Numbers that it does not say are 0. */
 struct refocus_photo_info {
-    char container[16];   /**< "JPEG", "PNG", "HEIC", "PPM", "PGM", "PFM" */
+    char container[16];   /**< "JPEG", "PNG", ..., of refocus_file_formats() */
     int32_t stored_width; /**< before orientation */
     int32_t stored_height;
     int32_t orientation;      /**< EXIF 1 to 8, already applied to photo and depth */
@@ -98,7 +98,7 @@ struct refocus_photo {
 };
 
 /**
- * Read a photo: JPEG, PNG, HEIC, PPM or PGM, told by its content, not its name.
+ * Read a photo of any of refocus_file_formats(), told by its content, not its name.
  *
  * EXIF orientation is applied to photo and depth alike. Depth comes from GDepth
  * (standard or extended XMP), Apple's MPF disparity, or a HEIC auxiliary depth image.
@@ -181,7 +181,7 @@ struct refocus_write_options {
 };
 
 /**
- * Write an 8-bit picture; the end of the name says how: .jpg .jpeg .png .ppm.
+ * Write an 8-bit picture; the end of the name says how, see refocus_file_ending().
  *
  * The file is written beside its place under a temporary name and moved there when
  * whole and on the disk: on an error what was there before is untouched and nothing
@@ -287,6 +287,10 @@ REFOCUS_API char *refocus_file_place(const char *path);
  */
 REFOCUS_API int refocus_file_move(const char *temporary, const char *path,
                                   struct refocus_reason *reason);
+
+/** The ending number @p index, from 0 on, of names under which pictures (@p depth 0) or depth maps
+ *  (1) are written, such as ".png"; NULL behind the last. Thread-safe. */
+REFOCUS_API const char *refocus_file_ending(int depth, int index);
 
 /** Formats of this build, e.g. "JPEG PNG HEIC PPM PGM PFM". Thread-safe. */
 REFOCUS_API const char *refocus_file_formats(void);

@@ -157,7 +157,7 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, view),
      .choice = view_name,
      .summary = view_summary,
-     .help = "write an 8-bit picture to look at instead: .png, .jpg or .ppm"},
+     .help = "write an 8-bit picture to look at instead: " OUTPUT_PICTURES},
     {.kind = OPTION_NUMBERS,
      .name = "--focus-at",
      .argument = "X,Y",
@@ -382,14 +382,14 @@ static int check_ways(const struct settings *settings, const char *const *files,
 
 static int check(const struct settings *settings, const char *const *files, int argc, char **argv)
 {
-    static const char *const endings[] = {".png", ".pgm", ".pfm", ".jpg", ".jpeg", NULL};
-    static const char *const views[] = {".png", ".jpg", ".jpeg", ".ppm", NULL};
+    static const char *const photos[] = {".jpg", ".jpeg", NULL};
     const char *const inputs[] = {files[0], settings->depth.file, files[1], settings->model,
                                   settings->strokes};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
-        status = output_check(settings->output, settings->view ? views : endings, inputs, 5);
+        status = output_check(settings->output, settings->view ? OUTPUT_PICTURE : OUTPUT_DEPTH,
+                              settings->view ? NULL : photos, inputs, 5);
     if (status == EXIT_DONE && (files[1] != NULL) + settings->side_by_side +
                                        settings->stereo.within + (settings->model != NULL) +
                                        (settings->depth.file != NULL) >

@@ -29,7 +29,7 @@ struct settings {
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
     OUTPUT_OPTION(struct settings, output,
-                  "frames-%03d.png, .jpg or .ppm for a picture each; or a name in "
+                  "frames-%03d.png (" OUTPUT_PICTURES ") for a picture each; or a name in "
                   ".y4m, .apng, and by the ffmpeg program .mp4, .webm or .gif"),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "The pull"},

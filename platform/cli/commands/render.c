@@ -21,7 +21,7 @@ struct settings {
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
     OUTPUT_OPTION(struct settings, output,
-                  "the picture to write: .jpg, .png or .ppm; keeps the photo's EXIF "
+                  "the picture to write: " OUTPUT_PICTURES "; keeps the photo's EXIF "
                   "data and colour profile"),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     SHOT_LENS_OPTIONS(struct settings, shot),
@@ -60,7 +60,6 @@ static const struct option options[] = {
 
 static int check(struct settings *settings, const char *photo)
 {
-    static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
     const char *inputs[SHOT_INPUTS];
     const int count = shot_inputs(&settings->shot, photo, inputs);
     int status = shot_check(&settings->shot, false);
@@ -73,7 +72,7 @@ static int check(struct settings *settings, const char *photo)
         status =
             report_failure(EXIT_WRONG, "--parallax", "goes with --view anaglyph; give that too");
     if (status == EXIT_DONE)
-        status = output_check(settings->output, endings, inputs, count);
+        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, count);
     if (status == EXIT_DONE && settings->shot.save)
         status = settings_check(settings->shot.save, inputs, count);
     return status;

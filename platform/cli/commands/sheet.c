@@ -25,7 +25,7 @@ struct settings {
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
-    OUTPUT_OPTION(struct settings, output, "the picture to write: .jpg, .png or .ppm"),
+    OUTPUT_OPTION(struct settings, output, "the picture to write: " OUTPUT_PICTURES),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "The sheet"},
     {.kind = OPTION_CHOICE,
@@ -99,7 +99,6 @@ static int check_lists(const struct sheet_settings *s, int argc, char **argv)
 
 static int check(struct settings *settings, const char *photo, int argc, char **argv)
 {
-    static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
     const char *inputs[SHOT_INPUTS];
     const int count = shot_inputs(&settings->shot, photo, inputs);
     struct shot_settings shot = settings->shot;
@@ -117,7 +116,7 @@ static int check(struct settings *settings, const char *photo, int argc, char **
     if (!settings->sheet.f_numbers)
         settings->shot = shot;
     if (status == EXIT_DONE)
-        status = output_check(settings->output, endings, inputs, count);
+        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, count);
     if (status == EXIT_DONE && settings->shot.save)
         status = settings_check(settings->shot.save, inputs, count);
     return status;

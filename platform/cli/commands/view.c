@@ -26,7 +26,7 @@ struct settings {
 
 static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
-                  "the picture that 's' saves: .jpg, .png or .ppm; settings, depth and strokes "
+                  "the picture that 's' saves: " OUTPUT_PICTURES "; settings, depth and strokes "
                   "get names of it. Default: the photo's name with -refocused.jpg, here"),
     {.kind = OPTION_HEADING, .help = "Depth; without any it can be painted"},
     SHOT_DEPTH_OPTIONS(struct settings, shot),
@@ -318,7 +318,6 @@ static int open_photo(struct viewing *v, const char *photo)
 
 static int check(struct settings *settings, const char *photo)
 {
-    static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
     const char *inputs[SHOT_INPUTS + 1];
     int count = shot_inputs(&settings->shot, photo, inputs);
     int status = shot_check(&settings->shot, false);
@@ -328,7 +327,7 @@ static int check(struct settings *settings, const char *photo)
     if (status == EXIT_DONE)
         status = check_method(&settings->shot.engine);
     if (status == EXIT_DONE && settings->output)
-        status = output_check(settings->output, endings, inputs, count);
+        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, count);
     return status;
 }
 

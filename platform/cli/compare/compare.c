@@ -26,7 +26,7 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, reference),
      .help = "the picture as it should be, of the photo's size"},
     OUTPUT_OPTION(struct settings, output,
-                  "a picture of labelled crops where depth jumps: .jpg, .png or .ppm"),
+                  "a picture of labelled crops where depth jumps: " OUTPUT_PICTURES),
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
     {.kind = OPTION_HEADING, .help = "What is compared"},
@@ -58,7 +58,6 @@ static const struct option options[] = {
 
 static int check(const struct settings *settings, const char *photo)
 {
-    static const char *const endings[] = {".jpg", ".jpeg", ".png", ".ppm", NULL};
     const char *const inputs[] = {photo, settings->depth.file, settings->reference,
                                   settings->engine.aperture};
     int status = input_check_depth(&settings->depth);
@@ -70,7 +69,7 @@ static int check(const struct settings *settings, const char *photo)
                                 "there is nothing to compare with; give --reference "
                                 "GT");
     if (status == EXIT_DONE && settings->output)
-        status = output_check(settings->output, endings, inputs, 4);
+        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, 4);
     return status;
 }
 

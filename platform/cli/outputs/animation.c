@@ -48,10 +48,7 @@ static bool is_pattern(const char *path)
 static enum kind kind_of(const char *path)
 {
     if (strchr(path, '%'))
-        return is_pattern(path) && (ends_in(path, ".png") || ends_in(path, ".jpg") ||
-                                    ends_in(path, ".jpeg") || ends_in(path, ".ppm"))
-                   ? KIND_PICTURES
-                   : KIND_NONE;
+        return is_pattern(path) && output_is_picture(path) ? KIND_PICTURES : KIND_NONE;
     if (ends_in(path, ".y4m"))
         return KIND_Y4M;
     if (ends_in(path, ".apng"))
@@ -74,8 +71,7 @@ static bool frame_name(const struct animation *a, int i, char name[PATH_MAX])
 
 int animation_check(const char *path, const char *const *inputs, int input_count)
 {
-    static const char *const endings[] = {".png",  ".jpg", ".jpeg", ".ppm",  ".y4m",
-                                          ".apng", ".mp4", ".gif",  ".webm", NULL};
+    static const char *const films[] = {".y4m", ".apng", ".mp4", ".gif", ".webm", NULL};
     const enum kind kind = path ? kind_of(path) : KIND_NONE;
 
     if (path && strlen(path) + 64 > PATH_MAX)
@@ -84,14 +80,15 @@ int animation_check(const char *path, const char *const *inputs, int input_count
                               "one");
     if (path && kind == KIND_NONE)
         return report_failure(EXIT_WRONG, path,
-                              "no such animation is written; give frames-%%03d.png, "
-                              ".jpg or .ppm, or end the name in .y4m, .apng, .mp4, "
+                              "no such animation is written; give frames-%%03d with the "
+                              "ending of a picture, " OUTPUT_PICTURES
+                              ", or end the name in .y4m, .apng, .mp4, "
                               ".gif or .webm");
     if (kind == KIND_ENCODER && !encoder_is_there())
         return report_failure(EXIT_FAILED, path,
                               "there is no ffmpeg program to write it; install ffmpeg, "
                               "or give a name in .apng or .y4m");
-    return output_check(path, endings, inputs, input_count);
+    return output_check(path, OUTPUT_PICTURE, films, inputs, input_count);
 }
 
 /* A name beside the place, where a link points, with the same ending. */

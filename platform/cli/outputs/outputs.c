@@ -1,3 +1,4 @@
+/* outputs.c: files that the command writes are checked before the work and written after it. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,28 +10,49 @@
 #include "outputs/outputs.h"
 #include "line/report.h"
 
-static int check_ending(const char *path, const char *const *endings)
-{
-    const size_t length = strlen(path);
-    char words[64] = "";
+enum { MOST_ENDINGS = 32 };
 
-    for (int i = 0; endings[i]; i++) {
-        const size_t n = strlen(endings[i]);
-        if (length > n && strcasecmp(path + length - n, endings[i]) == 0)
-            return EXIT_DONE;
-        snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
-                 i == 0           ? ""
-                 : endings[i + 1] ? ", "
-                                  : " or ",
-                 endings[i]);
-    }
-    return report_failure(EXIT_WRONG, path,
-                          "no such format is written; end the name "
-                          "in %s",
-                          words);
+static bool ends_in(const char *path, const char *ending)
+{
+    const size_t length = strlen(path), n = strlen(ending);
+
+    return length > n && strcasecmp(path + length - n, ending) == 0;
 }
 
-/* path: the file itself, no symbolic link to it; name: what the user calls it. */
+bool output_is_picture(const char *path)
+{
+    for (int i = 0; refocus_file_ending(0, i); i++)
+        if (ends_in(path, refocus_file_ending(0, i)))
+            return true;
+    return false;
+}
+
+static int check_ending(const char *path, unsigned kinds, const char *const *others)
+{
+    const char *endings[MOST_ENDINGS];
+    char words[256] = "";
+    int count = 0;
+
+    for (int i = 0; kinds & OUTPUT_PICTURE && refocus_file_ending(0, i) && count < MOST_ENDINGS;
+         i++)
+        endings[count++] = refocus_file_ending(0, i);
+    for (int i = 0; kinds & OUTPUT_DEPTH && refocus_file_ending(1, i) && count < MOST_ENDINGS; i++)
+        endings[count++] = refocus_file_ending(1, i);
+    for (int i = 0; others && others[i] && count < MOST_ENDINGS; i++)
+        endings[count++] = others[i];
+    for (int i = 0; i < count; i++) {
+        if (ends_in(path, endings[i]))
+            return EXIT_DONE;
+        snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
+                 i == 0          ? ""
+                 : i + 1 < count ? ", "
+                                 : " or ",
+                 endings[i]);
+    }
+    return report_failure(EXIT_WRONG, path, "no such format is written; end the name in %s", words);
+}
+
+/* path is the file itself, not a symbolic link to it; name is the user's word for it. */
 static int check_folder_of(const char *path, const char *name)
 {
     char folder[4096];
@@ -60,15 +82,15 @@ static int check_folder(const char *path)
     return status;
 }
 
-int output_check(const char *path, const char *const *endings, const char *const *inputs,
-                 int input_count)
+int output_check(const char *path, unsigned kinds, const char *const *others,
+                 const char *const *inputs, int input_count)
 {
     struct stat out, in;
     int status;
 
     if (!path)
         return report_failure(EXIT_WRONG, "-o", "the output has no name; give -o OUT");
-    status = check_ending(path, endings);
+    status = check_ending(path, kinds, others);
     if (status != EXIT_DONE)
         return status;
     if (stat(path, &out) != 0)

@@ -1,12 +1,13 @@
-/* Files that the command writes. */
+/* outputs.h: files that the command writes are checked before the work and written after it. */
 #ifndef RF_CLI_OUTPUTS_H
 #define RF_CLI_OUTPUTS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <refocus/image.h>
 #include <refocus/platform/file.h>
 
-/* Row of a table of options. */
+/* A row for tables of options. */
 #define OUTPUT_OPTION(type, member, text)                                                          \
     {                                                                                              \
         .kind = OPTION_TEXT, .letter = 'o', .elsewhere = true, .name = "--output",                 \
@@ -15,11 +16,18 @@
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Before the work: is there a name, with one of the endings, in a folder that can be
- * written to, and is it none of the inputs (which end with NULL and may hold NULL
- * before)? */
-int output_check(const char *path, const char *const *endings, const char *const *inputs,
-                 int input_count);
+/* Kinds of files by their endings, to be or-ed. */
+enum { OUTPUT_PICTURE = 1, OUTPUT_DEPTH = 2 };
+/* The endings of pictures as the help lists them. */
+#define OUTPUT_PICTURES ".jpg, .png or .ppm"
+
+/* Check before the work that there is a name, that it ends as these kinds or as one of the other
+ * endings (which end with NULL, or are NULL), that its folder can be written to, and that it is
+ * none of the inputs, some of which may be NULL. */
+int output_check(const char *path, unsigned kinds, const char *const *others,
+                 const char *const *inputs, int input_count);
+/* Whether the name ends as that of a picture. */
+bool output_is_picture(const char *path);
 
 int output_write_image(const char *path, const struct refocus_image *image,
                        const struct refocus_photo *of);

@@ -169,7 +169,7 @@ int settings_check(const char *file, const char *const *inputs, int input_count)
 {
     static const char *const endings[] = {".json", NULL};
 
-    return output_check(file, endings, inputs, input_count);
+    return output_check(file, 0, endings, inputs, input_count);
 }
 
 /* Digits that a number needs to be read back as it is. */

@@ -73,11 +73,12 @@ static const struct option options[] = {
 };
 static const struct command command = {.name = "fuzz", .usage = "", .options = options};
 
-int output_check(const char *path, const char *const *endings, const char *const *inputs,
-                 int input_count)
+int output_check(const char *path, unsigned kinds, const char *const *others,
+                 const char *const *inputs, int input_count)
 {
     (void)path;
-    (void)endings;
+    (void)kinds;
+    (void)others;
     (void)inputs;
     (void)input_count;
     return EXIT_DONE;
