@@ -1,6 +1,6 @@
-/* Frames as RGB8 and as 16-bit samples. Each row of the camera's memory is copied once,
- * in order, before it is looked at: uncached memory is slow to read, and slowest in
- * pieces. */
+/* convert.c: frames of every pixel format become RGB8 or 16-bit samples. Each row of the camera's
+ * memory is copied once, in order, before it is looked at, as uncached memory is slow to read,
+ * and slowest in pieces. */
 #include <stdlib.h>
 #include <string.h>
 #include <refocus/platform/convert.h>

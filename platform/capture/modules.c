@@ -1,7 +1,6 @@
-/* Parts that bring many libraries with them are modules of their own, loaded when they
- * are first asked for: those libraries start up with C++ objects that end the program
- * when memory is short, or open devices, and nobody who only opens files should pay for
- * them. */
+/* modules.c: parts that bring many libraries with them are loaded when they are first asked for.
+ * Those libraries start up with C++ objects that end the program when memory is short, or open
+ * devices, and nobody who only opens files should pay for them. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <pthread.h>

@@ -1,3 +1,4 @@
+/* modules.h: the libcamera source and the window sink, which are modules of their own. */
 #ifndef RF_CAPTURE_MODULES_H
 #define RF_CAPTURE_MODULES_H
 

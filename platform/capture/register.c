@@ -1,4 +1,4 @@
-/* Depth onto colour: a forward warp with a depth buffer. */
+/* register.c: depth is registered onto colour by a forward warp with a depth buffer. */
 #include <math.h>
 #include <string.h>
 #include <refocus/platform/convert.h>

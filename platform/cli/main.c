@@ -1,4 +1,4 @@
-/* refocus: refocus photos by their depth. */
+/* main.c: the command `refocus` finds its subcommand and runs it. */
 #include <stdio.h>
 #include <string.h>
 #include <refocus/refocus.h>

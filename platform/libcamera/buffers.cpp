@@ -1,3 +1,4 @@
+/* buffers.cpp: the memory of libcamera's buffers is mapped and described as frames. */
 #include "buffers.hpp"
 
 #include <cerrno>

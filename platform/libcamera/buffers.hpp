@@ -1,4 +1,4 @@
-/* Pixel formats, and the memory that frames lie in. */
+/* buffers.hpp: pixel formats of libcamera, and the memory that its frames lie in. */
 #ifndef RF_LIBCAMERA_BUFFERS_HPP
 #define RF_LIBCAMERA_BUFFERS_HPP
 

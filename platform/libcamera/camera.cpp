@@ -1,4 +1,4 @@
-/* Cameras by libcamera, behind the C face of a source. No exception gets out. */
+/* camera.cpp: cameras by libcamera, behind the C functions of a source. No exception gets out. */
 #include <exception>
 #include <memory>
 #include <new>

@@ -1,3 +1,5 @@
+/* capture.cpp: a camera of libcamera is configured, and its requests are queued and delivered as
+ * frames. */
 #include "capture.hpp"
 
 #include <cerrno>

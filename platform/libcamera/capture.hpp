@@ -1,5 +1,5 @@
-/* A camera of libcamera's as a source wants it: requests that come and go. Its
- * functions may throw; camera.cpp turns that into a status. */
+/* capture.hpp: a camera of libcamera with its requests. Its functions may throw; camera.cpp turns
+ * that into a status. */
 #ifndef RF_LIBCAMERA_CAPTURE_HPP
 #define RF_LIBCAMERA_CAPTURE_HPP
 

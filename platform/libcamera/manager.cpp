@@ -1,3 +1,5 @@
+/* manager.cpp: the camera manager is started once for the process, and cameras are found by name.
+ */
 #include "manager.hpp"
 
 #include <condition_variable>

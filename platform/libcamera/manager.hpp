@@ -1,5 +1,5 @@
-/* The one camera manager of the process, and the switch between libcamera's releases.
- */
+/* manager.hpp: the one camera manager of the process, and the switch between libcamera's
+ * releases. */
 #ifndef RF_LIBCAMERA_MANAGER_HPP
 #define RF_LIBCAMERA_MANAGER_HPP
 

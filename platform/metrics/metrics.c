@@ -1,3 +1,4 @@
+/* metrics.c: PSNR, SSIM and other scores of a picture against a reference are computed. */
 #include "metrics.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* How far a picture is from a reference. All pictures are 8-bit sRGB, R G B packed,
- * without padding between rows. */
+/* metrics.h: scores of how far a picture is from a reference. All pictures are 8-bit sRGB, R G B
+ * packed, without padding between rows. */
 #ifndef QUALITY_METRICS_H
 #define QUALITY_METRICS_H
 

@@ -1,4 +1,4 @@
-/* Depth from one picture: a network that OpenCV runs. */
+/* estimate.cpp: depth is estimated from one picture by a network that OpenCV runs. */
 #include "guard.hpp"
 #include "onnx.h"
 

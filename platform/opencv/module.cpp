@@ -1,3 +1,4 @@
+/* module.cpp: the module of OpenCV's contrib filters is loaded when it is asked for. */
 #include "module.hpp"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+/* onnx.c: the input size of a network is read from its ONNX file. */
 #include "onnx.h"
 
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-/* Depth from two pictures: OpenCV's semi-global matching, both ways. */
+/* stereo.cpp: depth is computed from two pictures by OpenCV's semi-global matching, both ways. */
 #include "guard.hpp"
 #include "module.hpp"
 

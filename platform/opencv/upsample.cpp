@@ -1,4 +1,5 @@
-/* Joint bilateral upsampling of OpenCV's parts: one shifted map and guide a tap. */
+/* upsample.cpp: joint bilateral upsampling out of OpenCV's parts: one shifted map and guide a
+ * tap. */
 #include "guard.hpp"
 #include "module.hpp"
 

@@ -1,8 +1,8 @@
-/* Frames in a window, by SDL2: X11, Wayland, or the whole screen of a console (KMS).
+/* window.c: the sink `window` shows frames by SDL2, on X11, Wayland, or the whole screen of a
+ * console (KMS).
  *
- * SDL wants one thread for all that it does, and windows want their events to be read
- * also when no frame comes: a sink has a thread of its own, which holds everything of
- * SDL's. */
+ * SDL wants one thread for all that it does, and windows want their events to be read also when
+ * no frame comes, so the sink has a thread of its own, which holds everything of SDL's. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>

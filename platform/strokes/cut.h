@@ -1,4 +1,4 @@
-/* The least cut of a grid of pixels between an object and what surrounds it. */
+/* cut.h: the least cut of a grid of pixels between an object and its background. */
 #ifndef RF_STROKES_CUT_H
 #define RF_STROKES_CUT_H
 

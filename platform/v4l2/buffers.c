@@ -1,4 +1,4 @@
-/* Buffers of V4L2 devices in the memory of the process. */
+/* buffers.c: buffers of V4L2 devices are mapped into the memory of the process. */
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/dma-buf.h>

@@ -1,4 +1,5 @@
-/* Cameras by V4L2: raw ioctls, mapped or exported buffers, never a blocking call. */
+/* capture.c: the source `v4l2:` takes frames from cameras by raw ioctls, in mapped or exported
+ * buffers, and never makes a blocking call. */
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>

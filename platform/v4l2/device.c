@@ -1,4 +1,5 @@
-/* V4L2 devices: opening, formats, words for errors. */
+/* device.c: V4L2 devices are opened, their formats are translated, and their errors put into
+ * words. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Virtual cameras: frames into a V4L2 output node. */
+/* output.c: the sink `v4l2:` writes frames into a V4L2 output node, a virtual camera. */
 #include <errno.h>
 #include <poll.h>
 #include <stdlib.h>

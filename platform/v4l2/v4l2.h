@@ -1,4 +1,4 @@
-/* What capture and output by V4L2 share: one device, its format, its buffers. */
+/* v4l2.h: a V4L2 device, its format and its buffers, for capture and output alike. */
 #ifndef RF_V4L2_H
 #define RF_V4L2_H
 

@@ -1,3 +1,4 @@
+/* actions.c: keys, buttons and gestures of the viewer change its state. */
 #include <math.h>
 #include <time.h>
 #include <refocus/status.h>

@@ -1,3 +1,4 @@
+/* input.c: events of mouse, fingers and keys become actions of the viewer. */
 #include <math.h>
 #include "actions.h"
 #include "input.h"

@@ -1,3 +1,4 @@
+/* reduce.c: a photo and its depth are reduced by a whole number for quick pictures. */
 #include <math.h>
 #include "reduce.h"
 

@@ -1,4 +1,4 @@
-/* A photo and its depth, smaller by a whole number. */
+/* reduce.h: a photo and its depth, smaller by a whole number. */
 #ifndef RF_VIEW_REDUCE_H
 #define RF_VIEW_REDUCE_H
 

@@ -1,3 +1,5 @@
+/* session.c: requests of the viewer are handed to the thread that renders, and frames are taken
+ * from it. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

@@ -1,3 +1,4 @@
+/* show.c: the pixels of the window are sampled from a picture of the photo. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* From a picture of the photo, whole or reduced, to the pixels of the window. */
+/* show.h: from a picture of the photo, whole or reduced, to the pixels of the window. */
 #ifndef RF_VIEW_SHOW_H
 #define RF_VIEW_SHOW_H
 

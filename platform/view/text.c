@@ -1,3 +1,4 @@
+/* text.c: small letters are drawn into the window, three pixels by five, enlarged. */
 #include "text.h"
 
 /* Rows of three pixels from the top, the left one the highest bit of each octal digit.

@@ -1,4 +1,4 @@
-/* The window of `refocus view`. */
+/* view.h: the window of `refocus view` as the command calls it. */
 #ifndef RF_VIEW_VIEW_H
 #define RF_VIEW_VIEW_H
 

@@ -1,3 +1,4 @@
+/* window.c: the window of `refocus view`: SDL is started, events are read, and frames are shown. */
 #include <math.h>
 #include <string.h>
 #include <refocus/status.h>

@@ -1,3 +1,4 @@
+/* worker.c: the thread of a viewer's session renders a quick picture first, then the full one. */
 #include <stdlib.h>
 #include <string.h>
 #include <refocus/focus.h>

@@ -1,4 +1,4 @@
-/* The two sides of a session: the calls, and the thread that works. */
+/* worker.h: the state that the calls of a session and its thread share. */
 #ifndef RF_VIEW_WORKER_H
 #define RF_VIEW_WORKER_H
 

@@ -1,5 +1,5 @@
-/* OpenCV's contrib filters. They come with 144 shared libraries: a module of its own,
- * loaded when it is asked for (platform/opencv/module.cpp). */
+/* ximgproc.cpp: the filters of OpenCV contrib. They come with 144 shared libraries, so this is a
+ * module of its own, which is loaded when it is asked for (platform/opencv/module.cpp). */
 #include "ximgproc.h"
 
 #include <cmath>

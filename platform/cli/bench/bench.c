@@ -1,4 +1,5 @@
-/* refocus bench */
+/* bench.c: the command `refocus bench` times kernels and whole frames, and counts what rays meet.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

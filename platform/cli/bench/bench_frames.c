@@ -1,3 +1,4 @@
+/* bench_frames.c: whole frames are timed over blur, quality and threads. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

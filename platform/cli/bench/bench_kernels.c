@@ -1,3 +1,4 @@
+/* bench_kernels.c: each kernel is timed on each instruction set. */
 #include <stdio.h>
 #include "bench/bench_kernels.h"
 

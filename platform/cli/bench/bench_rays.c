@@ -1,3 +1,4 @@
+/* bench_rays.c: every ray of a scene is followed and counted by the surface that it meets first. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* What the rays of a scene meet: the statistics of Yang et al. 2016, figures 2 and
+/* bench_rays.h: statistics of the surfaces that rays meet, as in Yang et al. 2016, figures 2 and
  * 3. */
 #ifndef RF_CLI_BENCH_RAYS_H
 #define RF_CLI_BENCH_RAYS_H

@@ -1,3 +1,4 @@
+/* bench_scene.c: a photo and disparities are made up to measure with. */
 #include <stdlib.h>
 #include "bench/bench_scene.h"
 #include "line/report.h"

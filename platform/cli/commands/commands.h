@@ -1,4 +1,4 @@
-/* The subcommands, one file each. */
+/* commands.h: the list of subcommands; each is in a file of its own. */
 #ifndef RF_CLI_COMMANDS_H
 #define RF_CLI_COMMANDS_H
 

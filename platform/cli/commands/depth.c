@@ -1,4 +1,4 @@
-/* refocus depth */
+/* depth.c: the command `refocus depth` makes, reads, repairs or enlarges a depth map. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* refocus info */
+/* info.c: the command `refocus info` tells what depth, lens and orientation data a file carries. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

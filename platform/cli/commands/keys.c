@@ -1,3 +1,4 @@
+/* keys.c: key frames are read from JSON, and values between them are interpolated. */
 #include "commands/keys.h"
 
 #include <math.h>

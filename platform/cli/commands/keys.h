@@ -1,4 +1,4 @@
-/* Key frames: what parameters of a render are at given times, and how they go between.
+/* keys.h: key frames: the values of render parameters at given times, and the way between them.
  *
  *     {
  *       "refocus-pull": 1,

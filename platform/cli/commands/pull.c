@@ -1,4 +1,4 @@
-/* refocus pull */
+/* pull.c: the command `refocus pull` renders an animation between focus settings. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

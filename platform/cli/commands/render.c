@@ -1,4 +1,4 @@
-/* refocus render */
+/* render.c: the command `refocus render` refocuses one photo. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

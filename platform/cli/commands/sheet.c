@@ -1,4 +1,5 @@
-/* refocus sheet */
+/* sheet.c: the command `refocus sheet` renders a contact sheet over focus, aperture or other
+ * settings. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What is in each cell of a contact sheet. */
+/* sheet_cells.c: lists of the command line become the cells of a contact sheet. */
 #include <stdio.h>
 #include <string.h>
 #include "commands/sheet_cells.h"

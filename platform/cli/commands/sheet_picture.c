@@ -1,3 +1,4 @@
+/* sheet_picture.c: the cells of a contact sheet are put into one picture, with captions. */
 #include <stdlib.h>
 #include <string.h>
 #include "commands/sheet_picture.h"

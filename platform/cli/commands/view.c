@@ -1,4 +1,4 @@
-/* refocus view */
+/* view.c: the command `refocus view` shows a viewfinder window for one photo. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* view_module.c: the window of `refocus view` is loaded as a module. */
 #include <stdio.h>
 #include <string.h>
 #include "commands/view_module.h"

@@ -1,5 +1,5 @@
-/* The part with the window: it brings SDL's many libraries, so it is loaded when asked
- * for. */
+/* view_module.h: the window of `refocus view` as a module: it brings SDL's many libraries, so it
+ * is loaded when it is asked for. */
 #ifndef RF_CLI_VIEW_MODULE_H
 #define RF_CLI_VIEW_MODULE_H
 

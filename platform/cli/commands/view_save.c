@@ -1,3 +1,4 @@
+/* view_save.c: pictures, settings, depth and strokes of `refocus view` are saved. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

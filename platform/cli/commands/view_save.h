@@ -1,4 +1,4 @@
-/* What `refocus view` writes. */
+/* view_save.h: the files that `refocus view` saves. */
 #ifndef RF_CLI_VIEW_SAVE_H
 #define RF_CLI_VIEW_SAVE_H
 

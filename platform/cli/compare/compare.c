@@ -1,4 +1,5 @@
-/* refocus compare */
+/* compare.c: the command `refocus compare` renders a photo with several methods and scores them
+ * against a reference. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* compare_list.c: the list of methods to compare, each with options of its own, is parsed. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

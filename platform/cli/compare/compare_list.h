@@ -1,4 +1,4 @@
-/* The methods that `refocus compare` is to render, each with options of its own. */
+/* compare_list.h: the methods that `refocus compare` renders, each with options of its own. */
 #ifndef RF_CLI_COMPARE_LIST_H
 #define RF_CLI_COMPARE_LIST_H
 

@@ -1,3 +1,4 @@
+/* compare_picture.c: labelled crops of all renderings are put into one picture. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

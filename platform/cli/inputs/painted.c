@@ -1,3 +1,4 @@
+/* painted.c: depth is painted by a file of strokes over a photo. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

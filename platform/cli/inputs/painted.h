@@ -1,4 +1,4 @@
-/* Depth that is painted: a file of strokes over a photo. */
+/* painted.h: depth that is painted by a file of strokes over a photo. */
 #ifndef RF_CLI_PAINTED_H
 #define RF_CLI_PAINTED_H
 

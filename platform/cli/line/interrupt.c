@@ -1,5 +1,6 @@
-/* refocus_cancel() may be called from any thread, but not from a signal handler:
- * signals are blocked everywhere and a thread of their own waits for them. */
+/* interrupt.c: Ctrl-C ends the work early. refocus_cancel() may be called from any thread, but
+ * not from a signal handler, so signals are blocked everywhere and a thread of their own waits
+ * for them. */
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>

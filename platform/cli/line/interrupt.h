@@ -1,5 +1,5 @@
-/* Ctrl-C and the other signals that end a process: the work is ended early and nothing
- * partial stays behind. After SIGINT and SIGTERM the command returns as after any error;
+/* interrupt.h: Ctrl-C and the other signals that end a process: the work is ended early and
+ * nothing partial stays behind. After SIGINT and SIGTERM the command returns as after any error;
  * the others end it in the end. */
 #ifndef RF_CLI_INTERRUPT_H
 #define RF_CLI_INTERRUPT_H

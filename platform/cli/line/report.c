@@ -1,3 +1,4 @@
+/* report.c: errors, progress, times and JSON are printed. */
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>

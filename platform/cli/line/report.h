@@ -1,4 +1,4 @@
-/* What the command tells: errors, progress, times, JSON. */
+/* report.h: everything that the command prints: errors, progress, times and JSON. */
 #ifndef RF_CLI_REPORT_H
 #define RF_CLI_REPORT_H
 

@@ -1,6 +1,6 @@
-/* The distances that disparities stand for: they follow what depth cameras see, in 1/m. A range
- * that moves changes no blur by itself, as focus and blur move with it (live_focus.c); what it
- * must not do is to leave out what is near, and to move with every noise. */
+/* live_range.c: the distances that disparity 1 and 0 stand for follow what a depth camera sees,
+ * in 1/m. A range that moves changes no blur by itself, as focus and blur move with it
+ * (live_focus.c); but it must not leave out what is near, nor move with every noise. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

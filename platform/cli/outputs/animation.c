@@ -1,3 +1,4 @@
+/* animation.c: frames are written as pictures, as a video stream, or through an encoder. */
 #include "outputs/animation.h"
 
 #include <limits.h>

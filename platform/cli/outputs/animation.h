@@ -1,4 +1,4 @@
-/* Frames into an animation, by the end of the name:
+/* animation.h: frames become an animation, in the format that the end of the name says:
  *
  *     frames-%03d.png   a picture each: .png .jpg .ppm; counted from 0
  *     .y4m              YUV4MPEG2, 4:2:0

@@ -1,3 +1,4 @@
+/* apng.c: an animated PNG is put together from pictures of the PNG writer. */
 #include "outputs/apng.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
-/* Animated PNG: the pictures of the PNG writer in one file, after the APNG
- * specification. */
+/* apng.h: animated PNG: the pictures of the PNG writer in one file, after the APNG specification.
+ */
 #ifndef RF_CLI_APNG_H
 #define RF_CLI_APNG_H
 

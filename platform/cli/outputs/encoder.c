@@ -1,3 +1,4 @@
+/* encoder.c: raw frames are piped into the ffmpeg program. */
 #include "outputs/encoder.h"
 
 #include <errno.h>

@@ -1,4 +1,4 @@
-/* Video files by the ffmpeg program, which takes raw frames from a pipe. */
+/* encoder.h: video files are written by the ffmpeg program, which takes raw frames from a pipe. */
 #ifndef RF_CLI_ENCODER_H
 #define RF_CLI_ENCODER_H
 

@@ -1,3 +1,4 @@
+/* text.c: letters of dots are drawn into pictures. */
 #include <ctype.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-/* Letters of dots for pictures: small letters, digits and . + - = / : , _ */
+/* text.h: letters of dots for pictures: small letters, digits and . + - = / : , _ */
 #ifndef RF_CLI_TEXT_H
 #define RF_CLI_TEXT_H
 

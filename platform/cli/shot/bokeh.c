@@ -1,3 +1,4 @@
+/* bokeh.c: the shape of the aperture and what a lens adds to it are made from options. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* The look of the blur: the shape of the aperture and what a lens adds to it. */
+/* bokeh.h: the options for the look of the blur: the shape of the aperture and what a lens adds
+ * to it. */
 #ifndef RF_CLI_BOKEH_H
 #define RF_CLI_BOKEH_H
 

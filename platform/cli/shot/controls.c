@@ -1,3 +1,5 @@
+/* controls.c: focus beyond a plain lens is set up from options: a wider, tilted or painted zone in
+ * focus, and limits of the blur. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* The photographer's controls: focus beyond a plain lens. */
+/* controls.h: the options for focus beyond a plain lens. */
 #ifndef RF_CLI_CONTROLS_H
 #define RF_CLI_CONTROLS_H
 

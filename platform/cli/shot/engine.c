@@ -1,3 +1,4 @@
+/* engine.c: a renderer is made, prepared and timed by the options of the command line. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

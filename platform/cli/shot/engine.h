@@ -1,4 +1,4 @@
-/* A renderer made, prepared and timed by the options of the command line. */
+/* engine.h: a renderer and its parameters, by the options of the command line. */
 #ifndef RF_CLI_ENGINE_H
 #define RF_CLI_ENGINE_H
 

@@ -1,4 +1,4 @@
-/* Which options are of which methods. */
+/* methods.h: which options belong to which methods. */
 #ifndef RF_CLI_METHODS_H
 #define RF_CLI_METHODS_H
 

@@ -1,3 +1,4 @@
+/* papers.c: the options of the methods from papers become their parameters. */
 #include <stdlib.h>
 #include <string.h>
 #include <refocus/platform/file.h>

@@ -1,4 +1,4 @@
-/* Options that single methods look at. */
+/* papers.h: the options that only single methods look at. */
 #ifndef RF_CLI_PAPERS_H
 #define RF_CLI_PAPERS_H
 

@@ -1,3 +1,4 @@
+/* shot.c: one photo is read and prepared, with its lens setting in engine.params. */
 #include <stdlib.h>
 #include <string.h>
 #include "line/report.h"

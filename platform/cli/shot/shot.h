@@ -1,4 +1,4 @@
-/* One photo on the table: read, prepared, with its lens setting in engine.params. */
+/* shot.h: one photo that is read and prepared, with its lens setting in engine.params. */
 #ifndef RF_CLI_SHOT_H
 #define RF_CLI_SHOT_H
 

@@ -1,3 +1,4 @@
+/* falsecolour.c: disparities and blur radii are shown in colours, with a legend. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

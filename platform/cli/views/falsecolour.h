@@ -1,4 +1,5 @@
-/* Pictures of numbers: disparities and blur radii in colours, with a legend below. */
+/* falsecolour.h: pictures of numbers: disparities and blur radii in colours, with a legend below.
+ */
 #ifndef RF_CLI_FALSECOLOUR_H
 #define RF_CLI_FALSECOLOUR_H
 

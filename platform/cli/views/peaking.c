@@ -1,3 +1,4 @@
+/* peaking.c: the sharp edges of a picture are marked. */
 #include "views/peaking.h"
 
 #include <stdlib.h>

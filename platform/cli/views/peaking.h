@@ -1,4 +1,4 @@
-/* Focus peaking: the edges that are sharp, marked. */
+/* peaking.h: focus peaking: sharp edges are marked. */
 #ifndef RF_CLI_PEAKING_H
 #define RF_CLI_PEAKING_H
 

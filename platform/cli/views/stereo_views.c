@@ -1,3 +1,5 @@
+/* stereo_views.c: a photo and its disparities are warped to the view of an eye beside the camera.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

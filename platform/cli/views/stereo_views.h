@@ -1,6 +1,6 @@
-/* What eyes beside the camera see: a photo and its disparities warped sideways, and
- * rendered through the lens there. What comes out from behind something is filled from
- * the far side. */
+/* stereo_views.h: the views of eyes beside the camera: a photo and its disparities are warped
+ * sideways, and rendered through the lens there. Disoccluded pixels are filled from the far side.
+ */
 #ifndef RF_CLI_STEREO_VIEWS_H
 #define RF_CLI_STEREO_VIEWS_H
 

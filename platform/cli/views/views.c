@@ -1,3 +1,4 @@
+/* views.c: the picture of `refocus render --view` is made. */
 #include <stdlib.h>
 #include "views/falsecolour.h"
 #include "views/peaking.h"

@@ -1,4 +1,4 @@
-/* The pictures of `refocus render --view`. */
+/* views.h: the pictures of `refocus render --view`. */
 #ifndef RF_CLI_VIEWS_H
 #define RF_CLI_VIEWS_H
 

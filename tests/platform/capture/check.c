@@ -1,3 +1,4 @@
+/* check.c: what the tests of sources and sinks share. */
 #include "check.h"
 
 #include <dirent.h>
