@@ -27,13 +27,13 @@ struct refocus_source {
     int wake_fd;  /* eventfd: readable after an interrupt */
     uint64_t out; /* bit n: buffer n is the caller's */
     bool sequence_known;
-    uint32_t sequence; /* of the frame before */
+    uint32_t sequence; /* number of the frame before */
 };
 
 /* Reasons are never NULL here. After an error of start, reopen or open nothing streams; the state
  * of a failed open is freed by the backend itself. */
 struct rf_source_ops {
-    const char *scheme; /* before the colon */
+    const char *scheme; /* word before the colon */
     uint32_t kind;      /* enum refocus_source_kind */
     int (*open)(struct refocus_source *source, const char *rest, struct refocus_reason *reason);
     int (*get_mode)(struct refocus_source *source, int index, struct refocus_source_mode *mode);
@@ -52,7 +52,7 @@ struct rf_source_ops {
     int (*list)(refocus_source_found *found, void *user); /* or NULL */
 };
 
-/* One line a kind: rf_source_NAME is defined in the file that implements it. */
+/* Each line is one kind: rf_source_NAME is defined in the file that implements it. */
 #define RF_SOURCE_LIST(SOURCE)                                                                     \
     SOURCE(file)                                                                                   \
     SOURCE(y4m)                                                                                    \

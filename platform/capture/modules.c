@@ -11,7 +11,7 @@
 #if defined RF_HAVE_LIBCAMERA || defined RF_HAVE_WINDOW
 static const int here;
 
-/* What a symbol of the module in that file is, or NULL. */
+/* The address of a symbol in the module of that file, or NULL. */
 static const void *try(const char *folder, int length, const char *name, const char *symbol)
 {
     char path[4096];
@@ -23,7 +23,7 @@ static const void *try(const char *folder, int length, const char *name, const c
     return module ? dlsym(module, symbol) : NULL;
 }
 
-/* Beside this library: where both are installed, and where both are built. */
+/* The module lies beside this library, where both are installed and where both are built. */
 static const void *load(const char *installed, const char *built, const char *symbol)
 {
     const void *found = NULL;

@@ -16,7 +16,7 @@ struct pictures {
     struct rf_ring ring; /* without memory: photos own it */
     struct refocus_photo *photo[RF_MOST_BUFFERS];
     struct refocus_photo *still; /* the one picture */
-    int width, height;           /* of the frame before, 0 at the beginning */
+    int width, height;           /* size of the frame before, 0 at the beginning */
 };
 
 static int open_pictures(struct refocus_source *source, const char *rest,

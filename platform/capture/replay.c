@@ -19,7 +19,7 @@ struct replay {
     uint8_t *scene; /* the frame at rest, in the present format, or the bytes of the
                        JPEG */
     size_t scene_bytes;
-    struct refocus_source *inner; /* of "from" */
+    struct refocus_source *inner; /* source of "from" */
     int64_t next;                 /* the frame to come */
     int64_t first;                /* the frame that was due when the pace began */
     struct rf_pace pace;
@@ -236,7 +236,7 @@ static int apply_to_stream(struct replay *replay, const struct rf_event *event,
     return REFOCUS_OK;
 }
 
-/* What happens to a frame; faults of the stream take effect at once. */
+/* The faults of one frame; faults of the stream take effect at once. */
 struct fate {
     int64_t dropped, late_ms, shift_ms;
     bool corrupt, queue_error, memory;

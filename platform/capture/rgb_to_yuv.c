@@ -27,7 +27,7 @@ static uint8_t *plane_row(const struct refocus_frame *frame, int plane, int y)
 static void encode_packed_422(const struct refocus_image *image, const struct refocus_frame *frame,
                               int y)
 {
-    const int first = frame->format == REFOCUS_FRAME_UYVY; /* where Y begins */
+    const int first = frame->format == REFOCUS_FRAME_UYVY; /* offset of the first Y */
     const uint8_t *rgb = image->plane[0] + y * image->stride[0];
     uint8_t *out = plane_row(frame, 0, y);
 

@@ -13,11 +13,11 @@ struct refocus_sink {
     bool started;
     int width, height;
     double fps;
-    uint32_t format, matrix, range; /* of the pictures to come */
+    uint32_t format, matrix, range; /* format of the pictures to come */
 };
 
 struct rf_sink_ops {
-    const char *scheme; /* before the colon, or NULL for a pattern of pictures */
+    const char *scheme; /* word before the colon, or NULL for a pattern of pictures */
     int (*open)(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason);
     /* Whether it takes pictures of such a format of Y, U and V; NULL: none. */
     bool (*takes)(const struct refocus_sink *sink, uint32_t format);

@@ -23,9 +23,9 @@ struct stream {
     bool y4m, begun;
     bool own;                   /* raw: frames are as pictures come */
     bool tall;                  /* y4m: U and V have all rows */
-    uint32_t range;             /* of its pictures: enum refocus_range */
+    uint32_t range;             /* enum refocus_range of its pictures */
     uint32_t layout;            /* raw: enum refocus_frame_format of frames */
-    struct refocus_frame frame; /* in memory */
+    struct refocus_frame frame; /* the frame as it is written, in memory */
     uint8_t *memory;
     size_t bytes;
 };

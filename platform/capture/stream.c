@@ -12,9 +12,9 @@ struct stream {
     FILE *file;
     bool y4m, is_pipe;
     bool tall;       /* y4m of 4:2:2, which becomes YUYV: U and V have all rows */
-    uint8_t *planes; /* for that */
+    uint8_t *planes; /* memory for such planes */
     char *path;      /* owned */
-    long begin;      /* of the first frame */
+    long begin;      /* offset of the first frame */
     uint32_t format, flags;
     int width, height;
     double fps;
@@ -212,7 +212,7 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     return REFOCUS_OK;
 }
 
-/* One frame into memory; REFOCUS_ERR_END where the next one would begin. */
+/* Read one frame into memory; REFOCUS_ERR_END where the next one would begin. */
 static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
                       struct refocus_reason *reason)
 {
@@ -243,7 +243,7 @@ static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
                            (long long)stream->frame);
 }
 
-/* The same of 4:2:2 in planes, packed. */
+/* Read a frame of 4:2:2 in planes, and pack it. */
 static int read_tall(struct stream *stream, uint8_t *memory, struct refocus_reason *reason)
 {
     const size_t w = (size_t)stream->width, h = (size_t)stream->height, half = (w + 1) / 2;

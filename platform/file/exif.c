@@ -16,9 +16,9 @@ struct tiff {
 };
 
 struct entry {
-    size_t place; /* of the 12 bytes */
+    size_t place; /* offset of the 12 bytes of the entry */
     uint32_t tag, type, count;
-    size_t value; /* where the value is */
+    size_t value; /* offset of the value */
 };
 
 enum {

@@ -9,8 +9,8 @@
 
 struct rf_format {
     const char *name;       /* as refocus_file_formats() lists it */
-    const char *library;    /* what a build needs to read it; NULL: nothing */
-    const char *endings[3]; /* of names of files that are written, NULL behind the last */
+    const char *library;    /* library that a build needs to read it; NULL: nothing */
+    const char *endings[3]; /* endings of names under which it is written, NULL behind the last */
     bool writes_pictures, writes_depth;
     bool has_second; /* it can hold the second picture of a stereo pair */
     bool only_depth; /* a file of this format is never a photo */
@@ -24,8 +24,8 @@ struct rf_format {
                  const struct refocus_write_options *options, struct refocus_reason *reason);
 };
 
-/* One line a format: rf_format_NAME is defined in the file that reads or describes it. The order is
- * that in which files are recognised and endings are listed. */
+/* Each line is one format: rf_format_NAME is defined in the file that reads or describes it. In
+ * this order files are recognised and endings are listed. */
 #define RF_FORMAT_LIST(FORMAT)                                                                     \
     FORMAT(jpeg)                                                                                   \
     FORMAT(png)                                                                                    \

@@ -7,7 +7,7 @@
 
 enum { RF_MPF_MAX = 32 };
 struct rf_mpf_image {
-    uint64_t offset; /* from the begin of the MPF segment's TIFF header; 0: the main one */
+    uint64_t offset; /* counted from the begin of the MPF segment's TIFF header; 0: the main one */
     uint64_t size;
 };
 struct rf_mpf {

@@ -19,7 +19,7 @@ struct reader {
     png_infop info;
     struct rf_raster raster;
     struct refocus_blob exif, icc;
-    int status; /* of errors that are not libpng's own */
+    int status; /* status for errors that are not libpng's own */
 };
 
 static void on_error(png_structp png, png_const_charp words)

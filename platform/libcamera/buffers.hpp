@@ -27,7 +27,7 @@ class Mapping
     /* False, and why is in errno. */
     bool map(const libcamera::FrameBuffer &buffer);
 
-    /* Before and after the processor reads. */
+    /* Called before and after the processor reads. */
     void sync(bool begin) const;
 
     /* Point the frame's planes into the buffer; false when they do not fit into it.

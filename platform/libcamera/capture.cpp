@@ -311,7 +311,7 @@ void Capture::requeue(struct refocus_source *source, Request *request)
         source->counters.queued++;
 }
 
-/* In a thread of libcamera. */
+/* It runs in a thread of libcamera. */
 void Capture::completed(Request *request)
 {
     if (request->status() == Request::RequestCancelled)

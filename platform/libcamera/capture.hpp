@@ -40,7 +40,7 @@ class Capture
     int allocate(struct refocus_reason *reason);
     bool deliver(libcamera::Request *request, struct refocus_frame **result);
     void requeue(struct refocus_source *source, libcamera::Request *request);
-    /* In threads of libcamera. */
+    /* These run in threads of libcamera. */
     void completed(libcamera::Request *request);
     void disconnected();
     void wake();
@@ -55,7 +55,7 @@ class Capture
     std::vector<std::unique_ptr<libcamera::Request>> requests_;
     struct refocus_frame frames_[RF_MOST_BUFFERS];
     bool running_ = false;
-    std::mutex lock_; /* of what follows */
+    std::mutex lock_; /* guards the members below */
     std::deque<libcamera::Request *> done_;
     std::map<unsigned int, libcamera::ControlValue> wanted_;
     bool gone_ = false;

@@ -44,7 +44,7 @@ std::shared_ptr<CameraManager> get_manager()
         ended.wait(guard);
     if (manager)
         return manager;
-    logSetTarget(LoggingTargetNone); /* what goes wrong is told in reasons */
+    logSetTarget(LoggingTargetNone); /* failures are told in reasons */
     std::unique_ptr<CameraManager> made = std::make_unique<CameraManager>();
     if (made->start() != 0)
         return nullptr;

@@ -24,7 +24,7 @@ namespace refocus_libcamera
 /* NULL when libcamera does not start. Runs as long as somebody holds it. */
 std::shared_ptr<libcamera::CameraManager> get_manager();
 
-/* By identifier, else by number; NULL for none. */
+/* Find a camera by its identifier, else by its number; NULL for none. */
 std::shared_ptr<libcamera::Camera> find_camera(libcamera::CameraManager &manager,
                                                const std::string &name);
 

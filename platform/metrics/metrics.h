@@ -7,11 +7,11 @@
 
 struct quality_scores {
     double psnr;      /* dB over the R, G and B of the pixels that count */
-    double rmse;      /* the same, in codes of 0..255 */
+    double rmse;      /* root of the mean squared error, in codes of 0..255 */
     double ssim;      /* on luma; NAN when no 11x11 window fits */
     double edge_psnr; /* dB over the pixels of the edge mask; NAN when there are none */
     long pixels;      /* pixels that count: all but a border */
-    long edge_pixels; /* of these, pixels of the edge mask */
+    long edge_pixels; /* number of these in the edge mask */
 };
 
 /* Root mean square difference over R, G and B of the pixels at least @border from
@@ -36,7 +36,7 @@ int quality_ssim(const uint8_t *a, const uint8_t *b, int width, int height, int 
 int quality_edge_mask(const uint16_t *disparity, int width, int height, double focus, double blur,
                       uint8_t *mask);
 
-/* All of them; @mask may be NULL. Returns 0, or -1 without memory. */
+/* Compute all scores; @mask may be NULL. Returns 0, or -1 without memory. */
 int quality_score(const uint8_t *picture, const uint8_t *reference, int width, int height,
                   int border, const uint8_t *mask, struct quality_scores *scores);
 

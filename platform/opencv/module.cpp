@@ -16,7 +16,7 @@ const rf_ximgproc *open(const std::string &path)
     return filters && filters->version == RF_XIMGPROC_VERSION ? filters : nullptr;
 }
 
-/* Beside this library: where both are installed, and where both are built. */
+/* The module lies beside this library, where both are installed and where both are built. */
 const rf_ximgproc *find()
 {
     static const char here = 0;

@@ -14,13 +14,13 @@ enum {
     SHAPE_SIDE = 1,
     SIDE_VALUE = 1,
     SIDES = 4,
-    MOST_FIELDS = 1 << 20, /* of a message that are looked at */
+    MOST_FIELDS = 1 << 20, /* number of fields of a message that are looked at */
 };
 
 /* A message in the file, from where the file stands to `end`. */
 struct field {
     uint32_t number, wire;
-    uint64_t value; /* of wire type 0, else the length of what follows */
+    uint64_t value; /* value of wire type 0, else the length of the bytes that follow */
 };
 
 static bool read_varint(FILE *file, int64_t end, uint64_t *value)

@@ -22,7 +22,7 @@ cv::Mat match(const cv::Mat &a, const cv::Mat &b, int least, int count)
     const int area = BLOCK * BLOCK;
     const cv::Ptr<cv::StereoSGBM> sgbm = cv::StereoSGBM::create(
         least, count, BLOCK, 8 * area, 32 * area, -1, 63, 5, 0, 0, cv::StereoSGBM::MODE_SGBM_3WAY);
-    /* What lies beyond the border would not be matched: a margin of repeated pixels. */
+    /* Pixels near the border would not be matched, so a margin of repeated pixels is added. */
     const int left = std::max(0, least + count), right = std::max(0, -least);
     cv::Mat wide_a, wide_b, raw, out;
 
@@ -72,7 +72,7 @@ void match_pair(const cv::Mat &left, const cv::Mat &right, int least, int count,
     cv::flip(match(flipped_right, flipped_left, least, count), back, 1);
 }
 
-/* What disagrees by more than a pixel is taken out. Returns the share that is left. */
+/* Values that disagree by more than a pixel are taken out. Returns the share that is left. */
 float check(cv::Mat &out, const cv::Mat &back)
 {
     for (int y = 0; y < out.rows; y++) {
@@ -106,7 +106,7 @@ cv::Mat shifted(const cv::Mat &image, int down)
     return out;
 }
 
-/* What is searched at full size, found at a reduced one. */
+/* The range to search at full size is found at a reduced one. */
 struct search {
     int offset, least, count;
     float matched;

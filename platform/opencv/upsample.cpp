@@ -25,7 +25,7 @@ int upsample(const refocus_image *photo, const refocus_disparity *map, float sig
     samples.convertTo(depth, CV_32F, map->bits == 16 ? 1 : 257);
     coarse.create(samples.size(), CV_32FC3);
     for (int y = 0; y < coarse.rows;
-         y++) /* at the middle of each sample: resize() takes a corner */
+         y++) /* the value at the middle of each sample: resize() takes a corner */
         for (int x = 0; x < coarse.cols; x++)
             coarse.at<cv::Vec3f>(y, x) =
                 guide.at<cv::Vec3f>((int)((y + 0.5) / sy), (int)((x + 0.5) / sx));

@@ -12,17 +12,17 @@
 
 enum { POLL_MS = 20, PATIENCE_MS = 1000 };
 
-/* Of the thread alone. */
+/* These belong to the thread alone. */
 struct screen {
     SDL_Window *window;
     SDL_Renderer *renderer;
     SDL_Texture *texture;
-    int width, height; /* of the texture */
+    int width, height; /* size of the texture */
 };
 
 struct window {
     pthread_t thread;
-    pthread_mutex_t lock; /* of all that follows */
+    pthread_mutex_t lock; /* guards the members below */
     pthread_cond_t changed;
     enum { STARTING, OPEN, FAILED, CLOSED } state;
     bool quit;  /* the sink is being closed */
@@ -30,10 +30,10 @@ struct window {
     uint8_t *pixels;
     size_t capacity;
     int width, height;
-    struct refocus_reason reason; /* of FAILED */
+    struct refocus_reason reason; /* the reason of FAILED */
 };
 
-/* As large as the picture, but not larger than the screen. */
+/* Make the window as large as the picture, but not larger than the screen. */
 static bool make_window(struct screen *screen, int width, int height)
 {
     SDL_Rect room = {0, 0, width, height};
@@ -164,7 +164,7 @@ static void *run(void *argument)
         serve(window);
         SDL_VideoQuit();
     }
-    SDL_TLSCleanup(); /* what SDL keeps for a thread that it did not start */
+    SDL_TLSCleanup(); /* memory that SDL keeps for a thread which it did not start */
     pthread_mutex_lock(&window->lock);
     if (window->state == OPEN)
         window->state = CLOSED;

@@ -138,7 +138,7 @@ static void widen_by_disc(struct span *span, double x, double dy, double radius)
     }
 }
 
-/* Where row y meets the line between two points, if it does. */
+/* The place where row y meets the line between two points, if it does. */
 static void widen_by_line(struct span *span, double y, double x0, double y0, double x1, double y1)
 {
     if ((y0 <= y && y <= y1) || (y1 <= y && y <= y0)) {
@@ -148,7 +148,7 @@ static void widen_by_line(struct span *span, double y, double x0, double y0, dou
     }
 }
 
-/* All within the radius of the line between two points: convex, so a span in every row.
+/* The pixels within the radius of the line between two points are convex, so a span in every row.
  */
 static void cover_segment(const float *a, const float *b, double radius, struct rf_area area,
                           uint8_t *mask)

@@ -111,7 +111,7 @@ static void start(struct rf_cut *cut)
     }
 }
 
-/* What may still flow between a node of a tree and its neighbour, away from the object.
+/* The amount that may still flow between a node of a tree and its neighbour, away from the object.
  */
 static int32_t outward(const struct rf_cut *cut, const struct rf_cut_node *p, int d)
 {

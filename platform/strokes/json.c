@@ -29,7 +29,7 @@ refuse(struct refocus_strokes_reason *reason, int status, const char *why, ...)
     va_start(arguments, why);
     vsnprintf(reason->text, sizeof reason->text, why, arguments);
     va_end(arguments);
-    /* What a file holds may be any bytes. */
+    /* A file may hold any bytes. */
     for (char *c = reason->text; *c; c++)
         if (*c < ' ' || *c > '~')
             *c = '?';
@@ -236,7 +236,7 @@ static int paint(struct reading *reading, int index, json_t *object)
     return status;
 }
 
-/* All but the strokes. */
+/* The members of the file but for the strokes. */
 static int read_head(struct reading *reading, json_t *root)
 {
     static const char *const known[] = {"refocus-strokes", "width", "height", "strokes", NULL};
@@ -311,7 +311,7 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, siz
                       (int)MAX_BYTES);
     root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
     if (!root) {
-        /* Where memory fails jansson has no words. */
+        /* jansson has no words for a failed allocation. */
         if (json_error_code(&error) == json_error_out_of_memory || error.line < 1 || !error.text[0])
             return no_memory(reading.reason);
         return refuse(reading.reason, REFOCUS_ERR_FORMAT, "line %d is no JSON: %s", error.line,
@@ -386,7 +386,7 @@ int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, siz
         int count;
 
         refocus_strokes_get(strokes, i, &stroke, &points, &count);
-        /* One that was begun and never drawn selects nothing, and has no words. */
+        /* A stroke that was begun and never drawn selects nothing, and has no words. */
         if (count > 0 || stroke.kind == REFOCUS_STROKE_ALL || stroke.kind == REFOCUS_STROKE_FILL)
             failed = json_array_append_new(list, stroke_json(&stroke, points, count));
     }

@@ -17,7 +17,7 @@ enum { SETTLED_LEVELS = 2 };
 /* Scores for the place of a pixel. */
 enum { UNDER_BRUSH = RF_BIT, FARTHEST = -3 * RF_BIT, OUT_OF_REACH = -1000 };
 
-enum { PLACE, DISTANCE, STACK, STATES }; /* which scratch; STATES is the first of two */
+enum { PLACE, DISTANCE, STACK, STATES }; /* numbers of scratch memory; STATES is the first of two */
 
 /* Find the area that the strokes can reach, in whole pixels of the coarsest level that is needed.
  */
@@ -51,8 +51,8 @@ static int choose_area(const struct rf_pyramid *pyramid, const struct rf_stroke 
     return level;
 }
 
-/* What the strokes say of each pixel: certain ones, and scores by the distance. Where
- * two strokes are certain of a pixel the later one is right. */
+/* Strokes make some pixels certain, and give the others scores by their distance. Where two strokes
+ * are certain of a pixel the later one is right. */
 static void read_stroke(const struct rf_stroke *stroke, struct rf_grid *grid, int16_t *place,
                         uint16_t *distance)
 {
@@ -118,7 +118,7 @@ static void open_reach(struct rf_grid *grid, const int16_t *place)
             grid->state[i] = place[i] == OUT_OF_REACH ? 0 : RF_OPEN;
 }
 
-/* What is out of reach but closed in by what is not, as the middle of a large object
+/* A region out of reach that is closed in by others within reach, as the middle of a large object
  * that was painted along its border, is in reach after all. */
 static void close_reach(struct rf_area area, int16_t *place, int32_t *stack)
 {

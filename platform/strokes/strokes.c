@@ -106,7 +106,7 @@ static int lowest_visible(const struct refocus_strokes *strokes, int32_t y, int3
     return i > 0 ? i : 0;
 }
 
-/* One row from x to the pixel before end, from the bottom up. */
+/* Paint one row from x to the pixel before end, from the bottom up. */
 static void paint_row(struct refocus_strokes *strokes, int32_t y, int32_t from, int32_t to)
 {
     const size_t width = (size_t)strokes->pyramid.width[0];
@@ -191,7 +191,7 @@ static int cover_brush(struct refocus_strokes *strokes, const struct rf_stroke *
     return rf_spans_of_mask(spans, mask, area);
 }
 
-/* What the strokes of the layer cover. */
+/* Find the pixels that the strokes of the layer cover. */
 static int cover(struct refocus_strokes *strokes, const struct layer *layer, struct rf_spans *spans)
 {
     const struct rf_stroke *const first = &strokes->strokes[layer->first];
@@ -206,7 +206,7 @@ static int cover(struct refocus_strokes *strokes, const struct layer *layer, str
     return rf_select(&strokes->selector, &strokes->pyramid, first, layer->count, spans);
 }
 
-/* After the last layer's strokes have changed: cover, and paint what is different. */
+/* The last layer's strokes have changed: cover again, and paint the difference. */
 static int update(struct refocus_strokes *strokes, bool all, struct refocus_changed *changed)
 {
     struct layer *const layer = last_layer(strokes);

@@ -14,7 +14,7 @@ enum { MOST_MODES = 256, MOST_NODES = 64 };
 
 struct camera {
     struct rf_v4l2 device;
-    char *name; /* behind the colon */
+    char *name; /* the name behind the colon */
     struct refocus_frame frame[RF_MOST_BUFFERS];
     bool source_changed; /* the signal at the input, not yet looked at */
     bool failed;
@@ -150,7 +150,7 @@ static bool offers(const struct rf_v4l2 *device, uint32_t fourcc)
 
 /* Start ---------------------------------------------------------------------------- */
 
-/* What the node is set to, then what is cheap to convert, then depth. */
+/* The node's own format comes first, then formats that are cheap to convert, then depth. */
 static uint32_t choose_fourcc(const struct rf_v4l2 *device, uint32_t wanted, uint32_t present)
 {
     static const uint32_t preferred[] = {
@@ -202,8 +202,7 @@ static void follow_signal(struct camera *camera)
         rf_v4l2_ioctl(camera->device.fd, VIDIOC_S_DV_TIMINGS, &timings);
 }
 
-/* Where the driver can tell: of the input that is chosen, whose number is the
- * event's. */
+/* Where the driver can tell, ask for changes of the chosen input, whose number is the event's. */
 static void watch_signal(const struct rf_v4l2 *device)
 {
     struct v4l2_event_subscription change;
@@ -389,7 +388,7 @@ static void release(struct refocus_source *source, struct refocus_frame *frame)
     if (error == 0)
         source->counters.queued++;
     else if (device->count - ++camera->stuck < 2)
-        camera->failed = error != ENODEV; /* which wait will report by itself */
+        camera->failed = error != ENODEV; /* wait will report it by itself */
 }
 
 /* Controls and the list of cameras ------------------------------------------------- */

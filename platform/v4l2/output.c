@@ -58,7 +58,7 @@ static bool try_format(struct rf_v4l2 *device, uint32_t fourcc, int width, int h
            device->height == height;
 }
 
-/* That of the pictures themselves, else one with as many samples, else any of Y, U and
+/* Choose the format of the pictures themselves, else one with as many samples, else any of Y, U and
  * V. */
 static int choose_yuv(struct rf_v4l2 *device, uint32_t format, int width, int height,
                       struct refocus_reason *reason)

@@ -19,7 +19,7 @@ struct rf_v4l2 {
     struct v4l2_format v4l2_format;
     uint32_t format;             /* enum refocus_frame_format */
     int width, height, memories; /* memories of a buffer: 1 to 3 */
-    uint32_t matrix, flags;      /* of struct refocus_frame */
+    uint32_t matrix, flags;      /* flags of struct refocus_frame */
     struct rf_v4l2_buffer buffer[RF_MOST_BUFFERS];
     int count;
     bool streaming;
@@ -66,7 +66,7 @@ struct rf_v4l2_done {
     uint32_t bytes[3], offset[3];
 };
 int rf_v4l2_dequeue(struct rf_v4l2 *device, struct rf_v4l2_done *done);
-/* Before and after the processor reads exported buffers. */
+/* Called before and after the processor reads exported buffers. */
 void rf_v4l2_sync(const struct rf_v4l2_buffer *buffer, bool begin);
 
 #endif

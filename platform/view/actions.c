@@ -90,7 +90,7 @@ void rf_window_zoom(struct rf_window *w, double factor, double x, double y)
     w->state.x = px - x / w->state.scale;
     w->state.y = py - y / w->state.scale;
     w->fitted = false;
-    w->redraw = true; /* what there is, at its new place, until the frame comes */
+    w->redraw = true; /* show the old frame at its new place until the new one comes */
     rf_window_show(w, "zoom");
 }
 
@@ -102,7 +102,7 @@ void rf_window_pan(struct rf_window *w, double dx, double dy)
     w->state.y =
         clamp(w->state.y - dy / w->state.scale, -w->height / w->state.scale, photo->height);
     w->fitted = false;
-    w->redraw = true; /* what there is, at its new place, until the frame comes */
+    w->redraw = true; /* show the old frame at its new place until the new one comes */
     rf_window_show(w, "zoom");
 }
 

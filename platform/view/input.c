@@ -6,7 +6,7 @@
 static const struct {
     SDL_Keycode key;
     enum rf_action action;
-    const char *name, *what; /* for people */
+    const char *name, *what; /* name for people */
 } keys[] = {
     {SDLK_t, RF_ACT_FOCUS, "t", "tap to focus, drag for the aperture"},
     {SDLK_m, RF_ACT_METHOD, "m", "next method"},

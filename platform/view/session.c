@@ -108,7 +108,7 @@ void rf_session_destroy(struct rf_session **session)
     *session = NULL;
 }
 
-/* With the lock: there is something new to do. */
+/* Called with the lock held: there is something new to do. */
 static uint64_t renew(struct rf_session *s)
 {
     const uint64_t request = ++s->request;

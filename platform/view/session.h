@@ -22,7 +22,7 @@ uint64_t rf_session_extend(struct rf_session *session, float x, float y);
 uint64_t rf_session_undo(struct rf_session *session);
 uint64_t rf_session_save(struct rf_session *session, uint32_t what);
 
-/* To be called some times a second: ends work on requests that are out of date. */
+/* Call it some times a second: ends work on requests that are out of date. */
 void rf_session_tick(struct rf_session *session);
 
 /* The newest frame, when there is one that was not taken yet: it stays the caller's

@@ -22,15 +22,15 @@ static bool is_outside(double place, int size)
     return !(place >= -0.5 && place < size - 0.5);
 }
 
-/* What the columns of the window stand for, worked out once. */
+/* The pixels that each column of the window stands for, worked out once. */
 struct columns {
     uint32_t *sums;    /* 3 for each column */
     int32_t *edge;     /* the source pixel that each begins with, and that after the last */
     int32_t *left;     /* the source pixel left of its middle, */
-    int32_t *across;   /* and how far right of that one it is, of 256 */
+    int32_t *across;   /* distance to the right of it, in 1/256 */
     int32_t *nearest;  /* pixel of the photo */
     uint32_t *wide[2]; /* source rows brought to the window's width, */
-    int wide_of[2];    /* and which ones; even rows first */
+    int wide_of[2];    /* numbers of these rows; even rows come first */
 };
 
 /* Pixels of the source before which column or row `pixel` of the window begins. */

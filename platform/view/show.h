@@ -10,7 +10,7 @@ struct rf_show {
     const uint8_t *rgb; /* packed */
     int width, height;
     int reduction;             /* pixels of the photo for one of these, each way */
-    const uint16_t *disparity; /* of the photo's size, packed */
+    const uint16_t *disparity; /* the photo's disparities, packed */
     int photo_width, photo_height;
     const uint8_t *selection; /* packed, 255 = covered; NULL: none */
     int selection_width, selection_height, selection_reduction;

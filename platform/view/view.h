@@ -14,13 +14,13 @@ struct rf_view_time {
 };
 
 struct rf_view_setup {
-    struct rf_session_setup session; /* all but notify, which is the window's */
+    struct rf_session_setup session; /* filled but for notify, which is the window's */
     struct rf_view_state state;      /* focus, blur and method to begin with */
     const char *title;               /* UTF-8 */
     const char *settings;            /* lines that tell what else the picture is made by; may be ""
                                         or NULL */
     uint32_t methods;  /* REFOCUS_METHOD_BIT() of those to choose from, or-ed; 0 = all */
-    int width, height; /* of the window; 0 = as large as the photo asks for */
+    int width, height; /* size of the window; 0 = as large as the photo asks for */
     bool fullscreen;
     bool (*stop)(void *user); /* polled: whether to end; may be NULL */
     void *stop_user;
@@ -31,10 +31,10 @@ enum { RF_VIEW_TIMES = 4096 };
 struct rf_view_report {
     struct rf_view_time times[RF_VIEW_TIMES];
     int count;
-    char driver[32];   /* of SDL: "x11", "wayland", "kmsdrm", ... */
-    int width, height; /* of the window, pixels */
-    int reduction;     /* of the first pictures */
-    int strokes;       /* of the painting in the end */
+    char driver[32];   /* SDL's driver: "x11", "wayland", "kmsdrm", ... */
+    int width, height; /* size of the window, pixels */
+    int reduction;     /* reduction of the first pictures */
+    int strokes;       /* strokes that the painting has in the end */
     struct rf_view_state last;
 };
 

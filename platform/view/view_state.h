@@ -9,7 +9,7 @@
 
 enum rf_view_mode { RF_VIEW_RESULT, RF_VIEW_BEFORE, RF_VIEW_DEPTH, RF_VIEW_MODES };
 
-/* All that a picture depends on beside the photo and its depth. */
+/* Everything that a picture depends on beside the photo and its depth. */
 struct rf_view_state {
     float focus;         /* df; where focus_tap is set, what was found there */
     uint64_t focus_tap;  /* 0: focus holds; else the number of the tap at tap_x, tap_y */
@@ -21,40 +21,40 @@ struct rf_view_state {
     bool peaking;        /* mark what is sharp */
     bool selection;      /* mark what the last layer of the painting covers */
     double x, y, scale;  /* photo pixel at the window's corner; window pixels a photo pixel */
-    int width, height;   /* of the window, 1 to 16384 */
+    int width, height;   /* size of the window, 1 to 16384 */
 };
 
 /* A picture for the window: 0xffRRGGBB, packed. */
 struct rf_view_frame {
     uint32_t *pixels;
     int room;
-    struct rf_view_state of; /* with the focus that was found */
-    uint64_t request;        /* which one it answers */
-    bool full;               /* of the whole photo's resolution, not of a reduced one */
-    int strokes;             /* that the painting has */
+    struct rf_view_state of; /* the state it shows, with the focus that was found */
+    uint64_t request;        /* number of the request that it answers */
+    bool full;               /* it has the whole photo's resolution, not a reduced one */
+    int strokes;             /* strokes that the painting has */
 };
 
-/* What can be written; the callback gets it on the session's thread. */
+/* The things that can be written; the callback gets it on the session's thread. */
 enum rf_view_save { RF_SAVE_PICTURE = 1, RF_SAVE_SETTINGS = 2, RF_SAVE_DEPTH = 4 };
 struct rf_view_result {
     uint32_t what; /* enum rf_view_save, or-ed */
     const struct refocus_image *picture;
     const struct refocus_render_params *params;
-    const uint16_t *disparity; /* of the photo's size, packed */
+    const uint16_t *disparity; /* the photo's disparities, packed */
     const struct refocus_strokes *strokes;
-    const struct rf_view_state *state; /* with the focus that was found */
+    const struct rf_view_state *state; /* the state, with the focus that was found */
 };
 
 struct rf_session_setup {
-    const struct refocus_image *photo;   /* RGB8; the caller's, until the end */
-    const uint16_t *disparity;           /* of its size, packed; NULL: all 0. Copied */
+    const struct refocus_image *photo; /* RGB8; the caller's, until the end */
+    const uint16_t *disparity; /* disparities of its size, packed, which are copied; NULL: all 0 */
     struct refocus_strokes *strokes;     /* the painting so far, over those disparities,
                                             or NULL: none. The caller's, but the
                                             session's to change until its end */
-    struct refocus_render_params params; /* what the state does not say */
-    /* What else follows from a focus that was found: changes params, which have it, the
-     * method and the blur already; lengths in pixels are the photo's. From the
-     * session's thread; NULL: nothing. */
+    struct refocus_render_params params; /* the settings that the state does not hold */
+    /* Set other parameters that follow from a focus that was found: it changes params, which have
+     * it, the method and the blur already; lengths in pixels are the photo's. From the session's
+     * thread; NULL: nothing. */
     void (*aim)(void *user, const struct rf_view_state *state,
                 struct refocus_render_params *params);
     void *aim_user;

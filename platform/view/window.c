@@ -6,7 +6,7 @@
 #include "input.h"
 #include "text.h"
 
-/* From the session's thread. */
+/* It is called from the session's thread. */
 static void notify(void *user)
 {
     const struct rf_window *const w = user;
@@ -28,7 +28,7 @@ static int fail(char *reason, const char *what)
     return REFOCUS_ERR_UNSUPPORTED;
 }
 
-/* As large as the photo asks for, at most 7/8 of the screen. */
+/* The window is as large as the photo asks for, at most 7/8 of the screen. */
 static void choose_size(const struct rf_view_setup *setup, int *width, int *height)
 {
     const struct refocus_image *const photo = setup->session.photo;
@@ -49,8 +49,8 @@ static int open_window(struct rf_window *w, char *reason)
     int width, height;
 
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-    /* Not those that nobody sees, unless they are asked for by SDL_VIDEODRIVER; and
-     * libwayland complains on its own where it cannot be. */
+    /* Drivers that nobody sees are left out, unless SDL_VIDEODRIVER asks for them; and libwayland
+     * complains on its own where it cannot be. */
     if (!SDL_GetHint(SDL_HINT_VIDEODRIVER))
         SDL_SetHint(SDL_HINT_VIDEODRIVER, SDL_getenv("XDG_RUNTIME_DIR")
                                               ? "x11,wayland,KMSDRM,RPI,vivante"
@@ -120,7 +120,7 @@ static void draw_circle(struct rf_window *w, double x, double y, double radius)
     SDL_RenderDrawLinesF(w->renderer, points, CORNERS + 1);
 }
 
-/* Where the focus is, what is being painted, and the brush. */
+/* Draw the focus point, the path that is being painted, and the brush. */
 static void draw_marks(struct rf_window *w)
 {
     if (w->tool == RF_TOOL_FOCUS && w->state.focus_tap > 0 && w->state.mode == RF_VIEW_RESULT) {
@@ -198,7 +198,7 @@ static void begin_page(struct rf_window *w, int dot)
     set_grey(w, 240, 255);
 }
 
-/* What the picture is made by beside focus, blur and method. */
+/* Draw the settings of the picture beside focus, blur and method. */
 static void draw_settings(struct rf_window *w)
 {
     const int dot = (int)(2 * w->density);
@@ -229,7 +229,7 @@ static void draw_help(struct rf_window *w)
     }
 }
 
-/* Where the frame lies now: the view may have moved since. */
+/* Find the place of the frame now: the view may have moved since. */
 static void draw_frame(struct rf_window *w)
 {
     const struct rf_view_state *const of = &w->frame->of;
@@ -258,7 +258,7 @@ static void draw(struct rf_window *w)
     w->redraw = false;
 }
 
-/* What the frame that was just shown answers. */
+/* Note the requests that the frame just shown answers. */
 static void note_times(struct rf_window *w)
 {
     int kept = 0;

@@ -56,14 +56,14 @@ struct rf_window {
     SDL_Texture *texture;
     int texture_width, texture_height;
     int width, height; /* pixels of what is drawn */
-    double density;    /* of them in a unit of the mouse's places */
+    double density;    /* pixels in a unit of the mouse's places */
     const struct rf_view_frame *frame;
     Uint32 frame_event;
     bool redraw, quit, help, settings;
     bool fitted; /* the whole photo is shown, also after a change of size */
 
     enum rf_tool tool;
-    uint32_t stroke_kind; /* of the next one, enum refocus_stroke_kind */
+    uint32_t stroke_kind; /* kind of the next stroke, enum refocus_stroke_kind */
     double brush;         /* radius, pixels of the window */
     double value;         /* disparity to fill with */
     bool pressed, dragged, painting, panning;

@@ -283,8 +283,8 @@ static void end_full(struct rf_session *s)
     pthread_mutex_unlock(&s->lock);
 }
 
-/* Both pictures of a state, the second one unless something newer comes; true when both
- * are done, or cannot be. */
+/* Render both pictures of a state, the second one unless something newer comes; true when both are
+ * done, or cannot be. */
 static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t request)
 {
     const struct refocus_render_params params = lens_of(s, state, true);

@@ -8,7 +8,7 @@
 /* Pixels of the reduced photo: a picture of them in a few hundredths of a second. */
 enum { PREVIEW_PIXELS = 600000, PREVIEW_RAYS = 32 };
 
-/* What the painting is asked for, in order. */
+/* Orders for the painting, in sequence. */
 struct order {
     enum { ORDER_BEGIN, ORDER_POINT, ORDER_UNDO } kind;
     struct refocus_stroke stroke;
@@ -18,7 +18,7 @@ struct order {
 
 struct rf_session {
     struct rf_session_setup setup;
-    int reduction, width, height; /* of the reduced photo */
+    int reduction, width, height; /* size of the reduced photo */
 
     pthread_t thread;
     bool started;
@@ -32,7 +32,7 @@ struct rf_session {
     uint32_t save;
     bool shown, quit, finished;
     bool rendering;    /* the full picture, */
-    uint64_t rendered; /* for this request */
+    uint64_t rendered; /* the request that it is for */
     int status;
     struct rf_view_frame frames[3];
     int front, ready, back; /* ready: -1 when it was taken */

@@ -10,7 +10,7 @@
 #include "live/live_focus.h"
 
 static int64_t now;
-static struct live_range range; /* of the frames: not known */
+static struct live_range range; /* range of the frames: not known */
 
 static void begin(struct live_focus *focus, double disparity)
 {
@@ -45,8 +45,8 @@ static void command(struct live_focus *focus, const char *line)
         fail_msg("%s: %s", line, why);
 }
 
-/* At 1000 frames a second for so long: never back, and no step above 1.5 times the mean
- * one. */
+/* The focus is watched at 1000 frames a second for so long: it moves never back, and no step
+ * above 1.5 times the mean one. */
 static void watch(struct live_focus *focus, double to, int ms)
 {
     const double from = look(focus);
@@ -114,7 +114,7 @@ static void points_are_asked_for_once(void **state)
     command(&focus, "pull-at 12,34 1");
     assert_true(live_focus_point(&focus, point));
     assert_true(point[0] == 12 && point[1] == 34);
-    live_focus_found(&focus, (double[2]){1, 2}, 0.7); /* of another command */
+    live_focus_found(&focus, (double[2]){1, 2}, 0.7); /* point of another command */
     assert_true(live_focus_point(&focus, point));
     live_focus_found(&focus, point, 1);
     assert_false(live_focus_point(&focus, point));
@@ -126,7 +126,7 @@ static void points_are_asked_for_once(void **state)
     pthread_mutex_destroy(&focus.lock);
 }
 
-/* What comes before the first frame holds from it on, and a pull begins there. */
+/* A command before the first frame holds from it on, and a pull begins there. */
 static void commands_before_the_first_frame_are_kept(void **state)
 {
     struct live_focus focus;

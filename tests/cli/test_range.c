@@ -20,7 +20,7 @@ struct room {
     uint16_t mm[W * H], disparity[W * H];
     int64_t now;
     uint32_t seed;
-    double d, blur; /* of the present frame */
+    double d, blur; /* focus and blur of the present frame */
     struct live_range range;
     double pace, change; /* the largest steps so far: of the range, and of the lens */
 };
@@ -48,7 +48,7 @@ static void draw(int person)
     }
 }
 
-/* What live does with a frame of such depth. */
+/* Do with a frame of such depth what live does. */
 static void look(void)
 {
     const struct live_range before = room.ranger.range;
@@ -116,7 +116,7 @@ static double mean_at(int x, int y)
     return sum / 64 / 65535;
 }
 
-/* What the map says of the distance at a place. */
+/* The distance at a place by the map. */
 static double dioptres_at(int x, int y)
 {
     return room.ranger.range.far + mean_at(x, y) * (room.ranger.range.near - room.ranger.range.far);

@@ -78,8 +78,8 @@ struct refocus_pinhole {
     double fx, fy, cx, cy;
 };
 
-/** Where the colour camera is: a point of the depth camera, in metres, is turned by
- *  rotation (rows) and then shifted. */
+/** The position of the colour camera: a point of the depth camera, in metres, is turned by rotation
+ * (rows) and then shifted. */
 struct refocus_calibration {
     struct refocus_pinhole depth, colour;
     double rotation[9];

@@ -31,9 +31,8 @@ struct refocus_blob {
 
 /** Bounds that a reader keeps whatever a file claims. Zeros stand for the defaults. */
 struct refocus_read_limits {
-    uint64_t max_pixels; /**< of one picture; default 268,435,456 (2^28) */
-    uint64_t max_bytes;  /**< of a file, and of what any part unpacks to; default 1
-                              GiB */
+    uint64_t max_pixels; /**< pixels of one picture; default 268,435,456 (2^28) */
+    uint64_t max_bytes;  /**< bytes of a file, and of any part once it is unpacked; default 1 GiB */
 };
 
 /** Container in which depth was found. */
@@ -49,10 +48,10 @@ enum refocus_depth_source {
 /** Room for the lines of struct refocus_photo_info. */
 enum { REFOCUS_INFO_LINES = 24, REFOCUS_INFO_LENGTH = 160 };
 
-/** What a file says of itself. Numbers that it does not say are 0. */
+/** Facts that a file states about itself. Numbers that it does not say are 0. */
 struct refocus_photo_info {
     char container[16];   /**< "JPEG", "PNG", ..., of refocus_file_formats() */
-    int32_t stored_width; /**< before orientation */
+    int32_t stored_width; /**< width before orientation */
     int32_t stored_height;
     int32_t orientation;      /**< EXIF 1 to 8, already applied to photo and depth */
     uint32_t depth_source;    /**< enum refocus_depth_source */
@@ -68,9 +67,8 @@ struct refocus_photo_info {
     double blur_at_infinity;  /**< GFocus BlurAtInfinity, of the larger picture
                                    side */
     char camera[96];          /**< EXIF make and model, printable ASCII */
-    /** What was found and why it is believed, a line each: containers, parts passed
-     *  over (gain map, portrait matte), units, polarity. Printable ASCII, never a
-     *  position. */
+    /** Evidence, a line each, for what was found and why it is believed: containers, parts passed
+     * over (gain map, portrait matte), units, polarity. Printable ASCII, never a position. */
     char evidence[REFOCUS_INFO_LINES][REFOCUS_INFO_LENGTH];
     int32_t evidence_count;
     /** Maximum blur radius K of the blur that GFocus names, of the larger picture side:
@@ -122,7 +120,7 @@ REFOCUS_API int refocus_photo_read(struct refocus_photo **photo, const char *pat
                                    const struct refocus_read_limits *limits,
                                    struct refocus_reason *reason);
 
-/** The same from memory; the bytes are not used after the return. */
+/** Read a photo from memory; the bytes are not used after the return. */
 REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes,
                                           size_t size, const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
@@ -160,7 +158,7 @@ REFOCUS_API int refocus_depth_read(struct refocus_photo **depth, const char *pat
                                    const struct refocus_read_limits *limits,
                                    struct refocus_reason *reason);
 
-/** The same from memory. */
+/** Read a depth file from memory. */
 REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes,
                                           size_t size, const char *unit, double near_m,
                                           double far_m, const struct refocus_read_limits *limits,
@@ -171,7 +169,7 @@ REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth, const vo
  *  REFOCUS_ERR_ARGUMENT */
 REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit);
 
-/** What goes into a file beside the pixels. Zeros: nothing. */
+/** Parts of a file beside the pixels. Zeros: none. */
 struct refocus_write_options {
     int32_t quality;                 /**< JPEG, 1 to 100; 0 = 95 */
     const struct refocus_blob *exif; /**< TIFF block; NULL = none. PPM takes neither */
@@ -214,12 +212,11 @@ struct refocus_depth_write {
     uint32_t struct_size;      /**< sizeof(struct refocus_depth_write) */
     int32_t width;             /**< samples, 1 to REFOCUS_MAX_SIDE */
     int32_t height;            /**< samples, 1 to REFOCUS_MAX_SIDE */
-    const uint16_t *disparity; /**< of the upright photo: 65535 nearest, 0 farthest */
+    const uint16_t *disparity; /**< disparities of the upright photo: 65535 nearest, 0 farthest */
     ptrdiff_t stride;          /**< bytes from a row to the next; even; may be
                                     negative */
     double near_m, far_m;      /**< z0 and z1 in metres; 0 = not known */
-    double focus_x, focus_y;   /**< where the focus is, 0..1 of the upright photo; -1:
-                                    none */
+    double focus_x, focus_y;   /**< point in focus, 0..1 of the upright photo; -1: none */
     double focus_distance;     /**< metres; 0 = not known */
     double blur_at_infinity;   /**< radius of its blur, of the larger side; 0 = not
                                     known */

@@ -53,7 +53,7 @@ static inline struct refocus_stereo_params refocus_stereo_params_default(void)
     return params;
 }
 
-/** What the matching found. */
+/** The result of the matching. */
 struct refocus_stereo_report {
     float vertical_offset; /**< pixels that the right picture lies lower; undone */
     float least, greatest; /**< disparities found, pixels of the left picture */
@@ -81,7 +81,7 @@ REFOCUS_API int refocus_cv_stereo(const struct refocus_image *left,
 
 /** How a network wants its picture: value = (code - mean) scale, R G B. */
 struct refocus_network {
-    int32_t width, height; /**< of its input, 32 to 2048 */
+    int32_t width, height; /**< size of its input, 32 to 2048 */
     float mean[3];         /**< codes 0..255 */
     float scale;
     int32_t inverse; /**< 1: its output grows with distance */
@@ -164,14 +164,14 @@ enum refocus_cv_filter {
                                          at */
     REFOCUS_CV_JOINT_BILATERAL = 1, /**< refocus_cv_upsample() with a sigma of a
                                          tenth */
-    /* Of OpenCV contrib: bilinear, then smoothed by the photo. */
+    /* From OpenCV contrib: bilinear, then smoothed by the photo. */
     REFOCUS_CV_GUIDED = 2,               /**< guided filter (He et al. 2010) */
     REFOCUS_CV_FAST_GLOBAL = 3,          /**< fast global smoother (Min et al. 2014) */
     REFOCUS_CV_JOINT_BILATERAL_FULL = 4, /**< joint bilateral filter at full size */
 };
 
-/** Their names: "bilinear", "joint-bilateral", "guided", "fast-global",
- *  "joint-bilateral-full"; NULL ends them. */
+/** Names of the filters: "bilinear", "joint-bilateral", "guided", "fast-global",
+ * "joint-bilateral-full"; NULL ends them. */
 REFOCUS_API const char *refocus_cv_filter_name(uint32_t filter);
 
 /**

@@ -74,18 +74,18 @@ struct refocus_frame {
     const uint8_t *plane[3]; /**< may be uncached camera memory: read it once, in
                                   order */
     ptrdiff_t stride[3];     /**< bytes from a row to the next one below */
-    size_t bytes;            /**< of MJPEG */
+    size_t bytes;            /**< bytes of an MJPEG picture */
     uint32_t matrix;         /**< enum refocus_matrix */
     uint32_t flags;          /**< enum refocus_frame_flags, or-ed */
     int64_t timestamp_ns;    /**< when it was taken */
-    uint32_t sequence;       /**< of the camera; gaps are frames it dropped; wraps */
+    uint32_t sequence;       /**< number by the camera; gaps are frames it dropped; wraps */
     uint32_t buffer;         /**< number of the buffer it lies in */
     float lens_dioptres;     /**< 1 / focus distance in metres; NAN when not known */
     int dmabuf[3];           /**< descriptor of each plane's memory, of the source; or
                                   -1 */
 };
 
-/** What a source can deliver. */
+/** A kind of frames that a source can deliver. */
 struct refocus_source_mode {
     uint32_t format;       /**< enum refocus_frame_format */
     int32_t width, height; /**< pixels */
@@ -101,7 +101,7 @@ enum refocus_source_flags {
     REFOCUS_SOURCE_DMABUF = 8, /**< V4L2: export the buffers as DMA-BUF */
 };
 
-/** What is wanted. Zeros: whatever the source prefers. */
+/** Wishes for a source. Zeros: whatever the source prefers. */
 struct refocus_source_config {
     uint32_t struct_size;  /**< sizeof(struct refocus_source_config) */
     uint32_t format;       /**< enum refocus_frame_format */
@@ -133,7 +133,7 @@ struct refocus_source_counters {
     uint64_t restarts; /**< refocus_source_restart() that succeeded */
 };
 
-/** What a name of a source stands for. */
+/** The kind of source that a name stands for. */
 enum refocus_source_kind {
     REFOCUS_SOURCE_KIND_NONE = 0,   /**< no source */
     REFOCUS_SOURCE_KIND_FILE = 1,   /**< file, y4m, raw: read as fast as is wanted */
@@ -233,7 +233,7 @@ REFOCUS_API void refocus_source_interrupt(struct refocus_source *source);
 REFOCUS_API int refocus_source_set_control(struct refocus_source *source, const char *name,
                                            double value, struct refocus_reason *reason);
 
-/** What has been counted; zeros of a NULL source. @param counters  NULL is fine */
+/** Get the counts so far; zeros for a NULL source. @param counters  NULL is fine */
 REFOCUS_API void refocus_source_get_counters(const struct refocus_source *source,
                                              struct refocus_source_counters *counters);
 
@@ -244,7 +244,8 @@ typedef void refocus_source_found(void *user, const char *name, const char *desc
  *  REFOCUS_ERR_ARGUMENT when @p found is NULL */
 REFOCUS_API int refocus_source_list(refocus_source_found *found, void *user);
 
-/** What this build has, e.g. "v4l2 libcamera file y4m raw replay". Thread-safe. */
+/** The kinds of sources that this build has, e.g. "v4l2 libcamera file y4m raw replay".
+ * Thread-safe. */
 REFOCUS_API const char *refocus_source_backends(void);
 
 #ifdef __cplusplus

@@ -32,20 +32,20 @@ extern "C" {
 /** A painting. Opaque. */
 struct refocus_strokes;
 
-/** What a stroke does. */
+/** The effect of a stroke. */
 enum refocus_stroke_kind {
     REFOCUS_STROKE_ALL = 0,    /**< the whole picture, for the ground; has no points */
     REFOCUS_STROKE_OBJECT = 1, /**< selects the object that it is painted over, to its
                                     edge */
-    REFOCUS_STROKE_MORE = 2,   /**< is part of the object of the strokes before */
-    REFOCUS_STROKE_LESS = 3,   /**< is not part of the object of the strokes before */
+    REFOCUS_STROKE_MORE = 2,   /**< adds to the object of the strokes before */
+    REFOCUS_STROKE_LESS = 3,   /**< takes from the object of the strokes before */
     REFOCUS_STROKE_BRUSH = 4,  /**< exactly what the brush covers */
     REFOCUS_STROKE_FILL = 5,   /**< fills the last layer anew; has no points */
 };
 
 /** How a selection is filled. */
 enum refocus_fill_kind {
-    REFOCUS_FILL_NONE = 0,     /**< not at all: selected only */
+    REFOCUS_FILL_NONE = 0,     /**< without a fill: the layer is only selected */
     REFOCUS_FILL_SOLID = 1,    /**< with one disparity: d0 */
     REFOCUS_FILL_GRADIENT = 2, /**< d0 at (x0, y0) to d1 at (x1, y1), linear on the way
                                     and constant before and beyond: a plane, disparities
@@ -61,13 +61,13 @@ struct refocus_fill {
 
 /** A stroke without its points. Start from refocus_stroke_default(). */
 struct refocus_stroke {
-    uint32_t struct_size;     /**< sizeof(struct refocus_stroke) */
-    uint32_t kind;            /**< enum refocus_stroke_kind */
-    float radius;             /**< of the brush in pixels, 0.5 to 4096 */
-    float reach;              /**< object, more: how far from its path, in brush radii,
-                                   a stroke selects, 1 to 64 */
-    struct refocus_fill fill; /**< of the layer; of more and less: NONE keeps that it
-                                   has */
+    uint32_t struct_size; /**< sizeof(struct refocus_stroke) */
+    uint32_t kind;        /**< enum refocus_stroke_kind */
+    float radius;         /**< radius of the brush in pixels, 0.5 to 4096 */
+    float reach;          /**< object, more: how far from its path, in brush radii,
+                               a stroke selects, 1 to 64 */
+    struct refocus_fill
+        fill; /**< fill of the layer; with more and less NONE keeps the fill that it has */
 };
 
 static inline struct refocus_stroke refocus_stroke_default(uint32_t kind, float radius)

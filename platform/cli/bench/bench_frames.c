@@ -17,8 +17,8 @@ struct place {
 };
 
 struct buffers {
-    uint8_t *out, *rows; /* of the frame's size */
-    uint32_t *sum;       /* of a row */
+    uint8_t *out, *rows; /* buffers of the frame's size */
+    uint32_t *sum;       /* sums of a row */
 };
 
 /* Mean of 2 K + 1 rows and columns, the border extended: running sums, plain C. */

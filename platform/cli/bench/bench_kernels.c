@@ -8,7 +8,7 @@ static int unsupported(uint32_t cpu)
                           refocus_cpu_name(cpu));
 }
 
-/* What AUTO stands for here. */
+/* The instruction set that AUTO stands for here. */
 static const char *cpu_name(uint32_t cpu)
 {
     struct refocus_renderer_params params = refocus_renderer_params_default(1, 1, 0);

@@ -42,7 +42,7 @@ int bench_scene_make(struct scene *scene, int width, int height)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
     scene->map_width = width;
     scene->map_height = height;
-    if (pixels <= SIZE_MAX / 3) { /* else they stay NULL */
+    if (pixels <= SIZE_MAX / 3) { /* on failure they stay NULL */
         scene->photo.plane[0] = malloc((size_t)pixels * 3);
         scene->disparity = malloc((size_t)pixels * 2);
     }

@@ -187,7 +187,7 @@ static double percent(uint64_t part, const struct refocus_depth_map *map)
     return 100.0 * (double)part / ((double)map->width * map->height);
 }
 
-/* What made the depth, as the lines of text say it. */
+/* The way the depth was made, as the lines of text say it. */
 static json_t *with_evidence(json_t *json, const struct refocus_photo_info *info)
 {
     json_t *lines = info->evidence_count ? json_array() : NULL;

@@ -18,7 +18,7 @@ static const struct option options[] = {
     {.help = NULL},
 };
 
-/* What the samples of a map mean, in words. */
+/* Put the meaning of a map's samples into words. */
 static void describe_meaning(char *text, size_t size, const struct refocus_depth_map *map)
 {
     if (map->meaning == REFOCUS_DEPTH_DISTANCE)

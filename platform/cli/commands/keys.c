@@ -82,7 +82,7 @@ static int find_parameter(const char *name)
     return -1;
 }
 
-/* One more key; NULL without memory. */
+/* Append a key; NULL without memory. */
 static struct key *append(struct keys **keys, double time, enum ease ease)
 {
     const int count = *keys ? (*keys)->count : 0;

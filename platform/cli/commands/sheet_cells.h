@@ -24,21 +24,22 @@ struct sheet_cell {
     char caption[48];
     double focus, blur, sigma; /* NAN: as --focus, --blur and --sigma say */
     int blend;                 /* -1: as --blend says */
-    const struct engine *look; /* whose bokeh it has; NULL: as the options say */
+    const struct engine *look; /* the engine whose bokeh it has; NULL: as the options say */
     bool untouched;            /* the photo itself */
 };
 
 struct sheet {
     struct sheet_cell cell[SHEET_MOST];
     int columns, count;
-    double most_blur, least_f_number; /* of the lists; NAN: there is none */
+    double most_blur, least_f_number; /* extremes of the lists; NAN: there is none */
     struct engine look[SHEET_LIST];   /* apertures, or presets of bokeh */
     int looks;                        /* begun, also those that failed */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Before a photo is read: the lists, and the apertures or the bokeh of the cells. */
+/* Called before a photo is read: parse the lists, and make the apertures or the bokeh of the cells.
+ */
 int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
                 const struct engine_settings *engine);
 
@@ -46,7 +47,7 @@ int sheet_begin(struct sheet *sheet, const struct sheet_settings *settings,
 int sheet_fill(struct sheet *sheet, const struct sheet_settings *settings,
                const struct lens_settings *lens, const struct input *input, double blur);
 
-/* After sheet_begin(), whatever it returned. */
+/* Called after sheet_begin(), whatever it returned. */
 void sheet_end(struct sheet *sheet);
 
 #endif

@@ -102,13 +102,13 @@ static int print_report(const struct input *input, const struct rf_view_report *
         times, "peak_rss_kib", (json_int_t)report_peak_rss_kib()));
 }
 
-/* What the window is opened with, and what of it the session's thread needs. */
+/* The setup of the window, and the part of it that the session's thread needs. */
 struct viewing {
     struct settings settings;
     struct engine engine;
     struct input input;
     struct refocus_strokes *strokes; /* NULL: none to begin with */
-    char *text;                      /* of the settings */
+    char *text;                      /* text of the settings */
 };
 
 /* A tap is a new --focus-at: the plane of focus turns about its line, and one through
@@ -135,8 +135,7 @@ static void aim(void *of, const struct rf_view_state *state, struct refocus_rend
     take_tap(&controls, photo, state);
     params->tilt_x = params->tilt_y = 0.5f;
     params->tilt_across = params->tilt_down = 0;
-    controls_aim(&controls, params, &size); /* by a line within the photo: needs no
-                                               depth */
+    controls_aim(&controls, params, &size); /* a line within the photo needs no depth */
 }
 
 /* The options that make the same picture. */
@@ -189,7 +188,7 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
     return status;
 }
 
-/* Those that can do what the settings ask for. */
+/* The methods that can do what the settings ask for. */
 static uint32_t suitable_methods(const struct engine *engine)
 {
     struct refocus_render_params params = engine->params;

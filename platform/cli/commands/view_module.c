@@ -28,7 +28,7 @@ view_run_fn *view_module(char *why)
     slash = strrchr(folder, '/');
     if (slash) {
         slash[1] = '\0';
-        module = open_beside(folder, "../view/refocus-view.so"); /* as built */
+        module = open_beside(folder, "../view/refocus-view.so"); /* as it is built */
         if (!module)
             module = open_beside(folder, "../" RF_LIBDIR "/refocus/refocus-view.so");
     }

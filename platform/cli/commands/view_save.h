@@ -24,7 +24,7 @@ struct view_saving {
  * when they are too long. */
 bool view_make_names(struct view_names *names, const char *output, const char *photo);
 
-/* For rf_session_setup.save; user is a struct view_saving. */
+/* A callback for rf_session_setup.save; user is a struct view_saving. */
 void view_save(void *user, const struct rf_view_result *result);
 
 #endif

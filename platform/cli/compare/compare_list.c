@@ -4,7 +4,7 @@
 #include <string.h>
 #include "compare/compare_list.h"
 
-enum { WORDS_MOST = 32 }; /* of one method */
+enum { WORDS_MOST = 32 }; /* options for one method */
 
 static const struct option options[] = {
     METHOD_OPTIONS(struct variant, settings),
@@ -12,7 +12,7 @@ static const struct option options[] = {
     {.help = NULL},
 };
 
-/* What an entry's options are parsed as. */
+/* The command by which an entry's options are parsed. */
 static const struct command entry = {.name = "compare", .usage = "[options]", .options = options};
 
 static const char *method_word(const void *list, int i)

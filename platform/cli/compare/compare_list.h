@@ -15,7 +15,7 @@ struct variant {
 struct variants {
     int count;
     struct variant variant[VARIANTS_MOST];
-    char *words; /* of the labels and options */
+    char *words; /* memory of the labels and options */
 };
 
 /*

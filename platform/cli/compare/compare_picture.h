@@ -7,7 +7,7 @@
 #include "metrics.h"
 #include "line/report.h"
 
-enum { COMPARE_MOST = VARIANTS_MOST + 2 }; /* and the reference and the photo */
+enum { COMPARE_MOST = VARIANTS_MOST + 2 }; /* variants, the reference and the photo */
 
 struct compared {
     const char *name; /* NAME:OPTION=VALUE:... */
@@ -15,7 +15,7 @@ struct compared {
     bool scored;
     struct quality_scores scores;
     struct spread ms, cpu_ms;
-    uint64_t memory; /* of a renderer for this method alone */
+    uint64_t memory; /* bytes of a renderer for this method alone */
 };
 
 struct comparison {

@@ -78,8 +78,7 @@ struct input {
     float *made_samples;
     uint16_t *disparity; /* packed */
     uint8_t *confidence; /* one for each sample of the map: 0 = filled */
-    int width, height;   /* of the disparities: the map's, or the
-                            photo's */
+    int width, height;   /* size of the disparities: the map's, or the photo's */
     struct refocus_depth_report report;
 };
 

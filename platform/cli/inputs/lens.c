@@ -69,7 +69,7 @@ static bool choose_lens(const struct input *input, const struct lens_settings *s
     return lens->focal_length_mm > 0;
 }
 
-/* K by the settings, and how it came about. */
+/* K by the settings, and how it was found. */
 struct blur_choice {
     double radius, asked;   /* pixels: that is taken, and that of the f-number */
     double f_number;        /* the one that gives `radius`; NAN: none does */
@@ -77,7 +77,7 @@ struct blur_choice {
     const char *from;       /* "pixels", "lens", "file" or "default" */
 };
 
-/* That of 50 mm at f/2 on full frame, from 0.87 m to far away. */
+/* The blur of 50 mm at f/2 on full frame, from 0.87 m to far away. */
 static double default_blur(const struct input *input)
 {
     return fmin(larger_side(&input->photo->image) / 50, REFOCUS_MAX_BLUR_RADIUS);
@@ -146,7 +146,7 @@ static int choose_blur(const struct input *input, const struct lens_settings *se
     return EXIT_DONE;
 }
 
-/* One line, whether metres are missing, the blur is too large, or both. */
+/* Print one line, whether metres are missing, the blur is too large, or both. */
 static void warn_of_blur(const struct input *input, const struct lens_settings *settings,
                          const struct blur_choice *choice)
 {

@@ -6,7 +6,7 @@
 #include "inputs/painted.h"
 #include "line/report.h"
 
-/* What refocus_strokes_load() takes at the most. */
+/* The most bytes that refocus_strokes_load() takes. */
 enum { MAX_BYTES = 64 << 20 };
 
 void painted_begin(struct input *input, const struct depth_settings *settings)

@@ -15,7 +15,7 @@ void painted_begin(struct input *input, const struct depth_settings *settings);
  * after an error. Returns an exit code and prints why. */
 int painted_open(struct input *input, const char *file, struct refocus_strokes **strokes);
 
-/* The same into the disparities. */
+/* Paint the strokes of a file into the disparities. */
 int painted_apply(struct input *input, const char *file);
 
 #endif

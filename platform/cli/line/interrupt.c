@@ -17,8 +17,8 @@ static pthread_t thread;
 static bool started;
 static atomic_int ending; /* the signal that is to end the process, or 0 */
 
-/* Those that end a process, but for those that the caller has it ignore, as nohup and
- * shells do for work in the background, and those of a debugger or profiler. */
+/* Signals that end a process, but for those that the caller has it ignore, as nohup and shells do
+ * for work in the background, and those of a debugger or profiler. */
 static void choose_signals(sigset_t *set)
 {
     static const int numbers[] = {

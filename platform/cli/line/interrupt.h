@@ -7,10 +7,10 @@
 #include <stdbool.h>
 #include <refocus/render.h>
 
-/* Before any other thread is started. When no thread can be had a signal ends the
- * process as it would without this. */
+/* Called before any other thread is started. When no thread can be had a signal ends the process as
+ * it would without this. */
 void interrupt_start(void);
-/* After all work; does not return where a signal is to end the process. */
+/* Called after all work; does not return where a signal is to end the process. */
 void interrupt_stop(void);
 
 /* The renderer that a signal cancels, or NULL for none any more. */
@@ -19,15 +19,14 @@ void interrupt_watch(struct refocus_renderer *renderer);
 /* Whether a signal has come. */
 bool interrupt_came(void);
 
-/* Whether it will end the process: what its reader does not read any more need not be
- * told. */
+/* Whether it will end the process: a reader that has gone need not be told anything. */
 bool interrupt_ends(void);
 
-/* Around the writing of a file, which no signal shall cut short. */
+/* Hold signals back while a file is written, which none shall cut short. */
 void interrupt_hold(bool hold);
 
-/* What is done, in another thread, before a signal ends the process at once; not while a
- * file is held. NULL: nothing. */
+/* Set a function that is called, in another thread, before a signal ends the process at once; not
+ * while a file is held. NULL: nothing. */
 void interrupt_clean_up(void (*function)(void *), void *of);
 
 #endif

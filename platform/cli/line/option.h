@@ -22,16 +22,15 @@ struct option {
     enum option_kind kind;
     char letter;            /* short form, or 0 */
     const char *name;       /* with its dashes */
-    const char *argument;   /* what the help calls the value */
+    const char *argument;   /* word for the value in the help */
     size_t offset;          /* where the value lies in the settings; doubles that are NAN
                                beforehand and still afterwards were not given */
-    double least, greatest; /* of numbers; least is not allowed itself when above is
-                               set */
+    double least, greatest; /* bounds of numbers; least is not allowed itself when above is set */
     bool above;
-    int count;                              /* of OPTION_NUMBERS */
+    int count;                              /* how many OPTION_NUMBERS there are */
     const char *word;                       /* one word that stands for a number, or
                                                NULL */
-    double word_value;                      /* and that number */
+    double word_value;                      /* the number it stands for */
     const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE; NULL ends them */
     const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
     const char *help;
@@ -47,15 +46,14 @@ struct option {
     const char *needs;                      /* name of the option, or several with
                                                commas of which any will do, or NULL */
     uint32_t of_words;                      /* bit i: word i of the choice; 0: any */
-    const char *of;                         /* name of the choice, */
-    const char *(*of_word)(uint32_t index); /* its words, */
-    size_t of_offset;                       /* and its value, an int; below 0:
-                                               several */
+    const char *of;                         /* name of the choice */
+    const char *(*of_word)(uint32_t index); /* words of the choice */
+    size_t of_offset; /* where the choice's value lies, an int; below 0: several */
 };
 
 struct command {
     const char *name;
-    const char *usage;            /* what follows the name */
+    const char *usage;            /* words behind the name */
     const char *summary;          /* one line */
     const char *notes;            /* paragraphs after the options, or NULL */
     const struct option *options; /* ended by a row whose help is NULL */
@@ -63,7 +61,7 @@ struct command {
     int (*run)(int argc, char **argv);
 };
 
-/* What parsing returns beside exit codes: go on. */
+/* Parsing returns this beside exit codes: go on. */
 enum { OPTIONS_PARSED = -1 };
 
 /* Give an option its value as the command line does; `name` is what errors call it. For flags

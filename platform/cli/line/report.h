@@ -16,14 +16,13 @@ __attribute__((format(printf, 3, 4)))
 #endif
 int report_failure(int exit_code, const char *what, const char *why, ...);
 
-/* The same for what is done, but not quite as it was asked for. */
+/* Report work that is done, but not quite as it was asked for. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
 void report_warning(const char *what, const char *why, ...);
 
-/* After the last output on standard output: EXIT_DONE, or EXIT_FAILED when it was
- * lost. */
+/* Called after the last output on standard output: EXIT_DONE, or EXIT_FAILED when it was lost. */
 int report_end_output(void);
 
 /* A bar on standard error, when that is a terminal: what is being done, and how much of

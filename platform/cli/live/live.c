@@ -144,7 +144,7 @@ static void run_threads(struct live *live)
            !live_is_over(live))
         continue;
     live_render(live);
-    /* What is rendered already is still written, unless something failed. */
+    /* Pictures that are rendered already are still written, unless something failed. */
     if (running[OUTPUT])
         pthread_join(thread[OUTPUT], NULL);
     live_end(live);

@@ -14,7 +14,7 @@ static int64_t taken_at(const struct refocus_frame *frame, int64_t now_ns)
                : now_ns;
 }
 
-/* What a frame is rendered in: its own Y, U and V if nobody needs anything else. */
+/* A frame is rendered in its own Y, U and V if nobody needs anything else. */
 static uint32_t format_for(const struct live *live, const struct refocus_frame *frame)
 {
     const uint32_t own = refocus_frame_image_format(frame->format);

@@ -24,7 +24,7 @@ struct client {
 
 static void answer(const struct client *client, const char *text)
 {
-    /* Who does not read answers does without them. */
+    /* A program that does not read answers does without them. */
     if (client->is_socket && send(client->fd, text, strlen(text), MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
         return;
 }
@@ -164,7 +164,7 @@ int live_commands_open(struct live *live)
         return report_failure(EXIT_FAILED, path, "%s", strerror(errno));
     if (is_left_over(&address))
         unlink(path);
-    before = umask(0077); /* for this user alone; no other thread runs yet */
+    before = umask(0077); /* the socket is for this user alone; no other thread runs yet */
     error =
         bind(live->command_fd, (const struct sockaddr *)&address, sizeof address) != 0 ? errno : 0;
     umask(before);

@@ -138,7 +138,7 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
 {
     const struct live_depth_map *map, *newest;
     struct timespec until;
-    int64_t wait_ns = 3 * half_ns; /* what a depth camera may be late */
+    int64_t wait_ns = 3 * half_ns; /* time that a depth camera may be late */
     int error = 0;
 
     clock_gettime(CLOCK_MONOTONIC, &until);
@@ -147,7 +147,7 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
     until.tv_nsec = (long)(wait_ns % 1000000000);
     pthread_mutex_lock(&depths->lock);
     depths->pinned = -1;
-    depths->needed_ns = timestamp_ns - half_ns; /* also back, when a clock was set */
+    depths->needed_ns = timestamp_ns - half_ns; /* it may go back, when a clock was set */
     pthread_cond_broadcast(&depths->changed);
     for (;;) {
         map = nearest(depths, timestamp_ns, &newest);

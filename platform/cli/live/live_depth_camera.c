@@ -10,8 +10,9 @@
 
 /* The samples of a map on their way to disparities. */
 struct samples {
-    uint16_t *own, *registered; /* as the camera gives them, and seen from the colour camera */
-    size_t capacity;            /* in samples, of each */
+    uint16_t *own,
+        *registered; /* samples as the camera gives them, and as the colour camera sees them */
+    size_t capacity; /* number of samples in each */
 };
 
 static bool reserve(struct samples *samples, const struct refocus_calibration *c,

@@ -111,7 +111,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Between the tails of the values, smoothed from map to map. */
+/* The range lies between the tails of the values, and is smoothed from map to map. */
 static int find_range(struct live_estimator *estimator, const struct refocus_estimate *estimate)
 {
     const size_t all = (size_t)estimate->width * (size_t)estimate->height;

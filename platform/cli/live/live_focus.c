@@ -88,7 +88,7 @@ static void follow_lens(struct live_target *target, double dioptres)
     }
 }
 
-/* What is in focus need not be in the scene; at both ends of a pull. */
+/* The distance in focus need not be in the scene, at either end of a pull. */
 static void include(struct live_range *range, const struct live_target *target)
 {
     if (!target->known || !target->dioptres || !live_range_is_known(range))

@@ -23,7 +23,7 @@ struct live_focus {
     int64_t begin_ns, duration_ns;
     bool begun; /* at begin_ns; else it begins with the next frame */
     int64_t now_ns;
-    struct live_range range; /* both of the present frame */
+    struct live_range range; /* time and range of the present frame */
     double blur, blur_most;
     double stretch;    /* K as a multiple of --blur, after the range has moved; 1 once it has stood
                           still for long */

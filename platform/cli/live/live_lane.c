@@ -85,7 +85,7 @@ static bool has_sound_time(struct live_lane *lane, const struct refocus_frame *f
     return sound;
 }
 
-/* One frame that came; an exit code. */
+/* Handle one frame that came; an exit code. */
 static int handle(struct live_lane *lane, const struct refocus_frame *frame)
 {
     struct live_stage *stage = lane->stage;

@@ -21,7 +21,7 @@ struct live_lane {
     /* A status; the frame is released by the caller. */
     int (*deliver)(struct live_lane *lane, const struct refocus_frame *frame, int64_t now_ns,
                    struct refocus_reason *reason);
-    void *user; /* of deliver() */
+    void *user; /* for deliver() */
     int64_t last_ns;
     int64_t period_ns;             /* between two frames */
     struct live_moment sure, seen; /* the last frame of a sound time, and the last of all */

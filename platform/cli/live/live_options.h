@@ -5,7 +5,7 @@
 #include "live/live_settings.h"
 
 extern const struct option live_options[];
-/* Where nothing is given. */
+/* The settings when nothing is given. */
 extern const struct live_settings live_settings_none;
 /* Fill in what follows from other options; an exit code, and prints why. */
 int live_check_settings(struct live_settings *settings);

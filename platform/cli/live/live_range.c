@@ -77,7 +77,7 @@ bool live_range_measure(struct live_ranger *ranger, const struct refocus_depth_m
     return true;
 }
 
-/* As far apart as ends must be: noise of a bare wall shall not become a scene. */
+/* Keep the ends as far apart as they must be: noise of a bare wall shall not become a scene. */
 static void spread(const struct live_ranger *ranger, struct live_range *range)
 {
     if (ranger->near_given)
@@ -95,11 +95,10 @@ static double middle_of(double a, double b, double c)
     return fmax(fmin(a, b), fmin(fmax(a, b), c));
 }
 
-/*
- * One end, towards where it is seen; outward is 1 for near and -1 for far. What is clipped by more
- * than a little moves it at once and quickly; what is not used any more does after a while, and
- * slowly. In between it stands still, and once it moves it goes on until it is there.
- */
+/* Move one end towards the distance where it is seen; outward is 1 for near and -1 for far. A scene
+ * that is clipped by more than a little moves it at once and quickly; a part of the range that is
+ * not used any more moves it after a while, and slowly. In between it stands still, and once it
+ * moves it goes on until it is there. */
 static void move(struct live_range_end *end, double *value, double seen, double span,
                  double outward, double seconds)
 {

@@ -19,7 +19,7 @@ static inline bool live_range_is_known(const struct live_range *range)
 
 struct live_range_end {
     bool moves;
-    double unused_s; /* so long it could have been nearer to the other */
+    double unused_s; /* for so long it could have been nearer to the other */
 };
 
 struct live_ranger {

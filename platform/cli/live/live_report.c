@@ -17,7 +17,7 @@ static double mean(const struct live_stage *stage)
     return stage->times.count ? stage->times.sum_ms / (double)stage->times.count : 0;
 }
 
-/* What the last frame was rendered in. */
+/* The format that the last frame was rendered in. */
 static const char *rendered_in(uint32_t image_format)
 {
     for (uint32_t i = 1; i < REFOCUS_FRAME_FORMAT_COUNT; i++)
@@ -27,8 +27,7 @@ static const char *rendered_in(uint32_t image_format)
     return "RGB24";
 }
 
-/* Of the time that a frame is worked on: that which is not preparing and rendering it.
- */
+/* The share of the time for a frame that is not spent on preparing and rendering it. */
 static double outside_rendering(const struct live *live)
 {
     const double inside = mean(&live->prepare) + mean(&live->render);
@@ -82,13 +81,13 @@ int live_report(struct live *live)
         json_object_set_new(json, "colour", stage_json(&live->capture));
         if (live->depth_camera || live->estimator)
             json_object_set_new(json, "depth", stage_json(&live->depth));
-        json_object_set_new(json, "dropped_rendered", /* of "dropped" */
+        json_object_set_new(json, "dropped_rendered", /* part of "dropped" */
                             json_integer((json_int_t)dropped_rendered));
         json_object_set_new(json, "buffers_lost", json_integer((json_int_t)counters.lost));
         json_object_set_new(json, "sink_recoveries",
                             json_integer((json_int_t)live->output.recoveries));
         json_object_set_new(json, "lens_dioptres", report_number_json(live->lens_dioptres));
-        /* Of the last frame, as render says it. */
+        /* These are for the last frame, in the words of render. */
         json_object_set_new(json, "focus", report_number_json(live->focus_disparity));
         json_object_set_new(json, "blur", report_number_json(live->blur));
         json_object_set_new(json, "near_m", report_metres_json(metres(&live->range, true)));

@@ -38,11 +38,11 @@ struct live {
     struct live_queue captured, rendered;
     struct live_queue to_estimate;    /* copies of every n-th picture */
     struct live_estimator *estimator; /* or NULL */
-    int64_t offered, key;             /* to the thread that captures */
+    int64_t offered, key;             /* belongs to the thread that captures */
     struct live_depths depths;
     struct live_focus focus;
-    struct live_ranger ranger;  /* to the thread of depth */
-    struct live_depth_map wide; /* to the thread that renders */
+    struct live_ranger ranger;  /* belongs to the thread of depth */
+    struct live_depth_map wide; /* belongs to the thread that renders */
 
     atomic_bool quit;
     int wake_fd;          /* eventfd: readable when it is over; for the thread of the commands */
@@ -59,12 +59,12 @@ struct live {
     uint64_t paired, unpaired, without_depth;
     uint64_t sink_dropped, commands, commands_refused;
     double create_ms;
-    struct live_steady steady; /* to the thread that renders */
+    struct live_steady steady; /* belongs to the thread that renders */
     struct engine *engine;
     uint32_t yuv_formats;     /* bit f: pictures of enum refocus_format f stay as they are */
-    uint32_t rendered_format; /* enum refocus_format; to the thread that captures */
+    uint32_t rendered_format; /* enum refocus_format; belongs to the thread that captures */
     int64_t first_out_ns, last_out_ns;
-    /* To the thread that renders, about the last frame: */
+    /* These belong to the thread that renders, and are about the last frame: */
     double lens_dioptres, focus_disparity, blur;
     struct live_range range;
     int64_t clock_ns, last_frame_ns; /* the clock is that of the frames, from 0 on */

@@ -47,7 +47,7 @@ int live_steady_run(struct live_steady *steady, double strength, const struct li
     int status = fit(steady, strength, from);
 
     if (status == REFOCUS_OK && steady->map.number != from->number) {
-        /* Else one map for several frames. */
+        /* One map may serve several frames. */
         status = follow_range(steady, &from->range);
         if (status == REFOCUS_OK)
             status =

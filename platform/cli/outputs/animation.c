@@ -123,7 +123,7 @@ static void take_away(const struct animation *a)
             unlink(name);
 }
 
-/* For a signal that does not wait for animation_close(). */
+/* A signal does not wait for animation_close(). */
 static void abandon(void *of)
 {
     const struct animation *a = of;

@@ -17,7 +17,7 @@ struct animation;
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Before the work: whether such files can be written. */
+/* Check before the work that such files can be written. */
 int animation_check(const char *path, const char *const *inputs, int input_count);
 
 int animation_open(struct animation **animation, const char *path, int width, int height,

@@ -13,7 +13,7 @@ struct bokeh_settings {
     /* NAN: not given */
     double curvature, open_f_number, squeeze, ring, edge, edge_before;
     double cat_eye, fringe, grain, highlight_stops;
-    double f_number; /* of the lens's options, for open_f_number */
+    double f_number; /* the one of the lens's options, for open_f_number */
 };
 
 #define BOKEH_SETTINGS_NONE                                                                        \
@@ -90,7 +90,7 @@ int bokeh_aperture(const struct bokeh_settings *settings, const char *shape,
 /* Whether it is a plain disc. */
 bool bokeh_is_plain_disc(const struct bokeh_settings *settings, const char *shape);
 
-/* All but the aperture. */
+/* Rows of all options but the aperture. */
 int bokeh_apply(const struct bokeh_settings *settings, bool highlights_given,
                 struct refocus_render_params *params);
 

@@ -88,7 +88,7 @@ struct controls {
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Before a photo is read: into params and controls; what of it has memory is freed by
+/* Called before a photo is read: the options go into params and controls, whose memory is freed by
  * controls_free(), also after an error. */
 int controls_apply(const struct control_settings *settings, struct refocus_render_params *params,
                    struct controls *controls);

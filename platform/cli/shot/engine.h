@@ -149,7 +149,7 @@ const char *engine_blend_summary(uint32_t index);
     }
 
 struct engine {
-    const char *name; /* of the photo, for errors */
+    const char *name; /* name of the photo, for errors */
     struct refocus_renderer *renderer;
     struct refocus_renderer_info info;
     struct refocus_aperture *aperture;
@@ -157,7 +157,7 @@ struct engine {
     struct controls controls;
     bool has_sides;         /* the aperture's light differs before and behind the focus */
     double field_disparity; /* NAN: that in focus */
-    uint32_t methods;       /* that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
+    uint32_t methods;       /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     struct refocus_render_params params;
     double create_ms, prepare_ms;
     struct spread render_ms, cpu_ms; /* cpu_ms: of all threads, of a render */
@@ -175,7 +175,7 @@ int engine_prepare(struct engine *engine, const struct refocus_image *photo,
                    const struct refocus_disparity *disparity);
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat);
 
-/* After engine_begin(), whatever it returned. */
+/* Called after engine_begin(), whatever it returned. */
 void engine_end(struct engine *engine);
 
 /* The settings and times in words that every report has; NULL without memory. */

@@ -13,12 +13,12 @@ enum of_methods {
     OF_FOVEATED = 1 << REFOCUS_METHOD_FOVEATED,
     OF_INTERPOLATED = 1 << REFOCUS_METHOD_INTERPOLATED,
     OF_DIFFUSION = 1 << REFOCUS_METHOD_DIFFUSION,
-    /* those that look at the number of rays */
+    /* methods that look at the number of rays */
     OF_RAYS = OF_SWEEP | OF_SEARCH | 1 << REFOCUS_METHOD_RAYTRACE | 1 << REFOCUS_METHOD_LIGHTFIELD |
               1 << REFOCUS_METHOD_BLUR,
 };
 
-/* In a row of a table of options whose settings have the method in `member`. */
+/* For a row of a table of options whose settings have the method in `member`. */
 #define OF_METHODS(type, member, methods)                                                          \
     .of = "--method", .of_words = methods, .of_word = refocus_method_name,                         \
     .of_offset = offsetof(type, member)

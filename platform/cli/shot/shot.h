@@ -7,7 +7,7 @@
 #include "settings/settings.h"
 #include "shot/engine.h"
 
-/* What commands that make pictures of a photo take alike. */
+/* The settings that all commands share which make pictures of a photo. */
 struct shot_settings {
     struct depth_settings depth;
     struct lens_settings lens;
@@ -42,8 +42,8 @@ struct shot {
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Before a photo is read: settle what options take from each other, and refuse what
- * does not go together. own_focus: each picture has a focus of its own, whatever the
+/* Called before a photo is read: settle values that options take from each other, and refuse
+ * options that do not go together. own_focus: each picture has a focus of its own, whatever the
  * lens settings say. */
 int shot_check(struct shot_settings *settings, bool own_focus);
 

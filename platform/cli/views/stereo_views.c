@@ -16,10 +16,10 @@ struct rows {
     int32_t *nearest; /* disparity of what is seen, or HOLE */
     int width;
     int32_t focus;       /* 65535 nearest */
-    int64_t parallax_q8; /* of disparity 1 */
+    int64_t parallax_q8; /* shift of disparity 1 */
 };
 
-/* Where pixel x moves to, in 1/256 pixel. */
+/* The place that pixel x moves to, in 1/256 pixel. */
 static int32_t place(const struct rows *r, int x)
 {
     const int64_t moved = (r->disparity[x] - r->focus) * r->parallax_q8;
@@ -94,7 +94,7 @@ static void fill_hole(const struct rows *r, int begin, int end)
     }
 }
 
-/* All of the row has moved out of sight: what extends its border is seen. */
+/* The whole row has moved out of sight: the extension of its border is seen. */
 static void fill_with_border(const struct rows *r)
 {
     const int edge = place(r, 0) < 0 ? r->width - 1 : 0;

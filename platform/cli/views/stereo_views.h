@@ -30,14 +30,14 @@ struct stereo {
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* Of an open shot, before anything else is prepared with its engine. */
+/* Called with an open shot, before anything else is prepared with its engine. */
 int stereo_open(struct stereo *stereo, const struct shot *shot);
 
 /* Render what an eye sees by the lens setting of the engine. */
 int stereo_render(const struct stereo *stereo, struct shot *shot, double parallax,
                   const struct refocus_image *out);
 
-/* After stereo_open(), whatever it returned. */
+/* Called after stereo_open(), whatever it returned. */
 void stereo_close(struct stereo *stereo);
 
 #endif

@@ -258,8 +258,8 @@ static void bad_frames_are_refused(void **state)
     refocus_converter_destroy(&converter);
 }
 
-/* What sinks write comes back: each pixel within the loss of chroma at half the size, which is
- * none for a picture of one colour in each 2x2 block. */
+/* Pictures that sinks write come back: each pixel within the loss of chroma at half the size, which
+ * is none for a picture of one colour in each 2x2 block. */
 static void encoding_comes_back(void **state)
 {
     struct refocus_converter *converter = NULL;
@@ -321,7 +321,7 @@ static void jpegs_are_decoded_or_refused(void **state)
     assert_status(refocus_convert_rgb8(converter, &frame, &image2, NULL), REFOCUS_ERR_FORMAT);
     refocus_converter_destroy(&converter);
 
-    /* The same by a camera of MJPEG. */
+    /* A camera of MJPEG gives such frames, too. */
     struct refocus_source *source = started("replay::jpeg frame.jpg", REFOCUS_SOURCE_FAST);
     const struct refocus_frame *got;
     assert_status(refocus_source_wait(source, 100, &got, NULL), REFOCUS_OK);

@@ -1,4 +1,4 @@
-/* What no caller should give: NULL, strides that memory has no room for. Each function of the
+/* Callers give what none should: NULL, strides that memory has no room for. Each function of the
  * capture headers answers with a status, or does nothing, and writes nowhere. */
 #include "check.h"
 
@@ -141,7 +141,7 @@ static int planes_of(uint32_t format)
                                                                           : 1;
 }
 
-/* All that converts, of this frame and into this memory. */
+/* Call everything that converts, with this frame and into this memory. */
 static void convert(struct refocus_converter *converter, const struct refocus_frame *frame,
                     struct refocus_image *rgb, struct refocus_image *copy, uint16_t *samples,
                     bool good)

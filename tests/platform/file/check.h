@@ -100,7 +100,7 @@ static const struct {
 } upright_sides[9] = {{0, 0},     {'t', 'l'}, {'t', 'r'}, {'b', 'r'}, {'b', 'l'},
                       {'l', 't'}, {'r', 't'}, {'r', 'b'}, {'l', 'b'}};
 
-/* Where the stored pixel (column, row) of a w x h picture lies in the upright one. */
+/* The place of the stored pixel (column, row) of a w x h picture in the upright one. */
 static inline void upright_place(int orientation, int w, int h, int column, int row, int *x, int *y)
 {
     const char r = upright_sides[orientation].row, c = upright_sides[orientation].column;

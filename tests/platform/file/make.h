@@ -28,7 +28,7 @@ unsigned pattern(int x, int y, int c, unsigned max);
  * NULL. */
 struct bytes make_png_raw(int width, int height, int type, int bits, const uint8_t *samples,
                           const struct bytes *exif);
-/* The same with the pattern. */
+/* Make it with the pattern. */
 struct bytes make_png(int width, int height, int type, int bits);
 void png_chunk(struct bytes *png, const char *type, const void *data, size_t size);
 
@@ -72,7 +72,7 @@ struct gdepth {
     struct bytes original; /* GImage; freed; empty: none */
 };
 struct bytes make_gdepth(struct gdepth gdepth, int orientation);
-/* The same with depth and original in an extended packet. */
+/* Make it with depth and original in an extended packet. */
 struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, int skip);
 
 /* A JPEG with others behind it, as MPF lists them. Parts are freed. */

@@ -162,7 +162,7 @@ struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count, bo
 {
     const size_t entries = 16 * (size_t)(count + 1);
     const size_t segment = 4 + 4 + 8 + 2 + 36 + 4 + entries;
-    const size_t tiff_at = 2 + 4 + 4; /* of the TIFF header in the file */
+    const size_t tiff_at = 2 + 4 + 4; /* offset of the TIFF header in the file */
     size_t at = main_jpeg.size + segment - tiff_at;
     struct bytes tiff = {NULL, 0};
 

@@ -8,7 +8,7 @@
 struct sample {
     const char *name;
     struct bytes bytes;
-    bool photo, depth; /* which of the two readings takes it whole */
+    bool photo, depth; /* the one of the two readings that takes it whole */
     size_t whole_at;   /* cut here it is whole as well; 0: nowhere */
     bool loose_end;    /* its last bytes may be cut and it still makes sense */
 };

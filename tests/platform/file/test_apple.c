@@ -102,7 +102,7 @@ static void apple_ranges(void **state)
     (void)state;
     photo =
         apple_with("disparity", "apdi:FloatMinValue=\"-1\" apdi:FloatMaxValue=\"4\"", REFOCUS_OK);
-    assert_near(photo->depth.value_far, 51); /* where disparity is 0 */
+    assert_near(photo->depth.value_far, 51); /* code where disparity is 0 */
     assert_true(isinf(photo->depth.far_m) && photo->depth.near_m == 0.25);
     refocus_photo_free(&photo);
     photo = apple_with("disparity", NULL, REFOCUS_OK);

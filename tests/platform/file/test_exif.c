@@ -127,7 +127,7 @@ static void directory_lies_within(void **state)
         assert_false(parse(&block, &exif));
         bytes_free(&block);
         block = with_settings(1, 0);
-        /* where the settings are said to be */
+        /* offset where the settings are said to be */
         block.data[8 + 2 + 12 + 11] = (uint8_t)(block.size + (size_t)beyond);
         assert_true(parse(&block, &exif));
         assert_true(exif.f_number == 0);

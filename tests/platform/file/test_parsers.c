@@ -78,7 +78,7 @@ static void exif_offsets(void **state)
     (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-            /* Where the first directory and the settings' directory are said to be. */
+            /* Offsets where the first directory and the settings' directory are said to be. */
             static const size_t fields[] = {4, 8 + 2 + 36 + 8};
             for (int field = 0; field < 2; field++) {
                 struct bytes block = make_exif(big_endian, 6);

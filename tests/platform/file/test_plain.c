@@ -321,7 +321,7 @@ static void more_than_8_bits_are_dithered(void **state)
             }
         }
     }
-    assert_true(rounded > 100); /* where codes rounded to nearest are far off */
+    assert_true(rounded > 100); /* a place where codes rounded to nearest are far off */
     for (int x = 96; x < DITHER_WIDE; x++) {
         const uint8_t *const pixel = pixel_at(&photo->image, x, 5);
 

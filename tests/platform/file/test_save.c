@@ -1,5 +1,5 @@
-/* What saving does to the disk, and to the file that is replaced: fsync() and rename() are
- * counted on their way to the system. */
+/* Saving is watched on its way to the disk, as is the file that is replaced: fsync() and rename()
+ * are counted on their way to the system. */
 #include "check.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@ int __wrap_rename(const char *from, const char *to);
 static char steps[16]; /* f: a file is synced, d: a folder, r: renamed */
 static size_t count;
 static off_t synced; /* bytes that the file had by then */
-static int error;    /* of fsync(), once */
+static int error;    /* errno that fsync() fails with, once */
 
 static void note(char step)
 {
@@ -221,7 +221,7 @@ static void owner_is_kept(void **state)
     }
 }
 
-/* As somebody who may write in the folder and does not own the file: it becomes theirs, and
+/* A user who may write in the folder and does not own the file replaces it: it becomes theirs, and
  * their group gets no more than everybody had. */
 static void owner_that_cannot_be_kept(void **state)
 {
@@ -248,7 +248,7 @@ static void owner_that_cannot_be_kept(void **state)
     assert_int_equal(facts.st_mode & 07777, 0644);
 }
 
-/* What a link points at is replaced, there or not, and the link stays. */
+/* The file that a link points at is replaced, there or not, and the link stays. */
 static void links_stay(void **state)
 {
     struct stat facts;

@@ -225,7 +225,7 @@ static void exif_and_icc(void **state)
 #endif
 }
 
-/* What does not fit is left out, and the reason says so. */
+/* Data that does not fit is left out, and the reason says so. */
 static void left_out(const char *name, const struct refocus_write_options *options)
 {
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 20, 10, false);

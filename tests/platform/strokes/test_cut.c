@@ -37,7 +37,7 @@ static void make(struct rf_cut *cut, int32_t most)
     }
 }
 
-/* What it costs to take these pixels for the object. */
+/* The cost of taking these pixels for the object. */
 static int32_t cost(const struct rf_cut *cut, unsigned object)
 {
     int32_t sum = 0;

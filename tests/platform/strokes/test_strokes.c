@@ -275,7 +275,7 @@ static void test_refusals(void **unused)
     assert_null(strokes);
 }
 
-/* Where colours mix a selection is a matter of every bit: the same one on every
+/* In places where colours mix a selection is a matter of every bit: the same one on every
  * processor. */
 static void test_same_everywhere(void **unused)
 {
@@ -340,7 +340,7 @@ static bool is_figure(const struct refocus_depth_map *map, int x, int y)
     return row[x] > 36000 && row[x] < 48000;
 }
 
-/* Of the 49 pixels around. */
+/* The count is over the 49 pixels around. */
 static int figure_around(const struct refocus_depth_map *map, int x, int y)
 {
     int count = 0;

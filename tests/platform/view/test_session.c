@@ -17,7 +17,7 @@ static uint16_t *depth;
 static struct refocus_image photo;
 static struct rf_session_setup setup;
 
-/* What the session's thread did. */
+/* The things that the session's thread did. */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
 static int frames;
@@ -167,7 +167,7 @@ static void test_full_is_render(void **unused)
     frame = wait_for(session, rf_session_show(session, &state), true);
     assert_true(frame->of.focus > 0.7629f && frame->of.focus < 0.763f); /* 50000 / 65535 */
     expect_render(frame, REFOCUS_METHOD_SWEEP, frame->of.focus, 9);
-    state.tap_x = W / 3.0 + 1; /* at an edge: the nearer one */
+    state.tap_x = W / 3.0 + 1; /* at an edge the nearer one counts */
     state.focus_tap = 2;
     frame = wait_for(session, rf_session_show(session, &state), false);
     assert_true(frame->of.focus > 0.76f);

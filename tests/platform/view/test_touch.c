@@ -78,8 +78,7 @@ static void push_finger_up(void)
     SDL_PushEvent(&event);
 }
 
-/* What two fingers do, a step whenever the window is at rest: it is polled in its loop.
- */
+/* Two fingers move, a step whenever the window is at rest: it is polled in its loop. */
 static bool move_fingers(void *user)
 {
     struct fingers *const fingers = user;
