@@ -199,7 +199,7 @@ class Limits(Case):
                    *self.render('--sensor-width', '36', '--f-number', '2'))
         self.fails(2, '--near: 3 m is not nearer than --far 2 m; give the smaller number to '
                       '--near', *self.render('--near', '3', '--far', '2'))
-        self.fails(2, '--region: a view is always of the whole; leave --region or --view out',
+        self.fails(2, '--region: a view always shows the whole; leave --region or --view out',
                    *self.render('--region', '0,0,1,1', '--view', 'depth'))
         self.fails(2, '--size: the photo has a size of its own; leave one of them out',
                    'bench', 'photo.ppm', '--size', '10x10')
@@ -275,7 +275,7 @@ class Limits(Case):
                        *sheet, option, value)
         self.fails(2, '--focus-at' + place, *pull, '--focus-at', '1,1', '--tilt-angle', '9',
                    '--tilt-line', '0,0,9,9')
-        self.fails(2, '--ease: is of the way from --from to --to; leave it or --wiggle out',
+        self.fails(2, '--ease: is for the way from --from to --to; leave it or --wiggle out',
                    *pull, '--wiggle', '3', '--ease', 'in')
         self.fails(2, "--repeat: unknown option; 'refocus pull --help' lists them", *pull, '--repeat', '3')
         self.fails(2, '--blur: --blurs is in its place; leave one of them out', *sheet, '--blur',
@@ -295,10 +295,10 @@ class Limits(Case):
                               ('--input-scale', '1'), ('--far-is-large', None)):
             self.fails(2, option + ': it goes with --estimate; give that too', *depth, '--depth',
                        'depth.pgm', option, *([value] if value else []))
-        self.fails(2, '--match: it is of stereo pairs; give RIGHT, --side-by-side or '
+        self.fails(2, '--match: it is for stereo pairs; give RIGHT, --side-by-side or '
                    '--stereo-file, or leave it out', *depth, '--depth', 'depth.pgm', '--match',
                    'plain')
-        self.fails(2, '--depth-unit: it is of depth that is read from a file; leave it out',
+        self.fails(2, '--depth-unit: it is for depth that is read from a file; leave it out',
                    *depth, '--stereo-file', '--depth-unit', 'mm')
         self.fails(2, "--upsample: depth of a stereo pair has the photo's size; leave it out",
                    *depth, '--stereo-file', '--full', '--upsample', 'core')
@@ -311,9 +311,9 @@ class Limits(Case):
         self.fails(2, '--kernels: it takes no photo; leave one of them out', 'bench', '--kernels',
                    'photo.ppm')
         for option in '--fast', '--loop':
-            self.fails(2, option + ': it is of files and scripts, not of cameras; leave it out',
+            self.fails(2, option + ': it is for files and scripts, not of cameras; leave it out',
                        'live', '--camera', 'v4l2:9', '--depth', 'depth.pgm', option)
-        self.fails(2, '--dmabuf: it is of V4L2 cameras; leave it out', 'live', '--camera',
+        self.fails(2, '--dmabuf: it is for V4L2 cameras; leave it out', 'live', '--camera',
                    'file:x-%d.ppm', '--depth', 'depth.pgm', '--dmabuf')
 
     def test_inputs_are_never_written_over(self):

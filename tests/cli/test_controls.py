@@ -194,14 +194,14 @@ class Bokeh(Controls):
 
     def test_what_excludes_what(self):
         for option in (('--curvature', '0.5'), ('--open-f-number', '2', '--f-number', '4')):
-            self.fails(2, '%s: it is of blades; give --aperture polygon:BLADES too' % option[0],
+            self.fails(2, '%s: it needs blades; give --aperture polygon:BLADES too' % option[0],
                        *self.render(*option))
         self.fails(2, '--open-f-number: it goes with --f-number; give that too',
                    *self.render('--open-f-number', '2', '--aperture', 'polygon:6'))
         self.fails(2, '--open-f-number: f/2 is wider than that; give a number above 0, at most 2',
                    *self.render('--open-f-number', '4', '--f-number', '2', '--aperture',
                                 'polygon:6'))
-        self.fails(2, '--highlight-stops: the light of lamps is given twice; give --highlights '
+        self.fails(2, '--highlight-stops: the light of highlights is given twice; give --highlights '
                       'or --highlight-stops',
                    *self.render('--highlight-stops', '2', '--highlights', '2'))
         for option in (('--cat-eye', '0.2'), ('--fringe', '0.1'), ('--edge', '0.5')):

@@ -64,7 +64,7 @@ METHODS = ('raytrace', 'jittered', 'lightfield', 'blur', 'scatter', 'foveated', 
            'diffusion')
 WITHOUT_RAYS = 'jittered', 'scatter', 'foveated', 'interpolated', 'diffusion'
 # Options that nothing here takes: an exit code and words, or what standard output begins with.
-ALONE = {'--dmabuf': (2, 'it is of V4L2 cameras'), '--list': 'FORMAT', '--help': 'usage:'}
+ALONE = {'--dmabuf': (2, 'it is for V4L2 cameras'), '--list': 'FORMAT', '--help': 'usage:'}
 IN_BASE = '--camera', '--depth', '--out', '--blur', '--json'
 
 

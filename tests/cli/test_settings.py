@@ -62,7 +62,7 @@ class Settings(Case):
 
         fails("s.json: blurr: unknown setting; did you mean 'blur'?", '{"refocus":1,"blurr":1}')
         fails('s.json: zzz: unknown setting', '{"refocus":1,"zzz":1}')
-        fails('s.json: threads: is not of the picture; give it on the command line',
+        fails('s.json: threads: does not describe the picture; give it on the command line',
               '{"refocus":1,"threads":1}')
         fails("s.json: blur: '128' cannot be used; give a number from 0 to 127",
               '{"refocus":1,"blur":128}')

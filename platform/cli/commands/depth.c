@@ -123,7 +123,7 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, network.scale),
      .least = -1000,
      .greatest = 1000,
-     .help = "and what a code is worth: value = (code - mean) S; default: the preset's",
+     .help = "worth of a code: value = (code - mean) S; default: the preset's",
      .needs = "--estimate"},
     {.kind = OPTION_FLAG,
      .name = "--far-is-large",
@@ -364,11 +364,11 @@ static int check_ways(const struct settings *settings, const char *const *files,
 
     if (!pair && options_given(&depth_command, argc, argv, "--match"))
         return report_failure(EXIT_WRONG, "--match",
-                              "it is of stereo pairs; give RIGHT, --side-by-side or "
+                              "it is for stereo pairs; give RIGHT, --side-by-side or "
                               "--stereo-file, or leave it out");
     if (is_made(settings, files) && settings->depth.unit)
         return report_failure(EXIT_WRONG, "--depth-unit",
-                              "it is of depth that is read from a file; leave it out");
+                              "it is for depth that is read from a file; leave it out");
     if (pair && options_given(&depth_command, argc, argv, "--upsample"))
         return report_failure(EXIT_WRONG, "--upsample",
                               "depth of a stereo pair has the photo's size; leave it "

@@ -119,7 +119,7 @@ static int check(struct settings *s, const char *photo, int argc, char **argv)
     if (status == EXIT_DONE && (s->keys || !isnan(s->wiggle)) &&
         options_given(&pull_command, argc, argv, "--ease"))
         status = report_failure(EXIT_WRONG, "--ease",
-                                "is of the way from --from to --to; leave it or %s out",
+                                "is for the way from --from to --to; leave it or %s out",
                                 s->keys ? "--keys" : "--wiggle");
     if (status == EXIT_DONE && s->keys &&
         !(isnan(s->from) && isnan(s->to) && isnan(s->blur_from) && isnan(s->blur_to) &&

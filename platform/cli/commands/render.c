@@ -66,7 +66,7 @@ static int check(struct settings *settings, const char *photo)
 
     if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
-                                "a view is always of the whole; leave --region or "
+                                "a view always shows the whole; leave --region or "
                                 "--view out");
     if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH && !isnan(settings->parallax))
         status =

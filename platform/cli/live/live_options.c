@@ -69,7 +69,7 @@ const struct option live_options[] = {
      .argument = "NAME",
      .offset = offsetof(struct live_settings, format),
      .choice = format_name,
-     .help = "pixels that the camera shall deliver"},
+     .help = "pixel format that the camera shall deliver"},
     {.kind = OPTION_NUMBERS,
      .name = "--size",
      .argument = "WxH",
@@ -77,7 +77,7 @@ const struct option live_options[] = {
      .least = 1,
      .greatest = REFOCUS_MAX_SIDE,
      .count = 2,
-     .help = "and how many of them; the nearest size that there is"},
+     .help = "size of its frames; the nearest that there is is taken"},
     {.kind = OPTION_NUMBER,
      .name = "--fps",
      .argument = "N",
@@ -254,9 +254,9 @@ static int check_sources(const struct live_settings *settings)
 
     if (!files && (settings->fast || settings->loop))
         return report_failure(EXIT_WRONG, settings->fast ? "--fast" : "--loop",
-                              "it is of files and scripts, not of cameras; leave it out");
+                              "it is for files and scripts, not of cameras; leave it out");
     if (settings->dmabuf && !is_of_kind(camera, "v4l2:") && !is_of_kind(depth, "v4l2:"))
-        return report_failure(EXIT_WRONG, "--dmabuf", "it is of V4L2 cameras; leave it out");
+        return report_failure(EXIT_WRONG, "--dmabuf", "it is for V4L2 cameras; leave it out");
     return EXIT_DONE;
 }
 

@@ -94,7 +94,7 @@ static int set_member(const struct command *command, const char *file, const cha
 
         if (option)
             return damaged(file, key,
-                           "is not of the picture; give it on the command "
+                           "does not describe the picture; give it on the command "
                            "line");
         snprintf(why, sizeof why, "unknown setting%s%s%s", nearest ? "; did you mean '" : "",
                  nearest ? nearest + strspn(nearest, "-") : "", nearest ? "'?" : "");

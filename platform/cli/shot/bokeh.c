@@ -21,15 +21,15 @@ static const struct preset presets[] = {
      1, 0, 0.1, -0.1, 0.3, 0, 0},
     {"smooth", "discs that fade out, as behind an apodizing filter", "disc", 0, 1, 0, -1, -1, 0, 0,
      0},
-    {"bubble", "discs with bright rims behind the focus", "disc", 0, 1, 0, 0.7, -0.7, 0.2, 0, 0},
+    {"bubble", "discs with bright edges behind the focus", "disc", 0, 1, 0, 0.7, -0.7, 0.2, 0, 0},
     {"ring", "rings, as of a mirror lens", "disc", 0, 1, 0.45, 0, 0, 0, 0, 0},
     {"swirl", "cat's eyes that turn around the middle", "disc", 0, 1, 0, 0.35, -0.35, 0.65, 0, 0},
     {"cine", "upright ovals, as of an anamorphic lens", "disc", 0, 0.55, 0, 0, 0, 0.2, 0, 0},
-    {"vintage", "six blades, bright rims, colour at the rims", "polygon:6:90", 0.25, 1, 0, 0.4,
-     -0.4, 0.35, 0.08, 0},
+    {"vintage", "six blades, bright edges with colour", "polygon:6:90", 0.25, 1, 0, 0.4, -0.4, 0.35,
+     0.08, 0},
     {"heart", "hearts", "heart", 0, 1, 0, 0, 0, 0, 0, 0},
     {"star", "five-pointed stars", "star", 0, 1, 0, 0, 0, 0, 0, 0},
-    {"sparkle", "spikes on lamps, as of a star filter", "disc", 0, 1, 0, 0, 0, 0, 0, 6},
+    {"sparkle", "spikes on highlights, as of a star filter", "disc", 0, 1, 0, 0, 0, 0, 0, 6},
 };
 
 const char *bokeh_preset_name(uint32_t index)
@@ -139,9 +139,9 @@ static int parse_shape(const char *shape, struct refocus_aperture_params *params
 }
 
 /* How far the iris is open, of 1: 0 where there is no barrel. */
-static int find_opening(const struct bokeh_settings *s, double *opening)
+static int find_iris(const struct bokeh_settings *s, double *iris)
 {
-    *opening = 0;
+    *iris = 0;
     if (isnan(s->open_f_number))
         return EXIT_DONE;
     if (isnan(s->f_number))
@@ -152,7 +152,7 @@ static int find_opening(const struct bokeh_settings *s, double *opening)
                               "f/%g is wider than that; give a number above 0, at most "
                               "%g",
                               s->f_number, s->f_number);
-    *opening = s->open_f_number / s->f_number;
+    *iris = s->open_f_number / s->f_number;
     return EXIT_DONE;
 }
 
@@ -160,19 +160,19 @@ static int fill_params(const struct bokeh_settings *s, struct refocus_aperture_p
 {
     const struct preset *preset = &presets[s->preset];
     const bool polygon = params->blades && !params->figure;
-    double opening;
-    const int status = find_opening(s, &opening);
+    double iris;
+    const int status = find_iris(s, &iris);
 
     if (status != EXIT_DONE)
         return status;
     if (!polygon && !isnan(s->curvature))
         return report_failure(EXIT_WRONG, "--curvature",
-                              "it is of blades; give --aperture polygon:BLADES too");
-    if (!polygon && opening > 0)
+                              "it needs blades; give --aperture polygon:BLADES too");
+    if (!polygon && iris > 0)
         return report_failure(EXIT_WRONG, "--open-f-number",
-                              "it is of blades; give --aperture polygon:BLADES too");
+                              "it needs blades; give --aperture polygon:BLADES too");
     params->curvature = polygon ? or_else(s->curvature, preset->curvature) : 0;
-    params->opening = opening;
+    params->opening = iris;
     params->squeeze = or_else(s->squeeze, preset->squeeze);
     params->hole = or_else(s->ring, preset->ring);
     params->edge_behind = or_else(s->edge, preset->edge);
@@ -228,7 +228,7 @@ int bokeh_apply(const struct bokeh_settings *s, bool highlights_given,
 
     if (!isnan(s->highlight_stops) && highlights_given)
         return report_failure(EXIT_WRONG, "--highlight-stops",
-                              "the light of lamps is given twice; give --highlights or "
+                              "the light of highlights is given twice; give --highlights or "
                               "--highlight-stops");
     params->cat_eye = (float)or_else(s->cat_eye, preset->cat_eye);
     params->fringe = (float)or_else(s->fringe, preset->fringe);

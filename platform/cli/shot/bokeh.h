@@ -61,14 +61,14 @@ const char *bokeh_preset_summary(uint32_t index);
         BOKEH_NUMBER(type, member, "--ring", "R", ring, 0, 0.9,                                    \
                      "radius of a stop in the middle, as of a mirror lens; default 0"),            \
         BOKEH_NUMBER(type, member, "--edge", "E", edge, -1, 1,                                     \
-                     "behind the focus: 1 = bubbles with bright rims, -1 = discs that "            \
+                     "behind the focus: 1 = bubbles with bright edges, -1 = discs that "           \
                      "fade out; before it the contrary; default 0"),                               \
         BOKEH_NUMBER(type, member, "--edge-before", "E", edge_before, -1, 1,                       \
-                     "the same before the focus, when it is not the contrary"),                    \
+                     "the edge before the focus, when it is not the contrary"),                    \
         BOKEH_NUMBER(type, member, "--cat-eye", "A", cat_eye, 0, 0.9,                              \
                      "how much narrower discs are in the corners; default 0"),                     \
         BOKEH_NUMBER(type, member, "--fringe", "A", fringe, -0.5, 0.5,                             \
-                     "rims of colour: green behind the focus and magenta before it, or "           \
+                     "edges of colour: green behind the focus and magenta before it, or "          \
                      "the contrary; default 0"),                                                   \
         BOKEH_NUMBER(type, member, "--grain", "G", grain, 0, 4,                                    \
                      "grain of the sharp parts put back into the blurred ones, 1 = as "            \
@@ -76,14 +76,14 @@ const char *bokeh_preset_summary(uint32_t index);
     {                                                                                              \
         .kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",                       \
         .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,               \
-        .help = "sweep: light given back to small clipped lamps, in stops, for "                   \
+        .help = "sweep: light given back to small clipped highlights, in stops, for "              \
                 "--highlights 2^S",                                                                \
         OF_METHODS(type, method, OF_SWEEP)                                                         \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
-/* The aperture of --aperture and these. */
+/* Make the aperture of --aperture and these. */
 int bokeh_aperture(const struct bokeh_settings *settings, const char *shape,
                    struct refocus_aperture **aperture);
 

@@ -6,18 +6,18 @@
 #include "shot/engine.h"
 #include "line/interrupt.h"
 
-/* Two stops. Lamps of path-traced scenes have lost more, but what is found in photos of cameras is
- * as often paper or a petal as a lamp: there 9.5 scores no better than this, and shows 7 to 11
- * times as many discs where there is no light. */
+/* Two stops. Highlights of path-traced scenes have lost more, but the highlights that are detected
+ * in photos of cameras are as often paper or a petal as a light: there 9.5 scores no better than
+ * this, and shows 7 to 11 times as many discs where there is no light. */
 static const float highlight_gain = 4;
 
 static const struct {
     const char *name, *summary;
     int rays;
     bool thin;
-} qualities[] = {{"preview", "32 rays, thin things met by them", 32, false},
-                 {"standard", "64 rays, thin things drawn", 64, true},
-                 {"best", "128 rays, thin things drawn", 128, true}};
+} qualities[] = {{"preview", "32 rays, thin structures gathered by them", 32, false},
+                 {"standard", "64 rays, thin structures splatted", 64, true},
+                 {"best", "128 rays, thin structures splatted", 128, true}};
 
 static const struct {
     const char *name, *summary;

@@ -84,8 +84,8 @@ const char *engine_blend_summary(uint32_t index);
         {.kind = OPTION_FLAG,                                                                      \
          .name = "--no-thin",                                                                      \
          .offset = offsetof(type, member.no_thin),                                                 \
-         .help = "sweep: thin things far before the focus, and in it, are met by rays "            \
-                 "like all else, not drawn; so in quality preview",                                \
+         .help = "sweep: gather thin structures far before the focus, and in it, by rays "         \
+                 "like everything else, instead of splatting them; so does quality preview",       \
          OF_METHODS(type, member.method, OF_SWEEP)},                                               \
         {.kind = OPTION_TEXT,                                                                      \
          .name = "--aperture",                                                                     \
@@ -115,7 +115,7 @@ const char *engine_blend_summary(uint32_t index);
         .kind = OPTION_NUMBER, .name = "--highlights", .argument = "GAIN",                         \
         .offset = offsetof(type, member.highlights), .least = 1, .greatest = 16, .word = "off",    \
         .word_value = 1,                                                                           \
-        .help = "sweep: light given back to small clipped lamps, up to GAIN times "                \
+        .help = "sweep: light given back to small clipped highlights, up to GAIN times "           \
                 "white; default 4",                                                                \
         OF_METHODS(type, member.method, OF_SWEEP)                                                  \
     }
