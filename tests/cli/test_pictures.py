@@ -136,7 +136,7 @@ class Picture(Case):
         for view in 'none', 'depth', 'peaking':
             self.fails(2, '--parallax: goes with --view anaglyph; give that too',
                        *self.render('--view', view, '--parallax', '3'))
-        self.fails(2, '--region: a view is always of the whole; leave --region or --view out',
+        self.fails(2, '--region: a view always shows the whole; leave --region or --view out',
                    *self.render('--region', '0,0,1,1', '--view', 'anaglyph'))
 
     def test_settings_describe_the_anaglyph(self):
