@@ -52,6 +52,15 @@ static uint32_t colour_space(const char *name)
     return strcmp(name, "mono16") == 0 ? REFOCUS_FRAME_Y16 : REFOCUS_FRAME_ANY;
 }
 
+/* A side of the picture; 0, which is out of the range, where the text says more than an int holds.
+ */
+static int parse_side(const char *text)
+{
+    const long side = strtol(text, NULL, 10);
+
+    return side > 0 && side <= REFOCUS_MAX_SIDE ? (int)side : 0;
+}
+
 static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
 {
     char header[LONGEST_HEADER], *word, *rest = NULL;
@@ -63,9 +72,9 @@ static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
     stream->format = REFOCUS_FRAME_YUV420;
     for (word = strtok_r(header + 9, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
         if (*word == 'W')
-            stream->width = atoi(word + 1);
+            stream->width = parse_side(word + 1);
         else if (*word == 'H')
-            stream->height = atoi(word + 1);
+            stream->height = parse_side(word + 1);
         else if (*word == 'F')
             sscanf(word + 1, "%9ld:%9ld", &numerator, &denominator);
         else if (*word == 'C') {
@@ -99,7 +108,7 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
             break;
     }
     stream->fps = 30;
-    if (n < 2 || (n == 3 && (stream->fps = atof(word[0])) <= 0) ||
+    if (n < 2 || (n == 3 && (stream->fps = strtod(word[0], NULL)) <= 0) ||
         sscanf(word[n - 2], "%6dx%6d", &stream->width, &stream->height) != 2)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "give raw:FILE,FORMAT,WIDTHxHEIGHT or with ,FPS behind");

@@ -7,7 +7,7 @@
 #include "reason.h"
 
 /* "P", the digit of the kind, and a blank or a comment. */
-static bool begins(struct rf_bytes file, char plain, char raw)
+static bool begins(struct rf_bytes file, uint8_t plain, uint8_t raw)
 {
     return file.size >= 3 && file.data[0] == 'P' &&
            (file.data[1] == plain || file.data[1] == raw) && file.data[2] != '\0' &&

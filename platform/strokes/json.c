@@ -51,7 +51,7 @@ static const char *strange_key(json_t *object, const char *const *known)
     {
         int i = 0;
 
-        while (known[i] && strcmp(known[i], key))
+        while (known[i] && strcmp(known[i], key) != 0)
             i++;
         if (!known[i])
             return key;
@@ -165,7 +165,7 @@ static int read_kind(struct reading *reading, int index, json_t *object,
     const char *strange;
     uint32_t kind = 0;
 
-    while (name && kind < sizeof kinds / sizeof *kinds && strcmp(name, kinds[kind]))
+    while (name && kind < sizeof kinds / sizeof *kinds && strcmp(name, kinds[kind]) != 0)
         kind++;
     if (!name || kind == sizeof kinds / sizeof *kinds)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,

@@ -176,7 +176,8 @@ void live_lane_run(struct live_lane *lane)
                 live_fail(live, EXIT_FAILED, lane->name, reason.text);
             return;
         }
-        if (status == REFOCUS_ERR_TIMEOUT && ms_since(fault_ns) > live->settings->patience * 1e3) {
+        if (status == REFOCUS_ERR_TIMEOUT &&
+            (double)ms_since(fault_ns) > live->settings->patience * 1e3) {
             live_fail(live, EXIT_FAILED, lane->name, "no frame comes; check the camera");
             return;
         }

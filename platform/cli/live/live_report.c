@@ -60,7 +60,7 @@ int live_report(struct live *live)
                 "%llu frames in, %llu out, %llu dropped; %.1f a second, %.1f ms from "
                 "camera to sink\n",
                 (unsigned long long)live->capture.frames, (unsigned long long)out,
-                (unsigned long long)(dropped + counters.dropped), fps,
+                (unsigned long long)dropped + counters.dropped, fps,
                 live_times_quantile(&live->latency, 0.5));
         return EXIT_DONE;
     }

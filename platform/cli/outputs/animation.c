@@ -63,7 +63,7 @@ static enum kind kind_of(const char *path)
 static bool frame_name(const struct animation *a, int i, char name[PATH_MAX])
 {
     const char *percent = strchr(a->path, '%');
-    const int width = atoi(percent + 1 + (percent[1] == '0'));
+    const int width = (int)strtol(percent + 1 + (percent[1] == '0'), NULL, 10);
     const char *rest = strchr(percent, 'd') + 1;
 
     return snprintf(name, PATH_MAX, percent[1] == '0' ? "%.*s%0*d%s" : "%.*s%*d%s",

@@ -56,7 +56,7 @@ static int check_aperture(uint32_t method, const struct engine_settings *setting
     return report_failure(EXIT_WRONG, "--aperture",
                           "'%s' does not go with --method %s, which knows a disc "
                           "alone; leave one of them out",
-                          settings->aperture && strcmp(settings->aperture, "disc")
+                          settings->aperture && strcmp(settings->aperture, "disc") != 0
                               ? settings->aperture
                               : "such a disc",
                           refocus_method_name(method));
@@ -185,7 +185,7 @@ static int render_once(struct engine *engine, const struct refocus_image *out, d
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
 {
     const float focus = engine->params.focus_disparity;
-    const float beside = focus + (focus > 0.5f ? -2 : 2) / 65535.0f;
+    const float beside = focus + (focus > 0.5f ? -2.0f : 2.0f) / 65535.0f;
     double *times, *cpu_times;
     int status = controls_check_method(&engine->params);
 
