@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""The refocus command: depth maps that `depth` makes, and facts that `info` tells.
+Usage: test_depth_command.py REFOCUS [unittest arguments]"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import unittest
+
+import pictures
+from case import Case, H, REFOCUS, W
+
+
+class DepthAndInfo(Case):
+    def test_depth(self):
+        report = self.reports('depth', 'depth.pgm', '-o', 'd.pgm')
+        self.assertEqual(report['depth']['unknown'], 0)
+        expected = tuple(65535 if x >= W // 2 else 13107 for y in range(H) for x in range(W))
+        self.same(pictures.read_pnm('d.pgm'), (W, H, expected))
+        self.succeeds('depth', 'depth.pgm', '-o', 'd.pfm')
+        width, height, values = pictures.read_pfm('d.pfm')
+        self.assertEqual((width, height), (W, H))
+        self.assertTrue(all(abs(v - e / 65535) < 1e-6 for v, e in zip(values, expected)))
+        self.succeeds('depth', 'depth.pgm', '-o', 'd.png', '--depth-unit', 'inverse')
+        width, height, bits, channels, rows = pictures.read_png('d.png')
+        self.assertEqual((width, height, bits, channels), (W, H, 16, 1))
+        self.assertEqual((rows[0][:2], rows[0][-2:]), (b'\xcc\xcc', b'\0\0'))
+        text = self.succeeds('depth', 'mm.pgm', '-o', 'd.png', '--depth-unit', 'mm')
+        self.assertEqual(text, 'size     48x32\nnear     0.5 m\nfar      2 m\n'
+                               'filled   1 samples without a value, 0.1 %\n'
+                               'clamped  0 samples beyond the range, 0.0 %\n')
+        self.fails(2, 'd.tif: no such format is written; end the name in .png, .pgm, .pfm, .jpg '
+                   'or .jpeg', 'depth', 'depth.pgm', '-o', 'd.tif')
+        self.fails(1, 'd.jpg: depth is saved into JPEG photos; the photo is none',
+                   'depth', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'd.jpg')
+        self.fails(2, "--invalid: 'zero,7' is not known; give zero, max or 2047, or several with "
+                   'commas', 'depth', 'depth.pgm', '-o', 'd.png', '--invalid', 'zero,7')
+        self.assertFalse(os.path.exists('d.jpg') or os.path.exists('d.tif'))
+
+    def test_depth_repair(self):
+        whole = self.reports('depth', 'mm.pgm', '-o', 'a.png')['depth']
+        less = self.reports('depth', 'mm.pgm', '-o', 'b.png', '--invalid', 'zero')['depth']
+        self.assertEqual((whole['unknown'], less['unknown']), (0, 1))
+        self.succeeds('depth', 'mm.pgm', '-o', 'c.png', '--invalid', 'zero', '--view',
+                      'confidence')
+        width, height, bits, channels, rows = pictures.read_png('c.png')
+        self.assertEqual((width, height, bits, channels), (W, H, 8, 3))
+        self.assertEqual(sum(row.count(b'\0\0\0') for row in rows), less['unknown'])
+
+    def test_depth_of_pictures(self):
+        self.fails(1, re.compile(r'^refocus: depth.pgm: (the two pictures do not match|too few '
+                                 r'pixels|it is a depth map, not a photo|the pictures are too '
+                                 r'small|this build has no OpenCV)'),
+                   'depth', 'photo.ppm', 'depth.pgm', '-o', 'd.png')
+        self.fails(2, 'photo.ppm: its depth is given twice; give one of RIGHT, --side-by-side, '
+                   '--stereo-file, '
+                   '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
+                   '--depth', 'depth.pgm')
+        self.fails(1, re.compile(r'^refocus: photo.ppm: (it is no stereo file|this build)'),
+                   'depth', 'photo.ppm', '--stereo-file', '-o', 'd.png')
+        self.fails(2, "--input-size: '8,8' cannot be used; give W,H from 32 to 2048", 'depth',
+                   'photo.ppm', '--estimate', 'no.onnx', '--input-size', '8,8', '-o', 'd.png')
+        self.fails(2, re.compile("^refocus: --upsample: 'magic' cannot be used"), 'depth',
+                   'photo.ppm', '--depth', 'depth.pgm', '--full', '--upsample', 'magic', '-o',
+                   'd.png')
+        self.succeeds('depth', 'photo.ppm', '--depth', 'depth.pgm', '--snap', '2', '-o', 'd.png')
+        os.remove('d.png')
+        self.fails(1, re.compile(r'^refocus: no.onnx: (it cannot be read; give an ONNX file|this '
+                                 r'build has no OpenCV)'),
+                   'depth', 'photo.ppm', '-o', 'd.png', '--estimate', 'no.onnx')
+
+    def strokes(self, name, *strokes, width=W, height=H):
+        with open(name, 'w') as file:
+            json.dump({'refocus-strokes': 1, 'width': width, 'height': height,
+                       'strokes': strokes}, file)
+
+    def test_depth_of_strokes(self):
+        ground = {'kind': 'all', 'gradient': [[0, 0, 0], [0, H - 1, 1]]}
+        brush = {'kind': 'brush', 'radius': 3, 'points': [[5, 5]], 'disparity': 1}
+        self.strokes('s.json', ground, brush)
+        report = self.reports('depth', 'photo.ppm', '--strokes', 's.json', '-o', 'a.png')
+        self.assertEqual(report['evidence'], ['painted: 2 strokes'])
+        self.assertEqual((report['width'], report['height']), (W, H))
+        width, height, bits, channels, rows = pictures.read_png('a.png')
+        self.assertEqual((width, height, bits, channels), (W, H, 16, 1))
+        for y, row in enumerate(rows):
+            self.assertLessEqual(abs(int.from_bytes(row[-2:], 'big') - 65535 * y / (H - 1)), 1)
+        self.assertEqual(rows[5][10:12], b'\xff\xff')
+        # over a depth map: the last strokes alone change it
+        self.strokes('s.json', brush)
+        self.succeeds('depth', 'photo.ppm', '--depth', 'depth.pgm', '--strokes', 's.json', '-o',
+                      'b.png')
+        self.succeeds('depth', 'depth.pgm', '-o', 'c.png')
+        over, under = pictures.read_png('b.png')[4], pictures.read_png('c.png')[4]
+        self.assertEqual(sum(over[y][2 * x:2 * x + 2] != under[y][2 * x:2 * x + 2]
+                             for y in range(H) for x in range(W)), 29)
+        self.succeeds('depth', 'photo.ppm', '--strokes', 's.json', '-o', 'v.png', '--view',
+                      'confidence')
+        self.strokes('s.json', {'kind': 'object', 'radius': 3, 'points': [[12, 12]],
+                                'disparity': 0.5})
+        self.succeeds('depth', 'plain.ppm', '--strokes', 's.json', '-o', 'd.pfm')
+
+    def test_depth_of_bad_strokes(self):
+        command = ('depth', 'photo.ppm', '-o', 'new.png', '--strokes')
+        self.strokes('s.json', width=640)
+        self.fails(1, 's.json: its strokes are of a picture of 640x32, the photo has 48x32',
+                   *command, 's.json')
+        self.strokes('s.json', {'kind': 'all', 'disparity': 2})
+        self.fails(1, 's.json: strokes[0].disparity must be a number from 0 to 1', *command,
+                   's.json')
+        self.fails(1, 'no.json: cannot open it: No such file or directory', *command, 'no.json')
+        self.fails(1, '.: cannot read it: Is a directory', *command, '.')
+        self.fails(1, re.compile(r'^refocus: photo.ppm: line 1 is no JSON: '), *command,
+                   'photo.ppm')
+        for content, why in ((b'', 'it is empty'), (b' ' * (64 << 20) + b' ',
+                                                    'it is larger than the limit of 67108864 bytes')):
+            with open('s.json', 'wb') as file:
+                file.write(content)
+            self.fails(1, 's.json: ' + why, *command, 's.json')
+        self.fails(2, '--strokes: they are not painted over half a picture; give LEFT and RIGHT',
+                   *command, 's.json', '--side-by-side')
+        os.remove('s.json')
+
+    def test_depth_into_jpeg(self):
+        self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'p.jpg', '--blur', '0')
+        self.succeeds('depth', 'p.jpg', '--depth', 'depth.pgm', '-o', 'd0.jpg', '--focus-at',
+                      '3,4', '--blur', '5', '--near', '0.5', '--far', '7')
+        self.succeeds('depth', 'd0.jpg', '-o', 'd0.png')
+        self.succeeds('depth', 'depth.pgm', '-o', 'd.png')
+        self.assertEqual(pictures.read_png('d0.png'), pictures.read_png('d.png'))
+        for i in range(10):
+            self.succeeds('depth', 'd%d.jpg' % i, '-o', 'd%d.jpg' % (i + 1))
+        with open('d0.jpg', 'rb') as first, open('d10.jpg', 'rb') as last, \
+                open('p.jpg', 'rb') as photo:
+            first, photo = first.read(), photo.read()
+            self.assertEqual(first, last.read())
+        rest = first.replace(first[20:20 + len(first) - len(photo)], b'', 1)
+        self.assertEqual(rest, photo)
+        info = self.reports('info', 'd10.jpg')
+        self.assertEqual(info['depth']['near_m'], 0.5)
+
+    def test_info(self):
+        info = self.reports('info', 'photo.ppm')
+        self.assertEqual((info['container'], info['picture'], info['depth'], info['orientation'],
+                          info['camera'], info['file']),
+                         ('PPM', [W, H], None, 1, None, 'photo.ppm'))
+        info = self.reports('info', 'metres.pfm')
+        self.assertEqual((info['container'], info['depth']['width'], info['depth']['sample']),
+                         ('PFM', W, 'float'))
+        self.assertTrue(info['evidence'])
+        text = self.succeeds('info', 'mm.pgm')
+        self.assertIn('depth size    48x32, 16-bit\n', text)
+        self.assertIn('because ', text)
+        self.fails(1, re.compile('^refocus: missing: '), 'info', 'missing')
+
+    def test_odd_names(self):
+        """A name cannot break the one line or the terminal."""
+        name = 'a\nb\x1b[31m.ppm'
+        shutil.copy('photo.ppm', name)
+        self.assertNotIn('\x1b', self.succeeds('info', name))
+        self.assertEqual(self.reports('info', name)['file'], 'a?b?[31m.ppm')
+        self.fails(1, re.compile(r'^refocus: a\?b\?\[31m.ppm: it carries no depth'), 'render',
+                   name, '-o', 'out.ppm')
+        os.remove(name)
+        raw = b'\xff.ppm'
+        shutil.copy(b'photo.ppm', raw)
+        result = subprocess.run([REFOCUS, 'info', raw, '--json'], stdout=subprocess.PIPE)
+        self.assertEqual(json.loads(result.stdout)['file'], '?.ppm')
+        os.remove(raw)
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,461 @@
+#!/usr/bin/env python3
+"""The refocus command: the pictures and reports that its options make, of `render`,
+`compare` and `bench`. Usage: test_results.py REFOCUS [unittest arguments]"""
+import base64
+import json
+import os
+import re
+import struct
+import unittest
+
+import pictures
+from case import Case, H, W
+
+METHODS = ('sweep', 'search', 'raytrace', 'jittered', 'lightfield', 'blur', 'scatter', 'foveated',
+           'interpolated', 'diffusion')
+
+
+class Results(Case):
+    def test_report(self):
+        report = self.reports(*self.render('--focus', '0.25', '--blur', '4', '--threads', '2',
+                                           '--repeat', '3'))
+        for key, value in {'width': W, 'height': H, 'method': 'sweep', 'rays': 64,
+                           'blur': 4.0, 'focus': 0.25, 'threads': 2,
+                           'output': 'out.ppm'}.items():
+            self.assertEqual(report[key], value, key)
+        times = report['render_ms']
+        self.assertTrue(0 < times['min'] <= times['median'] <= times['max'])
+        self.assertGreater(report['prepare_ms'], 0)
+        self.assertGreater(report['peak_rss_kib'], 500)
+        self.assertIn(report['cpu'], ('c', 'neon', 'sse41', 'avx2', 'avx512'))
+        depth = report['depth']
+        self.assertEqual((depth['unknown'], depth['clamped'], depth['near_m'], depth['far_m'],
+                          depth['width'], depth['height']), (0, 0, None, None, W, H))
+        for quality, rays in (('preview', 32), ('standard', 64), ('best', 128)):
+            self.assertEqual(self.reports(*self.render('--quality', quality))['rays'], rays)
+        self.assertEqual(self.reports(*self.render('--quality', 'best', '--rays', '7'))['rays'],
+                         7)
+        self.assertEqual(self.reports(*self.render('--rays', 'full', '--blur', '3'))['rays'],
+                         'full')
+        text = self.succeeds(*self.render('--repeat', '2'))
+        self.assertRegex(text, r'^prepare [\d.]+ ms, render [\d.]+ ms \(median of 2; ')
+        self.assertEqual(self.succeeds(*self.render()), '')
+
+    def test_nothing_to_blur(self):
+        photo = pictures.read_pnm('photo.ppm')
+        self.succeeds(*self.render('--blur', '0'))
+        self.same(pictures.read_pnm('out.ppm'), photo)
+        for method in METHODS:
+            self.succeeds('render', 'plain.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm',
+                          '--blur', '5', '--method', method)
+            self.same(pictures.read_pnm('out.ppm'), pictures.read_pnm('plain.ppm'), method)
+
+    def test_blur_happens_where_it_should(self):
+        photo = pictures.read_pnm('photo.ppm')[2]
+        self.succeeds(*self.render('--focus', '1', '--blur', '6'))
+        near = pictures.read_pnm('out.ppm')[2]
+        row = slice(16 * W * 3, 17 * W * 3)
+        self.same(near[row][40 * 3:], photo[row][40 * 3:])   # sharp on the right
+        self.differs(near[row][:20 * 3], photo[row][:20 * 3])  # and not on the left
+        self.succeeds(*self.render('--focus', '0.2', '--blur', '6'))
+        far = pictures.read_pnm('out.ppm')[2]
+        self.same(far[row][:10 * 3], photo[row][:10 * 3])
+        self.differs(far[row][30 * 3:], photo[row][30 * 3:])
+
+    def test_options_change_the_picture(self):
+        self.succeeds(*self.render('--focus', '1', '--blur', '6'))
+        first = pictures.read_pnm('out.ppm')
+        for more in (('--rays', '8'), ('--aperture', 'polygon:3'), ('--blend', 'stored'),
+                     ('--blend', 'gamma'), ('--sigma', '40'), ('--method', 'search'),
+                     ('--method', 'raytrace'), ('--focus', '0.4'), ('--blur', '3')):
+            self.succeeds(*self.render('--focus', '1', '--blur', '6', *more))
+            self.differs(pictures.read_pnm('out.ppm'), first, more)
+        pictures.pgm('many.pgm', W, H, lambda x, y: (x // 5 * 37 + y // 4 * 51) & 255)
+        search = ('--depth', 'many.pgm', '--method', 'search', '--focus', '0.2', '--blur', '6')
+        self.succeeds(*self.render(*search))
+        first = pictures.read_pnm('out.ppm')
+        for more in (('--iterations', '1'), ('--mirror',), ('--background',)):
+            self.succeeds(*self.render(*search, *more))
+            self.differs(pictures.read_pnm('out.ppm'), first, more)
+
+    def test_threads_do_not_change_the_picture(self):
+        pictures_seen = set()
+        for threads in ('1', '2', '3', '8'):
+            self.succeeds(*self.render('--focus', '1', '--threads', threads, '--cpu', 'c'))
+            pictures_seen.add(pictures.read_pnm('out.ppm'))
+        self.assertEqual(len(pictures_seen), 1)
+
+    def test_region_is_a_part_of_the_whole(self):
+        self.succeeds(*self.render('--focus', '1', '--blur', '6'))
+        whole = pictures.read_pnm('out.ppm')[2]
+        self.succeeds(*self.render('--focus', '1', '--blur', '6', '--region', '11,5,20,9'))
+        width, height, part = pictures.read_pnm('out.ppm')
+        self.assertEqual((width, height), (20, 9))
+        for y in range(9):
+            at = ((y + 5) * W + 11) * 3
+            self.same(part[y * 60:(y + 1) * 60], whole[at:at + 60])
+
+    def test_focus(self):
+        def focus(*more):
+            return self.reports(*self.render(*more))['focus']
+
+        self.assertAlmostEqual(focus('--focus-at', '47,0'), 1, 4)
+        self.assertAlmostEqual(focus('--focus-at', '0,31'), 0.2, 4)
+        self.assertAlmostEqual(focus(), 1, 4)  # the centre lies on the right half
+        near_far = ('--near', '0.5', '--far', '4')
+        for metres, disparity in (('0.5', 1), ('4', 0), ('1', 3 / 7), ('2', 1 / 7)):
+            self.assertAlmostEqual(focus('--focus-distance', metres, *near_far), disparity, 6)
+        self.assertAlmostEqual(focus('--focus-distance', 'inf', '--near', '1', '--far', 'inf'),
+                               0, 6)
+        for metres in ('0.49', '4.1', 'inf'):
+            self.fails(2, '--focus-distance: %s m lies outside of the depth of depth.pgm; give '
+                          '0.5 to 4 m' % metres,
+                       *self.render('--focus-distance', metres, *near_far))
+        self.fails(1, 'depth.pgm: --focus-distance needs distances in metres, which it does not '
+                      'say; give --near and --far, or --focus or --focus-at in its place',
+                   *self.render('--focus-distance', '1', '--near', '1'))
+
+    def test_focus_at_is_robust(self):
+        """Wrong single samples do not win."""
+        pictures.pgm('specks.pgm', W, H,
+                     lambda x, y: 255 if (x, y) in ((10, 10), (0, 0), (1, 1)) else 51)
+        for at in ('10,10', '0,0', '2,1'):
+            report = self.reports('render', 'photo.ppm', '--depth', 'specks.pgm', '-o',
+                                  'out.ppm', '--focus-at', at)
+            self.assertAlmostEqual(report['focus'], 0.2, 4)
+
+    def test_lens(self):
+        def blur(*more):
+            return self.reports(*self.render(*more))['blur']
+
+        self.assertAlmostEqual(blur(), W / 50, 5)
+        lens = ('--near', '0.5', '--far', '4', '--f-number', '8', '--focal-length', '50')
+        expected = 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4)
+        self.assertAlmostEqual(blur(*lens), expected, 5)
+        self.assertAlmostEqual(blur(*lens, '--sensor-width', '18'), 2 * expected, 5)
+        self.fails(1, 'depth.pgm: --focal-length needs distances in metres, which it does not '
+                      'say; give --near and --far, or leave it out',
+                   *self.render('--f-number', '2', '--focal-length', '50'))
+        self.fails(1, 'photo.ppm: --f-number needs a focal length, which it does not say; give '
+                      '--focal-length and --sensor-width, or --blur',
+                   *self.render('--f-number', '2', '--near', '1', '--far', '2'))
+
+    WIDE = ('--near', '0.01', '--far', 'inf', '--focal-length', '85')
+
+    def test_f_number_is_limited(self):
+        """More blur than there can be is the most that there can be."""
+        line = ('--f-number: f/1.4 gives 344 pixels of blur, limited to 127, the most, which '
+                'f/3.79 has')
+        report = self.warns(line, *self.render(*self.WIDE, '--f-number', '1.4'))
+        limited = pictures.read_bytes('out.ppm')
+        self.assertEqual((report['blur'], report['blur_from']), (127, 'lens'))
+        self.assertAlmostEqual(report['f_number'], 1.4 * 344 / 127, 2)
+        least = self.reports(*self.render(*self.WIDE, '--f-number', '3.8'))
+        self.assertEqual(least['f_number'], 3.8)  # and what it says does work
+        self.assertLess(126, least['blur'])
+        self.assertLess(least['blur'], 127)
+        self.succeeds(*self.render(*self.WIDE[:4], '--blur', '127'))
+        self.same(pictures.read_bytes('out.ppm'), limited)
+        self.assertEqual(self.warns(line, 'pull', 'photo.ppm', '--depth', 'depth.pgm', '-o',
+                                    'p.y4m', '--seconds', '0.1', *self.WIDE, '--f-number',
+                                    '1.4')['blur_from'], 'lens')
+        sheet = self.warns(line, 'sheet', 'photo.ppm', '--depth', 'depth.pgm', '-o', 's.ppm',
+                           '--focuses', '0', *self.WIDE, '--f-numbers', '1.4,8')
+        self.assertEqual(sheet['cells'], ['focus 0  f/3.793', 'focus 0  f/8'])
+        for name in ('p.y4m', 's.ppm'):
+            os.remove(name)
+
+    def test_f_number_without_metres(self):
+        """The default blur stands for f/2."""
+        line = ('--f-number: depth.pgm says no distances in metres; f/%s gives %s pixels of '
+                'blur%s, by the default of 1.0 at f/2; --near and --far give that of a lens')
+        for number, words, limit in (('0.5', '3.8', ''), ('2', '1.0', ''), ('4', '0.5', ''),
+                                     ('0.01', '192.0',
+                                      ', limited to 127, the most, which f/0.0151 has')):
+            report = self.warns(line % (number, words, limit),
+                                *self.render('--focus', '1', '--f-number', number))
+            self.assertAlmostEqual(report['blur'], min(W / 50 * 2 / float(number), 127), 5)
+            self.assertEqual(report['blur_from'], 'default')
+
+    def gdepth(self, attributes):
+        """photo.jpg with depth of six grey bars, dark = near, and what GFocus says."""
+        pictures.png('bars.png', W, H, [bytes(40 * (x // 8) for x in range(W))] * H, colour=0)
+        with open('bars.png', 'rb') as file:
+            data = base64.b64encode(file.read()).decode()
+        self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
+                      'photo.jpg')
+        pictures.insert_xmp('photo.jpg', 'GDepth:Format="RangeInverse" GDepth:Mime="image/png" '
+                            'GDepth:Data="%s" %s' % (data, attributes))
+
+    def test_f_number_by_the_files_own_blur(self):
+        """Of Google's Lens Blur: a range without a unit, and BlurAtInfinity. By hand:
+        K = 0.1 (1/20 - 1/100) 25 of 48 pixels = 4.8."""
+        self.gdepth('GDepth:Near="20" GDepth:Far="100" GFocus:FocalDistance="25" '
+                    'GFocus:FocalPointX="0.5" GFocus:FocalPointY="0.5" '
+                    'GFocus:BlurAtInfinity="0.1"')
+        command = ('render', 'photo.jpg', '-o', 'out.ppm')
+        blurs = []
+        for number, words in (('1.4', '6.9'), ('2', '4.8'), ('8', '1.2')):
+            report = self.warns(
+                '--f-number: photo.jpg says no distances in metres; f/%s gives %s pixels of '
+                'blur, by the file\'s own of 4.8 at f/2; --near and --far give that of a lens' %
+                (number, words), *command, '--f-number', number)
+            self.assertEqual((report['blur_from'], report['depth']['near_m']), ('file', None))
+            blurs.append(report['blur'])
+        for blur, number in zip(blurs, (1.4, 2, 8)):
+            self.assertAlmostEqual(blur, 9.6 / number, 4)
+        self.assertAlmostEqual(self.reports(*command)['blur'], W / 50, 5)
+        self.fails(1, 'photo.jpg: --focus-distance needs distances in metres, which it does not '
+                      'say; give --near and --far, or --focus or --focus-at in its place',
+                   *command, '--focus-distance', '30')
+        info = self.reports('info', 'photo.jpg')
+        self.assertEqual(info['depth']['near_m'], None)
+        self.assertAlmostEqual(info['own_blur'], 0.1)
+        # --near and --far are metres, whatever the file meant
+        lens = self.reports(*command, '--f-number', '8', '--focal-length', '50', '--near', '0.5',
+                            '--far', '4')
+        self.assertEqual(lens['blur_from'], 'lens')
+        self.assertAlmostEqual(lens['blur'], 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4), 5)
+        # saved with its depth once more, the blur is the same
+        self.succeeds('depth', 'photo.jpg', '-o', 'again.jpg')
+        again = self.run_it('render', 'again.jpg', '-o', 'out.ppm', '--f-number', '2', '--json')
+        self.assertAlmostEqual(json.loads(again.stdout)['blur'], 4.8, 3)
+        for name in ('photo.jpg', 'again.jpg', 'bars.png', 'out.ppm'):
+            os.remove(name)
+
+    def test_16_bits_are_told_and_dithered(self):
+        """Once, whatever is made of the photo; the mean of a shallow gradient is kept."""
+        def value(x, y):  # rounded to nearest it is 100 or 101 all over
+            return 25700 + 120 + x // 8
+        pictures.png('deep.png', W, H, [struct.pack('>%dH' % (3 * W), *(
+            value(x, y) for x in range(W) for _ in range(3))) for y in range(H)], depth=16)
+        line = 'deep.png: it has 16 bits a channel; 8 are taken, dithered'
+        command = ('deep.png', '--depth', 'depth.pgm', '-o')
+        self.warns(line, 'render', *command, 'out.ppm', '--blur', '0', '--repeat', '3')
+        samples = pictures.read_pnm('out.ppm')[2]
+        for top in range(0, H, 8):
+            for left in range(0, W, 8):
+                mean = sum(samples[3 * (y * W + x)] for y in range(top, top + 8)
+                           for x in range(left, left + 8)) / 64
+                self.assertAlmostEqual(mean, value(left, top) / 257, delta=1 / 64)
+        self.warns(line, 'sheet', *command, 'out.ppm', '--blurs', '1,2')
+        self.warns(line, 'pull', *command, 'p.y4m', '--seconds', '0.1')
+        result = self.run_it('compare', 'deep.png', '--depth', 'depth.pgm', '--reference',
+                             'photo.ppm', '--blur', '1')
+        self.assertEqual((result.returncode, result.stderr), (0, 'refocus: ' + line + '\n'))
+        self.assertEqual(self.reports('info', 'deep.png')['bits'], 16)
+        self.assertEqual(self.reports('info', 'photo.ppm')['bits'], 8)
+        # a depth map of 16 bits is not cut, and nothing is said of it
+        pictures.png('deep-depth.png', W, H, [struct.pack('>%dH' % W, *(
+            40000 + x for x in range(W)))] * H, depth=16, colour=0)
+        self.succeeds('depth', 'deep-depth.png', '-o', 'd.png')
+        rows = pictures.read_png('d.png')[4]
+        self.assertEqual(struct.unpack('>%dH' % W, rows[0]), tuple(40000 + x for x in range(W)))
+        self.succeeds('render', 'photo.ppm', '--depth', 'deep-depth.png', '-o', 'out.ppm')
+        for name in ('deep.png', 'deep-depth.png', 'd.png', 'p.y4m', 'out.ppm'):
+            os.remove(name)
+
+    def test_portrait_sensor(self):
+        """36 mm go with the larger side, whichever that is."""
+        pictures.ppm('tall.ppm', H, W, lambda x, y: (x, y, 0))
+        pictures.pgm('tall.pgm', H, W, lambda x, y: y)
+        report = self.reports('render', 'tall.ppm', '--depth', 'tall.pgm', '-o', 'out.ppm',
+                              '--near', '0.5', '--far', '4', '--f-number', '8',
+                              '--focal-length', '50')
+        self.assertAlmostEqual(report['blur'], 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4), 5)
+
+    def test_depth_units(self):
+        def depth(file, unit, *more):
+            return self.reports('render', 'photo.ppm', '--depth', file, '--depth-unit', unit,
+                                '-o', 'out.ppm', *more)['depth']
+
+        mm = depth('mm.pgm', 'mm')
+        self.assertEqual((mm['meaning'], mm['unknown']), ('distance', 1))
+        self.assertAlmostEqual(mm['near_m'], 0.5)
+        self.assertAlmostEqual(mm['far_m'], 2)
+        self.assertAlmostEqual(depth('mm.pgm', '5000/m')['near_m'], 0.1)
+        self.assertAlmostEqual(depth('metres.pfm', 'm')['far_m'], 2)
+        wider = depth('metres.pfm', 'm', '--near', '0.25', '--far', 'inf')
+        self.assertEqual((wider['near_m'], wider['far_m'], wider['clamped']),
+                         (0.25, 'infinity', 0))
+        self.assertEqual(depth('metres.pfm', 'm', '--far', '1')['clamped'], W * H // 2)
+        for unit in ('feet', '0/m', '-5/m', '/m', 'nan/m', '5000', 'MM'):
+            self.fails(2, "--depth-unit: '%s' is not known; give disparity, inverse, mm, m or a "
+                          "number per metre such as 5000/m" % unit,
+                       *self.render('--depth-unit', unit))
+        # Dark is near: the left half, sharp when 1 is in focus.
+        self.succeeds(*self.render('--depth-unit', 'inverse', '--focus', '0.8', '--blur', '6'))
+        self.assertEqual(pictures.read_pnm('out.ppm')[2][:30],
+                         pictures.read_pnm('photo.ppm')[2][:30])
+
+    def test_views(self):
+        self.succeeds(*self.render('--view', 'depth'))
+        width, height, values = pictures.read_pnm('out.ppm')
+        self.assertEqual(width, W)
+        self.assertGreater(height, H + 20)  # the legend
+        self.assertNotEqual(values[:3], values[(W - 1) * 3:W * 3])
+        self.assertEqual(values[:3], values[3:6])
+        legend = values[H * W * 3:]
+        self.assertIn((240, 240, 240), {legend[i:i + 3] for i in range(0, len(legend), 3)})
+        self.succeeds(*self.render('--view', 'blur', '--focus', '1', '--blur', '9'))
+        values = pictures.read_pnm('out.ppm')[2]
+        self.assertEqual(values[(W - 1) * 3:W * 3], (0, 255, 120))  # sharp
+        self.assertNotEqual(values[:3], (0, 255, 120))
+        self.succeeds(*self.render('--view', 'none'))
+        self.assertEqual(pictures.read_pnm('out.ppm')[1], H)
+
+    def test_a_low_map(self):
+        pictures.pgm('low.pgm', W // 4, H // 4, lambda x, y: 20 * x)
+        report = self.reports('render', 'photo.ppm', '--depth', 'low.pgm', '-o', 'out.ppm')
+        self.assertEqual((report['width'], report['depth']['width']), (W, W // 4))
+
+    def test_bench_frames(self):
+        report = self.reports('bench', '--frames', '--size', '48x32', '--repeat', '2',
+                              '--threads', '2')
+        rows = report['frames']
+        self.assertEqual([(r['blur'], r['quality'], r['threads']) for r in rows],
+                         [(k, q, 2) for k in (10, 20, 40)
+                          for q in ('preview', 'standard', 'best')])
+        for row in rows:
+            self.assertEqual((row['width'], row['height']), (48, 32))
+            self.assertTrue(all(row[t] > 0 for t in
+                                ('memcpy_ms', 'box_ms', 'prepare_ms', 'render_ms')))
+        text = self.succeeds('bench', 'photo.ppm', '--depth', 'depth.pgm', '--frames',
+                             '--repeat', '1', '--threads', '1')
+        self.assertEqual(len(re.findall(r'(?m)^ *%dx%d ' % (W, H), text)), 9)
+        self.fails(2, '--frames: it does not go with --rays without a number; leave one of them '
+                   'out', 'bench', '--frames', '--rays', '--size', '9x9')
+
+    def test_bench_kernels(self):
+        report = self.reports('bench', '--kernels')
+        names = [k['kernel'] for k in report['kernels']]
+        self.assertIn('sweep', names)
+        self.assertEqual(len(set(names)), len(names))
+        for kernel in report['kernels']:
+            self.assertGreater(kernel['ns'], 0)
+            self.assertGreater(kernel['ns_c'], 0)
+        plain = self.reports('bench', '--kernels', '--cpu', 'c')
+        self.assertEqual(plain['cpu'], 'c')
+        self.assertRegex(self.succeeds('bench', '--kernels'), r'(?m)^sweep +\S+ +\S+ ns/ray sample')
+
+    def test_bench(self):
+        report = self.reports('bench', '--size', '64x40', '--repeat', '2', '--blur', '5')
+        self.assertEqual((report['width'], report['height'], report['repeat'], report['blur']),
+                         (64, 40, 2, 5.0))
+        self.assertGreater(report['megapixels_per_second'], 0)
+        self.assertEqual(report['photo'], None)
+        report = self.reports('bench', 'photo.ppm', '--depth', 'depth.pgm', '--repeat', '1')
+        self.assertEqual((report['photo'], report['width']), ('photo.ppm', W))
+        self.assertRegex(self.succeeds('bench', '--size', '1x1', '--repeat', '1'),
+                         r'^1x1, sweep, blur .*\ncreate .*\nprepare .*\nrender .*\n$')
+        for size in ('0x5', '5', '5x65536', '5x5x5', 'axb'):
+            self.fails(2, "--size: '%s' cannot be used; give WxH from 1 to 65535" % size,
+                       'bench', '--size', size)
+
+
+class Papers(Case):
+    def test_options_of_single_methods(self):
+        plain = {m: self.picture('--method', m) for m in METHODS}
+        for method, *options in (('jittered', '--seed', '5'), ('jittered', '--cell', '3'),
+                                 ('scatter', '--spread', 'lommel'),
+                                 ('scatter', '--depth-ratio', '4'), ('scatter', '--star', '4'),
+                                 ('interpolated', '--last-ratio', '3'),
+                                 ('foveated', '--attention-angle', '0'),
+                                 ('diffusion', '--field', 'sphere'),
+                                 ('diffusion', '--field', 'picture', '--field-map', 'photo.ppm')):
+            self.assertNotEqual(self.picture('--method', method, *options), plain[method], options)
+        self.same(self.picture('--method', 'jittered', '--seed', '0'), plain['jittered'])
+        self.same(self.picture('--method', 'diffusion', '--solver', 'series'),
+                  plain['diffusion'])
+
+    def picture(self, *options):
+        self.succeeds(*self.render('--blur', '5', '--focus', '0.2', *options))
+        return pictures.read_pnm('out.ppm')
+
+    def test_refused(self):
+        for why, *options in (
+                ("--star: '1' cannot be used; give 0 for none, or 2 to 16 spikes", '--star', '1'),
+                ("--middle-ratio: '1' cannot be used; give a number above 1", '--middle-ratio',
+                 '1', '--method', 'interpolated'),
+                ('--middle-ratio: 4 is not below --last-ratio 3; give the smaller number to '
+                 '--middle-ratio', '--middle-ratio', '4', '--last-ratio', '3', '--method',
+                 'interpolated'),
+                ('--field: picture needs one; give a grey picture to --field-map', '--field',
+                 'picture'),
+                ('--field-map: it goes with --field picture; give that too', '--field-map', 'x'),
+                ("--aperture: 'polygon:5' does not go with --method scatter, which knows a disc "
+                 'alone; leave one of them out', '--aperture', 'polygon:5', '--method',
+                 'scatter'),
+                ('--attention: 5000,1 lies outside of the picture; give 0,0 to %d,%d'
+                 % (W - 1, H - 1), '--attention', '5000,1', '--method', 'foveated')):
+            self.fails(2, why, *self.render(*options))
+        for option, value in (('--cell', '0'), ('--airy-radius', '0.1'), ('--layers', '9'),
+                              ('--conductivity', '0'), ('--star-strength', '2'),
+                              ('--field-falloff', '0'), ('--sharp-radius', '0.4')):
+            self.fails(2, re.compile(r"^refocus: %s: '%s' cannot be used; give" % (option, value)),
+                       *self.render(option, value))
+
+    def test_compare(self):
+        common = ('photo.ppm', '--depth', 'depth.pgm', '--blur', '4', '--focus', '0.2')
+        self.succeeds('render', *common, '-o', 'gt.ppm')
+        text = self.succeeds('compare', *common, '--reference', 'gt.ppm', '-o', 'crops.png')
+        for method in METHODS:
+            self.assertRegex(text, r'(?m)^%s +\S+ +\S+ +\S+ +\S+ +\d' % method)
+        width = pictures.read_png('crops.png')[0]
+        self.assertGreater(width, 12 * min(W, 96))
+        report = self.reports('compare', *common, '--reference', 'gt.ppm', '--methods',
+                              'blur,sweep,blur')
+        self.assertEqual([m['method'] for m in report['methods']], ['photo', 'blur', 'sweep'])
+        photo, blur, sweep = report['methods']
+        self.assertEqual((sweep['psnr'], sweep['rmse']), ('infinity', 0))
+        self.assertGreater(blur['psnr'], photo['psnr'])
+        self.fails(2, "--methods: 'swep' is no method; did you mean 'sweep'?", 'compare', *common,
+                   '--reference', 'gt.ppm', '--methods', 'blur,swep')
+        report = self.reports(
+            'compare', *common, '--reference', 'gt.ppm', '--iterations', '3', '--methods',
+            'search:rays=full:iterations=1,search,jittered:cell=4:seed=7,search:mirror,sweep:rays=8')
+        self.assertEqual([m['label'] for m in report['methods'][1:]],
+                         ['search:rays=full:iterations=1', 'search', 'jittered:cell=4:seed=7',
+                          'search:mirror', 'sweep:rays=8'])
+        self.assertEqual([m['method'] for m in report['methods'][1:4]],
+                         ['search', 'search', 'jittered'])
+        # each is what render makes of the same options
+        for row, options in ((1, ('--method', 'search', '--rays', 'full', '--iterations', '1')),
+                             (2, ('--method', 'search', '--iterations', '3')),
+                             (3, ('--method', 'jittered', '--cell', '4', '--seed', '7')),
+                             (5, ('--rays', '8'))):
+            self.succeeds('render', *common, *options, '-o', 'own.ppm')
+            own = self.reports('compare', *common, '--reference', 'own.ppm', '--iterations', '3',
+                               '--methods', report['methods'][row]['label'])
+            self.assertEqual(own['methods'][1]['rmse'], 0)
+        for why, methods in (("--rays: 'none' cannot be used; give", 'search:rays=none'),
+                             ('--ray: unknown option; did you mean --rays?', 'search:ray=3'),
+                             ('--mirror: takes no value', 'search:mirror=1'),
+                             ('--threads: unknown option', 'search:threads=1'),
+                             ("--aperture: 'disk' is not known", 'sweep:aperture=disk'),
+                             ('--methods: there are too many; give at most 32',
+                              ','.join('sweep:rays=%d' % i for i in range(1, 40)))):
+            self.fails(2, re.compile('^refocus: ' + re.escape(why)), 'compare', *common,
+                       '--reference', 'gt.ppm', '--methods', methods)
+        self.fails(2, '--reference: there is nothing to compare with; give --reference GT',
+                   'compare', *common)
+        pictures.ppm('tiny.ppm', 4, 3, lambda x, y: (x, y, 0))
+        self.fails(1, 'tiny.ppm: it has 4x3 pixels, the photo %dx%d; give one of the same size'
+                   % (W, H), 'compare', *common, '--reference', 'tiny.ppm')
+
+
+    def test_ray_statistics(self):
+        report = self.reports('bench', 'photo.ppm', '--depth', 'depth.pgm', '--blur', '6',
+                              '--focus', '0.2', '--rays')
+        self.assertEqual(report['rays'] % report['pixels'], 0)
+        self.assertAlmostEqual(sum(report['found_after']) + report['never'], 1)
+        self.assertGreater(report['found_after'][0], 0.5)
+        self.assertGreater(report['hidden'], 0)
+        text = self.succeeds('bench', '--rays', '--size', '60x40', '--blur', '3')
+        self.assertRegex(text, r'(?m)^ +1 +\d+\.\d+ %')
+        report = self.reports('bench', '--rays', '5', '--size', '60x40', '--repeat', '1')
+        self.assertEqual(report['rays'], 5)
+
+
+if __name__ == '__main__':
+    unittest.main()
