@@ -131,7 +131,7 @@ int refocus_depth_snap(const struct refocus_image *photo, const struct refocus_d
     if (!rf_good_image(photo) || !rf_good_map(map) || !params ||
         params->struct_size != sizeof *params || params->reach < 1 ||
         params->reach > REFOCUS_MAX_SNAP || params->threads < 0 ||
-        params->threads > RF_MAX_THREADS || params->cpu > REFOCUS_CPU_AVX512 ||
+        params->threads > RF_MAX_THREADS || !refocus_cpu_name(params->cpu) ||
         map->width != photo->width || map->height != photo->height || !out ||
         ((uintptr_t)out & 1) || (stride & 1) ||
         !rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))

@@ -57,7 +57,7 @@ static bool good_params(const struct refocus_upsample_params *params,
                         const struct refocus_disparity *map)
 {
     return params->struct_size == sizeof *params && params->threads >= 0 &&
-           params->threads <= RF_MAX_THREADS && params->cpu <= REFOCUS_CPU_AVX512 &&
+           params->threads <= RF_MAX_THREADS && refocus_cpu_name(params->cpu) &&
            (!params->confidence ||
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }

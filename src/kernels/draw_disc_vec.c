@@ -1,4 +1,5 @@
-/* draw_disc_vec.c: the light of lamps, drawn as discs, a vector of pixels at a time. */
+/* draw_disc_vec.c: adds the light of a run of highlights to a tile, a vector of pixels at a time.
+ */
 #include "kernels/disc_vec.h"
 #include "kernels/kernels.h"
 #include "simd/vec.h"
@@ -20,7 +21,7 @@ static inline vec_u16 sight(vec_u16 seen, const uint16_t *visible)
                        vec_u16_and(half, vec_u16_load(visible + RF_TILE * RF_TILE)));
 }
 
-static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_job *job)
+void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_job *job)
 {
     const vec_u16 times = vec_u16_set((uint16_t)(1 << job->shift)), zero = vec_u16_set(0);
     vec_u16 each[3];
@@ -43,9 +44,4 @@ static void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_j
                 add(mean[c] + y * RF_TILE + x, seen, each[c]);
         }
     }
-}
-
-void RF_VEC(rf_draw_disc_use)(struct rf_kernels *kernels)
-{
-    kernels->draw_disc = RF_VEC(rf_draw_disc);
 }

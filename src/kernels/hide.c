@@ -1,17 +1,6 @@
+/* hide.c: which part of a highlight's disc nearer surfaces occlude. */
 #include "kernels/kernels.h"
 #include "support/compare.h"
-
-bool rf_meets_c(const int16_t *blur, ptrdiff_t stride, int width, int height,
-                const struct rf_slab *slab)
-{
-    const uint16_t from = rf_range_from(slab), to = rf_range_to(slab, slab);
-
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++)
-            if (rf_in_range(from, to, blur[y * stride + x]))
-                return true;
-    return false;
-}
 
 static int go(const struct rf_disc_way *way, int v)
 {

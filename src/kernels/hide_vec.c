@@ -1,27 +1,12 @@
-/* hide_vec.c: where nearer things hide the lamp of a disc, a vector of pixels at a
- * time. Places are found for all rows before what is there is looked up, and that
- * before it is judged, so that no vector waits for its elements. */
-#include "kernels/disc_vec.h"
+/* hide_vec.c: which part of a highlight's disc nearer surfaces occlude, a vector of pixels at a
+ * time.
+ *
+ * Places are found for all rows before what is there is looked up, and that before it is judged, so
+ * that no vector waits for its elements.
+ */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
-
-static bool RF_VEC(rf_meets)(const int16_t *blur, ptrdiff_t stride, int width, int height,
-                             const struct rf_slab *slab)
-{
-    const vec_u16 from = vec_u16_set(rf_range_from(slab));
-    const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
-    const int last = width - (int)VEC_U16;
-    vec_u16 met = vec_u16_set(0);
-
-    for (int y = 0; y < height; y++, blur += stride)
-        for (int x = 0; x < width; x += (int)VEC_U16) {
-            const int16_t *const s = blur + (x < last ? x : last);
-            const vec_u16 away = vec_u16_sub(vec_u16_load((const uint16_t *)s), from);
-
-            met = vec_u16_or(met, vec_s16_less(away, to));
-        }
-    return vec_u16_any(met);
-}
+#include "kernels/disc_vec.h"
 
 static const uint16_t column[RF_TILE] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
@@ -83,9 +68,9 @@ static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, v
     }
 }
 
-static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
-                            const struct rf_slab *slab, const struct rf_disc_job *job,
-                            const struct rf_disc_way *way)
+void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
+                     const struct rf_slab *slab, const struct rf_disc_job *job,
+                     const struct rf_disc_way *way)
 {
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
@@ -108,10 +93,4 @@ static void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t st
         judge(visible, at + y * RF_TILE, from, to, y, end);
         judge(visible + RF_TILE * RF_TILE, second + y * RF_TILE, from, to, y, end);
     }
-}
-
-void RF_VEC(rf_hide_use)(struct rf_kernels *kernels)
-{
-    kernels->meets = RF_VEC(rf_meets);
-    kernels->hide = RF_VEC(rf_hide);
 }

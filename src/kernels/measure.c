@@ -219,7 +219,7 @@ int refocus_measure_kernel(uint32_t index, uint32_t cpu, struct refocus_kernel_t
     uint32_t c = REFOCUS_CPU_C;
     struct rows *rows;
 
-    if (index >= sizeof measured / sizeof *measured || cpu > REFOCUS_CPU_AVX512 || !time)
+    if (index >= sizeof measured / sizeof *measured || !refocus_cpu_name(cpu) || !time)
         return REFOCUS_ERR_ARGUMENT;
     if (!rf_kernels_select(&own, &cpu) || !rf_kernels_select(&plain, &c))
         return REFOCUS_ERR_UNSUPPORTED;

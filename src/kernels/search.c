@@ -1,3 +1,4 @@
+/* search.c: follows rays by the randomized intersection search, and sums their light. */
 #include "kernels/kernels.h"
 
 static inline int32_t offset_of(int u, int v, int blur, int32_t stride)

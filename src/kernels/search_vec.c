@@ -1,10 +1,10 @@
-/* search_vec.c: the randomized intersection search, a vector of pixels at a time.
+/* search_vec.c: follows rays by the randomized intersection search, a vector of pixels at a time.
  *
- * First guesses lie side by side. Mostly they lead all pixels the same way, or, at an
- * edge and on a slope, one of two ways: that of the first pixel and that of the next
- * that goes another. Both are looked up without a branch, and what they are is found
- * out for all rays beforehand, so that nothing waits for it. Pixels that go other ways
- * yet come last. A pixel whose own light is taken is only counted.
+ * First guesses lie side by side. Mostly they lead all pixels the same way, or, at an edge and on a
+ * slope, one of two ways: that of the first pixel and that of the next that goes another. Both are
+ * looked up without a branch, and what they are is found out for all rays beforehand, so that
+ * nothing waits for it. Pixels that go other ways yet come last. A pixel whose own light is taken
+ * is only counted.
  */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
@@ -13,8 +13,6 @@ enum {
     STEPS = 16, /* rays that a 16-bit sum of Q12 light holds */
     LANES = (int)VEC_U16,
 };
-
-#define ALWAYS_INLINE inline __attribute__((always_inline))
 
 struct sums {
     vec_u16 light[3];
@@ -46,25 +44,25 @@ struct rest {
 };
 
 /* x in the low byte, y in the high one, both within 127. */
-static ALWAYS_INLINE ptrdiff_t offset_from(uint16_t key, ptrdiff_t stride)
+static RF_ALWAYS_INLINE ptrdiff_t offset_from(uint16_t key, ptrdiff_t stride)
 {
     return (int8_t)(key >> 8) * stride + (int8_t)(key & 0xff);
 }
 
-static ALWAYS_INLINE vec_u16 key_of(const struct span *s, int n, vec_u16 guess)
+static RF_ALWAYS_INLINE vec_u16 key_of(const struct span *s, int n, vec_u16 guess)
 {
     return vec_u16_bytes(vec_u16_offset(guess, vec_u16_set((uint16_t)s->rays->u[n])),
                          vec_u16_offset(guess, vec_u16_set((uint16_t)s->rays->v[n])));
 }
 
-static ALWAYS_INLINE vec_u16 first_guess(const struct span *s, int n)
+static RF_ALWAYS_INLINE vec_u16 first_guess(const struct span *s, int n)
 {
     return vec_u16_load(s->job->blur + s->at + s->rays->start[n]);
 }
 
 /* The lanes of `mask` that what they see does not settle. */
-static ALWAYS_INLINE vec_mask unsettled(const struct span *s, int n, vec_mask mask, vec_u16 guess,
-                                        vec_u16 seen, const bool last)
+static RF_ALWAYS_INLINE vec_mask unsettled(const struct span *s, int n, vec_mask mask,
+                                           vec_u16 guess, vec_u16 seen, const bool last)
 {
     const vec_u16 within = vec_u16_set((uint16_t)s->rays->within[n]);
 
@@ -73,20 +71,20 @@ static ALWAYS_INLINE vec_mask unsettled(const struct span *s, int n, vec_mask ma
     return vec_mask_less(mask, within, vec_s16_apart(seen, guess));
 }
 
-static ALWAYS_INLINE void add_light(struct sums *sums, const struct span *s, ptrdiff_t q,
-                                    vec_mask mask)
+static RF_ALWAYS_INLINE void add_light(struct sums *sums, const struct span *s, ptrdiff_t q,
+                                       vec_mask mask)
 {
     for (int c = 0; c < 3; c++)
         sums->light[c] =
             vec_u16_add_where(mask, sums->light[c], vec_u16_load(s->job->light[c] + q));
 }
 
-static ALWAYS_INLINE void add_to_own(struct sums *sums, vec_mask mask)
+static RF_ALWAYS_INLINE void add_to_own(struct sums *sums, vec_mask mask)
 {
     sums->own = vec_u16_add_where(mask, sums->own, vec_u16_set(1));
 }
 
-static ALWAYS_INLINE void aim(struct aims *aims, const struct span *s)
+static RF_ALWAYS_INLINE void aim(struct aims *aims, const struct span *s)
 {
     const vec_mask all = vec_mask_all();
     const int32_t stride = (int32_t)s->job->stride;
@@ -108,8 +106,8 @@ static ALWAYS_INLINE void aim(struct aims *aims, const struct span *s)
 }
 
 /* The first test of rays n to end, two ways. */
-static ALWAYS_INLINE void test_two(struct sums *sums, struct rest *rest, const struct aims *aims,
-                                   const struct span *s, int n, int end, const bool once)
+static RF_ALWAYS_INLINE void test_two(struct sums *sums, struct rest *rest, const struct aims *aims,
+                                      const struct span *s, int n, int end, const bool once)
 {
     const vec_mask all = vec_mask_all();
     int left = 0;
@@ -142,9 +140,9 @@ static ALWAYS_INLINE void test_two(struct sums *sums, struct rest *rest, const s
 }
 
 /* One test of the lanes `waiting`, way by way; returns those it does not settle. */
-static ALWAYS_INLINE vec_mask test_ways(struct sums *sums, const struct span *s, int n,
-                                        vec_mask waiting, vec_u16 guess, vec_u16 *seen,
-                                        const bool last)
+static RF_ALWAYS_INLINE vec_mask test_ways(struct sums *sums, const struct span *s, int n,
+                                           vec_mask waiting, vec_u16 guess, vec_u16 *seen,
+                                           const bool last)
 {
     const vec_u16 key = key_of(s, n, guess);
     vec_mask pending = vec_mask_without(waiting, waiting);
@@ -166,8 +164,8 @@ static ALWAYS_INLINE vec_mask test_ways(struct sums *sums, const struct span *s,
     return pending;
 }
 
-static ALWAYS_INLINE void test_rest(struct sums *sums, const struct rest *rest, int i,
-                                    const struct span *s, const bool once)
+static RF_ALWAYS_INLINE void test_rest(struct sums *sums, const struct rest *rest, int i,
+                                       const struct span *s, const bool once)
 {
     const int n = rest->ray[i];
     const vec_u16 guess = first_guess(s, n);
@@ -181,7 +179,7 @@ static ALWAYS_INLINE void test_rest(struct sums *sums, const struct rest *rest, 
     add_to_own(sums, pending);
 }
 
-static ALWAYS_INLINE void clear(struct sums *sums)
+static RF_ALWAYS_INLINE void clear(struct sums *sums)
 {
     const vec_u16 zero = vec_u16_set(0);
 
@@ -198,7 +196,7 @@ static void add_own(const struct span *s, vec_u16 times)
             s->sum[c][i] += (uint32_t)count[i] * s->job->light[c][s->at + i];
 }
 
-static ALWAYS_INLINE void search_span(const struct span *s, const bool once)
+static RF_ALWAYS_INLINE void search_span(const struct span *s, const bool once)
 {
     const int rays = s->rays->rays;
     struct aims aims;
@@ -220,7 +218,7 @@ static ALWAYS_INLINE void search_span(const struct span *s, const bool once)
         add_own(s, sums.own);
 }
 
-static void RF_VEC(rf_search)(uint32_t *const sum[3], const struct rf_search_job *job)
+void RF_VEC(rf_search)(uint32_t *const sum[3], const struct rf_search_job *job)
 {
     for (int i = 0; i < RF_STRIP_LANES; i += LANES) {
         const ptrdiff_t at = i / RF_TILE * job->stride + i % RF_TILE;
@@ -232,9 +230,4 @@ static void RF_VEC(rf_search)(uint32_t *const sum[3], const struct rf_search_job
         else
             search_span(&span, false);
     }
-}
-
-void RF_VEC(rf_search_use)(struct rf_kernels *kernels)
-{
-    kernels->search = RF_VEC(rf_search);
 }

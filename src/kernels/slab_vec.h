@@ -2,6 +2,7 @@
 #ifndef RF_SLAB_VEC_H
 #define RF_SLAB_VEC_H
 
+#include "kernels/rays.h"
 #include "simd/vec.h"
 #include "tiles/slab.h"
 

@@ -43,7 +43,7 @@ static bool read_params(struct refocus_renderer_params *own,
     return own->max_width >= 1 && own->max_width <= REFOCUS_MAX_SIDE && own->max_height >= 1 &&
            own->max_height <= REFOCUS_MAX_SIDE && own->max_blur_radius >= 0 &&
            own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
-           own->threads <= RF_MAX_THREADS && own->cpu <= REFOCUS_CPU_AVX512 && own->reserved == 0 &&
+           own->threads <= RF_MAX_THREADS && refocus_cpu_name(own->cpu) && own->reserved == 0 &&
            own->in_place <= 1 && own->thin <= 1 && good_methods(own) &&
            !own->allocator.allocate == !own->allocator.release;
 }
@@ -141,11 +141,4 @@ void refocus_renderer_get_info(const struct refocus_renderer *renderer,
     info->threads = renderer->pool.threads;
     info->cpu = renderer->cpu;
     info->memory = renderer->memory;
-}
-
-const char *refocus_cpu_name(uint32_t cpu)
-{
-    static const char *const name[] = {"auto", "c", "neon", "sse41", "avx2", "avx512"};
-
-    return cpu < sizeof name / sizeof *name ? name[cpu] : NULL;
 }

@@ -1,7 +1,7 @@
 /* vec.h: the vector operations that kernels are written on, with their meaning in C.
  *
- * A kernel in NAME_vec.c is compiled once for each instruction set, with RF_VEC_SET
- * defined as its name; RF_VEC(f) is then f_NAME. A vector holds VEC_U16 lanes.
+ * Each instruction set has a header of them, vec_NAME.h, and kernels/NAME_vec.c is compiled once
+ * with each. A vector holds VEC_U16 lanes of 16 bits.
  *
  *     vec_u16_load(p)         lane i = p[i], any alignment of whole elements
  *     vec_u16_from_bytes(p)   lane i = p[i], of bytes
@@ -99,28 +99,10 @@
 #ifndef RF_VEC_H
 #define RF_VEC_H
 
-#define RF_VEC_PASTE(name, set)  name##_##set
-#define RF_VEC_EXPAND(name, set) RF_VEC_PASTE(name, set)
-#define RF_VEC(name)             RF_VEC_EXPAND(name, RF_VEC_SET)
-
-#if defined(RF_VEC_AVX512) || defined(RF_VEC_AVX2) || defined(RF_VEC_SSE41) || defined(RF_VEC_NEON)
-#define RF_VECTORS /* not plain C */
-#endif
-
-#if defined(RF_VEC_AVX512)
-#include "simd/vec_avx512.h"
-#elif defined(RF_VEC_AVX2)
-#include "simd/vec_avx2.h"
-#elif defined(RF_VEC_SSE41)
-#include "simd/vec_sse41.h"
-#elif defined(RF_VEC_NEON)
-#include "simd/vec_neon.h"
-#endif
-#if defined(RF_VECTORS) && !defined(RF_VEC_NEON)
-#include "simd/vec_weigh4.h"
-#endif
-#if defined(RF_VECTORS) && !defined(RF_VEC_AVX512)
-#include "simd/vec_mask.h"
+/* The build names the header of the instruction set; plain C has none. */
+#if defined(RF_VEC_HEADER)
+#define RF_VECTORS
+#include RF_VEC_HEADER
 #endif
 
 #endif

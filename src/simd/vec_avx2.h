@@ -400,4 +400,9 @@ static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
     vec_u64_add_four(to + 12, _mm256_extracti128_si256(v.high, 1));
 }
 
+#if !defined(RF_VEC_OWN_MASKS)
+#include "simd/vec_mask.h"
+#endif
+#include "simd/vec_weigh4.h"
+
 #endif

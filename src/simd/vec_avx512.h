@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#define RF_VEC_OWN_MASKS
 #include "simd/vec_avx2.h"
 
 typedef __mmask16 vec_mask;

@@ -431,4 +431,6 @@ static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
     vec_u64_add_four(to + 4, v.high);
 }
 
+#include "simd/vec_mask.h"
+
 #endif

@@ -368,4 +368,7 @@ static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
     vec_u64_add_four(to + 4, v.high);
 }
 
+#include "simd/vec_mask.h"
+#include "simd/vec_weigh4.h"
+
 #endif

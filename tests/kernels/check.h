@@ -51,7 +51,9 @@ void bench_thin(const struct subject *subject);
 /* Seconds that the fastest of several runs of call(context) takes. */
 double best_time(void (*call)(void *context), void *context);
 
-/* Operations of simd/vec.h, by check_vec.c of an instruction set. */
-int check_vec_sse41(void), check_vec_avx2(void), check_vec_avx512(void), check_vec_neon(void);
+/* Operations of simd/vec.h, by check_vec.c of each instruction set. */
+#define SET(name, NAME, test) int check_vec_##name(void);
+#define NO_SET(name, NAME)
+#include "kernels/sets.def"
 
 #endif

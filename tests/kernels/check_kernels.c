@@ -32,25 +32,20 @@ double best_time(void (*call)(void *context), void *context)
     return best;
 }
 
+/* Plain C has no operations of its own. */
+int check_vec_c(void)
+{
+    return 0;
+}
+
 static int check_vec(uint32_t cpu)
 {
     switch (cpu) {
-#if defined(RF_WITH_SSE41)
-    case REFOCUS_CPU_SSE41:
-        return check_vec_sse41();
-#endif
-#if defined(RF_WITH_AVX2)
-    case REFOCUS_CPU_AVX2:
-        return check_vec_avx2();
-#endif
-#if defined(RF_WITH_AVX512)
-    case REFOCUS_CPU_AVX512:
-        return check_vec_avx512();
-#endif
-#if defined(RF_WITH_NEON)
-    case REFOCUS_CPU_NEON:
-        return check_vec_neon();
-#endif
+#define SET(name, NAME, test)                                                                      \
+    case REFOCUS_CPU_##NAME:                                                                       \
+        return check_vec_##name();
+#define NO_SET(name, NAME)
+#include "kernels/sets.def"
     }
     return 0;
 }
@@ -66,7 +61,7 @@ int main(int argc, char **argv)
     }
     if (!bench)
         failures += check_focus();
-    for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++) {
+    for (uint32_t cpu = REFOCUS_CPU_C; refocus_cpu_name(cpu); cpu++) {
         struct subject subject = {.cpu = refocus_cpu_name(cpu)};
         uint32_t plain = REFOCUS_CPU_C, own = cpu;
 

@@ -21,6 +21,9 @@ static inline uint16_t pick(int round, int lane, int which, uint32_t *seed)
     return (uint16_t)noise(seed);
 }
 
+/* check_vec.c: all operations. */
+int RF_VEC(check_vec)(void);
+
 /* check_vec_across.c: operations that move lanes, or are of bytes or of groups of elements. */
 int RF_VEC(check_vec_across)(void);
 

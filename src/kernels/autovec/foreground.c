@@ -1,0 +1,37 @@
+/* foreground.c: the greatest blur of the foreground in cells of 4 x 4 pixels. */
+#include "kernels/kernels.h"
+#include "kernels/autovec/cell_runs.h"
+
+/* The blur of a pixel that is foreground. */
+static inline int16_t in_front(int16_t blur, int16_t behind)
+{
+    return (int16_t)(blur == behind ? RF_NO_BLUR : blur);
+}
+
+static void foreground_run(int16_t *restrict most, const int16_t *restrict blur,
+                           const int16_t *restrict behind, ptrdiff_t stride, int n)
+{
+    int16_t high[RF_CELL * RF_CELL_RUN + 4];
+
+    for (int x = 0; x < RF_CELL * n; x++) {
+        const int16_t a = in_front(blur[x], behind[x]);
+        const int16_t b = in_front(blur[x + stride], behind[x + stride]);
+        const int16_t c = in_front(blur[x + 2 * stride], behind[x + 2 * stride]);
+        const int16_t d = in_front(blur[x + 3 * stride], behind[x + 3 * stride]);
+
+        high[x] = rf_greater(rf_greater(a, b), rf_greater(c, d));
+    }
+    for (int i = 0; i < n; i++) {
+        const int16_t *h = high + RF_CELL * i;
+
+        most[i] = rf_greater(rf_greater(h[0], h[1]), rf_greater(h[2], h[3]));
+    }
+}
+
+void RF_VEC(rf_foreground)(int16_t *most, const int16_t *blur, const int16_t *behind,
+                           ptrdiff_t stride, int n)
+{
+    for (int i = 0; i < n; i += RF_CELL_RUN)
+        foreground_run(most + i, blur + RF_CELL * i, behind + RF_CELL * i, stride,
+                       n - i < RF_CELL_RUN ? n - i : RF_CELL_RUN);
+}

@@ -1,0 +1,14 @@
+/* keep2.c: gives pairs back that were known before the background was inpainted. */
+#include "kernels/kernels.h"
+
+void RF_VEC(rf_keep2)(uint16_t *restrict out, const uint16_t *restrict own,
+                      const int16_t *restrict blur, const int16_t *restrict behind, int n)
+{
+    for (int x = 0; x < n; x++) {
+        const uint16_t known =
+            (uint16_t) - ((blur[2 * x] == behind[2 * x]) | (blur[2 * x + 1] == behind[2 * x + 1]));
+
+        out[2 * x] = (uint16_t)((own[2 * x] & known) | (out[2 * x] & ~known));
+        out[2 * x + 1] = (uint16_t)((own[2 * x + 1] & known) | (out[2 * x + 1] & ~known));
+    }
+}

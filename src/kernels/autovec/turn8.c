@@ -1,0 +1,16 @@
+/* turn8.c: rows of bytes to columns laid end to end. */
+#include "kernels/kernels.h"
+
+void RF_VEC(rf_turn8)(uint8_t out[RF_AROUND * RF_TURNED], const uint8_t *const row[RF_AROUND])
+{
+    const uint8_t *restrict a = row[0], *restrict b = row[1], *restrict c = row[2];
+    const uint8_t *restrict d = row[3], *restrict e = row[4], *restrict f = row[5];
+    const uint8_t *restrict g = row[6], *restrict h = row[7];
+
+    for (int x = 0; x < RF_TURNED; x++) {
+        uint8_t *restrict to = out + RF_AROUND * x;
+
+        to[0] = a[x], to[1] = b[x], to[2] = c[x], to[3] = d[x];
+        to[4] = e[x], to[5] = f[x], to[6] = g[x], to[7] = h[x];
+    }
+}

@@ -1,0 +1,59 @@
+/* background.h: contracts of the kernels that mark the hidden background and inpaint it by
+ * push-pull. */
+#ifndef RF_KERNELS_BACKGROUND_H
+#define RF_KERNELS_BACKGROUND_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
+enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
+
+/* What no blur is: an unknown pixel of the background. */
+enum { RF_NO_BLUR = INT16_MIN };
+
+/*
+ * spread_row: grey dilation of a row by the cone to both sides, of values at most
+ * `reach` cone steps apart, reach at most 2 RF_SPREAD_MARGIN - 1. Values are s + 2^15.
+ * Returns where the result is, row or spare; both are n long, with RF_SPREAD_MARGIN
+ * elements before and after them that are overwritten.
+ */
+enum { RF_SPREAD_MARGIN = 256 };
+typedef uint16_t *rf_spread_row_fn(uint16_t *row, uint16_t *spare, int reach, int n);
+
+/* dilate_from: the cone from the three nearest pixels of the row before or after, whose
+ * elements -1 and n are read. Values are s + 2^15. */
+typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int n);
+
+/* mark: the blur of pixels that are not foreground, RF_NO_BLUR of those whose dilated value
+ * is more than half a pixel above their own. `dilated` is s + 2^15. */
+typedef void rf_mark_fn(int16_t *behind, const int16_t *blur, const uint16_t *dilated, int n);
+
+/* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
+ * farthest blur; 0 and RF_NO_BLUR if none is known. */
+typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
+                        const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
+                        int n);
+
+/* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
+ * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their
+ * parent's blur. */
+typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
+                        const uint16_t *far_row, uint16_t *mixed, int pairs);
+typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
+
+/* push1: push, of one plane. */
+typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper,
+                         const uint16_t *lower, const int16_t *blur0, const int16_t *blur1, int n);
+
+/* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
+ * join2: pairs of them again.
+ * keep2: n pairs become `own` where either of the two pixels has the same blur in front and behind.
+ */
+typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
+                          const uint16_t *lower, int n);
+typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *second, int n);
+typedef void rf_keep2_fn(uint16_t *out, const uint16_t *own, const int16_t *blur,
+                         const int16_t *behind, int n);
+
+#endif
