@@ -15,35 +15,48 @@ static inline ptrdiff_t rf_row_of(const struct rf_row_layout *layout, int y, int
     return y < rows / 2 ? y * layout->apart : layout->half + (y - rows / 2) * layout->apart;
 }
 
-static RF_ALWAYS_INLINE struct rf_sweep_hit
-rf_sweep_hit(const struct rf_sweep_view *v, int n, int lane, const int planes, const bool weighted)
+/* Where in a row of weights that of element x lies. */
+static inline int rf_weight_column(const struct rf_sweep_view *v, int x)
 {
-    const int x = lane % RF_TILE, y = lane / RF_TILE;
-    const ptrdiff_t p = rf_row_of(&v->layout, y, v->rows) + x;
-    const ptrdiff_t own = rf_row_of(&v->weight_layout, y, v->rows) + (v->chroma ? x & ~1 : x);
+    return v->chroma ? x & ~1 : x;
+}
+
+/* Finds what ray n meets from the lane that lies p elements from the first of light, and w from
+ * that of weights. */
+static RF_ALWAYS_INLINE struct rf_sweep_hit rf_sweep_hit(const struct rf_sweep_view *v, int n,
+                                                         ptrdiff_t p, ptrdiff_t w, const int planes,
+                                                         const bool weighted)
+{
     const bool as_light = planes > 1 && weighted && v->rays->last_behind[n];
 
     for (int t = 0; t < v->rays->tests[n]; t++) {
         const ptrdiff_t q = p + v->offset[t][n];
 
         if (rf_in_range(v->rays->from[t][n], v->rays->to[t][n], (int16_t)v->blur[q]))
-            return (struct rf_sweep_hit){
-                v->light + q, weighted ? v->weight + own + v->weight_offset[t][n] : NULL};
+            return (struct rf_sweep_hit){v->light + q,
+                                         weighted ? v->weight + w + v->weight_offset[t][n] : NULL};
     }
     return (struct rf_sweep_hit){v->last[n] + p,
-                                 weighted ? v->last_weight[n] + (as_light ? p : own) : NULL};
+                                 weighted ? v->last_weight[n] + (as_light ? p : w) : NULL};
 }
 
 static RF_ALWAYS_INLINE void rf_sweep_ray_plain(uint32_t *const *sum, const struct rf_sweep_view *v,
                                                 int n, const int planes, const bool weighted)
 {
-    for (int i = 0; i < v->rows * RF_TILE; i++) {
-        const struct rf_sweep_hit hit = rf_sweep_hit(v, n, i, planes, weighted);
+    for (int y = 0; y < v->rows; y++) {
+        const ptrdiff_t p = rf_row_of(&v->layout, y, v->rows);
+        const ptrdiff_t w = rf_row_of(&v->weight_layout, y, v->rows);
 
-        for (int c = 0; c < planes; c++)
-            sum[c][i] += hit.light[c * v->pitch];
-        if (weighted)
-            sum[planes][i] += *hit.weight;
+        for (int x = 0; x < RF_TILE; x++) {
+            const struct rf_sweep_hit hit =
+                rf_sweep_hit(v, n, p + x, w + rf_weight_column(v, x), planes, weighted);
+            const int i = y * RF_TILE + x;
+
+            for (int c = 0; c < planes; c++)
+                sum[c][i] += hit.light[c * v->pitch];
+            if (weighted)
+                sum[planes][i] += *hit.weight;
+        }
     }
 }
 
@@ -62,13 +75,20 @@ static RF_ALWAYS_INLINE void rf_sweep_weighted_ray_plain(uint64_t *const *sum,
                                                          const struct rf_sweep_view *v, int n,
                                                          const int planes)
 {
-    for (int i = 0; i < v->rows * RF_TILE; i++) {
-        const struct rf_sweep_hit hit = rf_sweep_hit(v, n, i, planes, true);
-        const uint64_t weight = *hit.weight;
+    for (int y = 0; y < v->rows; y++) {
+        const ptrdiff_t p = rf_row_of(&v->layout, y, v->rows);
+        const ptrdiff_t w = rf_row_of(&v->weight_layout, y, v->rows);
 
-        for (int c = 0; c < planes; c++)
-            sum[c][i] += weight * hit.light[c * v->pitch];
-        sum[planes][i] += weight;
+        for (int x = 0; x < RF_TILE; x++) {
+            const struct rf_sweep_hit hit =
+                rf_sweep_hit(v, n, p + x, w + rf_weight_column(v, x), planes, true);
+            const int i = y * RF_TILE + x;
+            const uint64_t weight = *hit.weight;
+
+            for (int c = 0; c < planes; c++)
+                sum[c][i] += weight * hit.light[c * v->pitch];
+            sum[planes][i] += weight;
+        }
     }
 }
 

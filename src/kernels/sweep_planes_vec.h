@@ -37,13 +37,18 @@ static RF_ALWAYS_INLINE int rf_vecs(const struct rf_row_group *g)
     return g->rows * g->halves * RF_EACH;
 }
 
-/* Where vector j of a group lies, elements from the group's first. */
-static RF_ALWAYS_INLINE ptrdiff_t rf_vector_at(const struct rf_row_layout *layout, int j,
-                                               const struct rf_row_group *g)
+/* Where the row of vector j of a group lies, elements from the group's first, and where in it. */
+static RF_ALWAYS_INLINE ptrdiff_t rf_row_at(const struct rf_row_layout *layout, int j,
+                                            const struct rf_row_group *g)
 {
     const ptrdiff_t half = j < g->rows * RF_EACH ? 0 : layout->half;
 
-    return half + j / RF_EACH % g->rows * layout->apart + j % RF_EACH * (int)VEC_U16;
+    return half + j / RF_EACH % g->rows * layout->apart;
+}
+
+static RF_ALWAYS_INLINE int rf_column_at(int j)
+{
+    return j % RF_EACH * (int)VEC_U16;
 }
 
 /* The lane that it begins with. */
@@ -65,7 +70,7 @@ static RF_ALWAYS_INLINE void rf_add_plane(vec_u16 sum[RF_MOST_VECS], const uint1
                                           const vec_mask *mask, const struct rf_row_group *g)
 {
     for (int j = 0; j < rf_vecs(g); j++) {
-        const vec_u16 value = vec_u16_load(from + (at + rf_vector_at(layout, j, g)));
+        const vec_u16 value = vec_u16_load(from + (at + rf_row_at(layout, j, g)) + rf_column_at(j));
 
         sum[j] = mask ? vec_u16_add_where(mask[j], sum[j], value) : vec_u16_add(sum[j], value);
     }
@@ -82,11 +87,10 @@ static RF_ALWAYS_INLINE void rf_sweep_forwards(rf_sums sum, const struct rf_swee
 
     for (int t = 0; t < tests; t++) {
         const struct rf_limits limits = rf_limits_of(rays, t, n);
-        const ptrdiff_t q = v->offset[t][n];
+        const uint16_t *const q = v->blur + g->at + v->offset[t][n];
 
         for (int j = 0; j < rf_vecs(g); j++) {
-            const vec_u16 blur =
-                vec_u16_load(v->blur + q + (g->at + rf_vector_at(&v->layout, j, g)));
+            const vec_u16 blur = vec_u16_load(q + rf_row_at(&v->layout, j, g) + rf_column_at(j));
 
             if (t == 0)
                 is_free[j] = vec_mask_all();
@@ -94,7 +98,7 @@ static RF_ALWAYS_INLINE void rf_sweep_forwards(rf_sums sum, const struct rf_swee
             is_free[j] = vec_mask_without(is_free[j], hit[j]);
         }
         for (int c = 0; c < planes; c++)
-            rf_add_plane(sum[c], v->light + q, g->at + c * v->pitch, &v->layout, hit, g);
+            rf_add_plane(sum[c], q, (c + 1) * v->pitch, &v->layout, hit, g);
         if (weighted)
             rf_add_plane(sum[planes], v->weight + v->weight_offset[t][n], g->weight_at,
                          &v->weight_layout, hit, g);
@@ -116,8 +120,8 @@ static RF_ALWAYS_INLINE void rf_sweep_backwards(rf_sums sum, const struct rf_swe
     vec_u16 light[RF_MOST_VECS], weight[RF_MOST_VECS];
 
     for (int j = 0; j < rf_vecs(g); j++) {
-        at[j] = g->at + rf_vector_at(&v->layout, j, g);
-        weight_at[j] = g->weight_at + rf_vector_at(&v->weight_layout, j, g);
+        at[j] = g->at + rf_row_at(&v->layout, j, g) + rf_column_at(j);
+        weight_at[j] = g->weight_at + rf_row_at(&v->weight_layout, j, g) + rf_column_at(j);
     }
     for (int j = 0; j < rf_vecs(g); j++) {
         light[j] = vec_u16_load(v->last[n] + at[j]);
@@ -176,7 +180,9 @@ static RF_ALWAYS_INLINE int rf_sweep_group(struct rf_sweep_state *s, const struc
 
         left -= next - n;
         for (; n < next; n++) {
-            const int own = tests < RF_FEW_TESTS ? tests : v->rays->tests[n];
+            const int own = tests < RF_FEW_TESTS ? tests
+                            : planes > 1         ? run.tests
+                                                 : v->rays->tests[n];
 
             if (planes > 1)
                 rf_sweep_forwards(sum, v, n, own, g, planes, weighted);
@@ -216,11 +222,17 @@ static RF_ALWAYS_INLINE int rf_sweep_rows(struct rf_sweep_state *s, const struct
     return row;
 }
 
+#if defined(__aarch64__)
+enum { RF_ALONE_VECS = 4 }; /* of rays without tests: there are 32 registers */
+#else
+enum { RF_ALONE_VECS = 2 };
+#endif
+
 /* How many rows together keep all that is in work in registers. */
 static RF_ALWAYS_INLINE int rf_rows_together(const int tests, const int planes, const bool weighted)
 {
     if (planes > 1)
-        return (tests == 0 && !weighted ? 4 : 2) / RF_EACH;
+        return (tests == 0 && !weighted ? RF_ALONE_VECS : 2) / RF_EACH;
     return (weighted ? 2 : 4) / RF_EACH;
 }
 

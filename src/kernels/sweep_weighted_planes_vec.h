@@ -39,7 +39,7 @@ static RF_ALWAYS_INLINE void rf_follow_forwards(struct rf_met *met, const struct
                                                 const int planes, const int vecs)
 {
     const struct rf_sorted_rays *rays = v->rays;
-    const ptrdiff_t *const last_at = rays->last_behind[n] ? p->at : p->weight_at;
+    const bool behind = rays->last_behind[n];
     vec_mask is_free[RF_WEIGHTED_VECS];
 
     for (int j = 0; j < vecs; j++)
@@ -58,8 +58,8 @@ static RF_ALWAYS_INLINE void rf_follow_forwards(struct rf_met *met, const struct
         }
     }
     for (int j = 0; j < vecs; j++)
-        rf_put_where(met, j, v->last[n], p->at[j], v->pitch, v->last_weight[n] + last_at[j],
-                     is_free[j], planes);
+        rf_put_where(met, j, v->last[n], p->at[j], v->pitch,
+                     v->last_weight[n] + (behind ? p->at[j] : p->weight_at[j]), is_free[j], planes);
 }
 
 /* Ray n of one plane, from the back to the front. */
@@ -108,7 +108,7 @@ static RF_ALWAYS_INLINE void rf_meet_nothing(struct rf_met *met, const int plane
     }
 }
 
-/* `count` rays at some vectors, from `lane` on. */
+/* `count` rays, of one plane those in ray[], at some vectors, from `lane` on. */
 static RF_ALWAYS_INLINE void rf_sweep_vectors(uint64_t *const *sum, int lane,
                                               const struct rf_sweep_view *v, const uint8_t *ray,
                                               int count, const struct rf_vec_place *p, int steps,
@@ -129,10 +129,10 @@ static RF_ALWAYS_INLINE void rf_sweep_vectors(uint64_t *const *sum, int lane,
             struct rf_met a, b;
 
             rf_meet_nothing(&a, planes, vecs);
-            rf_follow(&a, v, p, ray[i], planes, vecs);
+            rf_follow(&a, v, p, planes > 1 ? i : ray[i], planes, vecs);
             rf_meet_nothing(&b, planes, vecs);
             if (i + 1 < end)
-                rf_follow(&b, v, p, ray[i + 1], planes, vecs);
+                rf_follow(&b, v, p, planes > 1 ? i + 1 : ray[i + 1], planes, vecs);
             for (int j = 0; j < vecs; j++) {
                 for (int c = 0; c < planes; c++)
                     light[c][j] = vec_u32_add_products(light[c][j], a.light[c][j], a.weight[j],
@@ -155,9 +155,9 @@ static RF_ALWAYS_INLINE void rf_sweep_weighted_planes_vec(uint64_t *const *sum,
 {
     struct rf_ray_run run = {0, 0, -1};
     uint8_t ray[RF_RAY_CHUNK];
-    int count = 0;
+    int count = planes > 1 ? v->rays->rays : 0;
 
-    while (rf_next_run(&run, v, planes))
+    while (planes == 1 && rf_next_run(&run, v, planes))
         for (int n = run.first; n < run.end; n++)
             ray[count++] = (uint8_t)n;
     for (int i = 0; i < v->rows * RF_TILE; i += vecs * (int)VEC_U16) {
