@@ -11,8 +11,6 @@
 #ifndef RF_KERNELS_SWEEP_PLANES_VEC_H
 #define RF_KERNELS_SWEEP_PLANES_VEC_H
 
-#include <string.h>
-
 #include "kernels/slab_vec.h"
 #include "kernels/sweep_view.h"
 #include "simd/vec.h"
@@ -37,18 +35,21 @@ static RF_ALWAYS_INLINE int rf_vecs(const struct rf_row_group *g)
     return g->rows * g->halves * RF_EACH;
 }
 
-/* Where the row of vector j of a group lies, elements from the group's first, and where in it. */
-static RF_ALWAYS_INLINE ptrdiff_t rf_row_at(const struct rf_row_layout *layout, int j,
-                                            const struct rf_row_group *g)
+/* Where vector j of a group lies whose first one is at `first`. */
+static RF_ALWAYS_INLINE const uint16_t *rf_vector_at(const uint16_t *first,
+                                                     const struct rf_row_layout *layout, int j,
+                                                     const struct rf_row_group *g)
 {
-    const ptrdiff_t half = j < g->rows * RF_EACH ? 0 : layout->half;
+    const uint16_t *const at = j < g->rows * RF_EACH ? first : first + layout->half;
 
-    return half + j / RF_EACH % g->rows * layout->apart;
+    return at + j / RF_EACH % g->rows * layout->apart + j % RF_EACH * (int)VEC_U16;
 }
 
-static RF_ALWAYS_INLINE int rf_column_at(int j)
+static RF_ALWAYS_INLINE vec_u16 rf_load_at(const uint16_t *first,
+                                           const struct rf_row_layout *layout, int j,
+                                           const struct rf_row_group *g)
 {
-    return j % RF_EACH * (int)VEC_U16;
+    return vec_u16_load(rf_vector_at(first, layout, j, g));
 }
 
 /* The lane that it begins with. */
@@ -63,14 +64,13 @@ static RF_ALWAYS_INLINE int rf_lane_at(const struct rf_sweep_view *v, int j,
 /* 16-bit sums of a group. */
 typedef vec_u16 rf_sums[RF_MOST_PLANES][RF_MOST_VECS];
 
-/* Adds what lies `at` elements from `from` on where `mask` is set; NULL: everywhere. Places that
- * all rays have in common are added up before those of a ray are added, for the compiler. */
+/* Adds what lies `at` elements from `from` on where `mask` is set; NULL: everywhere. */
 static RF_ALWAYS_INLINE void rf_add_plane(vec_u16 sum[RF_MOST_VECS], const uint16_t *from,
                                           ptrdiff_t at, const struct rf_row_layout *layout,
                                           const vec_mask *mask, const struct rf_row_group *g)
 {
     for (int j = 0; j < rf_vecs(g); j++) {
-        const vec_u16 value = vec_u16_load(from + (at + rf_row_at(layout, j, g)) + rf_column_at(j));
+        const vec_u16 value = rf_load_at(from + at, layout, j, g);
 
         sum[j] = mask ? vec_u16_add_where(mask[j], sum[j], value) : vec_u16_add(sum[j], value);
     }
@@ -90,7 +90,7 @@ static RF_ALWAYS_INLINE void rf_sweep_forwards(rf_sums sum, const struct rf_swee
         const uint16_t *const q = v->blur + g->at + v->offset[t][n];
 
         for (int j = 0; j < rf_vecs(g); j++) {
-            const vec_u16 blur = vec_u16_load(q + rf_row_at(&v->layout, j, g) + rf_column_at(j));
+            const vec_u16 blur = rf_load_at(q, &v->layout, j, g);
 
             if (t == 0)
                 is_free[j] = vec_mask_all();
@@ -116,29 +116,26 @@ static RF_ALWAYS_INLINE void rf_sweep_backwards(rf_sums sum, const struct rf_swe
                                                 const int tests, const struct rf_row_group *g,
                                                 const bool weighted)
 {
-    ptrdiff_t at[RF_MOST_VECS], weight_at[RF_MOST_VECS];
+    const struct rf_row_layout *const l = &v->layout, *const wl = &v->weight_layout;
     vec_u16 light[RF_MOST_VECS], weight[RF_MOST_VECS];
 
-    for (int j = 0; j < rf_vecs(g); j++) {
-        at[j] = g->at + rf_row_at(&v->layout, j, g) + rf_column_at(j);
-        weight_at[j] = g->weight_at + rf_row_at(&v->weight_layout, j, g) + rf_column_at(j);
-    }
-    for (int j = 0; j < rf_vecs(g); j++) {
-        light[j] = vec_u16_load(v->last[n] + at[j]);
-        if (weighted)
-            weight[j] = vec_u16_load(v->last_weight[n] + weight_at[j]);
-    }
+    for (int j = 0; j < rf_vecs(g); j++)
+        light[j] = rf_load_at(v->last[n] + g->at, l, j, g);
+    for (int j = 0; weighted && j < rf_vecs(g); j++)
+        weight[j] = rf_load_at(v->last_weight[n] + g->weight_at, wl, j, g);
     for (int t = tests - 1; t >= 0; t--) {
         const struct rf_limits limits = rf_limits_of(v->rays, t, n);
-        const ptrdiff_t q = v->offset[t][n], p = weighted ? v->weight_offset[t][n] : 0;
+        const ptrdiff_t q = g->at + v->offset[t][n];
+        const ptrdiff_t p = weighted ? g->weight_at + v->weight_offset[t][n] : 0;
 
         for (int j = 0; j < rf_vecs(g); j++) {
             const vec_mask hit =
-                rf_in_limits(vec_mask_all(), limits, vec_u16_load(v->blur + q + at[j]));
+                rf_in_limits(vec_mask_all(), limits, rf_load_at(v->blur + q, l, j, g));
 
-            light[j] = vec_u16_load_where(hit, light[j], v->light + q + at[j]);
+            light[j] = vec_u16_load_where(hit, light[j], rf_vector_at(v->light + q, l, j, g));
             if (weighted)
-                weight[j] = vec_u16_load_where(hit, weight[j], v->weight + p + weight_at[j]);
+                weight[j] =
+                    vec_u16_load_where(hit, weight[j], rf_vector_at(v->weight + p, wl, j, g));
         }
     }
     for (int j = 0; j < rf_vecs(g); j++) {
@@ -148,68 +145,89 @@ static RF_ALWAYS_INLINE void rf_sweep_backwards(rf_sums sum, const struct rf_swe
     }
 }
 
-struct rf_sweep_state {
-    uint32_t *const *to;
-    int left; /* rays that the sums hold yet */
-    uint16_t sum[RF_MOST_PLANES][RF_TILE * RF_TILE];
+/* The runs of rays of a view. */
+struct rf_ray_runs {
+    int count;
+    struct rf_ray_run run[RF_RAY_CHUNK];
 };
 
-/* Adds 16-bit sums of a vector of a plane to those of 32 bits. */
-static RF_ALWAYS_INLINE void rf_flush(const struct rf_sweep_state *s, const struct rf_sweep_view *v,
-                                      int c, int lane, vec_u16 sum, const int planes)
+/* Adds 16-bit sums of a group to those of 32 bits, and clears them. */
+static RF_ALWAYS_INLINE void rf_flush(uint32_t *const *to, rf_sums sum,
+                                      const struct rf_sweep_view *v, const struct rf_row_group *g,
+                                      const int planes, const bool weighted)
 {
-    if (planes == 1 && c == planes && v->chroma)
-        sum = vec_u16_twice(sum);
-    vec_u16_add_to(s->to[c] + lane, sum);
+    for (int c = 0; c < planes + weighted; c++)
+        for (int j = 0; j < rf_vecs(g); j++) {
+            const bool twice = planes == 1 && c == planes && v->chroma;
+
+            vec_u16_add_to(to[c] + rf_lane_at(v, j, g),
+                           twice ? vec_u16_twice(sum[c][j]) : sum[c][j]);
+            sum[c][j] = vec_u16_set(0);
+        }
 }
 
-/* A run of rays at a group. Returns how many rays the sums hold yet. */
-static RF_ALWAYS_INLINE int rf_sweep_group(struct rf_sweep_state *s, const struct rf_sweep_view *v,
-                                           struct rf_ray_run run, const int tests,
-                                           const struct rf_row_group *g, const int planes,
-                                           const bool weighted)
+/* Adds what rays first to end - 1 see. */
+static RF_ALWAYS_INLINE void rf_sweep_some(rf_sums sum, const struct rf_sweep_view *v, int first,
+                                           int end, const int tests, const struct rf_row_group *g,
+                                           const int planes, const bool weighted)
 {
-    int left = s->left;
+    for (int n = first; n < end; n++) {
+        const int own = tests < RF_FEW_TESTS ? tests : v->rays->tests[n];
+
+        if (planes > 1)
+            rf_sweep_forwards(sum, v, n, own, g, planes, weighted);
+        else
+            rf_sweep_backwards(sum, v, n, own, g, weighted);
+    }
+}
+
+/* All rays at a group. */
+static RF_ALWAYS_INLINE void rf_sweep_group(uint32_t *const *to, const struct rf_sweep_view *v,
+                                            const struct rf_ray_runs *runs,
+                                            const struct rf_row_group *g, const int planes,
+                                            const bool weighted)
+{
+    int left = v->steps; /* rays that the sums hold yet */
     rf_sums sum;
 
     for (int c = 0; c < planes + weighted; c++)
         for (int j = 0; j < rf_vecs(g); j++)
-            sum[c][j] = vec_u16_load(s->sum[c] + rf_lane_at(v, j, g));
-    for (int n = run.first; n < run.end;) {
-        const int next = n + left < run.end ? n + left : run.end;
-
-        left -= next - n;
-        for (; n < next; n++) {
-            const int own = tests < RF_FEW_TESTS ? tests
-                            : planes > 1         ? run.tests
-                                                 : v->rays->tests[n];
-
-            if (planes > 1)
-                rf_sweep_forwards(sum, v, n, own, g, planes, weighted);
-            else
-                rf_sweep_backwards(sum, v, n, own, g, weighted);
-        }
-        if (left > 0)
-            break;
-        for (int c = 0; c < planes + weighted; c++)
-            for (int j = 0; j < rf_vecs(g); j++) {
-                rf_flush(s, v, c, rf_lane_at(v, j, g), sum[c][j], planes);
-                sum[c][j] = vec_u16_set(0);
+            sum[c][j] = vec_u16_set(0);
+    for (const struct rf_ray_run *run = runs->run; run < runs->run + runs->count; run++) {
+        for (int n = run->first, end; n < run->end; n = end) {
+            end = run->end < n + left ? run->end : n + left;
+            switch (run->tests) {
+            case 0:
+                rf_sweep_some(sum, v, n, end, 0, g, planes, weighted);
+                break;
+            case 1:
+                rf_sweep_some(sum, v, n, end, 1, g, planes, weighted);
+                break;
+            case 2:
+                rf_sweep_some(sum, v, n, end, 2, g, planes, weighted);
+                break;
+            case 3:
+                rf_sweep_some(sum, v, n, end, 3, g, planes, weighted);
+                break;
+            default:
+                rf_sweep_some(sum, v, n, end, RF_FEW_TESTS, g, planes, weighted);
             }
-        left = v->steps;
+            left -= end - n;
+            if (left == 0) {
+                rf_flush(to, sum, v, g, planes, weighted);
+                left = v->steps;
+            }
+        }
     }
-    for (int c = 0; c < planes + weighted; c++)
-        for (int j = 0; j < rf_vecs(g); j++)
-            vec_u16_store(s->sum[c] + rf_lane_at(v, j, g), sum[c][j]);
-    return left;
+    if (left < v->steps)
+        rf_flush(to, sum, v, g, planes, weighted);
 }
 
-/* A run of rays at groups of `rows` rows, from row `row` on as far as they go. Returns the row
- * after them. */
-static RF_ALWAYS_INLINE int rf_sweep_rows(struct rf_sweep_state *s, const struct rf_sweep_view *v,
-                                          struct rf_ray_run run, const int tests, int row,
-                                          const int rows, int *left, const int planes,
-                                          const bool weighted)
+/* All rays at groups of `rows` rows, from row `row` on as far as they go. Returns the row after
+ * them. One plane is worked on in rows of both halves. */
+static RF_ALWAYS_INLINE int rf_sweep_rows(uint32_t *const *to, const struct rf_sweep_view *v,
+                                          const struct rf_ray_runs *runs, int row, const int rows,
+                                          const int planes, const bool weighted)
 {
     const int halves = planes > 1 ? 1 : 2, all = v->rows / halves;
 
@@ -217,75 +235,31 @@ static RF_ALWAYS_INLINE int rf_sweep_rows(struct rf_sweep_state *s, const struct
         const struct rf_row_group group = {row, rows, halves, row * v->layout.apart,
                                            row * v->weight_layout.apart};
 
-        *left = rf_sweep_group(s, v, run, tests, &group, planes, weighted);
+        rf_sweep_group(to, v, runs, &group, planes, weighted);
     }
     return row;
 }
 
-#if defined(__aarch64__)
-enum { RF_ALONE_VECS = 4 }; /* of rays without tests: there are 32 registers */
-#else
-enum { RF_ALONE_VECS = 2 };
-#endif
-
-/* How many rows together keep all that is in work in registers. */
-static RF_ALWAYS_INLINE int rf_rows_together(const int tests, const int planes, const bool weighted)
-{
-    if (planes > 1)
-        return (tests == 0 && !weighted ? RF_ALONE_VECS : 2) / RF_EACH;
-    return (weighted ? 2 : 4) / RF_EACH;
-}
-
-/* A run of rays at all rows. */
-static RF_ALWAYS_INLINE void rf_sweep_run(struct rf_sweep_state *s, const struct rf_sweep_view *v,
-                                          struct rf_ray_run run, const int tests, const int planes,
-                                          const bool weighted)
-{
-    const int rows = rf_rows_together(tests, planes, weighted);
-    int left = s->left, row = 0;
-
-    row = rf_sweep_rows(s, v, run, tests, row, rows, &left, planes, weighted);
-    if (rows > 3)
-        row = rf_sweep_rows(s, v, run, tests, row, 3, &left, planes, weighted);
-    if (rows > 2)
-        row = rf_sweep_rows(s, v, run, tests, row, 2, &left, planes, weighted);
-    if (rows > 1)
-        rf_sweep_rows(s, v, run, tests, row, 1, &left, planes, weighted);
-    s->left = left;
-}
-
-/* Sums of light, and, if weighted, in to[planes] of weights. */
+/* Sums of light, and, if weighted, in to[planes] of weights. As many rows are worked on together
+ * as keep all in registers. */
 static RF_ALWAYS_INLINE void rf_sweep_planes_vec(uint32_t *const *to, const struct rf_sweep_view *v,
                                                  const int planes, const bool weighted)
 {
+    const int rows = (planes > 1 || weighted ? 2 : 4) / RF_EACH;
     struct rf_ray_run run = {0, 0, -1};
-    struct rf_sweep_state s;
+    struct rf_ray_runs runs;
+    int row;
 
-    s.to = to;
-    s.left = v->steps;
-    for (int c = 0; c < planes + weighted; c++)
-        memset(s.sum[c], 0, (size_t)(v->rows * RF_TILE) * sizeof s.sum[c][0]);
-    while (rf_next_run(&run, v, planes)) {
-        switch (run.tests) {
-        case 0:
-            rf_sweep_run(&s, v, run, 0, planes, weighted);
-            break;
-        case 1:
-            rf_sweep_run(&s, v, run, 1, planes, weighted);
-            break;
-        case 2:
-            rf_sweep_run(&s, v, run, 2, planes, weighted);
-            break;
-        case 3:
-            rf_sweep_run(&s, v, run, 3, planes, weighted);
-            break;
-        default:
-            rf_sweep_run(&s, v, run, RF_FEW_TESTS, planes, weighted);
-        }
-    }
-    for (int c = 0; c < planes + weighted; c++)
-        for (int i = 0; i < v->rows * RF_TILE; i += (int)VEC_U16)
-            rf_flush(&s, v, c, i, vec_u16_load(s.sum[c] + i), planes);
+    runs.count = 0;
+    while (rf_next_run(&run, v, planes))
+        runs.run[runs.count++] = run;
+    row = rf_sweep_rows(to, v, &runs, 0, rows, planes, weighted);
+    if (rows > 3)
+        row = rf_sweep_rows(to, v, &runs, row, 3, planes, weighted);
+    if (rows > 2)
+        row = rf_sweep_rows(to, v, &runs, row, 2, planes, weighted);
+    if (rows > 1)
+        rf_sweep_rows(to, v, &runs, row, 1, planes, weighted);
 }
 
 #endif
