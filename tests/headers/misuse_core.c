@@ -46,7 +46,6 @@ static void words(void)
     GIVES_NULL(refocus_method_name, UINT32_MAX);
     GIVES_NULL(refocus_method_summary, REFOCUS_METHOD_COUNT);
     GIVES_NULL(refocus_method_summary, UINT32_MAX);
-    GIVES_NULL(refocus_cpu_name, REFOCUS_CPU_AVX512 + 1);
     GIVES_NULL(refocus_cpu_name, UINT32_MAX);
 }
 

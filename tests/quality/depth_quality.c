@@ -368,7 +368,7 @@ static int time_scene(const char *folder)
                                     (size_t)scene.width +
                                 (size_t)((2 * x + 1) * scene.width / (2 * CW))];
     for (int threads = 1; threads <= 2; threads++)
-        for (uint32_t cpu = REFOCUS_CPU_C; cpu <= REFOCUS_CPU_AVX512; cpu++)
+        for (uint32_t cpu = REFOCUS_CPU_C; refocus_cpu_name(cpu); cpu++)
             time_way(&large, &map, refocus_cpu_name(cpu), threads, cpu, UINT32_MAX, out);
 #ifdef RF_HAVE_OPENCV
     for (uint32_t i = 0; refocus_cv_filter_name(i); i++) {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum kind { INT32, BYTE, FLOAT, NAMED, METHOD, TEXT };
+enum kind { INT32, BYTE, FLOAT, NAMED, METHOD, CPU, TEXT };
 
 struct name {
     const char *name;
@@ -17,14 +17,6 @@ static const struct name blend_names[] = {{"linear", REFOCUS_BLEND_LINEAR},
                                           {"stored", REFOCUS_BLEND_STORED},
                                           {"gamma", REFOCUS_BLEND_GAMMA},
                                           {0}};
-static const struct name cpu_names[] = {{"auto", REFOCUS_CPU_AUTO},
-                                        {"c", REFOCUS_CPU_C},
-                                        {"neon", REFOCUS_CPU_NEON},
-                                        {"sse41", REFOCUS_CPU_SSE41},
-                                        {"avx2", REFOCUS_CPU_AVX2},
-                                        {"avx512", REFOCUS_CPU_AVX512},
-                                        {0}};
-
 static const struct name format_names[] = {{"rgb", 0},
                                            {"nv12", REFOCUS_FORMAT_NV12},
                                            {"nv21", REFOCUS_FORMAT_NV21},
@@ -59,7 +51,7 @@ static const struct key {
     {"solver", INT32, RENDER(solver), NULL},
     {"conductivity", FLOAT, RENDER(conductivity), NULL},
     {"threads", INT32, offsetof(struct quality_settings, threads), NULL},
-    {"cpu", NAMED, offsetof(struct quality_settings, cpu), cpu_names},
+    {"cpu", CPU, offsetof(struct quality_settings, cpu), NULL},
     {"format", NAMED, offsetof(struct quality_settings, format), format_names},
     {"through", NAMED, offsetof(struct quality_settings, through), format_names},
     {"against", TEXT, offsetof(struct quality_settings, against), NULL},
@@ -79,6 +71,12 @@ static int parse_value(const struct key *key, const char *text, double *value)
         *value = -1;
         return strcmp(text, "input") ? -1 : 0;
     }
+    for (uint32_t i = 0; key->kind == CPU && refocus_cpu_name(i); i++) {
+        if (!strcmp(refocus_cpu_name(i), text)) {
+            *value = i;
+            return 0;
+        }
+    }
     for (const struct name *n = key->names; n && n->name; n++) {
         if (!strcmp(n->name, text)) {
             *value = n->value;
@@ -86,7 +84,7 @@ static int parse_value(const struct key *key, const char *text, double *value)
         }
     }
     *value = strtod(text, &end);
-    return key->kind == NAMED || end == text || *end ? -1 : 0;
+    return key->kind == NAMED || key->kind == CPU || end == text || *end ? -1 : 0;
 }
 
 static int set(struct quality_settings *settings, const struct key *key, const char *text)
@@ -162,6 +160,9 @@ void quality_settings_help(FILE *file)
         else if (keys[i].kind == METHOD)
             for (uint32_t m = 0; refocus_method_name(m); m++)
                 fprintf(file, "%s %s", m ? "" : " input", refocus_method_name(m));
+        else if (keys[i].kind == CPU)
+            for (uint32_t cpu = 0; refocus_cpu_name(cpu); cpu++)
+                fprintf(file, " %s", refocus_cpu_name(cpu));
         else if (keys[i].kind != NAMED)
             fprintf(file, " number");
         for (const struct name *n = keys[i].names; n && n->name; n++)

@@ -247,7 +247,7 @@ static void same_everywhere(void **state)
         s.focus = (pass ? NEAR : FAR) / 65535.0f;
         assert_int_equal(render(renderer, &s, expected), REFOCUS_OK);
         refocus_renderer_destroy(&renderer);
-        for (uint32_t cpu = 0; cpu <= REFOCUS_CPU_AVX512; cpu++) {
+        for (uint32_t cpu = 0; refocus_cpu_name(cpu); cpu++) {
             for (int i = 0; i < 3; i++) {
                 if (cpu != REFOCUS_CPU_AUTO && i > 0)
                     continue;
