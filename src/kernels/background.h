@@ -9,7 +9,7 @@
 /* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
 enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
 
-/* What no blur is: an unknown pixel of the background. */
+/* Unknown pixels of the background have this blur, which no known one has. */
 enum { RF_NO_BLUR = INT16_MIN };
 
 /*

@@ -15,7 +15,7 @@
  * w is 2 beside, above and below, and 1 in the corners; but 0 for two opposite neighbours of which
  * one's code is more than `most` away: so a plane stays one up to its edge. most <=
  * RF_MOST_SMOOTHED, so sums stay below 2^15.
- * clamp_codes: each code becomes the smooth value, or what is nearest to it within `most`.
+ * clamp_codes: each code becomes the smooth value, clamped to `most` from its own.
  */
 enum { RF_MOST_SMOOTHED = (32767 - 8) / 12 };
 typedef void rf_smooth_codes_fn(uint16_t *out, const uint16_t *const row[3], int apart,

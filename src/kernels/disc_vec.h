@@ -1,4 +1,4 @@
-/* disc_vec.h: what the pixels of a row see of a run (discs.h), for vectors. */
+/* disc_vec.h: how much the pixels of a row see of a run of a highlight (discs.h), in vectors. */
 #ifndef RF_DISC_VEC_H
 #define RF_DISC_VEC_H
 
@@ -33,8 +33,8 @@ static inline vec_u16 rf_disc_place_of(int x)
     return vec_u16_load(place + x);
 }
 
-/* What pixels there see begins `left` beyond the one, and ends `right` beyond the
- * other. */
+/* The part that pixels see begins `left` beyond rf_disc_first(), and ends `right` beyond
+ * rf_disc_last(). */
 static inline vec_u16 rf_disc_first(const struct rf_disc_row *row, vec_u16 place)
 {
     return vec_u16_max(place, row->high);

@@ -1,4 +1,4 @@
-/* discs.h: the contracts of draw_disc, half_chords, meets and hide, by which lamps are drawn. */
+/* discs.h: the contracts of draw_disc, half_chords, meets and hide, which splat highlights as discs. */
 #ifndef RF_KERNELS_DISCS_H
 #define RF_KERNELS_DISCS_H
 
@@ -20,7 +20,7 @@
  * that is all 1 there and not 0. 2^shift v and each are below 2^15.
  *
  * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`,
- * half pixels, on from its middle. Or of as many discs one above the other, of rows of a lamp, as
+ * half pixels, on from its middle. Or of as many discs one above the other, of rows of a highlight, as
  * it is `tall`, 1 to 4, the mean: of what each is a quarter of a pixel above and below the middle
  * of the row.
  *

@@ -9,7 +9,7 @@
 #include "kernels/rays.h"
 
 /*
- * sweep: rays of one strip.
+ * sweep: adds up what the rays of one strip see, nearest surface first.
  *
  *     for each ray n and pixel p of the strip:
  *         for t = 0 .. tests[n] - 1:
@@ -18,20 +18,24 @@
  *                 sum += light[q]; next ray
  *         sum += last[n][p]
  *
- * Light is at most 65535 / steps; sums are exact. Pointers are to the strip's first pixel.
- * Where sum[3] is not NULL, the weights of what is hit are added up there: no more than that, and
- * lying as those of sweep_weighted.
+ * Light is at most 65535 / steps, and sums are exact. Pointers are to the strip's first pixel.
+ * Where sum[3] is not NULL, the weights of the pixels that are hit are added up there; they lie as
+ * those of sweep_weighted, and light does not count by them.
+ *
+ * An example: a ray has two tests, blurs 1024 to 1280 at q = p + 3 and 512 to 800 at q = p + 2. A
+ * pixel finds blur 60 at p + 3, which misses, and 700 at p + 2, which hits: light[p + 2] is added,
+ * and the ray ends. Had both missed, last[n][p] would be added.
  */
-/* Light that highlights reach: white, 4, 8 or 16 times that. */
+/* The brightest light that highlights reach: white, or 4, 8 or 16 times that. */
 enum rf_bright { RF_WHITE, RF_BRIGHT, RF_BRIGHTER, RF_BRIGHTEST };
 
 struct rf_sweep_job {
     const int16_t *blur;     /* light is in the three planes after it, pitch apart */
     ptrdiff_t stride, pitch; /* elements */
     const struct rf_sorted_rays *rays;
-    int steps;             /* of sweep: values that a 16-bit sum holds, 1 to 16 */
-    enum rf_bright bright; /* of sweep_weighted */
-    int lanes;             /* those of an even number of rows, of RF_STRIP at most */
+    int steps;             /* how many values a 16-bit sum of sweep holds, 1 to 16 */
+    enum rf_bright bright; /* the light of sweep_weighted */
+    int lanes;             /* all of an even number of rows, RF_STRIP at most */
 
     /* weights of the front, 1 to RF_WEIGHT_MAX in sweep_weighted */
     const uint16_t *weight;
@@ -39,17 +43,17 @@ struct rf_sweep_job {
 };
 typedef void rf_sweep_fn(uint32_t *const sum[4], const struct rf_sweep_job *job);
 
-/* sweep_weighted: the same, where light, Q12 up to `bright`, counts weight times; sum[3] is that
- * of weights. Those of the front lie in a plane with a stride of its own, those of the background
- * as its light. Never RF_BRIGHTEST but for the reference. */
+/* sweep_weighted: a sweep in which light, Q12 up to `bright`, counts weight times; sum[3] is the sum
+ * of weights. The weights of the front lie in a plane with a stride of its own, those of the
+ * background as its light. Only the reference takes RF_BRIGHTEST. */
 enum { RF_WEIGHT_MAX = 32767 };
 typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
 /*
- * sweep1: as sweep, of one plane and of some rows of a tile: those of the first half `apart`
- * elements apart, those of the second as far, from `half` elements after the first row on.
- * Light is at most 65535 / steps; sums are exact. `last` of the rays is in that plane. Of chroma
- * only rays that are shared count, with its offsets and its last, and blurs come twice.
+ * sweep1: a sweep of one plane, at some rows of a tile. The rows of the first half lie `apart`
+ * elements apart, those of the second as far, from `half` elements after the first row on. Light is
+ * at most 65535 / steps, and sums are exact. `last` of the rays is in that plane. In chroma only
+ * the shared rays count, with its own offsets and its own last, and each blur comes twice.
  */
 struct rf_sweep1_job {
     const int16_t *blur;
@@ -60,16 +64,16 @@ struct rf_sweep1_job {
     bool chroma;
     const struct rf_sorted_rays *rays;
 
-    const uint16_t *weight; /* of the tile's first pixel; at most 4095 but for sweep1_weighted */
+    const uint16_t *weight; /* at the tile's first pixel; at most 4095 but for sweep1_weighted */
     int down;               /* rows of weights are 1 << down times as far apart */
 };
 
-/* With weight_sum, not NULL, the weights of what is hit are added up there: no more than that, and
- * lying as those of sweep1_weighted. */
+/* Where weight_sum is not NULL, the weights of the pixels that are hit are added up there; they lie
+ * as those of sweep1_weighted. */
 typedef void rf_sweep1_fn(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job);
 
-/* sweep1_weighted: the same, where light counts weight times, 1 to RF_WEIGHT_MAX, and sums of
- * weights. Those of luma lie as its light; elements 2 i and 2 i + 1 of chroma count as the pixel
+/* sweep1_weighted: sweep1 with light that counts weight times, 1 to RF_WEIGHT_MAX, and sums of
+ * weights. The weights of luma lie as its light; elements 2 i and 2 i + 1 of chroma count as the pixel
  * of the first, at chroma_weight_offset. */
 typedef void rf_sweep1_weighted_fn(uint64_t *sum, uint64_t *weight,
                                    const struct rf_sweep1_job *job);

@@ -48,14 +48,14 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
     }
 }
 
-/* What is there. */
+/* Looks the blurs up that are there. */
 static inline void meet(uint16_t *at, const int16_t *row)
 {
     for (int x = 0; x < RF_TILE; x++)
         at[x] = (uint16_t)row[at[x]];
 }
 
-/* Pixels of rows y to end - 1, by what those of one row met. */
+/* The masks of rows y to end - 1, by the blurs that the pixels of one row met. */
 static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, vec_u16 to, int y,
                          int end)
 {

@@ -4,7 +4,7 @@
 #include "simd/vec.h"
 #include "kernels/sort_network.h"
 
-/* The same of VEC_U16 pixels. With c of nine left off from the top, t of them sure, the
+/* The medians of VEC_U16 pixels. With c of nine left off from the top, t of them sure, the
  * weights at or below are more than 3/5 as long as
  *
  *     5 (9 - c + 3 (sures - t)) > 3 (9 + 3 sures)

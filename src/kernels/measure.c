@@ -145,7 +145,7 @@ static void sweep(const struct rf_kernels *k, struct rows *r)
 static const struct {
     const char *name, *unit;
     measured_fn *run;
-    double count; /* of units a run */
+    double count; /* units that a run takes */
 } measured[] = {
     {"sweep", "ray sample", sweep, RF_RAY_CHUNK *RF_STRIP_LANES},
     {"signed_blur", "pixel", signed_blur, N},

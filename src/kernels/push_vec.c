@@ -8,7 +8,7 @@ static inline vec_u16 invert(vec_u16 mask)
     return vec_u16_xor(mask, vec_u16_set(0xffff));
 }
 
-/* Which of four children are known, and how their sum becomes a mean. */
+/* The children that are known, of four, and how their sum becomes a mean. */
 struct use {
     vec_u16 known[4];
     vec_u16 single; /* at most one */
@@ -42,7 +42,7 @@ static inline struct use use_of(const vec_u16 blur[4])
     return use;
 }
 
-/* The four children of a vector of parents: of the rows at a and b. */
+/* The four children of a vector of parents, from the rows at a and b. */
 static inline void children(vec_u16 child[4], const void *a, const void *b)
 {
     const vec_u16 a0 = vec_u16_load(a), a1 = vec_u16_load((const char *)a + 2 * (int)VEC_U16);

@@ -9,7 +9,7 @@
 #include "kernels/ranges.h"
 #include "tiles/slab.h"
 
-/* Rays of a tile are a chunk at a time. */
+/* The rays of a tile are worked on in chunks. */
 enum { RF_RAY_CHUNK = 64 };
 
 /* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset
@@ -18,7 +18,7 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
                        int32_t stride, int32_t cell_stride, int n);
 
 /*
- * aim_chroma: offsets, as aim, of samples of chroma that are two pixels apart across and 1 << down
+ * aim_chroma: where n rays see the blur s, as aim says, in samples of chroma that are two pixels apart across and 1 << down
  * of them down, two elements of a row each: 2 x + y stride, x = round(u s / 2) and
  * y = round(v s / 2^down); of their pixels: 2 x + 2^down y stride.
  */
@@ -26,33 +26,40 @@ typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u,
                               int blur, int down, int32_t stride, int n);
 
 /*
- * sort_rays: what the rays of a strip have to look at.
+ * sort_rays: culls the tests that the rays of a strip need not make.
  *
  *     for each ray n:
  *         for k = 0 .. slabs - 1, with the range at range[cell[k][n]]:
  *             no blur in the range is in slab k: go on
- *             all blurs are:                     take its light as the last, offset[k][n]; end
+ *             all blurs are in it:               the last is its light at offset[k][n]; end
  *             none is deeper, and it is bare:    the last is the background at offset[k][n]; end
  *             else:                              test slab k at offset[k][n]
  *         the last is the background at offset[slabs][n]
  *
- * Slabs k - 1 and k that are both to be tested at one offset are one test of all from the
- * former's low to the latter's end, where the slabs overlap or touch (joined[k]); and the last
- * test is left out where a slab's light is the last and it was tested in slab k - 1 at the same
- * offset. This does not go across multiples of RF_JOIN_BLOCK.
+ * An example: slab 0 holds blurs 1024 to 1280, slab 1 holds 512 to 1100, slab 2 holds -64 to 600. A
+ * ray sees slab 0 where blurs are 20 to 300: none lies in it, and the ray goes on. It sees slab 1
+ * where blurs are 30 to 900: some lie in it, and that is one test. It sees slab 2 where blurs are 40
+ * to 200: all lie in it, and its light there is the last. So one test is left of three. Had the
+ * range at slab 0 been 1030 to 1200, the ray would need no test at all.
+ *
+ * Two slabs k - 1 and k that are both to be tested at one offset are merged to one test, from the
+ * former's low to the latter's end, where they overlap or touch (joined[k]). The last test is left
+ * out where a slab's light is the last and slab k - 1 was to be tested at the same offset. Tests
+ * are not merged across multiples of RF_JOIN_BLOCK.
  *
  * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
- * otherwise in their order. Nothing is lost by all this: tests that are left out could not hit,
- * would all hit, or lead to the same light. Only where `beneath` is set are deepest slabs that are
- * bare not tested: what is in the slab has the same light in the background, and what is not is
- * nearer and was not met, so that the ray passes beneath it, most likely to this slab. A third of
- * all tests is of that kind. Slabs wider than the least rf_bare_depth() of their blurs are tested.
+ * otherwise in their order. Nothing is lost by that: tests that are left out could not hit, would
+ * all hit, or lead to the same light. There is one exception: where `beneath` is set, the deepest
+ * slab is not tested if it is bare. The pixels in it have the same light in the background; the
+ * others are nearer and were not hit, so the ray passes beneath them, most likely to this slab. A
+ * third of all tests is of that kind. Slabs wider than the least rf_bare_depth() of their blurs are
+ * tested.
  */
 enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 
 struct rf_sort_job {
-    const uint32_t *range;          /* at the strip's first pixel, */
-    const uint32_t *below;          /* and at that of the strip below, if both are one; else NULL */
+    const uint32_t *range;          /* at the strip's first pixel */
+    const uint32_t *below;          /* at the strip below, if both are one; else NULL */
     const uint16_t *front, *behind; /* first of three planes of light, there */
     const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
@@ -62,8 +69,8 @@ struct rf_sort_job {
     const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
     const int32_t (*weight_offset)[RF_RAY_CHUNK];                 /* [slabs] */
 
-    /* Rays 0 to shared - 1 are those of chroma, too, with planes and offsets of its own, and of the
-     * same weights. What a ray of luma need not look for in a whole tile, chroma need not, either:
+    /* Chroma shares rays 0 to shared - 1, with planes and offsets of its own, and the same weights.
+     * Slabs that a ray of luma need not test in a whole tile, it need not test in chroma, either:
      * round(u s / 2) samples are at most a pixel from round(u s), and ranges are of whole
      * cells, which begin at even pixels. */
     int shared;
@@ -80,13 +87,13 @@ struct rf_sorted_rays {
     uint16_t from[RF_BINS][RF_RAY_CHUNK], to[RF_BINS][RF_RAY_CHUNK];
     const uint16_t *last[RF_RAY_CHUNK]; /* first of three planes, for the strip's first pixel */
 
-    /* Only with weights: as `offset` and `last`, of the weights. */
+    /* Where the weights lie, like `offset` and `last`; only set if there are weights. */
     int32_t weight_offset[RF_BINS][RF_RAY_CHUNK];
     const uint16_t *last_weight[RF_RAY_CHUNK];
-    bool last_behind[RF_RAY_CHUNK]; /* which plane last_weight is in */
+    bool last_behind[RF_RAY_CHUNK]; /* last_weight is in the background */
 
-    /* How many of those with so many tests are shared: the first ones, for which, as `offset` and
-     * `last`, of chroma: */
+    /* How many of the rays with so many tests chroma shares, the first ones; and for these, like
+     * `offset` and `last`, where its samples and weights lie. */
     uint8_t shared[RF_SORTED_TESTS];
     int32_t chroma_offset[RF_BINS][RF_RAY_CHUNK], chroma_weight_offset[RF_BINS][RF_RAY_CHUNK];
     const uint16_t *chroma_last[RF_RAY_CHUNK], *chroma_last_weight[RF_RAY_CHUNK];

@@ -7,7 +7,7 @@
 
 enum { RF_PIXEL = 256, RF_TWO_PIXELS = 511 };
 
-/* Which neighbours do not count, and rf_smooth_share(). */
+/* The neighbours that do not count, and rf_smooth_share(). */
 struct rf_smooth_use {
     vec_u16 not_before, not_after, share;
 };
@@ -35,7 +35,7 @@ static inline struct rf_smooth_use rf_smooth_use(const int16_t *blur, ptrdiff_t 
                                                  const struct rf_smooth_fade *fade)
 {
     const vec_u16 s = vec_u16_load(blur);
-    /* of s and -s the lesser is |s|, which is below 2^15 */
+    /* As unsigned numbers, the lesser of s and -s is |s|, which is below 2^15. */
     const vec_u16 size = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s)),
                   t = rf_smooth_tolerance(size);
     const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);
@@ -48,8 +48,8 @@ static inline struct rf_smooth_use rf_smooth_use(const int16_t *blur, ptrdiff_t 
     };
 }
 
-/* What a pixel has more than its neighbours is at most 2 * 4 * 4095: the share is of signed
- * lanes. */
+/* A pixel differs from both its neighbours by at most 2 * 4 * 4095 in sum, so that signed lanes
+ * hold it. */
 static inline vec_u16 rf_smooth_mean(const uint16_t *light, ptrdiff_t apart,
                                      const struct rf_smooth_use *use)
 {

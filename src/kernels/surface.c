@@ -83,7 +83,7 @@ static void add_taps(uint16_t prior[LANES], const struct rf_cell *cell,
     }
 }
 
-/* What is expected of each surface. Where the taps are sure, the surface with the most
+/* The prior of each surface. Where the taps are sure, the surface with the most
  * of them is given what the others leave. */
 static void expect(uint16_t prior[RF_TAP_COUNT][LANES], const struct rf_cell *cell,
                    const struct rf_lie *lie, int from)

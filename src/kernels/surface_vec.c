@@ -73,7 +73,7 @@ static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell, u
         prior[h] = sum[h];
 }
 
-/* What is expected of each surface. Where the taps are sure, the surface with the most
+/* The prior of each surface. Where the taps are sure, the surface with the most
  * of them is given what the others leave. */
 static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES], const struct rf_cell *cell,
                           const struct rf_lie *lie, int x)

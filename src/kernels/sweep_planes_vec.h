@@ -111,7 +111,7 @@ static RF_ALWAYS_INLINE void rf_sweep_forwards(rf_sums sum, const struct rf_swee
         rf_add_plane(sum[planes], v->last_weight[n], g->weight_at, &v->weight_layout, left, g);
 }
 
-/* The same of one plane, from the back to the front. */
+/* Adds what ray n of one plane sees, from the back to the front. */
 static RF_ALWAYS_INLINE void rf_sweep_backwards(rf_sums sum, const struct rf_sweep_view *v, int n,
                                                 const int tests, const struct rf_row_group *g,
                                                 const bool weighted)

@@ -13,7 +13,7 @@
 
 enum { RF_WEIGHTED_VECS = 2 }; /* at most, together */
 
-/* What one ray of each lane meets. */
+/* Light and weight that one ray of each lane meets. */
 struct rf_met {
     vec_u16 light[3][RF_WEIGHTED_VECS], weight[RF_WEIGHTED_VECS];
 };

@@ -8,7 +8,7 @@
 /* Where a pixel lies among the samples of its row or column. */
 enum { RF_TAPS = 4 };
 struct rf_taps {
-    int32_t first;             /* of four samples, -2 to samples - 2 */
+    int32_t first;             /* the first of four samples, -2 to samples - 2 */
     int16_t share[RF_TAPS];    /* Q15, of sum 1, for means */
     uint16_t near_by[RF_TAPS]; /* Q16, for the choice of a surface */
     int16_t middle; /* where it lies between the second and the third, -1/2 to 1/2 in Q15 */
@@ -83,7 +83,7 @@ struct rf_surface {
 
 struct rf_cell {
     int surfaces;                 /* at least 1 */
-    int greatest;                 /* which has the most taps */
+    int greatest;                 /* the surface that has the most taps */
     bool sure;                    /* every tap is trusted wholly */
     uint16_t trust[RF_TAP_COUNT]; /* Q16 */
     struct rf_surface surface[RF_TAP_COUNT];

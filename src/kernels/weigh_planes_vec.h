@@ -6,12 +6,12 @@
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-/* Weights come out of a table, one by one: of so many tiles' rows, before any is used, as a
- * vector of values that were just stored apart would wait for them. */
+/* Weights come out of a table, one by one. Those of so many tiles' rows are looked up before any is
+ * used, as a vector of values that were just stored one by one would wait for them. */
 enum { RF_WEIGH_TILES = 16, RF_WEIGH_RUN = RF_WEIGH_TILES * (int)RF_TILE };
 
-/* Of a run, what its weights go by, light, white at most, and then they; of the background only
- * where it is not what is seen. */
+/* The brightest light of each pixel of a run, white at most, and then its weight; that of the
+ * background is set only where the background differs from what is seen. */
 struct rf_weigh_run {
     uint16_t near[RF_WEIGH_RUN], far[RF_WEIGH_RUN];
     bool same[RF_WEIGH_TILES];

@@ -5,7 +5,7 @@
 #include <immintrin.h>
 #include <stdint.h>
 
-/* Of 16 bits each, for both halves of lanes of 32. */
+/* Two numbers of 16 bits for the halves of a lane of 32. */
 static inline int vec_pair(int16_t low, int16_t high)
 {
     return (int)((uint32_t)(uint16_t)high << 16 | (uint16_t)low);

@@ -58,7 +58,7 @@ static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
     return count(s->samples);
 }
 
-/* What n samples grow by to be 64 to 127, and 64 / (6 n grow) in Q32. */
+/* By what n samples are multiplied to be 64 to 127, and 64 / (6 n grow) in Q32. */
 /* clang-format off */
 #define GROW(n, grow) {65536 * 64 / ((n) * (grow)) * (65536 / 6 + 1), grow}
 /* clang-format on */
@@ -72,7 +72,7 @@ static const struct {
     GROW4(12, 8), GROW16(16, 4), GROW16(32, 2), GROW16(48, 2), GROW(64, 1),
 };
 
-/* Of equal evidence the nearer surface is up to a fifth better: what is thin is in
+/* With equal evidence the nearer surface is up to a fifth better: what is thin is in
  * front. */
 static void set_scale(struct rf_surface *s, int n)
 {

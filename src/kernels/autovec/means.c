@@ -9,7 +9,7 @@ static void means_by_scale(uint16_t *restrict mean, const uint32_t *restrict sum
         mean[i] = (uint16_t)(((uint64_t)sum[i] * scale + (UINT64_C(1) << 29)) >> 30);
 }
 
-/* The same for scale = 2^(30 - shift), without 64-bit products. */
+/* Means by scale = 2^(30 - shift) need no 64-bit products. */
 static void means_by_shift(uint16_t *restrict mean, const uint32_t *restrict sum, int shift, int n)
 {
     const uint32_t half = UINT32_C(1) << (shift - 1);

@@ -1,7 +1,7 @@
 /* smooth_codes.c: a 3x3 mean of the codes of a disparity map, up to its edges. */
 #include "kernels/kernels.h"
 
-/* What two opposite neighbours differ from their pixel in sum, or 0 if one lies outside low ..
+/* How much two opposite neighbours differ from their pixel in sum, or 0 if one lies outside low ..
  * high: a difference too large to be a rounding error. What is kept is below 2^15, so that it is
  * exact modulo 2^16. */
 static inline int16_t bend(uint16_t a, uint16_t b, uint16_t own, uint16_t low, uint16_t high)

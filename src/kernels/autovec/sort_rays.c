@@ -3,7 +3,7 @@
 
 enum { BITS = RF_JOIN_BLOCK, BLOCKS = RF_BINS / BITS };
 
-/* Of all rays at once: */
+/* The tests of all rays at once. */
 struct state {
     uint16_t first[BLOCKS][RF_RAY_CHUNK];  /* bit k % BITS of block k / BITS: test slab k, */
     uint16_t joined[BLOCKS][RF_RAY_CHUNK]; /* or with the one before */
@@ -12,7 +12,7 @@ struct state {
     uint16_t last[RF_RAY_CHUNK];    /* slab, or their number: the background, */
     uint16_t beneath[RF_RAY_CHUNK]; /* all bits: which is seen at the offset of `last`; 1 in the
                                      * end, where the background is seen */
-    uint16_t from[RF_BINS], until[RF_BINS]; /* of the slabs, for rf_in_range() */
+    uint16_t from[RF_BINS], until[RF_BINS]; /* the limits of the slabs, for rf_in_range() */
 };
 
 static inline uint16_t mask(int is_true)
@@ -85,7 +85,7 @@ static inline const void *choose(bool first, const void *a, const void *b)
     return (const void *)(((uintptr_t)a & all) | ((uintptr_t)b & ~all));
 }
 
-/* Which ways a job goes that differ in the loops over rays. */
+/* How jobs differ in the loops over rays. */
 struct way {
     bool weighted, shared, blocks; /* weights, chroma, more than one block of slabs */
 };
@@ -119,7 +119,7 @@ static RF_ALWAYS_INLINE void place_tests(struct rf_sorted_rays *restrict sorted,
     }
 }
 
-/* What it sees where no test hits. */
+/* Sets what ray n sees where no test hits. */
 static RF_ALWAYS_INLINE void place_last(struct rf_sorted_rays *restrict sorted,
                                         const struct rf_sort_job *restrict job,
                                         const struct state *restrict s, int n, int m,
