@@ -3,11 +3,17 @@
 #ifndef RF_KERNELS_BACKGROUND_H
 #define RF_KERNELS_BACKGROUND_H
 
+#include <assert.h>
+#include "colour/transfer.h"
 #include <stddef.h>
 #include <stdint.h>
 
 /* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
 enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
+static_assert(RF_CONE_DIAGONAL * RF_CONE_DIAGONAL < 2 * RF_CONE_STEP * RF_CONE_STEP &&
+                  (2 * RF_CONE_DIAGONAL + 1) * (2 * RF_CONE_DIAGONAL + 1) >
+                      8 * RF_CONE_STEP * RF_CONE_STEP,
+              "a diagonal step is the straight one times the root of 2, rounded");
 
 /* Unknown pixels of the background have this blur, which no known one has. */
 enum { RF_NO_BLUR = INT16_MIN };
@@ -31,6 +37,7 @@ typedef void rf_mark_fn(int16_t *behind, const int16_t *blur, const uint16_t *di
 
 /* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
  * farthest blur; 0 and RF_NO_BLUR if none is known. */
+static_assert(4 * 4 * RF_LIGHT_MAX + 2 <= UINT16_MAX, "four children of push fit 16 bits");
 typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
                         const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
                         int n);
@@ -38,6 +45,7 @@ typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_
 /* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
  * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their
  * parent's blur. */
+static_assert((3 + 1) * 4 * RF_LIGHT_MAX + 2 <= UINT16_MAX, "a sum of pull fits 16 bits");
 typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
                         const uint16_t *far_row, uint16_t *mixed, int pairs);
 typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);

@@ -2,6 +2,8 @@
 #ifndef RF_KERNELS_BLUR_H
 #define RF_KERNELS_BLUR_H
 
+#include <assert.h>
+#include "colour/transfer.h"
 #include <stddef.h>
 #include <stdint.h>
 
@@ -15,6 +17,8 @@ struct rf_focus {
  * signed_blur: s = K (df - d), Yang et al. 2016, eq. 4. Q7.8 pixels, rounded half up in
  * magnitude: within 1/512 pixel for this focus, within 1.25/256 of that of real K and df.
  */
+static_assert((uint64_t)UINT16_MAX * (127 * 256 + 1) + (1 << 15) <= UINT32_MAX,
+              "the product and its rounding fit 32 bits");
 typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity, struct rf_focus focus,
                                int n);
 
@@ -28,6 +32,7 @@ typedef void rf_signed_blur_fn(int16_t *blur, const uint16_t *disparity, struct 
  * rf_smooth_share(): of the way to both, Q15, half up.
  */
 enum { RF_SMOOTH_THIRD = 10923 };
+static_assert(2 * 4 * RF_LIGHT_MAX <= INT16_MAX, "the way to both neighbours fits 16 bits");
 static inline int rf_smooth_share(int blur, int least, int over)
 {
     const int above = (blur < 0 ? -blur : blur) - least;

@@ -2,6 +2,7 @@
 #ifndef RF_KERNELS_CODES_H
 #define RF_KERNELS_CODES_H
 
+#include <assert.h>
 #include <stdint.h>
 
 /*
@@ -18,6 +19,7 @@
  * clamp_codes: each code becomes the smooth value, clamped to `most` from its own.
  */
 enum { RF_MOST_SMOOTHED = (32767 - 8) / 12 };
+static_assert(12 * RF_MOST_SMOOTHED + 8 <= INT16_MAX, "the weighted sum of eight fits 16 bits");
 typedef void rf_smooth_codes_fn(uint16_t *out, const uint16_t *const row[3], int apart,
                                 uint16_t most, int n);
 typedef void rf_clamp_codes_fn(uint16_t *code, const uint16_t *smooth, uint16_t most, int n);

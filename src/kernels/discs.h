@@ -1,7 +1,9 @@
-/* discs.h: the contracts of draw_disc, half_chords, meets and hide, which splat highlights as discs. */
+/* discs.h: the contracts of draw_disc, half_chords, meets and hide, which splat highlights as
+ * discs. */
 #ifndef RF_KERNELS_DISCS_H
 #define RF_KERNELS_DISCS_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -20,9 +22,9 @@
  * that is all 1 there and not 0. 2^shift v and each are below 2^15.
  *
  * half_chords: of a disc of a radius in Q7.8, half of what it is wide, 1/64 pixel, in rows `first`,
- * half pixels, on from its middle. Or of as many discs one above the other, of rows of a highlight, as
- * it is `tall`, 1 to 4, the mean: of what each is a quarter of a pixel above and below the middle
- * of the row.
+ * half pixels, on from its middle. Or of as many discs one above the other, of rows of a highlight,
+ * as it is `tall`, 1 to 4, the mean: of what each is a quarter of a pixel above and below the
+ * middle of the row.
  *
  * meets: whether any of width x height pixels from `blur` on lies in a slab; width: RF_TILE at
  * least.
@@ -42,6 +44,7 @@
  * int16, and no place is farther than `most` to a side, nor than blur is readable. What is found
  * for a row holds for `rows` from it on.
  */
+static_assert(64 * (RF_TILE + 2 * 127) <= INT16_MAX, "a run and a chord in 1/64 pixel fit 16 bits");
 struct rf_disc_job {
     int first, end, shift, planes;
     int16_t left[RF_TILE], right[RF_TILE], from, to, each[3];

@@ -2,10 +2,13 @@
 #ifndef RF_KERNELS_GATHER_H
 #define RF_KERNELS_GATHER_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
+#include "colour/transfer.h"
+#include "colour/yuv.h"
 #include "kernels/rays.h"
 
 /*
@@ -43,8 +46,11 @@ struct rf_sweep_job {
 };
 typedef void rf_sweep_fn(uint32_t *const sum[4], const struct rf_sweep_job *job);
 
-/* sweep_weighted: a sweep in which light, Q12 up to `bright`, counts weight times; sum[3] is the sum
- * of weights. The weights of the front lie in a plane with a stride of its own, those of the
+static_assert(16 * RF_LIGHT_MAX <= UINT16_MAX, "16 rays of light up to white fit 16 bits");
+static_assert(8 * RF_CHROMA_MAX <= UINT16_MAX, "8 rays of chroma fit 16 bits");
+
+/* sweep_weighted: a sweep in which light, Q12 up to `bright`, counts weight times; sum[3] is the
+ * sum of weights. The weights of the front lie in a plane with a stride of its own, those of the
  * background as its light. Only the reference takes RF_BRIGHTEST. */
 enum { RF_WEIGHT_MAX = 32767 };
 typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
@@ -73,8 +79,8 @@ struct rf_sweep1_job {
 typedef void rf_sweep1_fn(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job);
 
 /* sweep1_weighted: sweep1 with light that counts weight times, 1 to RF_WEIGHT_MAX, and sums of
- * weights. The weights of luma lie as its light; elements 2 i and 2 i + 1 of chroma count as the pixel
- * of the first, at chroma_weight_offset. */
+ * weights. The weights of luma lie as its light; elements 2 i and 2 i + 1 of chroma count as the
+ * pixel of the first, at chroma_weight_offset. */
 typedef void rf_sweep1_weighted_fn(uint64_t *sum, uint64_t *weight,
                                    const struct rf_sweep1_job *job);
 

@@ -3,6 +3,7 @@
 #ifndef RF_KERNELS_LIGHT_H
 #define RF_KERNELS_LIGHT_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -69,6 +70,8 @@ typedef void rf_weighed_means_fn(uint16_t *mean, const uint32_t *sum, const uint
 
 /* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (methods/tile_rows.h), by
  * the cubics through four of them, half up, never beyond the one before and the one after. */
+static_assert((uint64_t)13 * (1 << 14) / 8 * UINT16_MAX <= INT32_MAX,
+              "shares of magnitudes up to 1.625 in all: sums fit 32 bits");
 typedef void rf_between_rows_fn(uint16_t *mean, const uint16_t *computed, int step);
 
 /* between_chroma: eight rows from rows 0 2 5 7 of them, as between_rows. */
@@ -90,6 +93,8 @@ typedef void rf_soften_fn(uint16_t *mean, int rows, int each, bool down, uint16_
  *     mean = light + mean - round(cover mean), 0 to 65535;  cover from 0 to 1
  */
 enum { RF_VEIL_CELLS = 6, RF_VEIL_SHIFT = 14 };
+static_assert((uint64_t)8 * (2 * 4096) * (1 << RF_VEIL_SHIFT) <= INT32_MAX,
+              "eighths of cells between -2 and 2 fit 32 bits");
 typedef void rf_lay_veil_fn(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4]);
 
 /* brightest: the largest value of any channel of a row. */

@@ -5,6 +5,8 @@
 
 #include "kernels/kernels.h"
 
+#include <assert.h>
+
 static inline uint16_t rf_push_known(int16_t blur)
 {
     return (uint16_t)(blur != RF_NO_BLUR ? 0xffff : 0);
@@ -29,7 +31,7 @@ static RF_ALWAYS_INLINE void rf_push_plane(uint16_t *restrict out, int16_t *rest
         const uint16_t sum = (uint16_t)((upper[2 * x] & k0) + (upper[2 * x + 1] & k1) +
                                         (lower[2 * x] & k2) + (lower[2 * x + 1] & k3));
         const uint16_t half = (uint16_t)((uint16_t)(sum + 1) >> 1);
-        /* a third, as arithmetic.md says */
+        static_assert(3 * 43691 == (1 << 17) + 1, "so the third is exact below 2^16");
         const uint16_t third =
             (uint16_t)((uint16_t)(((uint32_t)(uint16_t)(sum + 1) * 43691) >> 16) >> 1);
         const uint16_t quarter = (uint16_t)((uint16_t)(sum + 2) >> 2);

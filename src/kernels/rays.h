@@ -2,6 +2,7 @@
 #ifndef RF_KERNELS_RAYS_H
 #define RF_KERNELS_RAYS_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -12,15 +13,19 @@
 /* The rays of a tile are worked on in chunks. */
 enum { RF_RAY_CHUNK = 64 };
 
+/* Whether a blur lies in a slab is found modulo 2^16 (tiles/slab.h): two blurs differ by twice 127
+ * pixels at the most, so what lies outside of a slab of 480 is never taken for inside. */
+static_assert(UINT16_MAX + 1 - 2 * 127 * 256 > 480, "slabs are told apart modulo 2^16");
+
 /* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset
  * x + y stride, and as one of cells: floor(x / RF_CELL) + floor(y / RF_CELL) cell_stride. */
 typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const int16_t *v, int blur,
                        int32_t stride, int32_t cell_stride, int n);
 
 /*
- * aim_chroma: where n rays see the blur s, as aim says, in samples of chroma that are two pixels apart across and 1 << down
- * of them down, two elements of a row each: 2 x + y stride, x = round(u s / 2) and
- * y = round(v s / 2^down); of their pixels: 2 x + 2^down y stride.
+ * aim_chroma: where n rays see the blur s, as aim says, in samples of chroma that are two pixels
+ * apart across and 1 << down of them down, two elements of a row each: 2 x + y stride, x = round(u
+ * s / 2) and y = round(v s / 2^down); of their pixels: 2 x + 2^down y stride.
  */
 typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u, const int16_t *v,
                               int blur, int down, int32_t stride, int n);
@@ -38,8 +43,8 @@ typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u,
  *
  * An example: slab 0 holds blurs 1024 to 1280, slab 1 holds 512 to 1100, slab 2 holds -64 to 600. A
  * ray sees slab 0 where blurs are 20 to 300: none lies in it, and the ray goes on. It sees slab 1
- * where blurs are 30 to 900: some lie in it, and that is one test. It sees slab 2 where blurs are 40
- * to 200: all lie in it, and its light there is the last. So one test is left of three. Had the
+ * where blurs are 30 to 900: some lie in it, and that is one test. It sees slab 2 where blurs are
+ * 40 to 200: all lie in it, and its light there is the last. So one test is left of three. Had the
  * range at slab 0 been 1030 to 1200, the ray would need no test at all.
  *
  * Two slabs k - 1 and k that are both to be tested at one offset are merged to one test, from the
@@ -58,9 +63,9 @@ typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u,
 enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 
 struct rf_sort_job {
-    const uint32_t *range;          /* at the strip's first pixel */
-    const uint32_t *below;          /* at the strip below, if both are one; else NULL */
-    const uint16_t *front, *behind; /* first of three planes of light, there */
+    const uint32_t *range;                  /* at the strip's first pixel */
+    const uint32_t *below;                  /* at the strip below, if both are one; else NULL */
+    const uint16_t *front, *behind;         /* first of three planes of light, there */
     const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
     bool beneath;

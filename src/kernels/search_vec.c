@@ -6,13 +6,17 @@
  * nothing waits for it. Pixels that go other ways yet come last. A pixel whose own light is taken
  * is only counted.
  */
+#include "colour/transfer.h"
 #include "kernels/kernels.h"
 #include "simd/vec.h"
+
+#include <assert.h>
 
 enum {
     STEPS = 16, /* rays that a 16-bit sum of Q12 light holds */
     LANES = (int)VEC_U16,
 };
+static_assert(STEPS * RF_LIGHT_MAX <= UINT16_MAX, "a sum of light fits 16 bits");
 
 struct sums {
     vec_u16 light[3];

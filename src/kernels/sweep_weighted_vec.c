@@ -1,11 +1,16 @@
 /* sweep_weighted_vec.c: weighted sums of what the rays of a strip see, of three planes, one vector
  * at a time; sweep_weighted_planes_vec.h has the loops. */
+#include "colour/transfer.h"
 #include "kernels/sweep_weighted_planes_vec.h"
 
-enum { STEPS = 32 }; /* rays that a 32-bit sum holds: 32 * 4095 * 32767 < 2^32 */
+#include <assert.h>
 
-/* Rays that it holds of light 4 and 8 times as bright. Products of two are added signed:
- * 2 * 8 * 4095 * 32767 < 2^31. */
+enum { STEPS = 32 }; /* rays that a 32-bit sum holds */
+static_assert((uint64_t)STEPS * RF_LIGHT_MAX * RF_WEIGHT_MAX <= UINT32_MAX,
+              "as the sum is unsigned");
+static_assert((uint64_t)2 * 8 * RF_LIGHT_MAX * RF_WEIGHT_MAX <= INT32_MAX, "two are added signed");
+
+/* Rays that it holds of light 4 and 8 times as bright. */
 static const uint8_t steps_of[] = {
     [RF_WHITE] = STEPS, [RF_BRIGHT] = STEPS / 4, [RF_BRIGHTER] = STEPS / 8};
 

@@ -2,6 +2,7 @@
 #ifndef RF_KERNELS_UPSAMPLE_H
 #define RF_KERNELS_UPSAMPLE_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -126,6 +127,8 @@ struct rf_lie {
  */
 /* (124 - 11 i)^4 / 2^20 */
 static const uint8_t rf_likeness[16] = {225, 155, 103, 65, 39, 21, 10, 4, 1};
+static_assert(RF_AROUND * RF_AROUND * 225 <= UINT16_MAX,
+              "the likeness of all samples fits 16 bits");
 typedef void rf_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
                            const struct rf_cell *cell, const struct rf_window *window,
                            const struct rf_lie *lie, uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE],

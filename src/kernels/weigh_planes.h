@@ -5,7 +5,11 @@
 #include "colour/transfer.h"
 #include "kernels/kernels.h"
 
+#include <assert.h>
+
 enum { RF_LARGE_LIGHT = 16384 }; /* twice that is no signed 16-bit number */
+static_assert(2 * (RF_LARGE_LIGHT - 1) <= INT16_MAX, "twice any less is one");
+static_assert(4 * RF_LIGHT_MAX < RF_LARGE_LIGHT, "light of one plane is less");
 
 /* Light of one plane is always less than RF_LARGE_LIGHT. */
 static inline int rf_weigh_light(int light, int weight)

@@ -2,6 +2,7 @@
 #include "kernels/kernels.h"
 #include "kernels/autovec/groups.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum {
@@ -104,6 +105,7 @@ static const int16_t middle_down[TAPS] = {-768,  -768,  768,  768,  -2304, -2304
 
 /* Sums over the taps of a surface: weights q, and with e heights above its low, at most
  * RF_WIDEST. Weights add up to 64 * 256 at the most: all fit 32 bits. */
+static_assert((int64_t)64 * 256 * RF_WIDEST * 3 <= INT32_MAX, "of heights, times 3 at the most");
 struct sums {
     uint32_t part;           /* where q is 256 m: 2^31 / m, of which n / m is found; else 0 */
     int q, qx, qy, qxx, qyy; /* x = across, y = down */
