@@ -185,8 +185,8 @@ static void pull_item(void *context, int band, int worker)
     pull_rows(r, fill->level, rf_scratch(&r->exec, worker), y0, y1);
     if (fill->level == 0) {
         for (int c = 0; c < 3; c++)
-            rf_extend_rows(&r->view, r->background.light.channel[c], y0, y1);
-        rf_extend_rows(&r->view, r->background.blur.at, y0, y1);
+            rf_extend_rows(&r->view, r->background.light.channel[c], r->view.stride, y0, y1);
+        rf_extend_rows(&r->view, r->background.blur.at, r->view.stride, y0, y1);
     }
 }
 
@@ -219,5 +219,5 @@ void rf_background_pull(struct refocus_renderer *r, int from, int to)
         for (int c = 0; c < 4; c++)
             rf_extend_rows(&r->view,
                            c < 3 ? (void *)r->background.light.channel[c] : r->background.blur.at,
-                           0, 1);
+                           r->view.stride, 0, 1);
 }

@@ -86,8 +86,8 @@ static void pull_band(void *context, int band, int worker)
 
     for (int y = y0; y < y1; y++)
         pull_luma_row(r, rf_scratch(&r->exec, worker), y);
-    rf_extend_rows(&r->view, r->background.light.channel[0], y0, y1);
-    rf_extend_rows(&r->view, r->background.blur.at, y0, y1);
+    rf_extend_rows(&r->view, r->background.light.channel[0], r->view.stride, y0, y1);
+    rf_extend_rows(&r->view, r->background.blur.at, r->view.stride, y0, y1);
     for (int y = c0; y < c1; y++) {
         const ptrdiff_t at = (yuv->down ? y : y / 2) * level->stride;
 
@@ -106,8 +106,8 @@ static void pull_band(void *context, int band, int worker)
 static void fill_pixel(struct refocus_renderer *r)
 {
     memcpy(r->yuv.behind, r->yuv.smooth, 2 * sizeof(uint16_t));
-    rf_extend_rows(&r->view, r->background.light.channel[0], 0, 1);
-    rf_extend_rows(&r->view, r->background.blur.at, 0, 1);
+    rf_extend_rows(&r->view, r->background.light.channel[0], r->view.stride, 0, 1);
+    rf_extend_rows(&r->view, r->background.blur.at, r->view.stride, 0, 1);
     rf_extend_chroma(r, r->yuv.behind, 0, 1);
 }
 

@@ -2,8 +2,6 @@
 
 #include <refocus/render.h>
 
-#include "kernels/kernels.h"
-
 #include "tables/transfer.inc"
 
 void rf_transfer_init(struct rf_transfer *transfer, int blend)

@@ -12,7 +12,8 @@
 enum {
     RF_LIGHT_MAX = 4095,
     RF_MEAN_MAX = 4 * RF_LIGHT_MAX,
-    RF_BLEND_COUNT = 3, /* enum refocus_blend */
+    RF_WEIGHT_MAX = 32767, /* the largest weight of eq. 5, Q15 */
+    RF_BLEND_COUNT = 3,    /* enum refocus_blend */
 };
 
 #define RF_NO_BLEND UINT32_MAX /* none of enum refocus_blend */

@@ -1,11 +1,12 @@
 #include <refocus/depth.h>
+#include <refocus/render.h>
 
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "image/format.h"
-#include "renderer/params.h"
+#include "support/pool.h"
 
 enum {
     STEP = 65535 / 24, /* an edge */

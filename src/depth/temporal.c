@@ -6,7 +6,6 @@
 
 #include "depth/temporal.h"
 #include "image/format.h"
-#include "renderer/params.h"
 #include "support/arena.h"
 
 enum {

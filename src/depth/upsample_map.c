@@ -5,8 +5,6 @@
 
 #include "depth/upsample.h"
 #include "image/format.h"
-#include "renderer/layout.h"
-#include "renderer/params.h"
 #include "support/arena.h"
 
 /* Sets the pointers, or with arena->base == NULL only counts. */
@@ -65,11 +63,11 @@ static bool good_params(const struct refocus_upsample_params *params,
 int refocus_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
                      const struct refocus_upsample_params *params, uint16_t *out, ptrdiff_t stride)
 {
-    struct refocus_renderer_params threads = refocus_renderer_params_default(1, 1, 0);
     struct rf_arena arena = {NULL, RF_ARENA_ALIGN};
     struct rf_kernels kernels;
     struct rf_pool pool;
     struct rf_run run = {.looked_at = NULL};
+    uint32_t cpu;
     void *block;
     int status;
 
@@ -77,9 +75,8 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         !out || ((uintptr_t)out & 1) || (stride & 1) ||
         !rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
-    threads.threads = params->threads;
-    threads.cpu = params->cpu;
-    if (!rf_kernels_select(&kernels, &threads.cpu))
+    cpu = params->cpu;
+    if (!rf_kernels_select(&kernels, &cpu))
         return REFOCUS_ERR_UNSUPPORTED;
     if (map->width == photo->width && map->height == photo->height) {
         copy_map(map, out, stride);
@@ -106,7 +103,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     arena.used = 0;
     lay_out(&up, &arena);
     atomic_init(&run.state, RF_RUN_RUNNING);
-    status = rf_pool_start(&pool, rf_threads_for(&threads), NULL, &run);
+    status = rf_pool_start(&pool, rf_thread_count(params->threads), NULL, &run);
     if (status == REFOCUS_OK) {
         rf_upsample(&up, &pool);
         rf_pool_end(&pool);

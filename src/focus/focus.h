@@ -45,6 +45,9 @@ struct rf_focus_plan {
     struct rf_field field;
 };
 
+/* df and K in fixed point. */
+struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
+
 /* Of parameters that are in their ranges. */
 void rf_focus_plan_make(struct rf_focus_plan *plan, const struct refocus_render_params *params,
                         struct rf_focus focus, int width, int height);

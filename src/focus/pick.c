@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "renderer/params.h"
+#include "image/format.h"
 #include "support/compare.h"
 
 enum {

@@ -6,6 +6,14 @@
 
 #include "aperture/aperture.h"
 
+struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
+{
+    return (struct rf_focus){
+        .disparity = (uint16_t)floor((double)focus_disparity * 65535 + 0.5),
+        .radius = (uint16_t)floor((double)max_blur_radius * 256 * 65536 / 65535 + 0.5),
+    };
+}
+
 static int32_t to_fixed(double v, double one)
 {
     return (int32_t)floor(v * one + 0.5);

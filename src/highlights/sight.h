@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "gather/frame.h"
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 enum {
     RF_LAMP_UNIT = 64, /* of lengths, in a pixel */

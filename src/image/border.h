@@ -7,6 +7,6 @@
 /* Repeats the first and the last pixel of rows y0 <= y < y1 of a padded plane of 16-bit elements
  * over view->border, and with row 0 and the last row the rows beyond. Reads and writes these rows
  * alone, so that bands may run at once. */
-void rf_extend_rows(const struct rf_viewport *view, void *plane, int y0, int y1);
+void rf_extend_rows(const struct rf_viewport *view, void *plane, ptrdiff_t stride, int y0, int y1);
 
 #endif

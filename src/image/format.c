@@ -78,3 +78,11 @@ bool rf_good_picture(const struct refocus_image *image)
             return false;
     return true;
 }
+
+bool rf_good_map(const struct refocus_disparity *map)
+{
+    return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
+           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE && map->height <= REFOCUS_MAX_SIDE &&
+           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
+           (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
+}

@@ -46,8 +46,11 @@ static inline bool rf_good_image(const struct refocus_image *image)
                           image->height);
 }
 
-/* The same for any format. */
+/* Whether a picture of any format is so. */
 bool rf_good_picture(const struct refocus_image *image);
+
+/* Whether a map of disparities can be read. */
+bool rf_good_map(const struct refocus_disparity *map);
 
 /* Rows of pixels to a row of chroma: 1 << this. */
 static inline int rf_chroma_down(uint32_t format)

@@ -7,7 +7,7 @@
 #include <refocus/image.h>
 
 #include "image/rect.h"
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /*
  * Passes work on a window as if it were the whole picture: its pixel (0, 0) is pixel (x0, y0) of

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /*
  * draw_disc: to means, rows `first` to end - 1 of a tile, what their pixels see of a run of pixels

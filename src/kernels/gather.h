@@ -52,7 +52,6 @@ static_assert(8 * RF_CHROMA_MAX <= UINT16_MAX, "8 rays of chroma fit 16 bits");
 /* sweep_weighted: a sweep in which light, Q12 up to `bright`, counts weight times; sum[3] is the
  * sum of weights. The weights of the front lie in a plane with a stride of its own, those of the
  * background as its light. Only the reference takes RF_BRIGHTEST. */
-enum { RF_WEIGHT_MAX = 32767 };
 typedef void rf_sweep_weighted_fn(uint64_t *const sum[4], const struct rf_sweep_job *job);
 
 /*

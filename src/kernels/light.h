@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /* means: Q14 means of sums of N Q12 values, with scale = rf_mean_scale(N): within
  * 1/2 + N / 2^17 of 4 sum / N, and exact where all N are the same. */

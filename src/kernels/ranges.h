@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /* Ranges are found for strips of a tile, RF_STRIP rows each. */
 enum { RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };

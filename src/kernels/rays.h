@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "kernels/ranges.h"
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /* The rays of a tile are worked on in chunks. */
 enum { RF_RAY_CHUNK = 64 };

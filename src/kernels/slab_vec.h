@@ -4,7 +4,7 @@
 
 #include "kernels/rays.h"
 #include "simd/vec.h"
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 struct rf_limits {
     vec_u16 from, to; /* rf_in_range() */

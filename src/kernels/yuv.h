@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "colour/yuv.h"
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /*
  * encode: codes of n samples of chroma and of the 2 or 4 pixels that share each to chroma, D_b

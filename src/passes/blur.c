@@ -3,14 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
-{
-    return (struct rf_focus){
-        .disparity = (uint16_t)floor((double)focus_disparity * 65535 + 0.5),
-        .radius = (uint16_t)floor((double)max_blur_radius * 256 * 65536 / 65535 + 0.5),
-    };
-}
-
 void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan *plan, int y0,
                          int y1)
 {
@@ -23,7 +15,7 @@ void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan 
         else
             rf_focus_row(plan, blur, disparity, r->view.x0, r->view.y0 + y, r->view.width);
     }
-    rf_extend_rows(&r->view, r->blur.at, y0, y1);
+    rf_extend_rows(&r->view, r->blur.at, r->view.stride, y0, y1);
 }
 
 /* Whether a tile holds blurs above `least`. */
@@ -108,5 +100,5 @@ void rf_prefilter_rows(struct refocus_renderer *r, uint16_t *const out[3], uint1
                     step, above[step], over, n);
     }
     for (int c = 0; c < 3; c++)
-        rf_extend_rows(&r->view, out[c], y0, y1);
+        rf_extend_rows(&r->view, out[c], r->view.stride, y0, y1);
 }

@@ -38,7 +38,7 @@ void rf_convert_rows(struct refocus_renderer *r, const struct refocus_image *pho
             convert_row(red, green, blue, alpha, in, o, 4, to_light, r->view.width);
     }
     for (int c = 0; c < 3; c++)
-        rf_extend_rows(&r->view, r->light.channel[c], y0, y1);
+        rf_extend_rows(&r->view, r->light.channel[c], r->view.stride, y0, y1);
 }
 
 void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int y0, int y1)
@@ -53,7 +53,7 @@ void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int
             for (int x = 0; x < r->view.width; x++)
                 row[x] = to_light[to_code[4 * row[x]]];
         }
-        rf_extend_rows(&r->view, r->light.channel[c], y0, y1);
+        rf_extend_rows(&r->view, r->light.channel[c], r->view.stride, y0, y1);
     }
 }
 

@@ -19,8 +19,6 @@ void rf_reblend_rows(struct refocus_renderer *r, uint32_t from, uint32_t to, int
 void rf_disparity_rows(uint16_t *disparity, ptrdiff_t stride, const struct refocus_disparity *map,
                        int y0, int y1);
 
-struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
-
 /* Signed blur, eq. 4 or what the plan makes of it, and its border. */
 void rf_signed_blur_rows(struct refocus_renderer *r, const struct rf_focus_plan *plan, int y0,
                          int y1);

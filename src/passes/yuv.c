@@ -218,7 +218,8 @@ static void convert_chroma_rows(struct refocus_renderer *r, uint8_t *scratch, in
 
     for (int cy = c0; cy < c1; cy++)
         convert_codes(r, scratch, cy);
-    rf_extend_rows(&r->view, r->light.channel[0], y0, end < r->view.height ? end : r->view.height);
+    rf_extend_rows(&r->view, r->light.channel[0], r->view.stride, y0,
+                   end < r->view.height ? end : r->view.height);
     rf_extend_chroma(r, r->yuv.light, c0, c1);
 }
 
@@ -329,7 +330,7 @@ void rf_yuv_prefilter_luma(struct refocus_renderer *r, uint16_t *out, const uint
         step,       1 << step, scratch};
 
     smooth_rows(r, &filter, ty, rf_band_start(ty), rf_band_end(&r->view, ty), r->view.width);
-    rf_extend_rows(&r->view, out, rf_band_start(ty), rf_band_end(&r->view, ty));
+    rf_extend_rows(&r->view, out, r->view.stride, rf_band_start(ty), rf_band_end(&r->view, ty));
 }
 
 void rf_yuv_prefilter_chroma(struct refocus_renderer *r, uint16_t *out, const uint16_t *in,

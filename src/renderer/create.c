@@ -101,7 +101,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->exec.kernels = &r->kernels;
     r->exec.scratch_size = rf_scratch_size(own.max_width);
     atomic_init(&r->run.state, RF_RUN_IDLE);
-    status = rf_pool_start(&r->pool, rf_threads_for(&own), &own.parallel, &r->run);
+    status = rf_pool_start(&r->pool, rf_thread_count(own.threads), &own.parallel, &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);
         return status;

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "depth/upsample.h"
 #include "renderer/methods.h"
@@ -24,15 +23,6 @@ ptrdiff_t rf_pitch_for(int width, int pad)
 
     /* an odd number of cache lines: rows and planes then spread over all cache sets */
     return 32 * (pitch | 1);
-}
-
-int rf_threads_for(const struct refocus_renderer_params *params)
-{
-    long n = params->threads;
-
-    if (n == 0)
-        n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
 }
 
 static void take_level(struct rf_arena *arena, struct rf_level *level, int width, int height)
@@ -187,7 +177,7 @@ static uint64_t work_bytes(const struct refocus_renderer_params *params)
 {
     const struct rf_limits limits = {params->max_width, params->max_height,
                                      rf_padding_for(params->max_blur_radius),
-                                     rf_threads_for(params), params->max_blur_radius};
+                                     rf_thread_count(params->threads), params->max_blur_radius};
     uint64_t most = 0;
 
     for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
@@ -231,7 +221,8 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         (uint64_t)((across + RF_TILE - 1) / RF_TILE) * (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     struct rf_level level[RF_LEVELS];
     const int levels = rf_pyramid(level, across, down);
-    const int threads = rf_threads_for(params), pad = rf_padding_for(params->max_blur_radius);
+    const int threads = rf_thread_count(params->threads),
+              pad = rf_padding_for(params->max_blur_radius);
     uint64_t before, after;
 
     if (params->in_place)

@@ -3,7 +3,6 @@
 
 #include "renderer/renderer.h"
 
-int rf_threads_for(const struct refocus_renderer_params *params);
 int rf_padding_for(float max_blur_radius);
 ptrdiff_t rf_pitch_for(int width, int pad);
 int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height);

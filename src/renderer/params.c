@@ -3,7 +3,6 @@
 
 #include "aperture/aperture.h"
 #include "image/format.h"
-#include "passes/planes.h"
 
 static bool in(double value, double least, double most)
 {
@@ -103,14 +102,6 @@ static bool is_plain_focus(const struct refocus_renderer *r, const struct refocu
     rf_focus_plan_make(&plan, p, rf_focus_of(p->focus_disparity, p->max_blur_radius),
                        r->photo.width, r->photo.height);
     return plan.plain;
-}
-
-bool rf_good_map(const struct refocus_disparity *map)
-{
-    return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
-           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE && map->height <= REFOCUS_MAX_SIDE &&
-           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
-           (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
 }
 
 bool rf_good_params(const struct refocus_renderer *r, const struct refocus_render_params *p)

@@ -7,7 +7,4 @@
  * that the renderer has memory for. */
 bool rf_good_params(const struct refocus_renderer *r, const struct refocus_render_params *p);
 
-/* Whether a map of disparities can be read. */
-bool rf_good_map(const struct refocus_disparity *map);
-
 #endif

@@ -261,7 +261,8 @@ static void thin_band(void *context, int band, int worker)
     (void)worker;
     if (!rf_thin_patch_band(&f->thin, band))
         return;
-    rf_extend_rows(&r->view, r->blur.at, rf_band_start(band), rf_band_end(&r->view, band));
+    rf_extend_rows(&r->view, r->blur.at, r->blur.stride, rf_band_start(band),
+                   rf_band_end(&r->view, band));
     rf_cell_rows(r, band);
     rf_bin_tiles(r, f->scale, band);
 }

@@ -11,7 +11,6 @@
 #include "renderer/renderer.h"
 #include "renderer/layout.h"
 #include "renderer/load.h"
-#include "renderer/params.h"
 
 /* The planes of blurs, of pre-filtered light and of the background layer are free until
  * something is rendered. */

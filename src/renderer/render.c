@@ -5,7 +5,6 @@
 #include "highlights/draw.h"
 #include "gather/tile_rows.h"
 #include "image/format.h"
-#include "passes/planes.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
 #include "renderer/methods.h"

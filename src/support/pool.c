@@ -205,6 +205,13 @@ static void join(struct rf_pool *pool, int created)
     pthread_mutex_destroy(&pool->lock);
 }
 
+int rf_thread_count(int32_t asked)
+{
+    const long n = asked ? asked : sysconf(_SC_NPROCESSORS_ONLN);
+
+    return n < 1 ? 1 : n > RF_MAX_THREADS ? RF_MAX_THREADS : (int)n;
+}
+
 int rf_pool_start(struct rf_pool *pool, int threads, const struct refocus_parallel *parallel,
                   struct rf_run *run)
 {

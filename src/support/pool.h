@@ -12,6 +12,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include <refocus/render.h>
 
@@ -61,6 +62,9 @@ struct rf_pool {
     atomic_int next;   /* item */
     char apart_too[64];
 };
+
+/* How many threads to work with when a caller asks for so many: 0 asks for one a processor. */
+int rf_thread_count(int32_t asked);
 
 /* Starts threads of its own, or none where the caller's parallel_for is to be used
  * (NULL or empty: it is not). Returns REFOCUS_OK or REFOCUS_ERR_THREAD, then with

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
 struct rf_bins {

@@ -3,7 +3,7 @@
 #define RF_TILES_H
 
 #include "renderer/renderer.h"
-#include "tiles/slab.h"
+#include "kernels/slab.h"
 
 /*
  * Bins of signed blur: a quarter pixel wide where none exceeds 31.5 pixels, half up to 63.5,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "passes/planes.h"
+#include "focus/focus.h"
 
 static int wrong(const char *name, const char *what, double is, double should)
 {
