@@ -4,6 +4,7 @@
 
 #include "depth/dequantise.h"
 #include "gather/frame.h"
+#include "renderer/renderer.h"
 
 void rf_finish_begin(struct rf_frame *f)
 {

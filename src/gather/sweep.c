@@ -302,7 +302,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     uint16_t mean[3][LANES];
 
     (void)worker;
-    rf_plan_tile(f->r, f->scale, &f->reach, tx, ty, &plan);
+    rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &plan);
     if (plan.sharp && f->thin.disc_scale && rf_has_coverage(&f->thin, tx, ty)) {
         rf_thin_sharp_means(&f->thin, tx, ty, mean);
         rf_coverage_over(&f->thin, tx, ty, mean);

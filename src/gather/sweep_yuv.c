@@ -298,7 +298,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     (void)worker;
     tile.f = f;
     tile.behind = f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
-    rf_plan_tile(f->r, f->scale, &f->reach, tx, ty, &tile.plan);
+    rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &tile.plan);
     if (tile.plan.sharp) {
         rf_copy_yuv_tile(f, rect);
         return;

@@ -75,8 +75,8 @@ static void widen(struct refocus_renderer *r, int lamp_x, int lamp_y, struct rf_
             s = r->blur.at + y * r->view.stride + x;
             if (*s > own + ALIKE && abs(*s) > BLURRED) {
                 *s = own;
-                rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, own);
-                rf_add_to_cell(r, x, y, own);
+                rf_add_bin(&r->view, r->bins, scale, x, y, own);
+                rf_add_to_cell(&r->cells, x, y, own);
             }
         }
     }
@@ -134,7 +134,8 @@ static void put_in_front(const struct met *met, const struct rf_highlight *lamp)
         if (!rf_place_of(r, lamp, i, &x, &y) || is_left_alone(lamp, i))
             continue;
         reach = 1 + reach_of(r->blur.at[y * r->view.stride + x], met->gap);
-        rf_put_in_front(r, (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
+        rf_put_in_front(&r->view, &r->foreground,
+                        (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
     }
 }
 

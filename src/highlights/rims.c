@@ -264,7 +264,7 @@ void rf_patch_rims(struct refocus_renderer *r, const struct rf_focus_plan *plan,
         if (x < 0 || y < 0 || x >= r->view.width || y >= r->view.height)
             continue;
         rf_focus_row(plan, s, &rim->disparity, rim->x, rim->y, 1);
-        rf_add_bin(r, scale, x / RF_TILE, y / RF_TILE, *s);
-        rf_add_to_cell(r, x, y, *s);
+        rf_add_bin(&r->view, r->bins, scale, x, y, *s);
+        rf_add_to_cell(&r->cells, x, y, *s);
     }
 }

@@ -6,6 +6,7 @@
 
 #include "kernels/kernels.h"
 #include "support/compare.h"
+#include "renderer/renderer.h"
 #include "tiles/ranges.h"
 
 enum {

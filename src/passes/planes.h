@@ -49,9 +49,6 @@ enum rf_task { RF_SKIP, RF_COPY, RF_FILTER };
 enum rf_task rf_prefilter_task(const struct refocus_renderer *r, const int above[], int step,
                                int tx, int ty);
 
-/* The background's blur in the middle of each tile of a row goes to its bins. */
-void rf_note_behind(struct refocus_renderer *r, int ty);
-
 /* Weights of eq. 5 of the pixels that rays meet, borders too: of smooth into r->weight.at, of the
  * background over its blur. */
 void rf_weigh_rows(struct refocus_renderer *r, int ty);

@@ -62,13 +62,6 @@ static int brightest(uint16_t *const light[3], ptrdiff_t at)
     return most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
 }
 
-void rf_note_behind(struct refocus_renderer *r, int ty)
-{
-    for (int tx = 0; tx < r->view.tiles_x; tx++)
-        r->bins[(size_t)ty * r->view.tiles_x + tx].behind =
-            r->background.blur.at[rf_tile_middle(r, tx, ty)];
-}
-
 void rf_weigh_rows(struct refocus_renderer *r, int ty)
 {
     const int y0 = ty * RF_TILE - (ty == 0 ? r->view.border.y0 : 0);

@@ -240,6 +240,8 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->weight.at =
         rf_arena_take(arena, (uint64_t)r->weight.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
     r->weight.at = r->weight.at ? r->weight.at + pad * (r->weight.stride + 1) : NULL;
+    /* the foreground is done with before there are weights */
+    r->foreground = (struct rf_foreground_cells){(int16_t *)r->weight.at, r->weight.stride};
     after = arena->used > after ? arena->used : after;
     r->has_thin = params->thin && !params->in_place;
     if (r->has_thin) { /* and not begun while sources are drawn */

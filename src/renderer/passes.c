@@ -88,11 +88,12 @@ void rf_pass_lamps(struct rf_frame *f)
 static void blur_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
+    struct refocus_renderer *r = f->r;
 
     (void)worker;
     rf_signed_blur_rows(f->r, &f->plan, rf_band_start(band), rf_band_end(&f->r->view, band));
-    rf_cell_rows(f->r, band);
-    rf_bin_tiles(f->r, f->scale, band);
+    rf_cell_rows(&r->exec, &r->view, r->blur, &r->cells, band);
+    rf_bin_tiles(&r->view, f->scale, r->blur, &r->cells, r->bins, band);
 }
 
 static void chroma_blur_band(void *context, int band, int worker)
@@ -103,11 +104,17 @@ static void chroma_blur_band(void *context, int band, int worker)
     rf_yuv_blur_rows(f->r, rf_band_start(band), rf_band_end(&f->r->view, band));
 }
 
+static struct rf_range_pass range_pass(const struct refocus_renderer *r)
+{
+    return (struct rf_range_pass){r->cells, r->foreground, r->yuv.on, r->range};
+}
+
 static void range_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
+    const struct rf_range_pass pass = range_pass(f->r);
 
-    rf_range_rows(f->r, rf_scratch(&f->r->exec, worker), band);
+    rf_range_rows(&f->r->exec, &f->r->view, &pass, band, worker);
 }
 
 /* One step after the other. That of a band needs the step before of those beside it, too, and is
@@ -263,8 +270,8 @@ static void thin_band(void *context, int band, int worker)
         return;
     rf_extend_rows(&r->view, r->blur.at, r->blur.stride, rf_band_start(band),
                    rf_band_end(&r->view, band));
-    rf_cell_rows(r, band);
-    rf_bin_tiles(r, f->scale, band);
+    rf_cell_rows(&r->exec, &r->view, r->blur, &r->cells, band);
+    rf_bin_tiles(&r->view, f->scale, r->blur, &r->cells, r->bins, band);
 }
 
 void rf_pass_thin(struct rf_frame *f)
@@ -286,16 +293,19 @@ void rf_pass_smooth(struct rf_frame *f)
 
 static void note_band(void *context, int band, int worker)
 {
+    struct refocus_renderer *r = context;
+
     (void)worker;
-    rf_note_behind(context, band);
-    rf_foreground_rows(context, band);
+    rf_note_background(&r->view, r->background.blur, r->bins, band);
+    rf_foreground_rows(&r->exec, &r->view, r->blur, r->background.blur, &r->foreground, band);
 }
 
 static void bare_band(void *context, int band, int worker)
 {
     struct refocus_renderer *r = context;
+    const struct rf_range_pass pass = range_pass(r);
 
-    rf_bare_rows(r, rf_scratch(&r->exec, worker), band);
+    rf_bare_rows(&r->exec, &r->view, &pass, band, worker);
 }
 
 static void weigh_band(void *context, int band, int worker)

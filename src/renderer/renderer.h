@@ -27,6 +27,7 @@
 #include "support/executor.h"
 #include "thin/thin.h"
 #include "tiles/bins.h"
+#include "tiles/ranges.h"
 
 enum {
     RF_GROUP = 4, /* planes that lie together */
@@ -138,8 +139,9 @@ struct refocus_renderer {
     struct rf_yuv yuv;
     struct rf_level level[RF_LEVELS];
     int levels;
-    struct rf_weight_q15 weight; /* of smooth, once the background is inpainted: its memory is the
-                                    pyramid's. Those of the background are where its blur was. */
+    struct rf_weight_q15 weight, background_weight; /* once the background is inpainted */
+    struct rf_cells cells;                          /* until the background is marked */
+    struct rf_foreground_cells foreground;          /* of the inpainted background, up to weights */
     struct rf_range_plane range;
     struct rf_bins *bins; /* of each tile */
 

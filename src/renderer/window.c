@@ -32,6 +32,21 @@ static void place_planes(struct refocus_renderer *r, const struct rf_photo *phot
         r->blur.stride = r->background.blur.stride = photo->stride;
 }
 
+/*
+ * Views of planes that lie in memory of others, as they are never wanted at the same time:
+ *
+ *     cells               in the background's blur, from the bins until the background is marked
+ *     background_weight   in the background's blur, once the bins have what the sweep needs of it
+ */
+static void share_planes(struct refocus_renderer *r)
+{
+    const struct rf_blur_q8 shared = r->background.blur;
+
+    r->cells = (struct rf_cells){shared.at, shared.at + r->view.tiles_x * (RF_TILE / RF_CELL),
+                                 shared.stride};
+    r->background_weight = (struct rf_weight_q15){(uint16_t *)shared.at, shared.stride};
+}
+
 void rf_use(struct refocus_renderer *r, struct rf_rect part)
 {
     const struct rf_photo *photo = &r->photo;
@@ -65,6 +80,7 @@ void rf_use(struct refocus_renderer *r, struct rf_rect part)
         r->alpha.stride = rf_block_side(&r->in_place);
     }
     place_planes(r, photo);
+    share_planes(r);
     rf_yuv_use(r);
     r->levels = rf_pyramid(r->level, width, height);
 }
@@ -80,8 +96,7 @@ void rf_set_planes(struct rf_frame *f)
     f->blur = r->blur;
     f->background = r->background;
     f->weight = r->weight;
-    f->background_weight =
-        (struct rf_weight_q15){(uint16_t *)r->background.blur.at, r->background.blur.stride};
+    f->background_weight = r->background_weight;
     f->disparity = r->disparity;
     f->alpha = r->alpha;
     f->range = r->range;
@@ -101,8 +116,8 @@ void rf_set_planes(struct rf_frame *f)
     f->thin.disparity = r->disparity;
     f->thin.light = r->light;
     f->thin.blur = r->blur;
-    f->thin.cell_most = rf_cell_most(r, 0);
-    f->thin.cell_stride = r->view.stride;
+    f->thin.cell_most = r->cells.most;
+    f->thin.cell_stride = r->cells.stride;
     f->thin.bins = r->bins;
     f->thin.list = &r->photo.thin;
     f->thin.coverage = &r->coverage;

@@ -1,3 +1,4 @@
+/* ranges.c: finds the least and the greatest blur of cells, and of what a shifted strip covers. */
 #include "tiles/ranges.h"
 
 enum {
@@ -5,27 +6,27 @@ enum {
     TALL_Y = RF_WINDOW_Y + RF_STRIP / RF_CELL, /* those that both its strips lie in */
 };
 
-static int cells_x(const struct refocus_renderer *r)
+static int cells_x(const struct rf_viewport *view)
 {
-    return r->view.tiles_x * EACH;
+    return view->tiles_x * EACH;
 }
 
-void rf_cell_rows(struct refocus_renderer *r, int ty)
+void rf_cell_rows(const struct rf_executor *exec, const struct rf_viewport *view,
+                  struct rf_blur_q8 blur, const struct rf_cells *cells, int ty)
 {
-    const int n = cells_x(r);
+    const int n = cells_x(view);
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++)
-        r->exec.kernels->cells(rf_cell_least(r, y), rf_cell_most(r, y),
-                               r->blur.at + y * RF_CELL * r->view.stride, r->view.stride, n);
+        exec->kernels->cells(cells->least + y * cells->stride, cells->most + y * cells->stride,
+                             blur.at + y * RF_CELL * blur.stride, blur.stride, n);
 }
 
-void rf_add_to_cell(struct refocus_renderer *r, int x, int y, int16_t blur)
+void rf_add_to_cell(const struct rf_cells *cells, int x, int y, int16_t blur)
 {
-    int16_t *least = rf_cell_least(r, y / RF_CELL) + x / RF_CELL;
-    int16_t *most = rf_cell_most(r, y / RF_CELL) + x / RF_CELL;
+    const ptrdiff_t at = y / RF_CELL * cells->stride + x / RF_CELL;
 
-    *least = blur < *least ? blur : *least;
-    *most = blur > *most ? blur : *most;
+    cells->least[at] = rf_lesser(blur, cells->least[at]);
+    cells->most[at] = rf_greater(blur, cells->most[at]);
 }
 
 static int clamp(int v, int most)
@@ -67,84 +68,87 @@ struct window_rows {
     int last; /* row of cells */
 };
 
-static struct window_rows window_rows(const struct refocus_renderer *r, int ty)
+static struct window_rows window_rows(const struct rf_viewport *view, int ty)
 {
-    const int rows = r->view.tiles_y * EACH, border = rf_range_border(r->view.pad);
+    const int rows = view->tiles_y * EACH, border = rf_range_border(view->pad);
 
     return (struct window_rows){
-        .cells = cells_x(r),
+        .cells = cells_x(view),
         .border = border,
         .first = ty == 0 ? -border : ty * EACH,
-        .end = ty == r->view.tiles_y - 1 ? rows + border : (ty + 1) * EACH,
+        .end = ty == view->tiles_y - 1 ? rows + border : (ty + 1) * EACH,
         .last = rows - 1,
     };
 }
 
-/* Behind the scratch of `windows`. */
-static int16_t *joined_rows(uint16_t *scratch, const struct window_rows *rows)
+/* Joined rows lie in the scratch after what the kernels need there. */
+static int16_t *joined_rows(int16_t *scratch, const struct window_rows *rows)
 {
-    return (int16_t *)scratch + 2 * (rows->cells + 2 * rows->border + RF_WINDOW_X);
+    return scratch + 2 * (rows->cells + 2 * rows->border + RF_WINDOW_X);
 }
 
-void rf_range_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
+void rf_range_rows(const struct rf_executor *exec, const struct rf_viewport *view,
+                   const struct rf_range_pass *pass, int ty, int worker)
 {
-    const struct window_rows rows = window_rows(r, ty);
+    const struct window_rows rows = window_rows(view, ty);
+    int16_t *const scratch = (int16_t *)rf_scratch(exec, worker);
     int16_t *const joined = joined_rows(scratch, &rows);
 
     for (int y = rows.first; y < rows.end; y++) {
         const int16_t *least[TALL_Y], *most[TALL_Y];
 
         for (int j = 0; j < TALL_Y; j++) {
-            least[j] = rf_cell_least(r, clamp(y + j, rows.last));
-            most[j] = rf_cell_most(r, clamp(y + j, rows.last));
+            const ptrdiff_t at = clamp(y + j, rows.last) * pass->cells.stride;
+
+            least[j] = pass->cells.least + at;
+            most[j] = pass->cells.most + at;
         }
-        if (r->yuv.on) {
+        if (pass->whole_tiles) {
             join_strips(least, joined, rows.cells, lesser_row);
             join_strips(most, joined + 2 * rows.cells, rows.cells, greater_row);
         }
-        r->exec.kernels->windows(r->range.at + y * r->range.stride - rows.border, least, most,
-                                 (int16_t *)scratch, rows.cells, rows.border);
+        exec->kernels->windows(pass->range.at + y * pass->range.stride - rows.border, least, most,
+                               scratch, rows.cells, rows.border);
     }
 }
 
-/* They lie where the weights will be. */
-static int16_t *foreground_row(const struct refocus_renderer *r, int y)
-{
-    return (int16_t *)r->weight.at + y * r->weight.stride;
-}
-
-void rf_foreground_rows(struct refocus_renderer *r, int ty)
+void rf_foreground_rows(const struct rf_executor *exec, const struct rf_viewport *view,
+                        struct rf_blur_q8 blur, struct rf_blur_q8 background_blur,
+                        const struct rf_foreground_cells *foreground, int ty)
 {
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
-        const ptrdiff_t at = y * RF_CELL * r->view.stride;
+        const ptrdiff_t at = y * RF_CELL * blur.stride;
 
-        r->exec.kernels->foreground(foreground_row(r, y), r->blur.at + at,
-                                    r->background.blur.at + at, r->view.stride, cells_x(r));
+        exec->kernels->foreground(foreground->most + y * foreground->stride, blur.at + at,
+                                  background_blur.at + at, blur.stride, cells_x(view));
     }
 }
 
-void rf_put_in_front(struct refocus_renderer *r, struct rf_rect pixels)
+void rf_put_in_front(const struct rf_viewport *view, const struct rf_foreground_cells *foreground,
+                     struct rf_rect pixels)
 {
-    const int last_x = cells_x(r) - 1, last_y = r->view.tiles_y * EACH - 1;
+    const int last_x = cells_x(view) - 1, last_y = view->tiles_y * EACH - 1;
 
     for (int y = clamp(pixels.y0 / RF_CELL, last_y); y <= clamp(pixels.y1 / RF_CELL, last_y); y++)
         for (int x = clamp(pixels.x0 / RF_CELL, last_x); x <= clamp(pixels.x1 / RF_CELL, last_x);
              x++)
-            foreground_row(r, y)[x] = INT16_MAX;
+            foreground->most[y * foreground->stride + x] = INT16_MAX;
 }
 
-void rf_bare_rows(struct refocus_renderer *r, uint16_t *scratch, int ty)
+void rf_bare_rows(const struct rf_executor *exec, const struct rf_viewport *view,
+                  const struct rf_range_pass *pass, int ty, int worker)
 {
-    const struct window_rows rows = window_rows(r, ty);
+    const struct window_rows rows = window_rows(view, ty);
+    int16_t *const scratch = (int16_t *)rf_scratch(exec, worker);
 
     for (int y = rows.first; y < rows.end; y++) {
         const int16_t *cell[TALL_Y];
 
         for (int j = 0; j < TALL_Y; j++)
-            cell[j] = foreground_row(r, clamp(y + j, rows.last));
-        if (r->yuv.on)
+            cell[j] = pass->foreground.most + clamp(y + j, rows.last) * pass->foreground.stride;
+        if (pass->whole_tiles)
             join_strips(cell, joined_rows(scratch, &rows), rows.cells, greater_row);
-        r->exec.kernels->bare(r->range.at + y * r->range.stride - rows.border, cell,
-                              (int16_t *)scratch, rows.cells, rows.border);
+        exec->kernels->bare(pass->range.at + y * pass->range.stride - rows.border, cell, scratch,
+                            rows.cells, rows.border);
     }
 }

@@ -1,9 +1,10 @@
+/* tiles.c: classifies tiles: which blurs they hold, which can reach them, the slabs of these. */
 #include "tiles/tiles.h"
 
 #include <stdlib.h>
 
+#include "colour/transfer.h"
 #include "support/compare.h"
-#include "tiles/ranges.h"
 
 enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
 
@@ -60,11 +61,12 @@ static void add_cell(struct rf_bins *bins, struct rf_bin_scale scale, const int1
 }
 
 /* The bins of a tile's cells, one by one where a cell has more than two. */
-static void add_cells(struct rf_bins *bins, const struct refocus_renderer *r,
-                      struct rf_bin_scale scale, int tx, int ty)
+static void add_cells(struct rf_bins *bins, struct rf_bin_scale scale, struct rf_blur_q8 blur,
+                      const struct rf_cells *cells, int tx, int ty)
 {
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
-        const int16_t *least = rf_cell_least(r, y), *most = rf_cell_most(r, y);
+        const int16_t *least = cells->least + y * cells->stride;
+        const int16_t *most = cells->most + y * cells->stride;
 
         for (int x = tx * EACH; x < (tx + 1) * EACH; x++) {
             const int first = bin_of(scale, least[x]), last = bin_of(scale, most[x]);
@@ -72,21 +74,21 @@ static void add_cells(struct rf_bins *bins, const struct refocus_renderer *r,
             add_bin(bins, first);
             add_bin(bins, last);
             if (last - first > 1)
-                add_cell(bins, scale, r->blur.at + RF_CELL * (y * r->view.stride + x),
-                         r->view.stride, first, last);
+                add_cell(bins, scale, blur.at + RF_CELL * (y * blur.stride + x), blur.stride, first,
+                         last);
         }
     }
 }
 
-static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
-                                   int tx, int ty)
+static struct rf_bins bins_of_tile(struct rf_bin_scale scale, struct rf_blur_q8 blur,
+                                   const struct rf_cells *cells, int tx, int ty)
 {
     struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN, .brightest = RF_LIGHT_MAX};
     int first, last;
 
     for (int y = ty * EACH; y < (ty + 1) * EACH; y++) {
-        const int16_t *least = rf_cell_least(r, y) + tx * EACH;
-        const int16_t *most = rf_cell_most(r, y) + tx * EACH;
+        const int16_t *least = cells->least + y * cells->stride + tx * EACH;
+        const int16_t *most = cells->most + y * cells->stride + tx * EACH;
 
         for (int x = 0; x < EACH; x++) {
             bins.least = least[x] < bins.least ? least[x] : bins.least;
@@ -98,23 +100,34 @@ static struct rf_bins bins_of_tile(const struct refocus_renderer *r, struct rf_b
     add_bin(&bins, first);
     add_bin(&bins, last);
     if (last - first > 1)
-        add_cells(&bins, r, scale, tx, ty);
+        add_cells(&bins, scale, blur, cells, tx, ty);
     return bins;
 }
 
-void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty)
+void rf_bin_tiles(const struct rf_viewport *view, struct rf_bin_scale scale, struct rf_blur_q8 blur,
+                  const struct rf_cells *cells, struct rf_bins *bins, int ty)
 {
-    for (int tx = 0; tx < r->view.tiles_x; tx++)
-        r->bins[(size_t)ty * r->view.tiles_x + tx] = bins_of_tile(r, scale, tx, ty);
+    for (int tx = 0; tx < view->tiles_x; tx++)
+        bins[(size_t)ty * view->tiles_x + tx] = bins_of_tile(scale, blur, cells, tx, ty);
 }
 
-void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty, int16_t blur)
+void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_bin_scale scale,
+                int x, int y, int16_t blur)
 {
-    struct rf_bins *bins = &r->bins[(size_t)ty * r->view.tiles_x + tx];
+    struct rf_bins *tile = &bins[(size_t)(y / RF_TILE) * view->tiles_x + x / RF_TILE];
 
-    add_bin(bins, bin_of(scale, blur));
-    bins->least = blur < bins->least ? blur : bins->least;
-    bins->most = blur > bins->most ? blur : bins->most;
+    add_bin(tile, bin_of(scale, blur));
+    tile->least = blur < tile->least ? blur : tile->least;
+    tile->most = blur > tile->most ? blur : tile->most;
+}
+
+void rf_note_background(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
+                        struct rf_bins *bins, int ty)
+{
+    const int16_t *row = background_blur.at + (ty * RF_TILE + RF_TILE / 2) * background_blur.stride;
+
+    for (int tx = 0; tx < view->tiles_x; tx++)
+        bins[(size_t)ty * view->tiles_x + tx].behind = row[tx * RF_TILE + RF_TILE / 2];
 }
 
 static bool has(const struct rf_bins *bins, int bin)
@@ -176,6 +189,7 @@ void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float larg
     /* of those farther away gap_of() - 1 is more than any blur, even a whole bin less */
     const int met = (int)((largest_blur + 1) / RF_TILE) + 1;
 
+    reach->scale = scale;
     reach->tiles = (pad - 2 + RF_TILE - 1) / RF_TILE;
     if (reach->tiles > met)
         reach->tiles = met;
@@ -206,17 +220,17 @@ static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
 }
 
 /* Bins that reach tile (tx, ty). */
-static struct rf_bins collect(const struct refocus_renderer *r, const struct rf_reach *reach,
-                              int tx, int ty)
+static struct rf_bins collect(const struct rf_viewport *view, const struct rf_bins *bins,
+                              const struct rf_reach *reach, int tx, int ty)
 {
     const int x0 = rf_larger(tx - reach->tiles, 0);
-    const int x1 = rf_smaller(tx + reach->tiles, r->view.tiles_x - 1);
+    const int x1 = rf_smaller(tx + reach->tiles, view->tiles_x - 1);
     const int y0 = rf_larger(ty - reach->tiles, 0);
-    const int y1 = rf_smaller(ty + reach->tiles, r->view.tiles_y - 1);
+    const int y1 = rf_smaller(ty + reach->tiles, view->tiles_y - 1);
     struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
 
     for (int y = y0; y <= y1; y++) {
-        const struct rf_bins *row = &r->bins[(size_t)y * r->view.tiles_x];
+        const struct rf_bins *row = &bins[(size_t)y * view->tiles_x];
         const struct rf_kept *kept = reach->kept[abs(y - ty)];
 
         for (int x = x0; x <= tx; x++)
@@ -303,13 +317,13 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale, struct 
     }
 }
 
-void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
+void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
                   const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan)
 {
-    const struct rf_bins bins = collect(r, reach, tx, ty);
+    const struct rf_bins in_reach = collect(view, bins, reach, tx, ty);
 
-    cover(&bins, scale, plan);
-    plan->lamp = bins.lamp;
-    plan->dots = bins.dots > 0;
-    plan->brightest = bins.brightest;
+    cover(&in_reach, reach->scale, plan);
+    plan->lamp = in_reach.lamp;
+    plan->dots = in_reach.dots > 0;
+    plan->brightest = in_reach.brightest;
 }

@@ -2,8 +2,9 @@
 #ifndef RF_TILES_H
 #define RF_TILES_H
 
-#include "renderer/renderer.h"
+#include "image/viewport.h"
 #include "kernels/slab.h"
+#include "tiles/ranges.h"
 
 /*
  * Bins of signed blur: a quarter pixel wide where none exceeds 31.5 pixels, half up to 63.5,
@@ -39,6 +40,7 @@ struct rf_kept {
 };
 enum { RF_REACH_TILES = (127 + RF_TILE - 1) / RF_TILE };
 struct rf_reach {
+    struct rf_bin_scale scale;
     int tiles;                                                   /* how far tiles are met at all */
     struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
 };
@@ -47,21 +49,20 @@ struct rf_reach {
 void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
                    bool square);
 
-/* Bins of the tiles of row ty, whose cells are known (tiles/ranges.h). */
-void rf_bin_tiles(struct refocus_renderer *r, struct rf_bin_scale scale, int ty);
+/* Writes the bins of the tiles of row ty, whose cells are known (tiles/ranges.h). */
+void rf_bin_tiles(const struct rf_viewport *view, struct rf_bin_scale scale, struct rf_blur_q8 blur,
+                  const struct rf_cells *cells, struct rf_bins *bins, int ty);
 
-/* The middle pixel of a tile, in padded planes. */
-static inline ptrdiff_t rf_tile_middle(const struct refocus_renderer *r, int tx, int ty)
-{
-    return (ty * RF_TILE + RF_TILE / 2) * r->view.stride + tx * RF_TILE + RF_TILE / 2;
-}
+/* Adds a blur to the bins of the tile that pixel (x, y) is in. */
+void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_bin_scale scale,
+                int x, int y, int16_t blur);
 
-/* One more blur in a tile. */
-void rf_add_bin(struct refocus_renderer *r, struct rf_bin_scale scale, int tx, int ty,
-                int16_t blur);
+/* Writes to the bins of the tiles of row ty the background's blur in the middle of each. */
+void rf_note_background(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
+                        struct rf_bins *bins, int ty);
 
-/* Everything the rays of a tile need. */
-void rf_plan_tile(const struct refocus_renderer *r, struct rf_bin_scale scale,
+/* Finds everything the rays of a tile need, from the bins of those in reach. */
+void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
                   const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan);
 
 #endif

@@ -15,6 +15,7 @@
 #include "gather/frame.h"
 #include "metrics.h"
 #include "png_io.h"
+#include "renderer/renderer.h"
 #include "tiles/tiles.h"
 
 static const double bound_db = 55;
@@ -140,7 +141,7 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
             double sum[3] = {0};
 
             if (x % RF_TILE == 0)
-                rf_plan_tile(r, scale, &reach, tx, ty, &plan);
+                rf_plan_tile(&r->view, r->bins, &reach, tx, ty, &plan);
             if (plan.sharp) {
                 memcpy(out, s->photo + 3 * pixel_at(s, x, y), 3);
                 continue;
