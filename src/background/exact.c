@@ -1,4 +1,8 @@
-#include "background/background.h"
+/* exact.c: tells whether a window inpaints its background as the whole photo would. */
+#include "background/inpaint.h"
+
+#include "image/rect.h"
+#include "kernels/kernels.h"
 
 /* The parents that unknown pixels of `need` at a level take from; x1 <= x0: none do. */
 static struct rf_rect parents(const int16_t *blur, ptrdiff_t stride, struct rf_rect need)
@@ -21,29 +25,22 @@ static struct rf_rect parents(const int16_t *blur, ptrdiff_t stride, struct rf_r
                             (unknown.y1 - 1) / 2 + 2};
 }
 
-static int clamp(int v, int most)
+bool rf_background_is_exact(const struct rf_viewport *view, const struct rf_pyramid *pyramid,
+                            struct rf_rect need, struct rf_rect exact)
 {
-    return v < 0 ? 0 : v > most ? most : v;
-}
+    for (int i = 0; i <= pyramid->levels; i++) {
+        const struct rf_level *level = &pyramid->level[i];
+        const int side = 1 << i, width = level->width, height = level->height;
 
-bool rf_background_is_exact(const struct refocus_renderer *r, struct rf_rect need,
-                            struct rf_rect exact)
-{
-    for (int i = 0; i <= r->levels; i++) {
-        const int side = 1 << i;
-        const int width = i ? r->level[i - 1].width : r->view.width;
-        const int height = i ? r->level[i - 1].height : r->view.height;
-
-        need = (struct rf_rect){clamp(need.x0, width), clamp(need.y0, height),
-                                clamp(need.x1, width), clamp(need.y1, height)};
-        /* blocks of the whole photo's pyramid? */
-        if ((r->view.x0 | r->view.y0) & (side - 1))
+        need = (struct rf_rect){rf_within(need.x0, width), rf_within(need.y0, height),
+                                rf_within(need.x1, width), rf_within(need.y1, height)};
+        /* pixels of this level are those of the whole photo's? */
+        if ((view->x0 | view->y0) & (side - 1))
             return false;
         if ((int64_t)need.x0 * side < exact.x0 || (int64_t)need.y0 * side < exact.y0 ||
             (int64_t)need.x1 * side > exact.x1 || (int64_t)need.y1 * side > exact.y1)
             return false;
-        need = parents(i ? r->level[i - 1].blur : r->background.blur.at,
-                       i ? r->level[i - 1].stride : r->view.stride, need);
+        need = parents(level->blur.at, level->blur.stride, need);
         if (need.x1 <= need.x0)
             return true;
     }

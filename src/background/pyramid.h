@@ -2,17 +2,26 @@
 #ifndef RF_PYRAMID_H
 #define RF_PYRAMID_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "image/planes.h"
 
-enum { RF_LEVELS = 18 }; /* level 0, the picture itself, is not counted */
+enum { RF_LEVELS = 18 }; /* of the largest picture, without level 0 */
 
-/* A level of the background pyramid, without padding but with an even stride. */
+/* A level, its blur RF_NO_BLUR where nothing is known. Levels from 1 on have an even stride and no
+ * padding, but a column more if their width is odd. */
 struct rf_level {
     int width, height;
-    ptrdiff_t stride;
-    uint16_t *light[3];
-    int16_t *blur; /* RF_NO_BLUR: nothing known here */
+    struct rf_light_q12 light;
+    struct rf_blur_q8 blur;
 };
+
+/* Level 0 is the background of the window itself; a pixel of the next one is 2 x 2 pixels. */
+struct rf_pyramid {
+    int levels; /* the last one, of one pixel; 0: the picture has one pixel */
+    struct rf_level level[RF_LEVELS + 1];
+};
+
+/* Sets sizes and strides for a picture of this size, and neither the memory of any level nor the
+ * strides of level 0. */
+void rf_pyramid_shape(struct rf_pyramid *pyramid, int width, int height);
 
 #endif

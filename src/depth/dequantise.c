@@ -104,10 +104,7 @@ int rf_code_step(const struct refocus_disparity *map)
 /* One of the passes: from a plane to another. */
 struct pass {
     const struct rf_dequantiser *d;
-    const uint16_t *in;
-    ptrdiff_t in_stride;
-    uint16_t *out;
-    ptrdiff_t out_stride;
+    struct rf_disparity_q16 in, out;
     int apart;
 };
 
@@ -137,13 +134,13 @@ static void smooth_row(const struct pass *pass, int y)
     const struct rf_dequantiser *d = pass->d;
     const int left = rf_smaller(pass->apart, d->width);
     const int right = rf_larger(d->width - pass->apart, left);
-    uint16_t *out = pass->out + y * pass->out_stride;
+    uint16_t *out = pass->out.at + y * pass->out.stride;
     const uint16_t *row[3], *middle[3];
 
     for (int j = 0; j < 3; j++) {
         const int v = rf_larger(y + (j - 1) * pass->apart, 0);
 
-        row[j] = pass->in + rf_smaller(v, d->height - 1) * pass->in_stride;
+        row[j] = pass->in.at + rf_smaller(v, d->height - 1) * pass->in.stride;
         middle[j] = row[j] + left;
     }
     smooth_side(pass, out, row, 0, left);
@@ -169,7 +166,7 @@ static void clamp_band(void *context, int band, int worker)
 
     (void)worker;
     for (int y = band * ROWS; y < end; y++)
-        d->kernels->clamp_codes(d->code + y * d->stride, pass->in + y * pass->in_stride,
+        d->kernels->clamp_codes(d->code.at + y * d->code.stride, pass->in.at + y * pass->in.stride,
                                 (uint16_t)(d->step / 2), d->width);
 }
 
@@ -186,15 +183,13 @@ static void run_bands(struct rf_pool *pool, rf_work_fn *work, struct pass *pass)
 void rf_dequantise(const struct rf_dequantiser *d, struct rf_pool *pool)
 {
     static const int apart[PASSES] = {4, 2, 1};
-    struct pass pass = {.d = d, .in = d->code, .in_stride = d->stride};
+    struct pass pass = {.d = d, .in = d->code};
 
     for (int i = 0; i < PASSES; i++) {
         pass.out = d->spare[i % 2];
-        pass.out_stride = d->spare_stride[i % 2];
         pass.apart = apart[i];
         run_bands(pool, smooth_band, &pass);
         pass.in = pass.out;
-        pass.in_stride = pass.out_stride;
     }
     run_bands(pool, clamp_band, &pass);
 }
@@ -210,10 +205,8 @@ void rf_dequantised_patch(const struct rf_kernels *kernels, const struct refocus
     uint16_t code[SIDE * SIDE], spare[2][SIDE * SIDE];
     const struct rf_dequantiser d = {
         .kernels = kernels,
-        .code = code,
-        .stride = SIDE,
-        .spare = {spare[0], spare[1]},
-        .spare_stride = {SIDE, SIDE},
+        .code = {code, SIDE},
+        .spare = {{spare[0], SIDE}, {spare[1], SIDE}},
         .width = x1 - x0,
         .height = y1 - y0,
         .step = step,

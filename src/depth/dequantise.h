@@ -16,6 +16,7 @@
 
 #include <refocus/image.h>
 
+#include "image/planes.h"
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
@@ -32,10 +33,7 @@ int rf_code_step(const struct refocus_disparity *map);
 /* Codes of n columns and so many rows, Q16, and two planes of that size to work in. */
 struct rf_dequantiser {
     const struct rf_kernels *kernels;
-    uint16_t *code;
-    ptrdiff_t stride; /* elements from row to row */
-    uint16_t *spare[2];
-    ptrdiff_t spare_stride[2];
+    struct rf_disparity_q16 code, spare[2];
     int width, height;
     int step; /* rf_code_step(), not 0 */
 };

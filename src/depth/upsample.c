@@ -94,9 +94,9 @@ static void load_colours(const struct rf_upsampler *up, int y)
     const int bytes = refocus_format_bytes(photo->format), n = up->columns;
     const uint8_t *row = photo->plane[0] + place(y, up->rows, photo->height) * photo->stride[0];
     const struct rf_span *restrict span = up->span;
-    uint8_t *const out[3] = {up->colour[0] + y * up->colour_stride,
-                             up->colour[1] + y * up->colour_stride,
-                             up->colour[2] + y * up->colour_stride};
+    uint8_t *const out[3] = {up->colour.channel[0] + y * up->colour.stride,
+                             up->colour.channel[1] + y * up->colour.stride,
+                             up->colour.channel[2] + y * up->colour.stride};
     uint8_t *restrict first = out[0], *restrict second = out[1], *restrict third = out[2];
 
     for (int x = 0; x < n; x++) {
@@ -117,7 +117,7 @@ static void load_trust(const struct rf_upsampler *up, int y)
     const uint8_t *row =
         up->confidence + place(y, up->rows, up->map->height) * up->confidence_stride;
     struct walk walk = walk_from_0(up->columns, up->map->width);
-    uint8_t *out = up->trust + y * up->trust_stride;
+    uint8_t *out = up->trust.at + y * up->trust.stride;
 
     for (int x = 0; x < up->columns; x++, walk_on(&walk))
         out[x] = row[walk.at];
@@ -156,7 +156,7 @@ static void load_row(void *context, int item, int worker)
     const int y = item - PAD, n = up->columns;
     const uint8_t *in =
         (const uint8_t *)map->samples + place(y, up->rows, map->height) * map->stride;
-    uint16_t *out = up->coarse + y * up->coarse_stride;
+    uint16_t *out = up->coarse.at + y * up->coarse.stride;
 
     (void)worker;
     load_samples(up, out, in);
@@ -172,9 +172,7 @@ static void dequantise_samples(const struct rf_upsampler *up, struct rf_pool *po
     const struct rf_dequantiser d = {
         .kernels = up->kernels,
         .code = up->coarse,
-        .stride = up->coarse_stride,
         .spare = {up->wide, up->settled},
-        .spare_stride = {up->wide_stride, up->settled_stride},
         .width = up->columns,
         .height = up->rows,
         .step = rf_code_step(up->map),
@@ -184,13 +182,13 @@ static void dequantise_samples(const struct rf_upsampler *up, struct rf_pool *po
         return;
     rf_dequantise(&d, pool);
     for (int y = 0; y < up->rows; y++)
-        repeat_ends(up->coarse + y * up->coarse_stride, up->columns);
+        repeat_ends(up->coarse.at + y * up->coarse.stride, up->columns);
     for (int i = 1; i <= PAD; i++) {
-        const size_t bytes = (size_t)(up->columns + 2 * PAD) * sizeof *up->coarse;
-        uint16_t *const last = up->coarse + (up->rows - 1) * up->coarse_stride;
+        const size_t bytes = (size_t)(up->columns + 2 * PAD) * sizeof *up->coarse.at;
+        uint16_t *const last = up->coarse.at + (up->rows - 1) * up->coarse.stride;
 
-        memcpy(up->coarse - i * up->coarse_stride - PAD, up->coarse - PAD, bytes);
-        memcpy(last + i * up->coarse_stride - PAD, last - PAD, bytes);
+        memcpy(up->coarse.at - i * up->coarse.stride - PAD, up->coarse.at - PAD, bytes);
+        memcpy(last + i * up->coarse.stride - PAD, last - PAD, bytes);
     }
 }
 
@@ -199,7 +197,7 @@ static void widen_row(void *context, int y, int worker)
     const struct rf_upsampler *up = context;
 
     (void)worker;
-    up->kernels->widen4(up->wide + y * up->wide_stride, up->coarse + y * up->coarse_stride,
+    up->kernels->widen4(up->wide.at + y * up->wide.stride, up->coarse.at + y * up->coarse.stride,
                         up->across, up->photo->width);
 }
 
@@ -236,15 +234,15 @@ static void settle_block(const struct rf_upsampler *up, const struct three *thre
 
 static void settle_row(const struct rf_upsampler *up, int y)
 {
-    const uint16_t *unsure = up->unsure + y * up->unsure_stride;
+    const uint16_t *unsure = up->unsure.at + y * up->unsure.stride;
     const int width = up->photo->width, blocks = unsure[0];
-    struct three three = {.out = up->settled + y * up->settled_stride};
+    struct three three = {.out = up->settled.at + y * up->settled.stride};
 
     for (int j = 0; j < 3; j++) {
         const ptrdiff_t v = clamp(y - 1 + j, up->photo->height - 1);
 
-        three.row[j] = up->out + v * up->out_stride;
-        three.sure[j] = up->sure + v * up->sure_stride;
+        three.row[j] = up->out.at + v * up->out.stride;
+        three.sure[j] = up->sure.at + v * up->sure.stride;
     }
     for (int i = 1; i <= blocks; i++) {
         const int x = unsure[i] * BLOCK;
@@ -259,13 +257,13 @@ static void settle_row(const struct rf_upsampler *up, int y)
 
 static void take_over_row(const struct rf_upsampler *up, int y)
 {
-    const uint16_t *unsure = up->unsure + y * up->unsure_stride;
+    const uint16_t *unsure = up->unsure.at + y * up->unsure.stride;
     const int width = up->photo->width;
 
     for (int i = 1; i <= unsure[0]; i++) {
         const int x = unsure[i] * BLOCK, n = width - x < BLOCK ? width - x : BLOCK;
-        uint16_t *out = up->out + y * up->out_stride + x;
-        const uint16_t *settled = up->settled + y * up->settled_stride + x;
+        uint16_t *out = up->out.at + y * up->out.stride + x;
+        const uint16_t *settled = up->settled.at + y * up->settled.stride + x;
 
         if (n == BLOCK)
             memcpy(out, settled, BLOCK * sizeof *out);

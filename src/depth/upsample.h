@@ -4,12 +4,30 @@
 
 #include <refocus/image.h>
 
+#include "image/planes.h"
 #include "kernels/kernels.h"
 #include "support/pool.h"
 
 enum {
     RF_UPSAMPLE_PAD = 2,    /* samples beyond the map's border, repeated */
     RF_UPSAMPLE_BLOCK = 16, /* pixels that are settled together */
+};
+
+/* Planes of bytes, and of three colours. */
+struct rf_bytes {
+    uint8_t *at;
+    ptrdiff_t stride;
+};
+
+struct rf_colours_u8 {
+    uint8_t *channel[3];
+    ptrdiff_t stride;
+};
+
+/* For each row the number of blocks in its list, and then these: 1 + rf_upsample_blocks(). */
+struct rf_block_lists {
+    uint16_t *at;
+    ptrdiff_t stride;
 };
 
 /* The columns of pixels between the same columns of samples, up to those of the next
@@ -42,26 +60,18 @@ struct rf_upsampler {
     ptrdiff_t confidence_stride;
     int columns, rows; /* samples that are used: rf_upsample_samples() */
 
-    uint16_t *coarse; /* samples */
-    ptrdiff_t coarse_stride;
-    uint8_t *colour[3]; /* of the photo at the samples, quartered */
-    uint8_t *trust;     /* confidence of the samples; not used without */
-    ptrdiff_t colour_stride, trust_stride;
-    uint16_t *wide; /* rows x width: each row of samples as long as the photo's */
-    ptrdiff_t wide_stride;
-    uint16_t *settled; /* height x width: what becomes of those that are not sure */
-    ptrdiff_t settled_stride;
-    uint8_t *sure; /* height x width: 255 or 0 */
-    ptrdiff_t sure_stride;
-    uint16_t *unsure; /* of each row how many blocks have such pixels, and which: blocks
-                         + 1 */
-    ptrdiff_t unsure_stride;
-    struct rf_taps *across, *down; /* width and height of them */
-    struct rf_span *span;          /* columns + 2 of them */
+    struct rf_disparity_q16 coarse;  /* samples */
+    struct rf_colours_u8 colour;     /* of the photo at the samples, quartered */
+    struct rf_bytes trust;           /* confidence of the samples; not used without */
+    struct rf_disparity_q16 wide;    /* rows x width: each row of samples as long as the photo's */
+    struct rf_disparity_q16 settled; /* height x width: what becomes of those that are not sure */
+    struct rf_bytes sure;            /* height x width: 255 or 0 */
+    struct rf_block_lists unsure;    /* of pixels that are not */
+    struct rf_taps *across, *down;   /* width and height of them */
+    struct rf_span *span;            /* columns + 2 of them */
     struct rf_run *run;
 
-    uint16_t *out;
-    ptrdiff_t out_stride; /* elements */
+    struct rf_disparity_q16 out;
 };
 
 static inline int rf_upsample_blocks(int width)

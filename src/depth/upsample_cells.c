@@ -120,9 +120,9 @@ static inline void put_rows(const struct patch *patch, const uint16_t *result,
                             const uint8_t *is_sure, int x, size_t n)
 {
     const struct rf_upsampler *up = patch->up;
-    const ptrdiff_t out_stride = up->out_stride, sure_stride = up->sure_stride;
-    uint16_t *out = up->out + patch->y0 * out_stride + x;
-    uint8_t *sure = up->sure + patch->y0 * sure_stride + x;
+    const ptrdiff_t out_stride = up->out.stride, sure_stride = up->sure.stride;
+    uint16_t *out = up->out.at + patch->y0 * out_stride + x;
+    uint8_t *sure = up->sure.at + patch->y0 * sure_stride + x;
 
     for (int y = patch->y0; y < patch->y1; y++) {
         put(out, result, n, sizeof *out);
@@ -193,17 +193,17 @@ static void look_around(struct patch *patch, int first)
 
     for (int j = 0; j < RF_AROUND; j++) {
         const int y = clamp(patch->row - 2 + j, up->rows - 1);
-        const uint16_t *samples = up->coarse + y * up->coarse_stride;
+        const uint16_t *samples = up->coarse.at + y * up->coarse.stride;
 
         row[j] = inside ? samples + x : take16(spare[j], samples, x, up->columns);
-        of_colour[j] = y * up->colour_stride;
-        of_trust[j] = y * up->trust_stride;
+        of_colour[j] = y * up->colour.stride;
+        of_trust[j] = y * up->trust.stride;
     }
     up->kernels->turn16(patch->around.disparity, row);
     for (int c = 0; c < 3; c++)
-        turn(patch, patch->around.colour[c], up->colour[c], of_colour, x, inside);
+        turn(patch, patch->around.colour[c], up->colour.channel[c], of_colour, x, inside);
     if (up->confidence)
-        turn(patch, patch->around.trust, up->trust, of_trust, x, inside);
+        turn(patch, patch->around.trust, up->trust.at, of_trust, x, inside);
 }
 
 /* Pixels of the i-th cell of those that have been looked around. */
@@ -268,7 +268,7 @@ static void clamp_cell(const struct patch *patch, int cell, const uint16_t *cons
         }
     }
     for (int y = patch->y0; y < patch->y1; y++) {
-        uint16_t *out = up->out + y * up->out_stride;
+        uint16_t *out = up->out.at + y * up->out.stride;
         int x = up->span[cell].begin;
 
         for (; x < x1 && x + RUN <= up->photo->width; x += RUN)
@@ -287,9 +287,9 @@ static void fill_cells(struct patch *patch, int first, int n)
     uint8_t rough[RF_CELLS];
 
     for (int j = 0; j < RF_TAPS; j++) {
-        row[j] = up->coarse + (patch->row + j) * up->coarse_stride + first - PAD;
+        row[j] = up->coarse.at + (patch->row + j) * up->coarse.stride + first - PAD;
         if (up->confidence)
-            trust[j] = up->trust + (patch->row + j) * up->trust_stride + first - PAD;
+            trust[j] = up->trust.at + (patch->row + j) * up->trust.stride + first - PAD;
     }
     const unsigned any = up->kernels->rough(rough, row, trust, STEP, n);
 
@@ -310,8 +310,8 @@ static void fill_cells(struct patch *patch, int first, int n)
 static void list_unsure(const struct rf_upsampler *up, int y)
 {
     const int width = up->photo->width, blocks = rf_upsample_blocks(width);
-    const uint8_t *sure = up->sure + y * up->sure_stride;
-    uint16_t *unsure = up->unsure + y * up->unsure_stride;
+    const uint8_t *sure = up->sure.at + y * up->sure.stride;
+    uint16_t *unsure = up->unsure.at + y * up->unsure.stride;
     int n = 0;
 
     for (int i = 0; i < blocks; i++, sure += BLOCK) {
@@ -339,10 +339,10 @@ void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1)
     patch.row = first;
     patch.bytes = refocus_format_bytes(up->photo->format);
     for (int i = 0; i < RF_TAPS; i++)
-        wide[i] = up->wide + clamp(first + i, up->rows - 1) * up->wide_stride;
+        wide[i] = up->wide.at + clamp(first + i, up->rows - 1) * up->wide.stride;
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
-        up->kernels->blend4(up->out + y * up->out_stride, wide, up->down[y].share, width);
-        memset(up->sure + y * up->sure_stride, 255, (size_t)width);
+        up->kernels->blend4(up->out.at + y * up->out.stride, wide, up->down[y].share, width);
+        memset(up->sure.at + y * up->sure.stride, 255, (size_t)width);
     }
     for (patch.y0 = y0; patch.y0 < y1; patch.y0 = patch.y1) {
         patch.y1 = patch.y0 + RUN < y1 ? patch.y0 + RUN : y1;

@@ -13,30 +13,30 @@ static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
     const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
     const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
 
-    up->coarse_stride = up->columns + 4;
-    up->coarse = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
-    up->wide_stride = up->photo->width;
-    up->wide = rf_arena_take(arena, width * rows, 2);
-    up->settled_stride = up->photo->width;
-    up->settled = rf_arena_take(arena, width * height, 2);
+    up->coarse.stride = up->columns + 4;
+    up->coarse.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
+    up->wide.stride = up->photo->width;
+    up->wide.at = rf_arena_take(arena, width * rows, 2);
+    up->settled.stride = up->photo->width;
+    up->settled.at = rf_arena_take(arena, width * height, 2);
     up->across = rf_arena_take(arena, width, sizeof *up->across);
     up->down = rf_arena_take(arena, height, sizeof *up->down);
     up->span = rf_arena_take(arena, columns + 2, sizeof *up->span);
-    up->colour_stride = up->trust_stride = up->coarse_stride;
+    up->colour.stride = up->trust.stride = up->coarse.stride;
     for (int c = 0; c < 3; c++)
-        up->colour[c] = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
+        up->colour.channel[c] = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
     if (up->confidence)
-        up->trust = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
-    up->sure_stride = up->photo->width;
-    up->sure = rf_arena_take(arena, width * height, 1);
-    up->unsure_stride = rf_upsample_blocks(up->photo->width) + 1;
-    up->unsure = rf_arena_take(arena, (uint64_t)up->unsure_stride * height, 2);
+        up->trust.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
+    up->sure.stride = up->photo->width;
+    up->sure.at = rf_arena_take(arena, width * height, 1);
+    up->unsure.stride = rf_upsample_blocks(up->photo->width) + 1;
+    up->unsure.at = rf_arena_take(arena, (uint64_t)up->unsure.stride * height, 2);
     if (arena->base) {
-        up->coarse += 2 * up->coarse_stride + 2;
+        up->coarse.at += 2 * up->coarse.stride + 2;
         for (int c = 0; c < 3; c++)
-            up->colour[c] += 2 * up->colour_stride + 2;
+            up->colour.channel[c] += 2 * up->colour.stride + 2;
         if (up->confidence)
-            up->trust += 2 * up->trust_stride + 2;
+            up->trust.at += 2 * up->trust.stride + 2;
     }
 }
 
@@ -90,8 +90,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         .confidence_stride = params->confidence_stride,
         .columns = rf_upsample_samples(map->width, photo->width),
         .rows = rf_upsample_samples(map->height, photo->height),
-        .out = out,
-        .out_stride = stride / 2,
+        .out = {out, stride / 2},
     };
     lay_out(&up, &arena);
     if (arena.used > PTRDIFF_MAX)

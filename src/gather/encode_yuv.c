@@ -1,6 +1,6 @@
 #include "gather/frame.h"
 #include "image/format.h"
-#include "passes/yuv.h"
+#include "passes/weights.h"
 
 #include <string.h>
 
@@ -103,11 +103,12 @@ static void put(const struct rf_frame *f, struct rf_rect rect, const struct code
 void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect)
 {
     const struct rf_yuv *yuv = f->yuv;
+    const struct rf_yuv_codes *own = &f->chroma.codes;
     const struct codes codes = {
-        .y = yuv->y + rect.y0 * yuv->y_stride + rect.x0,
-        .uv = yuv->uv + (rect.y0 >> yuv->down) * yuv->uv_stride + rect.x0,
-        .y_stride = yuv->y_stride,
-        .uv_stride = yuv->uv_stride,
+        .y = own->y + rect.y0 * own->y_stride + rect.x0,
+        .uv = own->uv + (rect.y0 >> yuv->down) * own->uv_stride + rect.x0,
+        .y_stride = own->y_stride,
+        .uv_stride = own->uv_stride,
     };
 
     put(f, rect, &codes);
@@ -139,6 +140,7 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
                          struct rf_decode_job *job)
 {
     const struct rf_yuv *yuv = f->yuv;
+    const struct rf_yuv_codes *codes = &f->chroma.codes;
     const int x0 = tx * RF_TILE, y0 = ty * RF_TILE, c0 = y0 >> yuv->down;
     const int w = f->view->width - x0 < RF_TILE ? f->view->width - x0 : RF_TILE;
     const int h = f->view->height - y0 < RF_TILE ? f->view->height - y0 : RF_TILE;
@@ -148,12 +150,13 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
     job->down = yuv->down;
     job->own_luma =
         (f->premultiplied ? f->light.channel[0] : f->smooth.channel[0]) + y0 * f->view->stride + x0;
-    job->own_chroma = (f->premultiplied ? yuv->light : yuv->smooth) + c0 * f->view->stride + x0;
+    job->own_chroma =
+        (f->premultiplied ? f->chroma.light.at : f->chroma.smooth.at) + c0 * f->view->stride + x0;
     for (int p = 0; p < 2; p++)
-        job->within[p] = f->premultiplied ? rf_yuv_within(f->r, p) : 0;
+        job->within[p] = f->premultiplied ? rf_yuv_within(f->light_weight, p) : 0;
     job->stride = f->view->stride;
-    take(job->y, yuv->y + y0 * yuv->y_stride + x0, yuv->y_stride, w, h);
-    take(job->uv, yuv->uv + c0 * yuv->uv_stride + x0, yuv->uv_stride, w + w % 2, rows);
+    take(job->y, codes->y + y0 * codes->y_stride + x0, codes->y_stride, w, h);
+    take(job->uv, codes->uv + c0 * codes->uv_stride + x0, codes->uv_stride, w + w % 2, rows);
     repeat_edge(job, w, h);
     f->exec->kernels->decode(job);
     put(f, rect,

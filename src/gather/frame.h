@@ -46,7 +46,8 @@ struct rf_frame {
     struct rf_alpha_u8 alpha;
     struct rf_range_plane range;
     const struct rf_bins *bins;         /* of each tile, row by row */
-    const struct rf_yuv *yuv;           /* yuv->on: it is a photo of Y, U and V */
+    const struct rf_yuv *yuv;           /* yuv->on: it is a photo of Y, U and V, */
+    struct rf_chroma_planes chroma;     /* of which these are */
     const struct rf_transfer *transfer; /* curve of the blend */
     const uint16_t *light_weight;       /* eq. 5 by Q12 light, Q15 */
     const struct rf_ray_sets *ray_sets;

@@ -265,12 +265,13 @@ static void sweep_sums(struct tile *tile, struct sums *sums, struct rf_decode_jo
 
 static void set_planes(struct tile *tile, int tx, int ty)
 {
-    const struct rf_yuv *yuv = tile->f->yuv;
+    const struct rf_chroma_planes *chroma = &tile->f->chroma;
+    const int down = chroma->size.down;
     const ptrdiff_t origin = ty * RF_TILE * tile->f->view->stride + tx * RF_TILE;
-    const ptrdiff_t at = (ty * RF_TILE >> yuv->down) * tile->f->view->stride + tx * RF_TILE;
+    const ptrdiff_t at = (ty * RF_TILE >> down) * tile->f->view->stride + tx * RF_TILE;
 
     tile->range = tile->f->range.at + RF_TILE / RF_CELL * (ty * tile->f->range.stride + tx);
-    tile->weight = tile->f->weighted ? yuv->weight + origin : NULL;
+    tile->weight = tile->f->weighted ? tile->f->weight.at + origin : NULL;
     tile->weight_behind = tile->f->background_weight.at + origin;
     tile->luma = (struct plane){
         .blur = tile->f->blur.at + origin,
@@ -280,12 +281,12 @@ static void set_planes(struct tile *tile, int tx, int ty)
         .steps = rf_steps_of(&tile->plan),
     };
     tile->chroma = (struct plane){
-        .blur = yuv->blur + at,
-        .light = yuv->smooth + at,
-        .behind = yuv->behind + at,
-        .rows = RF_TILE >> yuv->down,
+        .blur = chroma->blur.at + at,
+        .light = chroma->smooth.at + at,
+        .behind = chroma->background.at + at,
+        .rows = RF_TILE >> down,
         .steps = 65535 / RF_CHROMA_MAX, /* 8 */
-        .down = yuv->down,
+        .down = down,
     };
 }
 

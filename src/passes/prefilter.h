@@ -1,6 +1,55 @@
+/* prefilter.h: smooths light where rays lie so far apart that they would miss pixels.
+ *
+ * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from 1.5
+ * pixels on; steps 1 and 2 close those twice and four times as wide. Each step goes, where |s| is
+ * above above[step], over three rows and then three columns, 2^step pixels apart: a third of the
+ * way to those pixels whose blur is within an eighth of its own (one pixel to two) of that of the
+ * middle one. Light is left as it is elsewhere.
+ */
 #ifndef RF_PREFILTER_H
 #define RF_PREFILTER_H
 
-enum { RF_PREFILTER_STEPS = 3 }; /* see rf_prefilter_rows() */
+#include "image/chroma.h"
+#include "image/planes.h"
+#include "image/viewport.h"
+#include "support/executor.h"
+#include "tiles/bins.h"
+
+enum { RF_PREFILTER_STEPS = 3 };
+
+/* Chroma of a photo of Y, U and V: distances are in its samples, so it has bounds of its own. */
+struct rf_prefilter_chroma {
+    struct rf_chroma_size size;
+    int above[RF_PREFILTER_STEPS];
+    int steps;                   /* as below */
+    struct rf_blur_q8 blur;      /* read: of each sample */
+    struct rf_chroma_q12 light;  /* read */
+    struct rf_chroma_q12 spare;  /* overwritten */
+    struct rf_chroma_q12 smooth; /* written, with its border */
+};
+
+struct rf_prefilter {
+    int above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
+    bool fades;                    /* steps come in over rf_prefilter_over() more of |s|, so that
+                                      nothing jumps while the focus moves */
+    int steps;                     /* RF_PREFILTER_STEPS, or 1 if no |s| exceeds above[1] */
+    const struct rf_bins *bins;    /* read: of each tile */
+    struct rf_blur_q8 blur;        /* read */
+    struct rf_light_q12 light;     /* read */
+    struct rf_light_q12 spare;     /* read in step 0: the light of tiles that highlights are
+                                      subtracted in (bins.taken); then overwritten */
+    struct rf_light_q12 smooth;    /* written, with its border */
+    const struct rf_prefilter_chroma *chroma; /* NULL: a photo of R, G and B; else light is
+                                                 luminance, in channel[0] alone */
+};
+
+static inline int rf_prefilter_over(int above, bool fades)
+{
+    return fades && above >= 8 ? above / 4 : 1;
+}
+
+/* Writes the smooth light of the whole window. */
+void rf_prefilter(const struct rf_executor *exec, const struct rf_viewport *view,
+                  const struct rf_prefilter *pass);
 
 #endif

@@ -9,7 +9,7 @@
  */
 #include <string.h>
 
-#include "background/background.h"
+#include "background/inpaint.h"
 #include "depth/dequantise.h"
 #include "image/format.h"
 #include "image/viewport.h"
@@ -129,7 +129,7 @@ static void keep_known(struct refocus_renderer *r, struct rf_rect block)
 
     for (int y = block.y0; y < block.y1; y++) {
         const int16_t *blur =
-            r->background.blur.at + (y - r->view.y0) * r->view.stride - r->view.x0;
+            r->background.blur.at + (y - r->view.y0) * r->background.blur.stride - r->view.x0;
         uint8_t *known = in_place->known + y * in_place->known_stride;
 
         for (int x = block.x0; x < block.x1; x += 8) {
@@ -151,21 +151,22 @@ static int kept_pixels(int n)
 /* And what the pyramid has above it: blocks begin at multiples of its pixels. */
 static void keep_level(struct refocus_renderer *r, struct rf_rect block)
 {
-    const struct rf_level *from = &r->level[RF_KEPT - 1];
-    const struct rf_level *to = &r->in_place.kept[RF_KEPT - 1];
+    const struct rf_level *from = &r->pyramid.level[RF_KEPT];
+    const struct rf_level *to = &r->in_place.kept.level[RF_KEPT];
     const int x0 = block.x0 >> RF_KEPT, y0 = block.y0 >> RF_KEPT;
     const int n = kept_pixels(block.x1 - block.x0);
     const ptrdiff_t dx = (block.x0 - r->view.x0) >> RF_KEPT;
     const ptrdiff_t dy = (block.y0 - r->view.y0) >> RF_KEPT;
 
     for (int y = 0; y < kept_pixels(block.y1 - block.y0); y++) {
-        const ptrdiff_t in = (dy + y) * from->stride + dx, out = (y0 + y) * to->stride + x0;
+        const ptrdiff_t in = (dy + y) * from->blur.stride + dx,
+                        out = (y0 + y) * to->blur.stride + x0;
 
         for (int c = 0; c < 3; c++)
-            memcpy(to->light[c] + out, from->light[c] + in, (size_t)n * 2);
-        memcpy(to->blur + out, from->blur + in, (size_t)n * 2);
+            memcpy(to->light.channel[c] + out, from->light.channel[c] + in, (size_t)n * 2);
+        memcpy(to->blur.at + out, from->blur.at + in, (size_t)n * 2);
         if (x0 + n == to->width && to->width % 2)
-            to->blur[out + n] = RF_NO_BLUR; /* a column more */
+            to->blur.at[out + n] = RF_NO_BLUR; /* a column more */
     }
 }
 
@@ -174,9 +175,8 @@ static void mark(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     struct rf_in_place *in_place = &r->in_place;
-    struct rf_level own[RF_LEVELS];
 
-    in_place->levels = rf_pyramid(in_place->kept, r->photo.width, r->photo.height);
+    rf_pyramid_shape(&in_place->kept, r->photo.width, r->photo.height);
     for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(&r->exec); i++) {
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
@@ -186,11 +186,8 @@ static void mark(struct rf_frame *f)
         if (!rf_cancelled(&r->exec))
             keep_level(r, block);
     }
-    memcpy(own, r->level, sizeof own);
-    memcpy(r->level, in_place->kept, sizeof own);
-    rf_background_push(r, RF_KEPT, in_place->levels);
-    rf_background_pull(r, RF_KEPT, in_place->levels);
-    memcpy(r->level, own, sizeof own);
+    rf_background_push(&r->exec, &in_place->kept, RF_KEPT, in_place->kept.levels);
+    rf_background_pull(&r->exec, &r->view, &in_place->kept, RF_KEPT, in_place->kept.levels);
 }
 
 static void known_band(void *context, int band, int worker)
@@ -200,7 +197,7 @@ static void known_band(void *context, int band, int worker)
 
     (void)worker;
     for (int y = rf_band_start(band); y < rf_band_end(&r->view, band); y++) {
-        const ptrdiff_t at = y * r->view.stride;
+        const ptrdiff_t at = y * r->blur.stride;
         const uint8_t *known = in_place->known + (y + r->view.y0) * in_place->known_stride;
         const int16_t *blur = r->blur.at + at;
         int16_t *out = r->background.blur.at + at;
@@ -215,31 +212,31 @@ static void known_band(void *context, int band, int worker)
             memcpy(r->background.light.channel[c] + at, r->smooth.channel[c] + at,
                    (size_t)r->view.width * 2);
     }
-    rf_background_push_band(r, band, RF_KEPT - 1);
+    rf_background_push_band(&r->exec, &r->pyramid, band, RF_KEPT - 1);
 }
 
 /* The background of the window from what is kept. */
 static void make_behind(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
-    const struct rf_level *kept = &r->in_place.kept[RF_KEPT - 1];
-    struct rf_level own;
+    const struct rf_level *kept = &r->in_place.kept.level[RF_KEPT];
+    struct rf_level *level = &r->pyramid.level[RF_KEPT], own;
     ptrdiff_t at;
 
     if (blocks(r, r->in_place.block) == 1) { /* the window is all of the photo */
-        rf_pass_mark(f, r->levels);
-        rf_pass_behind(f, r->levels);
+        rf_pass_mark(f, r->pyramid.levels);
+        rf_pass_behind(f, r->pyramid.levels);
         return;
     }
     rf_pool_run(&r->pool, known_band, r, rf_bands(&r->view));
-    own = r->level[RF_KEPT - 1];
-    at = (r->view.y0 >> RF_KEPT) * kept->stride + (r->view.x0 >> RF_KEPT);
+    own = *level;
+    at = (r->view.y0 >> RF_KEPT) * kept->blur.stride + (r->view.x0 >> RF_KEPT);
     for (int c = 0; c < 3; c++)
-        r->level[RF_KEPT - 1].light[c] = kept->light[c] + at;
-    r->level[RF_KEPT - 1].blur = kept->blur + at;
-    r->level[RF_KEPT - 1].stride = kept->stride;
+        level->light.channel[c] = kept->light.channel[c] + at;
+    level->blur.at = kept->blur.at + at;
+    level->light.stride = level->blur.stride = kept->blur.stride;
     rf_pass_behind(f, RF_KEPT);
-    r->level[RF_KEPT - 1] = own;
+    *level = own;
 }
 
 /* Whether the first time through the photo was for this lens and light. */

@@ -25,13 +25,13 @@ ptrdiff_t rf_pitch_for(int width, int pad)
     return 32 * (pitch | 1);
 }
 
-static void take_level(struct rf_arena *arena, struct rf_level *level, int width, int height)
+static void take_level(struct rf_arena *arena, struct rf_level *level)
 {
-    const uint64_t pixels = (uint64_t)(width + 1) * height;
+    const uint64_t pixels = (uint64_t)(level->width + 1) * (uint64_t)level->height;
 
     for (int c = 0; c < 3; c++)
-        level->light[c] = rf_arena_take(arena, pixels, 2);
-    level->blur = rf_arena_take(arena, pixels, 2);
+        level->light.channel[c] = rf_arena_take(arena, pixels, 2);
+    level->blur.at = rf_arena_take(arena, pixels, 2);
 }
 
 /* Elements of a group of padded planes: row y of plane i is at group + y * stride + i *
@@ -106,22 +106,6 @@ static void take_whole(struct refocus_renderer *r, const struct refocus_renderer
     r->behind_group = rf_arena_take(arena, size, 2);
 }
 
-/* The pyramid of a picture of this size, for sizes alone or with memory. */
-int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height)
-{
-    int levels = 0;
-
-    while (width > 1 || height > 1) {
-        width = (width + 1) / 2;
-        height = (height + 1) / 2;
-        level[levels].width = width;
-        level[levels].height = height;
-        level[levels].stride = (width + 1) & ~1;
-        levels++;
-    }
-    return levels;
-}
-
 static int up_to_tiles(int v)
 {
     return (v + RF_TILE - 1) / RF_TILE * RF_TILE;
@@ -167,9 +151,9 @@ static void take_blocks(struct refocus_renderer *r, const struct refocus_rendere
     take_lists(arena, photo, w, h);
     in_place->known_stride = (w + 7) / 8;
     in_place->known = rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
-    in_place->levels = rf_pyramid(in_place->kept, w, h);
-    for (int i = RF_KEPT - 1; i < in_place->levels; i++)
-        take_level(arena, &in_place->kept[i], in_place->kept[i].width, in_place->kept[i].height);
+    rf_pyramid_shape(&in_place->kept, w, h);
+    for (int i = RF_KEPT; i <= in_place->kept.levels; i++)
+        take_level(arena, &in_place->kept.level[i]);
 }
 
 /* Bytes for the greediest of the methods that work on whole frames. */
@@ -219,8 +203,6 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     const int across = w < side ? w : side, down = h < side ? h : side;
     const uint64_t tiles =
         (uint64_t)((across + RF_TILE - 1) / RF_TILE) * (uint64_t)((down + RF_TILE - 1) / RF_TILE);
-    struct rf_level level[RF_LEVELS];
-    const int levels = rf_pyramid(level, across, down);
     const int threads = rf_thread_count(params->threads),
               pad = rf_padding_for(params->max_blur_radius);
     uint64_t before, after;
@@ -230,18 +212,17 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     else
         take_whole(r, params, arena);
     before = arena->used;
-    for (int i = 0; i < levels; i++) {
-        take_level(arena, &level[i], level[i].width, level[i].height);
-        r->level[i] = level[i];
-    }
+    rf_pyramid_shape(&r->pyramid, across, down);
+    for (int i = 1; i <= r->pyramid.levels; i++)
+        take_level(arena, &r->pyramid.level[i]);
     after = arena->used;
     arena->used = before; /* the pyramid is done with before there are weights */
-    r->weight.stride = rf_pitch_for(across, pad);
-    r->weight.at =
-        rf_arena_take(arena, (uint64_t)r->weight.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
-    r->weight.at = r->weight.at ? r->weight.at + pad * (r->weight.stride + 1) : NULL;
-    /* the foreground is done with before there are weights */
-    r->foreground = (struct rf_foreground_cells){(int16_t *)r->weight.at, r->weight.stride};
+    /* weights, and before them the foreground */
+    r->foreground.stride = rf_pitch_for(across, pad);
+    r->foreground.most = rf_arena_take(
+        arena, (uint64_t)r->foreground.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
+    if (r->foreground.most)
+        r->foreground.most += pad * (r->foreground.stride + 1);
     after = arena->used > after ? arena->used : after;
     r->has_thin = params->thin && !params->in_place;
     if (r->has_thin) { /* and not begun while sources are drawn */

@@ -5,7 +5,6 @@
 
 int rf_padding_for(float max_blur_radius);
 ptrdiff_t rf_pitch_for(int width, int pad);
-int rf_pyramid(struct rf_level level[RF_LEVELS], int width, int height);
 
 /* Strip mode: rows above and below a window that may be read, though nothing is in
  * them; and the most pixels on a side of a window and its border, which ends where the

@@ -4,9 +4,10 @@
 #include <limits.h>
 #include <string.h>
 
-#include "background/background.h"
-#include "passes/yuv.h"
+#include "background/inpaint.h"
+#include "passes/linearise.h"
 #include "image/viewport.h"
+#include "renderer/load.h"
 #include "renderer/renderer.h"
 #include "renderer/render_yuv.h"
 #include "thin/thin.h"
@@ -20,11 +21,10 @@ static void reblend_band(void *context, int band, int worker)
     if (*blend == f->params->blend)
         return;
     if (r->yuv.on)
-        rf_yuv_reblend_rows(r, (uint8_t *)rf_scratch(&r->exec, worker), rf_band_start(band),
-                            rf_band_end(&r->view, band));
+        rf_reload_yuv_rows(r, rf_band_start(band), rf_band_end(&r->view, band), worker);
     else
-        rf_reblend_rows(r, *blend, f->params->blend, rf_band_start(band),
-                        rf_band_end(&r->view, band));
+        rf_reblend_rows(&r->view, &r->transfer[*blend], &r->transfer[f->params->blend], r->light,
+                        rf_band_start(band), rf_band_end(&r->view, band));
     *blend = (uint8_t)f->params->blend;
 }
 
@@ -189,14 +189,14 @@ static bool make_behind(struct rf_frame *f, struct rf_rect seen)
     if (m->behind && contains(m->exact, seen) && (!m->weighed || rf_is_sweep(f)))
         return true;
     m->behind = false;
-    rf_pass_mark(f, r->levels);
+    rf_pass_mark(f, r->pyramid.levels);
     if (rf_cancelled(&r->exec))
         return false;
     if (!contains(m->window, rf_whole(r)) &&
-        !rf_background_is_exact(r, in_window(r, seen), sure_part(f)))
+        !rf_background_is_exact(&r->view, &r->pyramid, in_window(r, seen), sure_part(f)))
         return false;
     m->exact = contains(m->window, rf_whole(r)) ? m->window : seen;
-    rf_pass_behind(f, r->levels);
+    rf_pass_behind(f, r->pyramid.levels);
     m->behind = !rf_cancelled(&r->exec);
     m->weighed = false;
     return m->behind;
@@ -303,7 +303,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     rf_set_planes(f);
     f->region = region;
     if (r->yuv.on)
-        rf_yuv_set_blend(r, f->params->blend);
+        rf_yuv_set_blend(&r->yuv, f->params->blend);
     rf_pool_run(&r->pool, reblend_band, f, rf_bands(&r->view));
     if (rf_cancelled(&r->exec))
         return;

@@ -3,10 +3,15 @@
 
 #include <limits.h>
 #include <math.h>
+#include <string.h>
 
-#include "background/background.h"
+#include "background/inpaint.h"
+#include "background/mark.h"
 #include "highlights/draw.h"
-#include "passes/yuv.h"
+#include "passes/coc.h"
+#include "passes/prefilter.h"
+#include "passes/weights.h"
+#include "image/border.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
 #include "renderer/render_yuv.h"
@@ -91,7 +96,8 @@ static void blur_band(void *context, int band, int worker)
     struct refocus_renderer *r = f->r;
 
     (void)worker;
-    rf_signed_blur_rows(f->r, &f->plan, rf_band_start(band), rf_band_end(&f->r->view, band));
+    rf_coc_rows(&r->exec, &r->view, &f->plan, r->disparity, r->blur, rf_band_start(band),
+                rf_band_end(&r->view, band));
     rf_cell_rows(&r->exec, &r->view, r->blur, &r->cells, band);
     rf_bin_tiles(&r->view, f->scale, r->blur, &r->cells, r->bins, band);
 }
@@ -100,8 +106,11 @@ static void chroma_blur_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
 
+    const struct refocus_renderer *r = f->r;
+
     (void)worker;
-    rf_yuv_blur_rows(f->r, rf_band_start(band), rf_band_end(&f->r->view, band));
+    rf_coc_chroma_rows(&r->exec, &r->view, &r->chroma.size, r->blur, r->chroma.blur,
+                       rf_band_start(band), rf_band_end(&r->view, band));
 }
 
 static struct rf_range_pass range_pass(const struct refocus_renderer *r)
@@ -117,55 +126,27 @@ static void range_band(void *context, int band, int worker)
     rf_range_rows(&f->r->exec, &f->r->view, &pass, band, worker);
 }
 
-/* One step after the other. That of a band needs the step before of those beside it, too, and is
- * made by whoever makes the last of these, while they are in the cache. */
-struct smooth {
-    const struct rf_frame *f;
-    int steps;
-    atomic_uchar ready[RF_PREFILTER_STEPS][RF_MAX_BANDS]; /* bands that it waits for */
-};
-
-static void smooth_rows(const struct rf_frame *f, int step, int band, int worker)
-{
-    struct refocus_renderer *r = f->r;
-    /* from the photo to r->smooth.channel, and from there by way of the background's planes,
-     * which are not in use yet */
-    uint16_t *const *in = step == 0   ? r->light.channel
-                          : step == 1 ? r->smooth.channel
-                                      : r->background.light.channel;
-    uint16_t *const *out = step == 1 ? r->background.light.channel : r->smooth.channel;
-
-    if (r->yuv.on)
-        rf_smooth_yuv_band(f, step, band, worker);
-    else
-        rf_prefilter_rows(r, out, in, f->prefilter_above, f->prefilter_fades, step, band);
-}
-
-static void smooth_from(struct smooth *smooth, int step, int band, int worker)
-{
-    const int last = rf_bands(&smooth->f->r->view) - 1;
-
-    smooth_rows(smooth->f, step, band, worker);
-    if (step + 1 == smooth->steps)
-        return;
-    for (int b = band > 0 ? band - 1 : 0; b <= band + 1 && b <= last; b++)
-        if (atomic_fetch_add(&smooth->ready[step][b], 1) == (b > 0) + (b < last))
-            smooth_from(smooth, step + 1, b, worker);
-}
-
-static void smooth_band(void *context, int band, int worker)
-{
-    smooth_from(context, 0, band, worker);
-}
-
-/* All three steps or the first alone, so that the result is in r->smooth.channel. */
+/* The background's planes are not in use yet. */
 static void prefilter(struct rf_frame *f)
 {
-    const int largest = f->focus.radius;
-    struct smooth smooth = {.f = f,
-                            .steps = largest > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1};
+    const struct refocus_renderer *r = f->r;
+    struct rf_prefilter_chroma chroma;
+    struct rf_prefilter pass = {
+        .fades = f->prefilter_fades,
+        .steps = f->focus.radius > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1,
+        .bins = r->bins,
+        .blur = r->blur,
+        .light = r->light,
+        .spare = r->background.light,
+        .smooth = r->smooth,
+    };
 
-    rf_pool_run(&f->r->pool, smooth_band, &smooth, rf_bands(&f->r->view));
+    memcpy(pass.above, f->prefilter_above, sizeof pass.above);
+    if (r->yuv.on) {
+        chroma = rf_chroma_prefilter(f);
+        pass.chroma = &chroma;
+    }
+    rf_prefilter(&r->exec, &r->view, &pass);
 }
 
 /* How far apart rays are at a blur of 1. */
@@ -216,14 +197,6 @@ void rf_pass_prefilter(struct rf_frame *f)
         rf_thin_swap_light_back(&f->thin);
 }
 
-static void dilate_item(void *context, int upwards, int worker)
-{
-    const struct rf_frame *f = context;
-
-    (void)worker;
-    rf_background_dilate(f->r, upwards);
-}
-
 /* How many steps the mark's cone takes: it falls by half a pixel of blur a pixel, and blurs
  * of a lens differ by K at most, those of tilts and fields by twice that. */
 static int mark_reach(const struct rf_frame *f)
@@ -234,23 +207,28 @@ static int mark_reach(const struct rf_frame *f)
 }
 
 struct mark {
-    const struct rf_frame *f;
+    const struct refocus_renderer *r;
+    struct rf_mark pass;
     int levels;
 };
+
+static void dilate_item(void *context, int upwards, int worker)
+{
+    const struct mark *mark = context;
+
+    (void)worker;
+    rf_background_dilate(&mark->r->exec, &mark->r->view, &mark->pass, upwards);
+}
 
 static void mark_band(void *context, int band, int worker)
 {
     const struct mark *mark = context;
-    struct refocus_renderer *r = mark->f->r;
-    const int y0 = rf_band_start(band), y1 = rf_band_end(&r->view, band),
-              reach = mark_reach(mark->f);
+    const struct refocus_renderer *r = mark->r;
 
-    if (r->yuv.on) {
-        rf_background_yuv_mark_rows(r, rf_scratch(&r->exec, worker), reach, y0, y1);
-        return;
-    }
-    rf_background_mark_rows(r, rf_scratch(&r->exec, worker), reach, y0, y1);
-    rf_background_push_band(r, band, mark->levels);
+    rf_background_mark_rows(&r->exec, &r->view, &mark->pass, rf_band_start(band),
+                            rf_band_end(&r->view, band), worker);
+    if (!r->yuv.on)
+        rf_background_push_band(&r->exec, &r->pyramid, band, mark->levels);
 }
 
 void rf_pass_blur(struct rf_frame *f, bool layers)
@@ -311,15 +289,23 @@ static void bare_band(void *context, int band, int worker)
 static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
+    const struct refocus_renderer *r = f->r;
+    const struct rf_weights_chroma chroma = {r->chroma.size, r->chroma.smooth,
+                                             r->chroma.background};
+    const struct rf_weights pass = {
+        .light_weight = r->light_weight,
+        .smooth = r->smooth,
+        .background = r->background.light,
+        .weight = r->weight,
+        .background_weight = r->background_weight,
+        .bins = r->bins,
+        .chroma = r->yuv.on ? &chroma : NULL,
+    };
 
-    if (f->r->yuv.on && f->premultiplied)
-        rf_yuv_premultiply_rows(f->r, rf_scratch(&f->r->exec, worker), band);
-    else if (f->r->yuv.on)
-        rf_yuv_weigh_rows(f->r, band);
-    else if (f->premultiplied)
-        rf_premultiply_rows(f->r, rf_scratch(&f->r->exec, worker), band);
+    if (f->premultiplied)
+        rf_premultiply_rows(&r->exec, &r->view, &pass, band, worker);
     else
-        rf_weigh_rows(f->r, band);
+        rf_weigh_rows(&r->view, &pass, band);
 }
 
 void rf_pass_behind(struct rf_frame *f, int levels)
@@ -327,9 +313,12 @@ void rf_pass_behind(struct rf_frame *f, int levels)
     struct refocus_renderer *r = f->r;
 
     if (r->yuv.on)
-        rf_background_yuv_fill(r);
+        rf_background_inpaint_yuv(&r->exec, &r->view, &r->pyramid,
+                                  &(struct rf_inpaint_chroma){r->chroma.size, r->blur,
+                                                              r->chroma.smooth,
+                                                              r->chroma.background});
     else
-        rf_background_pull(r, 0, levels);
+        rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels);
     rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
     if (f->bright != RF_WHITE)
         rf_put_lamps_in_front(r, ray_gap(f->params));
@@ -343,10 +332,18 @@ void rf_pass_weights(struct rf_frame *f)
 
 void rf_pass_mark(struct rf_frame *f, int levels)
 {
-    struct mark mark = {f, levels};
+    const struct refocus_renderer *r = f->r;
+    struct mark mark = {.r = r,
+                        .pass = {.planes = r->yuv.on ? 1 : 3,
+                                 .reach = mark_reach(f),
+                                 .blur = r->blur,
+                                 .smooth = r->smooth,
+                                 .cone = r->cone,
+                                 .background = r->background},
+                        .levels = levels};
 
-    rf_pool_run(&f->r->pool, dilate_item, f, 2);
-    rf_pool_run(&f->r->pool, mark_band, &mark, rf_bands(&f->r->view));
-    if (!f->r->yuv.on)
-        rf_background_push(f->r, RF_BAND_LEVELS, levels);
+    rf_pool_run(r->exec.pool, dilate_item, &mark, 2);
+    rf_pool_run(r->exec.pool, mark_band, &mark, rf_bands(&r->view));
+    if (!r->yuv.on)
+        rf_background_push(&r->exec, &r->pyramid, RF_BAND_LEVELS, levels);
 }

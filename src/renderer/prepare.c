@@ -5,8 +5,6 @@
 #include "depth/dequantise.h"
 #include "depth/upsample.h"
 #include "image/format.h"
-#include "passes/planes.h"
-#include "passes/yuv.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
 #include "renderer/layout.h"
@@ -23,34 +21,38 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
         .map = map,
         .columns = rf_upsample_samples(map->width, r->view.width),
         .rows = rf_upsample_samples(map->height, r->view.height),
-        .coarse = r->background.light.channel[0],
-        .coarse_stride = r->view.stride,
-        .wide = r->background.light.channel[1],
-        .wide_stride = r->view.stride,
-        .settled = r->background.light.channel[2],
-        .settled_stride = r->view.stride,
+        .coarse = {r->background.light.channel[0], r->background.light.stride},
+        .wide = {r->background.light.channel[1], r->background.light.stride},
+        .settled = {r->background.light.channel[2], r->background.light.stride},
         .across = r->taps,
         .down = r->taps + r->view.width,
-        .colour = {(uint8_t *)r->smooth.channel[0], (uint8_t *)r->smooth.channel[1],
-                   (uint8_t *)r->smooth.channel[2]},
-        .colour_stride = r->view.stride * (ptrdiff_t)sizeof *r->smooth.channel[0],
-        .sure = (uint8_t *)r->blur.at,
-        .sure_stride = r->view.stride * (ptrdiff_t)sizeof *r->blur.at,
-        .unsure = (uint16_t *)r->blur.at + (r->view.width + 1) / 2, /* behind `sure` */
-        .unsure_stride = r->view.stride,
+        .colour = {{(uint8_t *)r->smooth.channel[0], (uint8_t *)r->smooth.channel[1],
+                    (uint8_t *)r->smooth.channel[2]},
+                   r->smooth.stride * (ptrdiff_t)sizeof *r->smooth.channel[0]},
+        .sure = {(uint8_t *)r->blur.at, r->blur.stride * (ptrdiff_t)sizeof *r->blur.at},
+        /* after the bytes of `sure` in each row */
+        .unsure = {(uint16_t *)r->blur.at + (r->view.width + 1) / 2, r->blur.stride},
         .span = r->spans,
-        .out = r->disparity.at,
-        .out_stride = r->view.stride,
+        .out = r->disparity,
     };
 
     rf_upsample(&up, &r->pool);
+}
+
+/* A picture in RGB8 in the memory of disparities and what is free beside the codes of U and V. */
+static struct refocus_image yuv_guide(const struct refocus_renderer *r)
+{
+    const struct rf_yuv_codes *codes = &r->chroma.codes;
+
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, codes->uv + 2 * r->chroma.size.width,
+                                r->view.width, r->view.height, codes->uv_stride);
 }
 
 static void take_in(struct refocus_renderer *r, const struct refocus_image *photo,
                     const struct refocus_disparity *disparity)
 {
     const bool same_size = disparity->width == r->view.width && disparity->height == r->view.height;
-    const struct refocus_image guide = r->yuv.on ? rf_yuv_guide(r) : *photo;
+    const struct refocus_image guide = r->yuv.on ? yuv_guide(r) : *photo;
 
     rf_load_light(r, photo, same_size ? NULL : &guide);
     if (same_size)
@@ -83,7 +85,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
     own->rims = 0;
     r->blend = REFOCUS_BLEND_LINEAR; /* that rims are found in, whatever came before */
-    rf_yuv_begin(r, photo);
+    rf_yuv_begin(&r->yuv, photo, r->blend);
     rf_run_begin(r);
     if (r->in_place.on) {
         r->in_place.photo = *photo;

@@ -1,9 +1,10 @@
+/* render_yuv.c: what can be rendered of a photo of Y, U and V, and its pre-filter. */
 #include "renderer/render_yuv.h"
 
 #include <math.h>
 
 #include "image/format.h"
-#include "passes/yuv.h"
+#include "renderer/renderer.h"
 
 /* What is made of R, G and B alone. */
 static bool has_look(const struct rf_frame *f)
@@ -55,21 +56,19 @@ static int largest_blur(const struct rf_frame *f)
     return f->plan.plain ? (int)(farther * f->focus.radius >> 16) + 1 : INT16_MAX;
 }
 
-/* From the photo to r->smooth.channel, and from there by way of the background's planes. */
-void rf_smooth_yuv_band(const struct rf_frame *f, int step, int band, int worker)
+struct rf_prefilter_chroma rf_chroma_prefilter(const struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
-    const struct rf_yuv *yuv = &r->yuv;
-    uint16_t *const luma[] = {r->light.channel[0], r->smooth.channel[0],
-                              r->background.light.channel[0]};
-    uint16_t *const chroma[] = {yuv->light, yuv->smooth, yuv->behind};
-    const int to = step == 1 ? 2 : 1;
-    int above[RF_PREFILTER_STEPS];
+    const struct rf_chroma_planes *planes = &f->r->chroma;
+    struct rf_prefilter_chroma chroma = {
+        .size = planes->size,
+        .blur = planes->blur,
+        .light = planes->light,
+        .spare = planes->background,
+        .smooth = planes->smooth,
+    };
 
-    set_chroma_above(f, above);
-    rf_yuv_prefilter_luma(r, luma[to], luma[step], f->prefilter_above, f->prefilter_fades, step,
-                          rf_scratch(&r->exec, worker), band);
-    if (step == 0 || largest_blur(f) > above[1]) /* else no tile would be touched */
-        rf_yuv_prefilter_chroma(r, chroma[to], chroma[step], above, f->prefilter_fades, step,
-                                rf_scratch(&r->exec, worker), band);
+    set_chroma_above(f, chroma.above);
+    /* else no tile would be touched */
+    chroma.steps = largest_blur(f) > chroma.above[1] ? RF_PREFILTER_STEPS : 1;
+    return chroma;
 }

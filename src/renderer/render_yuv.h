@@ -3,12 +3,13 @@
 #define RF_RENDER_YUV_H
 
 #include "gather/frame.h"
+#include "passes/prefilter.h"
 
 /* REFOCUS_OK if the prepared photo, in Y, U and V or not, can be rendered so into f->out;
  * REFOCUS_ERR_UNSUPPORTED, or REFOCUS_ERR_ARGUMENT for a region that splits samples. */
 int rf_check_yuv(const struct rf_frame *f, struct rf_rect region);
 
-/* A step of the pre-filter for a band. */
-void rf_smooth_yuv_band(const struct rf_frame *f, int step, int band, int worker);
+/* The pre-filter of chroma; the background's planes are not in use yet. */
+struct rf_prefilter_chroma rf_chroma_prefilter(const struct rf_frame *f);
 
 #endif

@@ -11,6 +11,7 @@
 #include "aperture/cat_eye.h"
 #include "aperture/cat_shape.h"
 #include "aperture/ray_set.h"
+#include "background/mark.h"
 #include "background/pyramid.h"
 #include "colour/transfer.h"
 #include "finish/finish.h"
@@ -95,8 +96,7 @@ struct rf_in_place {
     struct rf_rect beyond;       /* of the margin in use, what lies beyond the photo */
     uint8_t *known;              /* known_stride bytes a row, bit x % 8 of byte x / 8 */
     ptrdiff_t known_stride;
-    struct rf_level kept[RF_LEVELS]; /* [i]: level i + 1, from RF_KEPT on */
-    int levels;
+    struct rf_pyramid kept; /* levels from RF_KEPT on */
 };
 
 struct refocus_renderer {
@@ -136,9 +136,10 @@ struct refocus_renderer {
     struct rf_disparity_q16 disparity;
     struct rf_alpha_u8 alpha;
     struct rf_background background;
-    struct rf_yuv yuv;
-    struct rf_level level[RF_LEVELS];
-    int levels;
+    struct rf_yuv yuv;              /* of the photo, */
+    struct rf_chroma_planes chroma; /* and if it is of Y, U and V, planes of the window */
+    struct rf_dilated_blur cone;    /* while the background is marked */
+    struct rf_pyramid pyramid;
     struct rf_weight_q15 weight, background_weight; /* once the background is inpainted */
     struct rf_cells cells;                          /* until the background is marked */
     struct rf_foreground_cells foreground;          /* of the inpainted background, up to weights */

@@ -1,5 +1,4 @@
 #include "renderer/layout.h"
-#include "passes/yuv.h"
 #include "renderer/renderer.h"
 #include "gather/frame.h"
 #include "tiles/ranges.h"
@@ -36,15 +35,57 @@ static void place_planes(struct refocus_renderer *r, const struct rf_photo *phot
  * Views of planes that lie in memory of others, as they are never wanted at the same time:
  *
  *     cells               in the background's blur, from the bins until the background is marked
+ *     cone                in two planes of the background's light, while it is marked
  *     background_weight   in the background's blur, once the bins have what the sweep needs of it
+ *     weight              in the pyramid (layout.c); of a photo of Y, U and V in the background's
+ *                         third plane of light
  */
 static void share_planes(struct refocus_renderer *r)
 {
+    const struct rf_light_q12 *light = &r->background.light;
     const struct rf_blur_q8 shared = r->background.blur;
 
     r->cells = (struct rf_cells){shared.at, shared.at + r->view.tiles_x * (RF_TILE / RF_CELL),
                                  shared.stride};
+    r->cone = (struct rf_dilated_blur){light->channel[0], light->channel[1], light->stride};
     r->background_weight = (struct rf_weight_q15){(uint16_t *)shared.at, shared.stride};
+    r->weight = r->yuv.on
+                    ? (struct rf_weight_q15){light->channel[2], light->stride}
+                    : (struct rf_weight_q15){(uint16_t *)r->foreground.most, r->foreground.stride};
+}
+
+/* Row 0 of a plane of chroma: pixel (0, 0) of the window is at rows that are a multiple of RF_TILE.
+ */
+static uint16_t *chroma_of(const struct refocus_renderer *r, uint16_t *plane)
+{
+    return plane - (r->view.y0 - (r->view.y0 >> r->yuv.down)) * r->light.stride;
+}
+
+/*
+ * The planes of a photo of Y, U and V. Luminance is in the first plane of light of each group and
+ * chroma in the second; the blur of chroma is in the third of the pre-filtered light. The codes
+ * that came in are kept: Y in place of alpha, U and V in the photo's third plane of light. All of
+ * light.channel is luminance, for those who ask for the brightest.
+ */
+static void place_chroma(struct refocus_renderer *r)
+{
+    const ptrdiff_t stride = r->light.stride;
+    const int down = r->yuv.down;
+
+    if (!r->yuv.on)
+        return;
+    r->chroma = (struct rf_chroma_planes){
+        .size = {(r->view.width + 1) / 2, rf_chroma_end(down, r->view.height), down},
+        .light = {chroma_of(r, r->light.channel[1]), stride},
+        .smooth = {chroma_of(r, r->smooth.channel[1]), stride},
+        .background = {chroma_of(r, r->background.light.channel[1]), stride},
+        .blur = {(int16_t *)chroma_of(r, r->smooth.channel[2]), stride},
+        .codes = {r->alpha.at,
+                  (uint8_t *)(chroma_of(r, r->light.channel[2]) - r->view.x0) + r->view.x0,
+                  r->alpha.stride, stride * (ptrdiff_t)sizeof(uint16_t)},
+    };
+    for (int c = 1; c < 3; c++)
+        r->light.channel[c] = r->light.channel[0];
 }
 
 void rf_use(struct refocus_renderer *r, struct rf_rect part)
@@ -81,8 +122,10 @@ void rf_use(struct refocus_renderer *r, struct rf_rect part)
     }
     place_planes(r, photo);
     share_planes(r);
-    rf_yuv_use(r);
-    r->levels = rf_pyramid(r->level, width, height);
+    place_chroma(r);
+    rf_pyramid_shape(&r->pyramid, width, height);
+    r->pyramid.level[0].light = r->background.light;
+    r->pyramid.level[0].blur = r->background.blur;
 }
 
 void rf_set_planes(struct rf_frame *f)
@@ -102,6 +145,7 @@ void rf_set_planes(struct rf_frame *f)
     f->range = r->range;
     f->bins = r->bins;
     f->yuv = &r->yuv;
+    f->chroma = r->chroma;
     f->transfer = &r->transfer[f->params->blend];
     f->light_weight = r->light_weight;
     f->ray_sets = &r->ray_sets;

@@ -110,10 +110,8 @@ static void run(uint16_t *map, int step, uint32_t cpu, int threads)
     struct rf_pool pool;
     struct rf_run state = {.looked_at = NULL};
     struct rf_dequantiser d = {.kernels = &kernels,
-                               .code = map,
-                               .stride = WIDTH,
-                               .spare = {spare[0], spare[1]},
-                               .spare_stride = {WIDTH, WIDTH},
+                               .code = {map, WIDTH},
+                               .spare = {{spare[0], WIDTH}, {spare[1], WIDTH}},
                                .width = WIDTH,
                                .height = HEIGHT,
                                .step = step};
@@ -167,10 +165,8 @@ static void ends_and_small_maps(void **state)
             struct rf_run run_state = {.looked_at = NULL};
             uint32_t cpu = REFOCUS_CPU_AUTO;
             struct rf_dequantiser d = {.kernels = &kernels,
-                                       .code = map,
-                                       .stride = width,
-                                       .spare = {spare[0], spare[1]},
-                                       .spare_stride = {width, width},
+                                       .code = {map, width},
+                                       .spare = {{spare[0], width}, {spare[1], width}},
                                        .width = width,
                                        .height = height,
                                        .step = 257};

@@ -1,0 +1,55 @@
+/* mark.c: marks the foreground whose surroundings are to be inpainted behind it. */
+#include "background/mark.h"
+
+#include <string.h>
+
+#include "kernels/kernels.h"
+
+/* Dilated values are s + 2^15, so that 0 lies below all of them. */
+static void bias_row(uint16_t *restrict out, const int16_t *restrict s, int width)
+{
+    for (int x = 0; x < width; x++)
+        out[x] = (uint16_t)((uint16_t)s[x] ^ 0x8000);
+    out[-1] = out[width] = 0;
+}
+
+void rf_background_dilate(const struct rf_executor *exec, const struct rf_viewport *view,
+                          const struct rf_mark *mark, bool upwards)
+{
+    const int first = upwards ? view->height - 1 : 0, step = upwards ? -1 : 1;
+    const ptrdiff_t next = step * mark->cone.stride;
+    uint16_t *row =
+        (upwards ? mark->cone.from_below : mark->cone.from_above) + first * mark->cone.stride;
+
+    for (int i = 0; i < view->height; i++, row += next) {
+        if (i % 16 == 0 && rf_cancelled(exec))
+            return;
+        bias_row(row, mark->blur.at + (first + i * step) * mark->blur.stride, view->width);
+        if (i > 0)
+            exec->kernels->dilate_from(row, row - next, view->width);
+    }
+}
+
+void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_viewport *view,
+                             const struct rf_mark *mark, int y0, int y1, int worker)
+{
+    const int w = view->width;
+    uint16_t *row = rf_scratch(exec, worker) + RF_SPREAD_MARGIN;
+    uint16_t *spare = row + w + 2 * RF_SPREAD_MARGIN;
+
+    for (int y = y0; y < y1; y++) {
+        const uint16_t *down = mark->cone.from_above + y * mark->cone.stride;
+        const uint16_t *up = mark->cone.from_below + y * mark->cone.stride;
+        int16_t *blur = mark->background.blur.at + y * mark->background.blur.stride;
+        const uint16_t *dilated;
+
+        for (int x = 0; x < w; x++)
+            row[x] = down[x] > up[x] ? down[x] : up[x];
+        dilated = exec->kernels->spread_row(row, spare, mark->reach, w);
+        exec->kernels->mark(blur, mark->blur.at + y * mark->blur.stride, dilated, w);
+        blur[w] = RF_NO_BLUR; /* a column more if the width is odd */
+        for (int c = 0; c < mark->planes; c++)
+            memcpy(mark->background.light.channel[c] + y * mark->background.light.stride,
+                   mark->smooth.channel[c] + y * mark->smooth.stride, (size_t)w * 2);
+    }
+}
