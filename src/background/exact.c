@@ -4,7 +4,7 @@
 #include "image/rect.h"
 #include "kernels/kernels.h"
 
-/* The parents that unknown pixels of `need` at a level take from; x1 <= x0: none do. */
+/* The parents that unknown pixels of `need` at a level take from; x1 <= x0: none is unknown. */
 static struct rf_rect parents(const int16_t *blur, ptrdiff_t stride, struct rf_rect need)
 {
     struct rf_rect unknown = {need.x1, need.y1, need.x0, need.y0};

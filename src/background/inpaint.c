@@ -26,7 +26,7 @@ void rf_pyramid_shape(struct rf_pyramid *pyramid, int width, int height)
     pyramid->levels = i;
 }
 
-/* Rows of level i + 1. */
+/* Makes rows of level i + 1 from level i. */
 static void push_rows(const struct rf_executor *exec, const struct rf_pyramid *pyramid, int i,
                       int y0, int y1)
 {
@@ -67,7 +67,8 @@ static inline bool all_known(const int16_t *blur, int n)
     return least != RF_NO_BLUR;
 }
 
-/* Whether a step of n blurs from x on is. Most are whole: their loop has no ends to mind. */
+/* Whether the step from x on of n blurs is known. Most are whole: their loop has no ends to mind.
+ */
 static inline bool is_known(const int16_t *blur, int x, int n)
 {
     return x + RF_UNKNOWN_STEP <= n ? all_known(blur + x, RF_UNKNOWN_STEP)
@@ -76,7 +77,7 @@ static inline bool is_known(const int16_t *blur, int x, int n)
 
 bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run)
 {
-    int x = run->x1 / RF_UNKNOWN_STEP * RF_UNKNOWN_STEP; /* a known step, or the first */
+    int x = run->x1 / RF_UNKNOWN_STEP * RF_UNKNOWN_STEP; /* the step after the run is known */
 
     while (x < n && is_known(blur, x, n))
         x += RF_UNKNOWN_STEP;
@@ -90,7 +91,7 @@ bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run)
     return true;
 }
 
-/* A row of level i, of so many planes of light. */
+/* Pulls a row of level i from the next level, in so many planes of light. */
 static void pull_row(const struct rf_executor *exec, const struct rf_pyramid *pyramid, int i,
                      int planes, uint16_t *scratch, int y)
 {
@@ -117,7 +118,7 @@ static void pull_row(const struct rf_executor *exec, const struct rf_pyramid *py
     }
 }
 
-/* Rows y0 to y1 - 1 of level 0 get their border. */
+/* Repeats the outermost pixels of rows y0 to y1 - 1 of level 0. */
 static void extend_background(const struct rf_viewport *view, const struct rf_level *level,
                               int planes, int y0, int y1)
 {
@@ -126,7 +127,7 @@ static void extend_background(const struct rf_viewport *view, const struct rf_le
     rf_extend_rows(view, level->blur.at, level->blur.stride, y0, y1);
 }
 
-/* A step of the pyramid, from or to a level. */
+/* Push from a level to the next one, or pull back to it. */
 struct step {
     const struct rf_executor *exec;
     const struct rf_viewport *view;
@@ -198,7 +199,7 @@ struct yuv_step {
     const struct rf_inpaint_chroma *chroma;
 };
 
-/* Level 1 of a row of tiles: BAND of its rows are half as many there. */
+/* Makes level 1 under a row of tiles: BAND of its rows are half as many there. */
 static void push_yuv_band(void *context, int band, int worker)
 {
     const struct yuv_step *step = context;
@@ -227,7 +228,7 @@ static void push_yuv_band(void *context, int band, int worker)
     }
 }
 
-/* Chroma of rows c0 to c1 - 1 from level 1. */
+/* Makes chroma of rows c0 to c1 - 1 from level 1. */
 static void pull_chroma(const struct yuv_step *step, int c0, int c1)
 {
     const struct rf_level *fine = &step->pyramid->level[0], *coarse = &step->pyramid->level[1];
@@ -239,7 +240,7 @@ static void pull_chroma(const struct yuv_step *step, int c0, int c1)
 
         step->exec->kernels->join2(out, coarse->light.channel[1] + at,
                                    coarse->light.channel[2] + at, coarse->width);
-        if (!chroma->size.down) /* what is known has rows of its own */
+        if (!chroma->size.down) /* known samples have rows of their own */
             step->exec->kernels->keep2(out, chroma->smooth.at + y * chroma->smooth.stride,
                                        chroma->blur.at + y * chroma->blur.stride,
                                        fine->blur.at + y * fine->blur.stride, coarse->width);

@@ -27,7 +27,7 @@ struct rf_dilated_blur {
 };
 
 struct rf_mark {
-    int planes;                  /* of light: 3, or 1 of a photo of Y, U and V */
+    int planes;                  /* planes of light: 3, or 1 where it is luminance */
     int reach;                   /* steps along a row that the cone is followed for, at most
                                     2 RF_SPREAD_MARGIN - 1 */
     struct rf_blur_q8 blur;      /* read */

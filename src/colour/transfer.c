@@ -1,3 +1,4 @@
+/* transfer.c: makes the tables between 8-bit codes and the values that are averaged. */
 #include "colour/transfer.h"
 
 #include <refocus/render.h>
@@ -56,7 +57,7 @@ static bool is_code(const struct rf_transfer *transfer, int c, double low, doubl
            transfer->to_code[(int)high] == c;
 }
 
-/* Whether c comes back from its light, weighed as any pixel that has it. */
+/* Whether c comes back from its light, with the weight of any pixel that has it. */
 static bool keeps_code(const struct rf_transfer *transfer, const uint16_t weight[256], int c)
 {
     for (int most = c; most < 256; most++) {

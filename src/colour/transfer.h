@@ -20,7 +20,7 @@ enum {
 
 struct rf_transfer {
     uint16_t to_light[256];           /* Q12 */
-    uint8_t to_code[RF_MEAN_MAX + 4]; /* of a Q14 mean */
+    uint8_t to_code[RF_MEAN_MAX + 4]; /* by Q14 mean */
 };
 
 void rf_transfer_init(struct rf_transfer *transfer, int blend);

@@ -1,3 +1,4 @@
+/* yuv.c: makes the tables between codes of Y, U, V and the values that are averaged. */
 #include "colour/yuv.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ static void set_light(struct rf_yuv_curve *curve, const uint16_t to_light[256])
 /* The tone whose light is nearest; the middle one of several. */
 static void set_tones(struct rf_yuv_curve *curve)
 {
-    int first = 0; /* of at least the light */
+    int first = 0; /* the first tone of at least the light */
 
     for (int i = 0; i <= RF_MEAN_MAX >> 1; i++) {
         int end;

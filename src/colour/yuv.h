@@ -32,21 +32,21 @@
 
 enum {
     RF_TONES = 4 * 255 + 1, /* Y', R', G', B' in quarters of a full-range code */
-    RF_CHROMA_ZERO = 4096,  /* what D = 0 is stored as */
+    RF_CHROMA_ZERO = 4096,  /* D = 0 is stored so */
     RF_CHROMA_MAX = RF_CHROMA_ZERO + RF_LIGHT_MAX,
-    RF_SHARE = 1 << 14, /* of Kr, Kg, Kb */
+    RF_SHARE = 1 << 14, /* one, in Kr, Kg and Kb */
 };
 
 struct rf_yuv_curve {
     int16_t luma[256]; /* tone of a code of Y */
     uint16_t light_of_luma[256];
-    int32_t tones_per_code[2];            /* of B' - Y' for U, R' - Y' for V, Q12, */
-    int32_t green_per_code[2];            /* and what they take from G' */
+    int32_t tones_per_code[2];            /* B' - Y' for U, R' - Y' for V, Q12, */
+    int32_t green_per_code[2];            /* how much they take from G' */
     uint16_t light[RF_TONES];             /* Q12 */
-    int16_t tone[(RF_MEAN_MAX >> 1) + 1]; /* of a Q13 mean */
-    uint8_t to_code[RF_MEAN_MAX + 1];     /* Y of a Q14 mean */
-    int32_t codes_per_tone[2];            /* of U and V, Q16 */
-    int32_t kr, kg, kb;                   /* in 1 / RF_SHARE, of sum 1 */
+    int16_t tone[(RF_MEAN_MAX >> 1) + 1]; /* by Q13 mean */
+    uint8_t to_code[RF_MEAN_MAX + 1];     /* Y by Q14 mean */
+    int32_t codes_per_tone[2];            /* U and V, Q16 */
+    int32_t kr, kg, kb;                   /* in 1 / RF_SHARE; they add up to 1 */
     int32_t red, blue;                    /* Kr / Kg, Kb / Kg */
 };
 
@@ -76,13 +76,13 @@ static inline int rf_less_green(const struct rf_yuv_curve *curve, int u, int v)
            12;
 }
 
-/* What a sample of chroma gives. */
+/* The averaged values of a sample of chroma. */
 struct rf_chroma {
     uint16_t blue, red; /* D + RF_CHROMA_ZERO, Q12 */
     int16_t excess;     /* E */
 };
 
-/* From the mean light of its pixels, Q12, and its codes. */
+/* Makes them from the mean light of its pixels, Q12, and its codes. */
 static inline struct rf_chroma rf_chroma_of(const struct rf_yuv_curve *curve, int light, int u,
                                             int v)
 {
@@ -97,7 +97,7 @@ static inline struct rf_chroma rf_chroma_of(const struct rf_yuv_curve *curve, in
                               (uint16_t)(RF_CHROMA_ZERO + red - all), (int16_t)(all - own)};
 }
 
-/* L of a pixel. */
+/* The luminance L of a pixel. */
 static inline uint16_t rf_luminance(int light, int excess)
 {
     const int sum = light + excess;
@@ -105,13 +105,13 @@ static inline uint16_t rf_luminance(int light, int excess)
     return (uint16_t)(sum < 0 ? 0 : sum > RF_LIGHT_MAX ? RF_LIGHT_MAX : sum);
 }
 
-/* What means of a sample of chroma come to. */
+/* The codes that means of a sample of chroma come to. */
 struct rf_chroma_code {
     uint8_t u, v;
     int excess; /* E, Q14 */
 };
 
-/* From L' and from the means of D_b and D_r as they are stored, all Q14. */
+/* Makes them from L' and from the means of D_b and D_r as they are stored, all Q14. */
 static inline struct rf_chroma_code rf_chroma_code(const struct rf_yuv_curve *curve, int light,
                                                    int blue, int red)
 {

@@ -101,7 +101,7 @@ int rf_code_step(const struct refocus_disparity *map)
     return low;
 }
 
-/* One of the passes: from a plane to another. */
+/* One pass of smoothing, from a plane to another. */
 struct pass {
     const struct rf_dequantiser *d;
     struct rf_disparity_q16 in, out;

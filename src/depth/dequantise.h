@@ -30,7 +30,7 @@ enum { RF_DEQUANTISE_REACH = 4 + 2 + 1 };
  */
 int rf_code_step(const struct refocus_disparity *map);
 
-/* Codes of n columns and so many rows, Q16, and two planes of that size to work in. */
+/* The codes of a map, which are replaced, and two planes of its size to work in. */
 struct rf_dequantiser {
     const struct rf_kernels *kernels;
     struct rf_disparity_q16 code, spare[2];
@@ -38,11 +38,12 @@ struct rf_dequantiser {
     int step; /* rf_code_step(), not 0 */
 };
 
-/* pool: NULL for the calling thread alone. */
+/* Smooths the codes in place. pool: NULL for the calling thread alone. */
 void rf_dequantise(const struct rf_dequantiser *d, struct rf_pool *pool);
 
-/* The same for a few pixels of a map whose others are not wanted: `width` x `height` from (x, y)
- * on, at most RF_DEQUANTISE_PATCH each, to rows of that width. step == 0: as the map has them. */
+/* Smooths a few pixels of a map whose others are not wanted: `width` x `height` from (x, y) on, at
+ * most RF_DEQUANTISE_PATCH each, to rows of that width. step == 0: they stay as the map has them.
+ */
 enum { RF_DEQUANTISE_PATCH = 8 };
 void rf_dequantised_patch(const struct rf_kernels *kernels, const struct refocus_disparity *map,
                           int step, int x, int y, int width, int height, uint16_t *out);

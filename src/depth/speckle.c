@@ -1,11 +1,12 @@
+/* speckle.c: marks small patches of wrong depth as unknown. */
 #include "depth/speckle.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "depth/fill.h"
+#include "depth/holes.h"
 
-enum { STEP = 65535 / 24, MOST = 255 /* of a patch's size that is told apart */ };
+enum { STEP = 65535 / 24, MOST = 255 /* samples: larger patches are not told apart */ };
 
 /* Patches as trees in `parent`: a root holds ROOT and the size of its patch, capped; what is no
  * root holds the index of another sample of its patch. */

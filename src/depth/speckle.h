@@ -1,4 +1,4 @@
-/* speckle.h: specks of wrong depth. */
+/* speckle.h: marks small patches of wrong depth as unknown. */
 #ifndef RF_SPECKLE_H
 #define RF_SPECKLE_H
 
@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 /*
- * Mark known samples as unknown that belong to a patch of fewer than `least` samples: samples
+ * Marks known samples as unknown that belong to a patch of fewer than `least` samples: samples
  * that touch, across corners too, and do not differ by more than 1/24 of the range.
  *
  * state: width x height, RF_SAMPLE_KNOWN or RF_SAMPLE_UNKNOWN

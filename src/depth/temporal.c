@@ -1,3 +1,4 @@
+/* temporal.c: steadies the disparities of a video from frame to frame. */
 #include <refocus/temporal.h>
 
 #include <math.h>
@@ -10,7 +11,7 @@
 
 enum {
     ALIKE = 12, /* codes of the guide that are the same thing in two frames */
-    STILL = 6,  /* and that nothing has moved */
+    STILL = 6,  /* codes of the guide up to which nothing has moved */
     MOST_COUNT = 255,
 };
 
@@ -189,7 +190,7 @@ static void load(struct refocus_temporal *f, const struct refocus_image *photo,
     }
 }
 
-/* One sample; see refocus_temporal_run(). q is where it was. */
+/* Filters one sample as refocus_temporal_run() says. q is where it was. */
 static void filter(struct refocus_temporal *f, size_t i, size_t q)
 {
     const int d = f->now.disparity[i], p = f->last.disparity[q], apart = abs(d - p);
@@ -203,7 +204,7 @@ static void filter(struct refocus_temporal *f, size_t i, size_t q)
     if (f->guided && changed > ALIKE)
         return;
     if (apart >= f->noise) {
-        /* A jump that nothing in the photo explains: not before it is seen twice. */
+        /* The photo does not explain the jump: it is not taken before it is seen twice. */
         if (f->guided && f->strength > 0 && changed <= STILL && abs(d - f->before[q]) >= f->noise) {
             f->filtered[i] = (uint16_t)p;
             f->counted[i] = (uint8_t)n;

@@ -1,4 +1,4 @@
-/* temporal.h: what the files of the temporal filter share. */
+/* temporal.h: frames and motion that the files of the temporal filter share. */
 #ifndef RF_TEMPORAL_H
 #define RF_TEMPORAL_H
 

@@ -1,3 +1,4 @@
+/* upsample.c: brings a disparity map to the size of the photo: means, and the order of steps. */
 #include "depth/upsample.h"
 
 #include <stdlib.h>
@@ -61,7 +62,7 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Which of `size` columns or rows is the i-th of `samples`. */
+/* The column or row, of `size`, that the i-th of `samples` lies on. */
 static int place(int i, int samples, int size)
 {
     return (int)((2 * (int64_t)clamp(i, samples - 1) + 1) * size / (2 * (int64_t)samples));
@@ -125,7 +126,7 @@ static void load_trust(const struct rf_upsampler *up, int y)
     memset(out + up->columns, out[up->columns - 1], PAD);
 }
 
-/* As many samples as the map has columns, or fewer. */
+/* Loads as many samples as the map has columns, or fewer. */
 static void load_samples(const struct rf_upsampler *up, uint16_t *out, const void *in)
 {
     struct walk walk = walk_from_0(up->columns, up->map->width);
@@ -148,7 +149,7 @@ static void repeat_ends(uint16_t *row, int n)
     }
 }
 
-/* A row of samples, what the photo shows there, and how sure they are. */
+/* Loads a row of samples, the photo's colours there, and the confidence in them. */
 static void load_row(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
@@ -166,7 +167,7 @@ static void load_row(void *context, int item, int worker)
         load_trust(up, y);
 }
 
-/* Slopes in place of the steps of a map with few codes. The planes of what comes later are free. */
+/* Makes slopes of the steps of a map with few codes. The planes of later steps are still free. */
 static void dequantise_samples(const struct rf_upsampler *up, struct rf_pool *pool)
 {
     const struct rf_dequantiser d = {
@@ -303,7 +304,7 @@ static void fill_band(void *context, int item, int worker)
 
         y1 = row_of(up, first + i + 1);
         if (begin < y1)
-            rf_fill_rows(up, first + i, begin, y1);
+            rf_upsample_rows(up, first + i, begin, y1);
     }
     for (int y = y0 + 1; y < y1 - 1 && !rf_run_cancelled(up->run); y++)
         settle_row(up, y);
@@ -337,7 +338,7 @@ static void take_over_border(void *context, int item, int worker)
 void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
 {
     const int width = up->photo->width, height = up->photo->height;
-    const int bands = (up->rows + SPAN) / SPAN; /* of rows + 1 */
+    const int bands = (up->rows + SPAN) / SPAN; /* rows + 1 in all */
 
     struct walk walk = walk_from_0(up->columns, width);
 

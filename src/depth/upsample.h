@@ -30,10 +30,9 @@ struct rf_block_lists {
     ptrdiff_t stride;
 };
 
-/* The columns of pixels between the same columns of samples, up to those of the next
- * one. */
+/* A span: the columns of pixels between the same columns of samples, up to the next span. */
 struct rf_span {
-    int32_t begin;
+    int32_t begin; /* its first column */
     int32_t alike; /* the first one whose pixels lie the same way */
     int32_t shown; /* the one in the middle of the column of samples of this number */
 };
@@ -56,19 +55,20 @@ struct rf_upsampler {
     const struct rf_kernels *kernels;
     const struct refocus_image *photo;
     const struct refocus_disparity *map;
-    const uint8_t *confidence; /* of each sample of the map, or NULL */
+    const uint8_t *confidence; /* one for each sample of the map, or NULL */
     ptrdiff_t confidence_stride;
     int columns, rows; /* samples that are used: rf_upsample_samples() */
 
-    struct rf_disparity_q16 coarse;  /* samples */
-    struct rf_colours_u8 colour;     /* of the photo at the samples, quartered */
-    struct rf_bytes trust;           /* confidence of the samples; not used without */
-    struct rf_disparity_q16 wide;    /* rows x width: each row of samples as long as the photo's */
-    struct rf_disparity_q16 settled; /* height x width: what becomes of those that are not sure */
-    struct rf_bytes sure;            /* height x width: 255 or 0 */
-    struct rf_block_lists unsure;    /* of pixels that are not */
-    struct rf_taps *across, *down;   /* width and height of them */
-    struct rf_span *span;            /* columns + 2 of them */
+    struct rf_disparity_q16 coarse; /* samples */
+    struct rf_colours_u8 colour;    /* the photo at the samples, quartered */
+    struct rf_bytes trust;          /* confidence of the samples; not used without */
+    struct rf_disparity_q16 wide;   /* rows x width: each row of samples as long as the photo's */
+    struct rf_disparity_q16
+        settled;                   /* height x width: the final value of pixels that are not sure */
+    struct rf_bytes sure;          /* height x width: 255 or 0 */
+    struct rf_block_lists unsure;  /* blocks of a row with pixels that are not sure */
+    struct rf_taps *across, *down; /* width and height of them */
+    struct rf_span *span;          /* columns + 2 of them */
     struct rf_run *run;
 
     struct rf_disparity_q16 out;
@@ -84,13 +84,13 @@ static inline int rf_upsample_samples(int samples, int size)
     return samples < size ? samples : size;
 }
 
+/* Writes the map at the photo's size to up->out. */
 void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool);
 
-/* Spans whose pixels lie the same way are told to have the first one's: of the last
- * few. */
+/* Finds where spans begin, and which of the last few has pixels that lie the same way. */
 void rf_find_spans(struct rf_upsampler *up);
 
-/* Rows y0 to y1 - 1 of pixels, whose taps begin in row `first` of the samples. */
-void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1);
+/* Writes rows y0 to y1 - 1 of pixels, whose taps begin in row `first` of the samples. */
+void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1);
 
 #endif

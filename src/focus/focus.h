@@ -1,4 +1,4 @@
-/* focus.h: how much each pixel is out of focus, when that is more than K (df - d).
+/* focus.h: how far each pixel is out of focus, where eq. 4, K (df - d), is not all there is.
  *
  * Everything ends in one signed blur a pixel, s = K e with e in units of disparity,
  * 65535 = 1; what renders it need not know how it came about. All of it is whole
@@ -16,28 +16,28 @@
 
 enum { RF_ONE = 65535 }; /* disparity 1, or a picture's width, in what follows */
 
-/* A band about the main focus: offset of its middle from df, and where its blur begins
- * and where it is the lens's again. */
+/* A band about a focus: the offset of its middle from df, the distance from there at which blur
+ * begins, and that from which on it is the lens's again. */
 struct rf_band {
     int32_t offset, sharp, whole;
 };
 
-/* A field about a centre, all lengths RF_ONE = 1. */
+/* A field of blur about a centre, all lengths RF_ONE = 1. */
 struct rf_field {
     uint32_t shape; /* enum refocus_field */
     int32_t x, y, disparity, radius, falloff;
     int32_t normal_x, normal_d; /* Q30 */
 };
 
-/* What refocus_render_params ask for, in fixed point. */
+/* The focus that refocus_render_params ask for, in fixed point. */
 struct rf_focus_plan {
     struct rf_focus focus;
     bool plain;                   /* s = K (df - d) and nothing else */
-    uint32_t number;              /* of this render, when maps say something: they may change */
-    int width, height;            /* of the whole photo */
+    uint32_t number;              /* counts renders with maps, which may change in between */
+    int width, height;            /* pixels of the whole photo */
     uint16_t least, most;         /* disparities are clamped to them */
-    uint16_t limit;               /* of |s|, Q7.8 */
-    int32_t share;                /* of depth, Q16 */
+    uint16_t limit;               /* |s| at most, Q7.8 */
+    int32_t share;                /* how much of depth counts, Q16 */
     int64_t tilt, tilt_x, tilt_y; /* at pixel (0, 0), and a pixel's step: Q24 */
     int bands;                    /* 1 or more when any is wider than nothing, else 0 */
     struct rf_band band[REFOCUS_MAX_BANDS];
@@ -48,7 +48,7 @@ struct rf_focus_plan {
 /* df and K in fixed point. */
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 
-/* Of parameters that are in their ranges. */
+/* Makes the plan of parameters that are in their ranges. */
 void rf_focus_plan_make(struct rf_focus_plan *plan, const struct refocus_render_params *params,
                         struct rf_focus focus, int width, int height);
 

@@ -1,3 +1,4 @@
+/* map.c: looks up a map that covers the picture at any size. */
 #include "focus/focus.h"
 
 static int sample(const struct refocus_disparity *map, int x, int y)

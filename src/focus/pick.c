@@ -1,4 +1,4 @@
-/* pick.c: which surface is meant by a tap or a rectangle. */
+/* pick.c: finds the surface that a tap or a rectangle means. */
 #include <refocus/focus.h>
 
 #include <stdbool.h>

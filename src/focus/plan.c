@@ -1,4 +1,4 @@
-/* plan.c: parameters of the focus to fixed point. */
+/* plan.c: turns the parameters of the focus into fixed point. */
 #include "focus/focus.h"
 
 #include <math.h>

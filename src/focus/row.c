@@ -1,4 +1,4 @@
-/* row.c: from places and disparities to signed blur. */
+/* row.c: computes the signed blur of a row from places and disparities. */
 #include "focus/focus.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@ static int clamp(int v, int least, int most)
     return v < least ? least : v > most ? most : v;
 }
 
-/* What a band leaves of a distance from its middle. */
+/* How much of a distance from its middle a band leaves. */
 static int32_t shorten(const struct rf_band *band, int32_t distance)
 {
     if (distance <= band->sharp)
@@ -39,7 +39,7 @@ static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e, int
     return before ? -least : least;
 }
 
-/* What counts of a difference of disparities. */
+/* How much of a difference of disparities counts. */
 static int32_t depth_of(const struct rf_focus_plan *plan, int difference)
 {
     return (int32_t)(((int64_t)difference * plan->share + (1 << 15)) >> 16);

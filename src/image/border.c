@@ -26,7 +26,7 @@ void rf_extend_rows(const struct rf_viewport *view, void *plane, ptrdiff_t strid
                    (uint16_t *)plane - b.x0 + (view->height - 1) * stride, bytes);
 }
 
-/* A sample's two values n times. */
+/* Writes a sample's two values n times. */
 static void repeat(uint16_t *to, const uint16_t *sample, int n)
 {
     const uint16_t a = sample[0], b = sample[1];

@@ -20,7 +20,7 @@
 struct rf_yuv {
     bool on;                       /* else it is of R, G and B, and the rest is not valid */
     int down;                      /* rows of the photo to one of chroma: 1 << down */
-    uint32_t matrix, range, blend; /* that curve is for */
+    uint32_t matrix, range, blend; /* of the curve */
     bool curve_made;
     struct rf_yuv_curve curve;
 };

@@ -1,8 +1,10 @@
+/* format.c: sizes and checks of pictures and maps in every format. */
 #include "image/format.h"
 
 enum { PLANES = 3 };
 
-/* Of each plane: bytes for each pair of columns, and rows to one of its own, as a shift. */
+/* The planes of each format: bytes for each pair of columns, and rows to one of its own, as a
+ * shift. */
 static const struct layout {
     int planes;
     struct {

@@ -8,7 +8,7 @@
  *     background layer    <-  smooth, blur
  *
  * The shape of the aperture and rays as dense as before change none of them, nor does sigma,
- * but where the light of both layers is times its weight (planes/planes.h).
+ * but where the light of both layers is times its weight (passes/weights.h).
  * For a region only a window of the photo is worked on: the region, what its rays
  * reach, what the marks of the background there depend on, and as much around as its
  * fill asks for. What is in the window is kept for the next call.

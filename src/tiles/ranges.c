@@ -3,7 +3,7 @@
 
 enum {
     EACH = RF_TILE / RF_CELL,                  /* cells of a tile, across and down */
-    TALL_Y = RF_WINDOW_Y + RF_STRIP / RF_CELL, /* those that both its strips lie in */
+    TALL_Y = RF_WINDOW_Y + RF_STRIP / RF_CELL, /* cells that both strips of a tile lie in */
 };
 
 static int cells_x(const struct rf_viewport *view)

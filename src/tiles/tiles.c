@@ -10,17 +10,17 @@ enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
 
 enum {
     HALF = 128,           /* Q7.8 pixels, as all of these */
-    OVERLAP = 32,         /* of a slab with each of those beside it */
+    OVERLAP = 32,         /* a slab reaches so far into each of those beside it */
     CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
     WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
-    MOST_SPREAD = 60416,  /* of blurs, so that no slab of up to 20 is met modulo 2^16 */
+    MOST_SPREAD = 60416,  /* blurs within it meet no slab of up to 20 pixels modulo 2^16 */
 };
 
 struct rf_bin_scale rf_bin_scale_of(float largest_blur)
 {
     const int shift = largest_blur <= 31.5f ? 6 : largest_blur <= 63.5f ? 7 : 8;
 
-    /* Then -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
+    /* So -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
      * shift 7, -127 .. 127 bins 0 .. 254 at shift 8. */
     return (struct rf_bin_scale){shift, 127, 256 >> shift};
 }
@@ -162,7 +162,7 @@ static int gap_of(int n)
     return n ? (n - 1) * RF_TILE + 1 : 0;
 }
 
-/* A pixel g away is met only if |s| >= g - 1. */
+/* A ray meets a pixel g away only if |s| >= g - 1. */
 static struct rf_kept kept_at(struct rf_bin_scale scale, int gx, int gy, bool square)
 {
     struct rf_kept kept = {.word = {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX}};
@@ -186,7 +186,7 @@ static struct rf_kept kept_at(struct rf_bin_scale scale, int gx, int gy, bool sq
 void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
                    bool square)
 {
-    /* of those farther away gap_of() - 1 is more than any blur, even a whole bin less */
+    /* gap_of() - 1 of tiles farther away is more than any blur, even a whole bin less */
     const int met = (int)((largest_blur + 1) / RF_TILE) + 1;
 
     reach->scale = scale;

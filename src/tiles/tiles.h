@@ -1,4 +1,4 @@
-/* tiles.h: which signed blurs can reach a tile, and the slabs that cover them. */
+/* tiles.h: classifies tiles: which signed blurs can reach them, and the slabs that cover these. */
 #ifndef RF_TILES_H
 #define RF_TILES_H
 
@@ -14,7 +14,7 @@
 struct rf_bin_scale {
     int shift;      /* a bin is 1 << shift in Q7.8 */
     int focus;      /* first bin of |s| < 1/2 pixel */
-    int focus_bins; /* and how many there are */
+    int focus_bins; /* bins of |s| < 1/2 pixel */
 };
 struct rf_bin_scale rf_bin_scale_of(float largest_blur);
 
@@ -23,10 +23,10 @@ enum { RF_MAX_SLABS = RF_BINS };
 struct rf_tile_plan {
     int slabs;
     int reach;          /* largest |s| that reaches the tile, Q7.8, */
-    int least;          /* and the least */
+    int least;          /* the least |s| that reaches it */
     bool sharp;         /* nothing here or reaching here is blurred by half a pixel */
-    int lamp;           /* largest |s| of a highlight in reach, Q7.8; 0: none is; */
-    bool dots;          /* one that is small beside the gaps of the rays is */
+    int lamp;           /* largest |s| of a highlight in reach, Q7.8; 0: none is in reach */
+    bool dots;          /* a highlight that is small beside the gaps of the rays is in reach */
     uint16_t brightest; /* as rf_bins has it, of the tiles in reach */
     struct rf_slab slab[RF_MAX_SLABS];
     bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */
@@ -34,8 +34,8 @@ struct rf_tile_plan {
 
 /* Which blurs reach from a tile to another that is some tiles away. */
 struct rf_kept {
-    uint64_t word[RF_BINS / 64]; /* these bins */
-    int low, high;               /* blurs from low to high - 1 do not; Q7.8 */
+    uint64_t word[RF_BINS / 64]; /* bins that reach it */
+    int low, high;               /* blurs from low to high - 1 do not reach it; Q7.8 */
     int blur;                    /* the least |s| that does */
 };
 enum { RF_REACH_TILES = (127 + RF_TILE - 1) / RF_TILE };
@@ -44,8 +44,9 @@ struct rf_reach {
     int tiles;                                                   /* how far tiles are met at all */
     struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
 };
-/* Of blurs up to the largest there can be in this frame, pixels, and pad - 2. `square`: the
- * aperture reaches beyond the unit circle, so that distances count by the larger axis. */
+/* Tabulates the reach of blurs up to the largest there can be in this frame, pixels, and pad - 2.
+ * `square`: the aperture reaches beyond the unit circle, so that distances count by the larger
+ * axis. */
 void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
                    bool square);
 

@@ -1,10 +1,11 @@
+/* holes.c: gives samples of a depth map without a value that of the surface around them. */
 #include <stdlib.h>
 #include <string.h>
-#include "depth/fill.h"
+#include "depth/holes.h"
 
 enum {
     STRAIGHT = 2, /* distance to a neighbour in half samples, */
-    DIAGONAL = 3, /* and to one across a corner */
+    DIAGONAL = 3, /* the distance to one across a corner */
     FARTHEST = RF_SAMPLE_UNKNOWN - 1,
     CONTINUOUS = 65535 / 32, /* largest step within a surface */
     SPREADS = 4,             /* scans to spread: enough to turn three corners */
@@ -49,7 +50,7 @@ static int unknown_from(const uint8_t *state, int x, int width)
     return x;
 }
 
-/* The last one up to x, or -1. */
+/* The last unknown sample up to x, or -1. */
 static int unknown_to(const uint8_t *state, int x)
 {
     while (x + 1 >= EIGHT && all_known(state + x + 1 - EIGHT))
@@ -83,7 +84,7 @@ static void spread_from(const struct holes *holes, uint16_t *disparity, uint8_t 
     }
 }
 
-/* One scan: rows from the top or the bottom, and each row in both directions. */
+/* Scans rows from the top or the bottom, and each row in both directions. */
 static void spread(const struct holes *holes, int down)
 {
     const int width = holes->width;
@@ -132,7 +133,7 @@ static uint16_t smoothed(const struct holes *holes, int x, int y, int step)
     return (uint16_t)((sum + count / 2) / count);
 }
 
-/* In place, which carries values on along the scan: to and fro in turns. */
+/* Smooths in place, which carries values on along the scan: so it goes to and fro in turns. */
 static void smooth(const struct holes *holes, int step, int forwards)
 {
     for (int i = 0; i < holes->height; i++) {

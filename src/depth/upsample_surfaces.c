@@ -1,3 +1,4 @@
+/* upsample_surfaces.c: decides at depth edges which surface a pixel of the photo belongs to. */
 #include <string.h>
 
 #include "depth/upsample.h"
@@ -9,11 +10,10 @@ enum {
     STEP = 65535 / 24, /* largest one within a surface */
     RUN = 8,           /* most columns and rows of pixels that are looked at together */
     SLICE = 128,       /* pixels whose colours are taken together */
-    KINDS = 8,         /* of spans that are remembered */
+    KINDS = 8,         /* spans that are remembered */
 };
 
-/* Where pixels of a span lie among the samples, for those that have been looked at
- * last. */
+/* Where pixels of spans lie among the samples, for the last few kinds of spans. */
 struct lies {
     struct rf_lie lie[KINDS];
     int alike[KINDS], x[KINDS];
@@ -25,12 +25,12 @@ struct around {
     uint8_t colour[3][RF_AROUND * RF_TURNED], trust[RF_AROUND * RF_TURNED];
 };
 
-/* What a worker needs for rows of pixels between the same samples. */
+/* All that a worker needs for rows of pixels between the same samples. */
 struct patch {
     const struct rf_upsampler *up;
     int row;    /* the first of the taps */
     int y0, y1; /* rows of pixels, at most RUN */
-    int bytes;  /* of a pixel */
+    int bytes;  /* a pixel */
     int ready;  /* colours of the columns before are in `colour` */
     int from;   /* the first of them */
     uint8_t colour[3][RUN][SLICE + RUN];
@@ -115,7 +115,7 @@ static inline void put(void *to, const void *from, size_t n, size_t size)
     }
 }
 
-/* What has been found for columns x to x + n - 1. */
+/* Writes the disparities that were found for columns x to x + n - 1. */
 static inline void put_rows(const struct patch *patch, const uint16_t *result,
                             const uint8_t *is_sure, int x, size_t n)
 {
@@ -206,7 +206,7 @@ static void look_around(struct patch *patch, int first)
         turn(patch, patch->around.trust, up->trust.at, of_trust, x, inside);
 }
 
-/* Pixels of the i-th cell of those that have been looked around. */
+/* Finds the surface of each pixel of the i-th cell of those that have been looked around. */
 static void fill_cell(struct patch *patch, int cell, int i)
 {
     const struct rf_upsampler *up = patch->up;
@@ -224,7 +224,7 @@ static void fill_cell(struct patch *patch, int cell, int i)
         uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], sure[RF_BATCH];
         uint16_t result[RF_BATCH];
 
-        /* Long before it is read as vectors: that would stall. */
+        /* Collect long before this is read as vectors: that would stall. */
         collect(colour, patch, x, n);
         if (!found)
             up->kernels->find_surfaces(&patch->cell, &window, &patch->parts, i);
@@ -235,7 +235,7 @@ static void fill_cell(struct patch *patch, int cell, int i)
     }
 }
 
-/* RUN pixels, of which n are in the cell. */
+/* Clamps RUN pixels, of which n are in the cell. */
 static inline void clamp_run(uint16_t *out, int n, uint16_t low, uint16_t high)
 {
     uint16_t v[RUN];
@@ -278,7 +278,7 @@ static void clamp_cell(const struct patch *patch, int cell, const uint16_t *cons
     }
 }
 
-/* The rough cells among the n from the first-th on. */
+/* Classifies the pixels of the rough cells among the n from the first-th on. */
 static void fill_cells(struct patch *patch, int first, int n)
 {
     const struct rf_upsampler *up = patch->up;
@@ -306,7 +306,7 @@ static void fill_cells(struct patch *patch, int first, int n)
             fill_cell(patch, first + i, i);
 }
 
-/* Which blocks of a row have pixels that are not sure. */
+/* Lists the blocks of a row that have pixels that are not sure. */
 static void list_unsure(const struct rf_upsampler *up, int y)
 {
     const int width = up->photo->width, blocks = rf_upsample_blocks(width);
@@ -329,7 +329,7 @@ static void list_unsure(const struct rf_upsampler *up, int y)
     unsure[0] = (uint16_t)n;
 }
 
-void rf_fill_rows(const struct rf_upsampler *up, int first, int y0, int y1)
+void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1)
 {
     const int width = up->photo->width, cells = up->columns + 1;
     const uint16_t *wide[RF_TAPS];

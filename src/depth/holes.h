@@ -1,15 +1,15 @@
-/* Filling the samples of a depth map that hold no value. */
+/* holes.h: gives samples of a depth map without a value that of the surface around them. */
 #ifndef RF_DEPTH_FILL_H
 #define RF_DEPTH_FILL_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* What the state of a sample is when rf_fill_holes() begins. */
+/* The state of a sample when rf_fill_holes() begins. */
 enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
 
 /*
- * Fill the unknown disparities from the known ones around them.
+ * Fills the unknown disparities from the known ones around them.
  *
  * An unknown sample p takes the disparity of the known sample q with the least
  *

@@ -1,11 +1,12 @@
+/* block_motion.c: finds where each block of a depth map was in the frame before. */
 #include "depth/temporal.h"
 
 #include <stdlib.h>
 
 enum {
     MOST_STEPS = 8,
-    MOST_APART = 40, /* of disparities, in 1/256 of the range: a hole is not a movement */
-    STANDING = 48,   /* what a movement has to be better by */
+    MOST_APART = 40, /* disparities, in 1/256 of the range: a hole is not a movement */
+    STANDING = 48,   /* a movement has to be better by so much */
 };
 
 struct block {

@@ -1,3 +1,4 @@
+/* snap_edges.c: moves the edges of a disparity map to those of the photo. */
 #include <refocus/depth.h>
 #include <refocus/render.h>
 
@@ -10,15 +11,15 @@
 
 enum {
     STEP = 65535 / 24, /* an edge */
-    SAME = 65535 / 12, /* of one surface */
+    SAME = 65535 / 12, /* samples of one surface differ by no more */
     UNSURE = 16,       /* confidence beside an edge: says nothing of colours, and little else */
 };
 
 struct snap {
     const struct refocus_disparity *map;
     int width, height, reach;
-    int columns, rows;      /* of the coarse map: a sample for every reach x reach pixels */
-    uint16_t *least, *most; /* of each pixel's surroundings, reach to each side */
+    int columns, rows;      /* the coarse map has a sample for every reach x reach pixels */
+    uint16_t *least, *most; /* disparities up to `reach` away from each pixel */
     uint16_t *coarse;
     uint8_t *confidence;
 };

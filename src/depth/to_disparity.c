@@ -1,3 +1,4 @@
+/* to_disparity.c: converts depth maps of any unit to disparities, and repairs what they miss. */
 #include <limits.h>
 #include <math.h>
 #include <stdbool.h>
@@ -5,7 +6,7 @@
 #include <string.h>
 #include <refocus/depth.h>
 #include <refocus/image.h>
-#include "depth/fill.h"
+#include "depth/holes.h"
 #include "depth/speckle.h"
 #include "image/format.h"
 
@@ -14,7 +15,7 @@ enum {
                   REFOCUS_DEPTH_2047_IS_UNKNOWN,
 };
 
-/* Of large maps of whole numbers each value is converted once. REFOCUS_MAX_SIDE is below 2^16, so
+/* Each value of large maps of whole numbers is converted once. REFOCUS_MAX_SIDE is below 2^16, so
  * 32 bits hold their number. */
 enum { VALUES = 65536, LARGE = VALUES };
 struct values {
@@ -28,7 +29,7 @@ struct values {
 struct conversion {
     const struct refocus_depth_map *map;
     struct values *values;      /* NULL: of samples one by one */
-    double rank_near, rank_far; /* of d = 1 and d = 0 */
+    double rank_near, rank_far; /* ranks where d = 1 and d = 0 */
     double scale;               /* from ranks to 65535 d; 0 for a map of one depth */
     uint64_t unknown, clamped, specks;
 };
@@ -130,7 +131,7 @@ static const char *row_of(const struct refocus_depth_map *map, int y)
     return (const char *)map->samples + y * map->stride;
 }
 
-/* So many samples of a value: a rank of its own, or unknown ones more. */
+/* Counts so many samples of a value, as known ones of a rank or as unknown ones. */
 static void note_value(struct conversion *conversion, double v, uint32_t count)
 {
     const double rank = rank_of(conversion->map, v);
@@ -177,7 +178,7 @@ static int measure(struct conversion *conversion)
     return REFOCUS_OK;
 }
 
-/* What the map says of its range goes before what was measured. */
+/* The range that the map tells goes before the measured one. */
 static void choose_range(struct conversion *conversion)
 {
     const struct refocus_depth_map *map = conversion->map;

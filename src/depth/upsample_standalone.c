@@ -1,4 +1,4 @@
-/* upsample_map.c: the upsampler with memory and threads of its own. */
+/* upsample_standalone.c: upsamples a map for a caller, with memory and threads of its own. */
 #include <refocus/depth.h>
 
 #include <stdlib.h>
