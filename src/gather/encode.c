@@ -120,16 +120,6 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
     }
 }
 
-void rf_pixel_codes(const struct rf_frame *f, int x, int y, uint8_t *code[3])
-{
-    const struct rf_order o = rf_order_of(f->out->format);
-    uint8_t *out = pixel(f, o.bytes, x, y);
-
-    code[0] = out + o.r;
-    code[1] = out + o.g;
-    code[2] = out + o.b;
-}
-
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3])
 {
     const struct rf_order o = rf_order_of(f->out->format);

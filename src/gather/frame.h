@@ -14,6 +14,8 @@
 #include "image/viewport.h"
 #include "passes/prefilter.h"
 #include "support/executor.h"
+#include "highlights/highlights.h"
+#include "look/look.h"
 #include "thin/thin.h"
 #include "tiles/bins.h"
 #include "tiles/tiles.h"
@@ -74,10 +76,11 @@ struct rf_frame {
     bool premultiplied;           /* and little enough for light times weight in 16 bits */
     bool fine;                    /* the opening is: rf_aperture_is_fine() */
     int row_gap;                  /* see methods/tile_rows.h */
-    bool stars, grain;            /* lamps have spikes; blur has grain */
-    bool finish_ready;            /* both are found out */
-    bool draws;                   /* lamps are drawn, highlights/draw.h; or else */
-    enum rf_bright bright;        /* light was given back to them: it exceeds RF_LIGHT_MAX */
+    struct rf_look look;          /* spikes of stars, and grain, */
+    bool look_ready;              /* once they are found out */
+    bool splats;                  /* highlights are splatted, as this says, */
+    struct rf_splat splat;        /* of the planes that rf_set_planes() set; or else */
+    enum rf_bright bright;        /* rays gather their light, which exceeds RF_LIGHT_MAX */
     const struct rf_exact *exact; /* of methods in double precision, else NULL */
 };
 
@@ -158,8 +161,6 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                          struct rf_decode_job *job);
 void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect);
-/* Where the output has the codes R, G, B of a pixel. */
-void rf_pixel_codes(const struct rf_frame *f, int x, int y, uint8_t *code[3]);
 
 /* One pixel given as codes; alpha is the photo's. */
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);

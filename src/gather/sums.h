@@ -1,4 +1,4 @@
-/* sums.h: what 16-bit sums of light and means can hold, where lamps are brighter than
+/* sums.h: what 16-bit sums of light and means can hold, where highlights are brighter than
  * white. */
 #ifndef RF_SUMS_H
 #define RF_SUMS_H

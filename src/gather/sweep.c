@@ -10,7 +10,6 @@
  * This is plain C that states the arithmetic; sums are whole numbers, so their order does
  * not matter.
  */
-#include "highlights/draw.h"
 #include "gather/frame.h"
 #include "gather/sums.h"
 #include "gather/tile_rays.h"
@@ -325,13 +324,14 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         else
             sweep_sums(f, &plan, &rays, tx, ty, mean, from, to);
     }
-    if (f->draws)
-        rf_draw_lamps(f, &plan, tx, ty, (uint16_t *const[3]){mean[0], mean[1], mean[2]}, 3);
+    if (f->splats)
+        rf_splat_highlights(&f->splat, &plan, tx, ty,
+                            (uint16_t *const[3]){mean[0], mean[1], mean[2]});
     if (f->thin.mattes)
         rf_matte_over(&f->thin, tx, ty, mean);
     if (f->thin.disc_scale)
         rf_coverage_over(&f->thin, tx, ty, mean);
-    if (f->draws && plan.lamp)
+    if (f->splats && plan.lamp)
         f->exec->kernels->at_most(mean[0], RF_MEAN_MAX, 3 * LANES);
     if (!rf_cancelled(f->exec))
         rf_encode_means(f, rect, mean);

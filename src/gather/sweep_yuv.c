@@ -5,7 +5,6 @@
  * and in 4:2:0 down, and some of them lie as densely among its samples as all do among
  * pixels.
  */
-#include "highlights/draw.h"
 #include "gather/frame.h"
 #include "gather/sums.h"
 #include "gather/tile_rows.h"
@@ -310,7 +309,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         sweep_means(&tile, &sums, &means);
     else
         sweep_sums(&tile, &sums, &means);
-    if (f->draws)
-        rf_draw_lamps(f, &tile.plan, tx, ty, (uint16_t *const[3]){means.luma}, 1);
+    if (f->splats)
+        rf_splat_highlights(&f->splat, &tile.plan, tx, ty, (uint16_t *const[3]){means.luma});
     rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

@@ -1,9 +1,12 @@
-/* clipped.h: what finding lamps, drawing them and their rims have in common. */
+/* clipped.h: which light counts as clipped by the photo's white point. */
 #ifndef RF_CLIPPED_H
 #define RF_CLIPPED_H
 
-#include "image/viewport.h"
-#include "renderer/renderer.h"
+#include <stddef.h>
+#include <stdint.h>
+
+#include "colour/transfer.h"
+#include "image/planes.h"
 
 enum { RF_CLIPPED = RF_LIGHT_MAX * 94 / 100 }; /* light from which clipping begins to count */
 
@@ -13,13 +16,13 @@ static inline int rf_ramp(int64_t v, int64_t a, int64_t b)
     return v >= b ? 256 : v <= a ? 0 : (int)(256 * (v - a) / (b - a));
 }
 
-/* Of the front's channels at a pixel. */
-static inline int rf_brightest_at(const struct refocus_renderer *r, ptrdiff_t at)
+/* The brightest channel of the pixel that lies at `at` of its planes. */
+static inline int rf_brightest_at(const struct rf_light_q12 *light, ptrdiff_t at)
 {
-    int most = r->light.channel[0][at];
+    int most = light->channel[0][at];
 
-    most = r->light.channel[1][at] > most ? r->light.channel[1][at] : most;
-    return r->light.channel[2][at] > most ? r->light.channel[2][at] : most;
+    most = light->channel[1][at] > most ? light->channel[1][at] : most;
+    return light->channel[2][at] > most ? light->channel[2][at] : most;
 }
 
 #endif

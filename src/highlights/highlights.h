@@ -1,36 +1,28 @@
-/* highlights.h: light that the photo's white point cut off, given back to small lamps.
+/* highlights.h: finds small lights that the photo's white point cut off, and gives their discs the
+ * light that they lost.
  *
- * A lamp out of focus is a disc whose brightness is the lamp's, spread over the disc.
- * In the photo the lamp is clipped to white, so its disc comes out grey. Clipped pixels
- * that hang together are taken for a lamp when there are few of them, many times brighter
- * than what is around them, with a steep rim. Never large clipped areas: a white wall is
- * just white.
+ * A highlight out of focus is a disc whose brightness is the highlight's, spread over the disc. In
+ * the photo the highlight is clipped to white, so its disc would come out grey. The steps, in the
+ * order in which the renderer takes them:
  *
- *     level      of a channel of a pixel: ramp from 0.94 to 1; what is not clipped lost nothing,
- * nor where one channel alone is clipped: hair, leaves, petals isolation  ramp of mean luminance /
- * that of all else up to 12 cells away, 2.5 to 3.75, and of the bright channel that stands out
- * most: what is blue among blue is a petal steepness  ramp of pixels of the edge / half lit ones
- * beside them, 1.67 to 2.25: those 2/5 of the way and more from what is 2 or 3 cells away to white,
- * so that what a lamp lights around it is not its rim; soft rims of large photos: judge.c added
- * (gain - 1) * level * isolation * steepness * hue, of each channel
+ *     detect      finds connected clipped pixels, classifies each component as a highlight or as
+ *                 something merely white (classify.c), and lists the highlights by rows
+ *     silhouettes gives pixels at the edge of something bright the depth that they belong to
+ *     mark        tells, for a lens setting, which pixels of a highlight are but the silhouette of
+ *                 a sharper one, and how far the others are out of focus
  *
- * The hue is that of the lamp's rim: what the pixels beside it have more than those 2 or 3 cells
- * away, the brighter ones for more. A lamp and what it lights may hang together, a flame and its
- * candle, a tail light and its glow: where a shape has limbs, parts that are thinner than half of
- * it, its body may be taken alone, and where it has pixels with two clipped channels, these as its
- * core (body.c), whichever makes more light. A core inside a glow that is clipped has the glow's
- * hue. Of what is higher or wider than RF_LAMP_SIDE, tubes and rows of lamps, each cell is judged
- * by the 25 x 25 and 7 x 7 cells around it, isolation from 3 to 4.5, hue as above. Cells are
- * pixels, and squares of them in large photos, rf_lamp_cell(), clipped if any pixel is. What is
- * added acts on pixels that are blurred; the sharp ones stay as they are: it is drawn (draw.h), or
- * else rays meet it.
+ * then, where the aperture and the method allow it (rf_can_splat()),
  *
- * 12 views, best: 30.98 dB with rims from 0.4 of white on, 31.39 from what is beside them, 31.57
- * with isolation from 2.5 in place of 3; 31.71 before and 31.84 with bodies and these hues; 31.92
- * before, 31.94 with what is added after the pre-filter, 32.01 with cores, 32.08 with ramps that
- * end at 3.75 and 2.25 in place of 5 and 2.5.
- * nightlights enlarged 4 times, focused far, near and between: 18.7, 23.1, 24.5 dB with lamps of up
- * to 24 pixels, 23.6, 26.4, 27.4 with cells.
+ *     subtract    takes from the light that rays meet what a highlight has beyond its surroundings
+ *     splat       draws that, and what clipping cost, as sprites of the aperture
+ *
+ * and elsewhere, where the rays have to gather the light,
+ *
+ *     widen       makes highlights large enough for rays not to miss them
+ *     raise       counts them as foreground
+ *     boost       adds what clipping cost to the light that rays meet
+ *
+ * This header is all that other folders include; the other headers here are private.
  */
 #ifndef RF_HIGHLIGHTS_H
 #define RF_HIGHLIGHTS_H
@@ -38,122 +30,201 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <refocus/image.h>
+#include <refocus/render.h>
 
-struct refocus_renderer;
-struct rf_bin_scale;
+#include "focus/focus.h"
+#include "image/photo_source.h"
+#include "image/planes.h"
+#include "image/viewport.h"
+#include "support/arena.h"
+#include "support/executor.h"
+#include "tiles/bins.h"
+#include "tiles/ranges.h"
+#include "tiles/tiles.h"
 
-/* Pixels of a row of a lamp. */
+/* The pixels of a highlight in one row, and what the marks of a lens setting say of them. */
 struct rf_highlight {
-    uint16_t x, y;     /* the first */
-    uint16_t added[3]; /* Q12 light at full gain of 4, at most 3 * 4095: mean of what they lost */
-    uint8_t count;     /* 1 to RF_LAMP_RUN */
-    uint8_t size;   /* pixels that the lamp is wide in its narrow direction, or so; 255 and more */
-    uint16_t edges; /* for this lens: a bit each that is the edge of something bright and sharper;
-                       rays leave those alone that are mostly that, drawn ones fade, */
-    int16_t blur; /* and the mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ, */
-    uint16_t shining; /* by how much all of them shine together, 256 each */
-    uint16_t own[3];  /* Q12 light that was taken out of what rays meet, mean of what shines */
-    uint8_t rows;     /* that are drawn as one, from this one on; 0: with one above */
-    uint8_t below;    /* the next of them is so much further in the list */
+    uint16_t x, y;     /* the first pixel, in the photo */
+    uint16_t boost[3]; /* Q12 light that a gain of 4 adds, at most 3 * 4095: mean of the pixels */
+    uint8_t count;     /* pixels, 1 to RF_HIGHLIGHT_RUN */
+    uint8_t size; /* pixels that the highlight is wide in its narrow direction, or so; 255: more */
+
+    /* For this lens: */
+    uint16_t edges;         /* a bit for each pixel that is the silhouette of something bright and
+                               sharper; gathering leaves those alone that are mostly that, splats
+                               of them fade */
+    int16_t blur;           /* mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ */
+    uint16_t weight;        /* how many of the pixels are no edges, 256 for each */
+    uint16_t subtracted[3]; /* Q12 light that was taken from what rays meet, mean by weight */
+    uint8_t rows;           /* that are splatted as one, from this one on; 0: with one above */
+    uint8_t below;          /* the next of them is so much further in the list */
 };
 
-/* Highlights are kept in parts of so many rows, each with room for one run in 76 pixels; further
- * ones, farther down, stay as they are. */
+/* The photo's rows are listed in parts, each with room for one run in 76 pixels; of more than fit,
+ * the first stay, row by row, and the others stay as they are in the photo. */
 enum {
-    RF_LAMP_SIDE = 24, /* cells that a lamp is high and wide at most */
-    RF_LAMP_RUN = 16,
-    RF_LAMP_STACK = 4, /* rows that are drawn as one at most */
-    RF_LAMP_ROWS = 64,
-    RF_LAMP_PARTS = (REFOCUS_MAX_SIDE + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS
+    RF_HIGHLIGHT_RUN = 16,
+    RF_HIGHLIGHT_STACK = 4, /* rows that are splatted as one at most */
+    RF_HIGHLIGHT_ROWS = 64, /* of a part */
+    RF_HIGHLIGHT_PARTS = (REFOCUS_MAX_SIDE + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS
 };
 
-/* Pixels that a cell is wide and high: lamps are as large as the photo makes them. Of photos up to
- * 1,439 pixels wide or high 1, up to 2,879 2, up to 5,759 4. A power of two, at most 64. */
-static inline int rf_lamp_cell(int width, int height)
-{
-    const int longer = width > height ? width : height;
-    int cell = 1;
-
-    while (cell < RF_LAMP_ROWS && longer >= 2 * 720 * cell)
-        cell *= 2;
-    return cell;
-}
-
-/* What blurs around one differ by at most to be drawn as one disc, Q7.8: half a pixel, and 1/32 of
- * large ones. */
-static inline int rf_blurs_alike(int blur)
-{
-    const int size = blur < 0 ? -blur : blur;
-
-    return size < 4096 ? 128 : size / 32;
-}
-
-struct rf_highlights {
-    struct rf_highlight *lamp;
+struct rf_highlight_list {
+    struct rf_highlight *run; /* row by row once all are found */
     uint32_t count, capacity;
 };
 
-static inline int rf_lamp_parts(int height)
-{
-    return (height + RF_LAMP_ROWS - 1) / RF_LAMP_ROWS;
-}
+struct rf_highlights {
+    struct rf_highlight_list part[RF_HIGHLIGHT_PARTS];
+};
 
-static inline uint32_t rf_lamp_capacity(int width)
-{
-    return (uint32_t)width * RF_LAMP_ROWS / 76 + 6;
-}
+/* Pixels at the edge of something bright that are rendered at another depth than the map gives. */
+struct rf_silhouette {
+    uint16_t x, y;      /* in the photo */
+    uint16_t disparity; /* of the bright pixels that they belong to */
+};
 
-/* Forget the highlights of the photo in use. */
-void rf_forget_highlights(struct refocus_renderer *r);
+/* Each of another pixel; of more than fit, the first stay, row by row. */
+struct rf_silhouettes {
+    struct rf_silhouette *pixel;
+    uint32_t count, capacity;
+};
 
-/* Add those of rows y0 to y1 - 1, in r->blend, to the lists of the parts of the photo in use, in
- * any order. All light of it is there, or in strip mode with the caller. Rows of different parts
- * may run at once. `scratch` is rf_scratch() of the worker. */
-void rf_find_highlights(struct refocus_renderer *r, int y0, int y1, uint16_t *scratch);
+/* Gives the lists of photos up to that size their memory. */
+void rf_take_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
+                        int max_height);
+void rf_take_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena, int max_width,
+                         int max_height);
 
-/* Add one. Of more than there is room for the first stay, by rows, in whichever order they come. */
-void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp);
+/* Lists the highlights of the photo anew. Reads the photo's light. What a cancelled run leaves is
+ * of no use. */
+void rf_detect_highlights(const struct rf_executor *exec, const struct rf_photo_source *photo,
+                          struct rf_highlights *highlights);
 
-/* Put what was found in the order of the rows. */
-void rf_sort_highlights(struct refocus_renderer *r);
+/* Whether any row of the window has some. */
+bool rf_has_highlights(const struct rf_highlights *highlights, const struct rf_viewport *view);
 
-/* The parts that the window has rows of: first to last. */
-int rf_first_lamp_part(const struct refocus_renderer *r);
-int rf_last_lamp_part(const struct refocus_renderer *r);
+/* The window and the planes of it that the steps of a lens setting work on. Each step says which of
+ * them it reads and writes. */
+struct rf_highlight_window {
+    const struct rf_viewport *view;
+    struct rf_light_q12 light; /* of the photo, not pre-filtered */
+    struct rf_blur_q8 blur;
+    struct rf_highlights *highlights; /* of the photo */
+    struct rf_bins *bins;             /* of each tile of the window */
+    int channels;                     /* of light: 3, or 1 of a photo of Y, U and V */
+};
 
-static inline int rf_lamp_parts_in(const struct refocus_renderer *r)
-{
-    return rf_last_lamp_part(r) - rf_first_lamp_part(r) + 1;
-}
+/* The places where the blur of a pixel is kept: its plane, the bins of its tile and the extremes of
+ * its cell. */
+struct rf_blur_patch {
+    const struct rf_viewport *view;
+    struct rf_blur_q8 blur;
+    struct rf_bins *bins;
+    struct rf_bin_scale scale;
+    const struct rf_cells *cells;
+};
 
-/* Whether they hold any. */
-bool rf_has_highlights(const struct refocus_renderer *r);
+/*
+ * Silhouettes. The pixels at the edge of an object are mixtures of it and of what is behind it.
+ * Where the object is bright enough to be clipped, they are nearly as bright as it is, but half of
+ * them have the depth of what is behind: blurred, they would draw a halo around the sharp object.
+ * For a pixel p beside a clipped one N that is nearer, with F the mean light of the pixels of p's
+ * depth two away,
+ *
+ *     alpha = (p - F) . (N - F) / |N - F|^2
+ *
+ * tells how much of N it holds. A highlight may be many times as bright as white: a twentieth of
+ * its light can be most of p's. So p is rendered at the depth of N, of several the nearest, from an
+ * alpha of 0.05 on where p - F is two fifths of p and more, along N - F.
+ *
+ * The other way round, a wire or a hair before a highlight has pixels that the map gives to it, and
+ * that are as bright as the highlight. Where a clipped pixel has at least half as many dark pixels
+ * of its depth as clipped ones around it, 13 x 13, and three clipped ones farther away that are
+ * nobody's silhouette, it is rendered at their depth, the nearest of them.
+ */
+struct rf_silhouette_window {
+    const struct rf_viewport *view;
+    struct rf_light_q12 light; /* linear */
+    struct rf_disparity_q16 disparity;
+};
 
-/* In the window, for the lens setting of r->blur.at and r->bins: tell edges from
- * lamps, and note in its tile how far a lamp is blurred; where lamps are drawn, how far its disc
- * reaches. False: there are none. */
-bool rf_mark_highlights(struct refocus_renderer *r, bool drawn);
+/* Adds to the list those of the bright pixels in a part of the window. Reads pixels up to nine away
+ * from the part. */
+void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhouette_window *window,
+                         struct rf_rect part, struct rf_silhouettes *silhouettes);
 
-/* How much of its light a lamp's pixel of the window has, 0 to 256: less where it is but the edge,
- * by its depth, of something bright and sharper. */
-int rf_lamp_shine(const struct refocus_renderer *r, int x, int y);
+/* Gives those in the window the blur of their depth. */
+void rf_patch_silhouettes(const struct rf_executor *exec, const struct rf_silhouettes *silhouettes,
+                          const struct rf_focus_plan *plan, const struct rf_blur_patch *patch);
 
-/* Where lamps are not drawn (draw.h): widen those that rays `gap` times their blur apart would
- * miss. */
-void rf_widen_highlights(struct refocus_renderer *r, struct rf_bin_scale scale, double gap);
+/* Marks the highlights of the window for its blur. Reads light and blur; writes the marks and, in
+ * bins, how far a highlight reaches: by its blur or, if it is splatted, by its disc. */
+void rf_mark_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                        bool splat);
 
-/* And: lamps and what was widened of them count as foreground (tiles/ranges.h): what rays see past
- * them is not to shine like them. */
-void rf_put_lamps_in_front(struct refocus_renderer *r, double gap);
+/*
+ * Splat. What is out of focus by s spreads over the pixels p whose rays meet it, p + u s(q) = q
+ * (Yang et al. 2016, eq. 4): a disc of radius |s| around q. Rays are too few to show a highlight of
+ * a pixel or two as an even disc with a crisp edge, and every ray of a full mask, rounded to whole
+ * pixels, shows it as a mesh. So what clipping cost is kept out of the planes that rays look into,
+ * and what highlights have beyond what is beside them is subtracted there, where their discs are
+ * larger than what so many rays show evenly (subtract.c); each tile adds both to its means:
+ *
+ *     mean(p) += (boost + subtracted) (p's part of the run's visible pixels) / (pi s^2)
+ *
+ * Of the pixels [a, b] of a run, a row of the disc shows those from max(a, x + left) to min(b, x +
+ * right), its chord there. What is nearer hides half of it each where the ways from p to a place
+ * left and right of its middle, one above and one below it, others in each row, meet one of the
+ * tile's nearer slabs, by the same test as a ray does: one way alone shows thin structures in
+ * between as dots, and edges as steps. Other apertures have their own area in place of pi. Rows of
+ * large discs are drawn as one, their chords' mean, where nothing hides them.
+ *
+ * Apertures are evenly open, and their rows are one chord or two: discs, irises, hearts and stars.
+ * The first chords of all rows are drawn as one aperture, and so are the second ones.
+ */
+struct rf_splat {
+    const struct rf_executor *exec;
+    struct rf_highlight_window window;
+    struct rf_range_plane range;
+    const struct refocus_aperture *aperture;
+    float gain;         /* 1 to 16 */
+    int largest_radius; /* of the frame's plain focus, Q7.8: struct rf_focus */
+};
 
-/* Up to that gain, sums of 16 bits hold the light of 16 rays over 4. */
+/* Whether discs through that aperture can be splatted with these parameters, and there is a gain.
+ * Rays have to weigh all light alike, too: weights of eq. 5 differ from pixel to pixel. */
+bool rf_can_splat(const struct refocus_render_params *params,
+                  const struct refocus_aperture *aperture);
+
+/* Takes what marked highlights have beyond what is beside them out of the light that the pre-filter
+ * starts from. Reads light and blur; writes light less that to `out`, in tiles whose bins it marks
+ * as subtracted, and how much it was to the highlights. */
+void rf_subtract_highlights(const struct rf_executor *exec,
+                            const struct rf_highlight_window *window, struct rf_light_q12 out);
+
+/* Adds the discs that reach a tile to its means, Q14 and 65535 at most, one for each channel. */
+void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan *plan, int tx,
+                         int ty, uint16_t *const mean[3]);
+
+/* Widens marked highlights that rays `gap` times their blur apart would miss: pixels around them
+ * take their blur. Reads and writes blur; notes in bins where few rays meet a highlight. */
+void rf_widen_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                         const struct rf_blur_patch *patch, double gap);
+
+/* Counts highlights, and what was widened of them, as foreground (tiles/ranges.h): the background
+ * that rays see past them is not to shine like them. Reads blur. */
+void rf_raise_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                         const struct rf_foreground_cells *foreground, double gap);
+
+/* Up to RF_PLAIN_GAIN, sums of 16 bits hold the light of 16 rays over 4. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
 
-/* Where lamps are not drawn: add what those in the window lost, gain 1 to 16, to r->smooth.channel,
- * up to `most` there; spread over half a gap of the rays, so that no ray is alone in meeting it.
- * The pre-filter would spread it farther, and discs would have soft rims; what is dark beside a
- * lamp in the background layer stays dark. */
-void rf_add_highlights(struct refocus_renderer *r, float gain, double gap, int most);
+/* Adds what clipping cost to `smooth`, the pre-filtered light, up to `most` there, at a gain from 1
+ * to 16; spread over half a gap of the rays, so that no ray is alone in meeting it. The pre-filter
+ * would spread it farther, and discs would have soft edges; what is dark beside a highlight in the
+ * hidden background stays dark. Reads blur; notes the brightest light in bins. */
+void rf_boost_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                         struct rf_light_q12 smooth, float gain, double gap, int most);
 
 #endif

@@ -1,25 +1,64 @@
-/* list.c: the lists that highlights are kept in. */
+/* list.c: the lists that highlights are kept in, and where each row of the photo has its own. */
 #include "highlights/highlights.h"
-#include "image/viewport.h"
-#include "renderer/renderer.h"
+
+#include "highlights/detect.h"
+#include "highlights/in_window.h"
 #include "support/places.h"
 
-void rf_forget_highlights(struct refocus_renderer *r)
+static uint32_t capacity_of(int max_width)
 {
-    for (int part = 0; part < RF_LAMP_PARTS; part++)
-        r->photo.highlights[part].count = 0;
+    return (uint32_t)max_width * RF_HIGHLIGHT_ROWS / 76 + 6;
 }
 
-void rf_list_highlight(struct rf_highlights *found, struct rf_highlight lamp)
+void rf_take_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
+                        int max_height)
 {
-    rf_add_place(found->lamp, &found->count, found->capacity, &lamp, sizeof lamp);
-}
+    const int parts = (max_height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
 
-void rf_sort_highlights(struct refocus_renderer *r)
-{
-    for (int part = 0; part < RF_LAMP_PARTS && !rf_cancelled(&r->exec); part++) {
-        struct rf_highlights *found = &r->photo.highlights[part];
+    for (int part = 0; part < parts; part++) {
+        struct rf_highlight_list *list = &highlights->part[part];
 
-        rf_sort_places(found->lamp, found->count, sizeof *found->lamp);
+        list->capacity = capacity_of(max_width);
+        list->run = rf_arena_take(arena, list->capacity, sizeof *list->run);
     }
+}
+
+void rf_clear_highlights(struct rf_highlights *highlights)
+{
+    for (int part = 0; part < RF_HIGHLIGHT_PARTS; part++)
+        highlights->part[part].count = 0;
+}
+
+void rf_list_highlight(struct rf_highlights *highlights, const struct rf_highlight *run)
+{
+    struct rf_highlight_list *list = &highlights->part[run->y / RF_HIGHLIGHT_ROWS];
+
+    rf_add_place(list->run, &list->count, list->capacity, run, sizeof *run);
+}
+
+void rf_sort_highlights(const struct rf_executor *exec, struct rf_highlights *highlights)
+{
+    for (int part = 0; part < RF_HIGHLIGHT_PARTS && !rf_cancelled(exec); part++) {
+        struct rf_highlight_list *list = &highlights->part[part];
+
+        rf_sort_places(list->run, list->count, sizeof *list->run);
+    }
+}
+
+struct rf_highlight_parts rf_parts_in(const struct rf_viewport *view)
+{
+    const int first = view->y0 / RF_HIGHLIGHT_ROWS;
+    const int last = (view->y0 + view->height - 1) / RF_HIGHLIGHT_ROWS;
+
+    return (struct rf_highlight_parts){first, last - first + 1};
+}
+
+bool rf_has_highlights(const struct rf_highlights *highlights, const struct rf_viewport *view)
+{
+    const struct rf_highlight_parts parts = rf_parts_in(view);
+
+    for (int i = 0; i < parts.count; i++)
+        if (highlights->part[parts.first + i].count)
+            return true;
+    return false;
 }

@@ -48,7 +48,7 @@
 #include "kernels/light.h"
 #include "kernels/ranges.h"
 #include "kernels/rays.h"
-#include "kernels/search.h"
+#include "kernels/ray_search.h"
 #include "kernels/series.h"
 #include "kernels/thin.h"
 #include "kernels/upsample.h"

@@ -93,7 +93,7 @@ static void load(struct refocus_renderer *r, struct rf_rect block, int margin)
     rf_load_disparity(r, &map, r->in_place.code_step, window.x0 - mapped.x0, window.y0 - mapped.y0);
 }
 
-void rf_find_rims_in_blocks(struct refocus_renderer *r)
+void rf_find_silhouettes_in_blocks(struct refocus_renderer *r)
 {
     const struct rf_in_place *in_place = &r->in_place;
 
@@ -102,7 +102,9 @@ void rf_find_rims_in_blocks(struct refocus_renderer *r)
 
         load(r, block, RF_TILE);
         if (!rf_cancelled(&r->exec))
-            rf_find_rims(r, in_window(r, block));
+            rf_find_silhouettes(&r->exec,
+                                &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
+                                in_window(r, block), &r->photo.silhouettes);
     }
 }
 
@@ -118,7 +120,7 @@ static void make_window(struct rf_frame *f, struct rf_rect block, int margin, en
     rf_pass_blur(f, need == RF_NEED_LAYERS);
     if (need == RF_NEED_BLUR || rf_cancelled(&r->exec))
         return;
-    rf_patch_rims(r, &f->plan, f->scale);
+    rf_pass_silhouettes(f);
     rf_pass_smooth(f);
 }
 
@@ -268,7 +270,7 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     r->blend = f->params->blend;
     rf_set_weights(f);
     if (need == RF_NEED_LAYERS) {
-        rf_pass_lamps(f);
+        rf_pass_highlights(f);
         if (!rf_cancelled(&r->exec))
             mark_once(f);
     }
@@ -285,7 +287,7 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         if (need == RF_NEED_LAYERS && !rf_cancelled(&r->exec))
             make_behind(f);
         if (need == RF_NEED_LAYERS && !rf_cancelled(&r->exec))
-            rf_pass_bright(f);
+            rf_pass_boost(f);
         if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(&r->exec))
             rf_pass_weights(f);
         image = image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,

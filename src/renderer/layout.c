@@ -44,13 +44,8 @@ static uint64_t group_size(const struct rf_photo *photo, int height)
 /* What a photo of at most this size has beside its planes. */
 static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
 {
-    photo->capacity = rf_rim_capacity(width, height);
-    photo->rim = rf_arena_take(arena, photo->capacity, sizeof *photo->rim);
-    for (int i = 0; i < rf_lamp_parts(height); i++) {
-        photo->highlights[i].capacity = rf_lamp_capacity(width);
-        photo->highlights[i].lamp =
-            rf_arena_take(arena, photo->highlights[i].capacity, sizeof(struct rf_highlight));
-    }
+    rf_take_silhouettes(&photo->silhouettes, arena, width, height);
+    rf_take_highlights(&photo->highlights, arena, width, height);
     photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
@@ -242,7 +237,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
                       sizeof *r->range.at);
     if (r->range.at)
         r->range.at += rf_range_border(pad) * (r->range.stride + 1);
-    r->star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->star);
+    r->stars.star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->stars.star);
     r->grain = rf_arena_take(arena, 1, sizeof *r->grain);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
     r->ray_sets.memory = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,

@@ -18,7 +18,7 @@ void rf_reload_yuv_rows(struct refocus_renderer *r, int y0, int y1, int worker);
 void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map, int step,
                        int left, int above);
 
-/* Strip mode: finds the depth edges of the photo, block by block. */
-void rf_find_rims_in_blocks(struct refocus_renderer *r);
+/* Strip mode: finds the silhouettes of the photo, block by block. */
+void rf_find_silhouettes_in_blocks(struct refocus_renderer *r);
 
 #endif

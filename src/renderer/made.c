@@ -44,8 +44,8 @@ bool rf_same_light(const struct rf_frame *f)
 {
     const struct rf_made *m = &f->r->made;
 
-    return m->smooth && m->blend == f->params->blend && m->gain == rf_lamp_gain(f) &&
-           m->drawn == f->draws && (!m->lamps || m->rays == f->params->rays) &&
+    return m->smooth && m->blend == f->params->blend && m->gain == rf_gathered_gain(f) &&
+           m->splatted == f->splats && (!m->gathered || m->rays == f->params->rays) &&
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
@@ -54,9 +54,9 @@ void rf_note_light(struct rf_frame *f)
     struct rf_made *m = &f->r->made;
 
     m->blend = f->params->blend;
-    m->gain = rf_lamp_gain(f);
-    m->drawn = f->draws;
-    m->lamps = m->gain > 1;
+    m->gain = rf_gathered_gain(f);
+    m->splatted = f->splats;
+    m->gathered = m->gain > 1;
     m->bright = f->bright;
     m->rays = f->params->rays;
     memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
@@ -94,10 +94,10 @@ static bool is_there(const struct rf_frame *f, const struct parts *parts, bool l
     return rf_same_lens(f) && contains(m->window, parts->bins) && has_same_thin(f) &&
            (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
                          (!m->weighed || rf_is_sweep(f))
-                   : !m->rims);
+                   : !m->silhouettes);
 }
 
-/* Blur, bins and rims of the window. */
+/* Blur, bins and silhouettes of the window. */
 static void make_blur(struct rf_frame *f, bool layers)
 {
     struct refocus_renderer *r = f->r;
@@ -106,8 +106,9 @@ static void make_blur(struct rf_frame *f, bool layers)
                                    r->view.y0 + r->view.height};
 
     if (!rf_same_lens(f) || !contains(m->window, window) || !contains(window, m->window) ||
-        !has_same_thin(f) || (m->rims && !layers) ||
-        (layers && !rf_same_light(f) && (m->lamps || m->drawn || f->params->highlight_gain > 1))) {
+        !has_same_thin(f) || (m->silhouettes && !layers) ||
+        (layers && !rf_same_light(f) &&
+         (m->gathered || m->splatted || f->params->highlight_gain > 1))) {
         *m = (struct rf_made){.window = window,
                               .plan = f->plan,
                               .shift = f->scale.shift,
@@ -118,14 +119,14 @@ static void make_blur(struct rf_frame *f, bool layers)
             rf_pass_thin(f);
         m->blur = !rf_cancelled(&r->exec);
     }
-    if (m->blur && layers && !m->rims) {
-        m->blur = false; /* until all rims are in */
-        rf_patch_rims(r, &f->plan, f->scale);
-        m->blur = m->rims = !rf_cancelled(&r->exec);
+    if (m->blur && layers && !m->silhouettes) {
+        m->blur = false; /* until all are in */
+        rf_pass_silhouettes(f);
+        m->blur = m->silhouettes = !rf_cancelled(&r->exec);
     }
 }
 
-/* Lamps change the blur: they are marked in one that is new, make_blur(). */
+/* Highlights change the blur: they are marked in one that is new, make_blur(). */
 static void make_smooth(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
@@ -136,7 +137,7 @@ static void make_smooth(struct rf_frame *f)
         return;
     }
     m->smooth = m->behind = false;
-    m->lamps = rf_lamp_gain(f) > 1;
+    m->gathered = rf_gathered_gain(f) > 1;
     if (m->ranges) {
         f->bright = RF_WHITE;
         rf_pass_prefilter(f);
@@ -310,7 +311,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     r->blend = f->params->blend;
     rf_set_weights(f);
     if (layers)
-        rf_pass_lamps(f);
+        rf_pass_highlights(f);
     if (!rf_cancelled(&r->exec))
         find_thin(f);
     if (need == RF_NEED_LIGHT || rf_cancelled(&r->exec))
@@ -325,13 +326,13 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         f->bright = layers ? r->made.bright : RF_WHITE;
     } else {
         /* the background takes smooth light without it */
-        if (r->made.spread || r->made.premultiplied)
+        if (r->made.boosted || r->made.premultiplied)
             r->made = (struct rf_made){0};
         make_in_window(f, &parts, layers);
     }
-    if (layers && !rf_cancelled(&r->exec) && !r->made.spread && f->bright != RF_WHITE) {
-        rf_pass_bright(f);
-        r->made.spread = true;
+    if (layers && !rf_cancelled(&r->exec) && !r->made.boosted && f->bright != RF_WHITE) {
+        rf_pass_boost(f);
+        r->made.boosted = true;
     }
     if (layers && f->weighted && rf_is_sweep(f))
         make_weights(f);

@@ -7,7 +7,7 @@
 
 #include "background/inpaint.h"
 #include "background/mark.h"
-#include "highlights/draw.h"
+#include "highlights/highlights.h"
 #include "passes/coc.h"
 #include "passes/prefilter.h"
 #include "passes/weights.h"
@@ -19,7 +19,7 @@
 #include "tiles/ranges.h"
 
 /* Whether sums of premultiplied light stay below 2^31: 8 times white in Q13, and twice the rays
- * for lamps. */
+ * for highlights. */
 static bool may_premultiply(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
@@ -54,40 +54,30 @@ void rf_set_weights(struct rf_frame *f)
     f->premultiplied = r->keep_codes && may_premultiply(f);
 }
 
-/* Rows of an item: as many as lamps may be high, and some, or many times so few, as each item looks
- * at as many again around them. */
-static int rows_of_item(const struct refocus_renderer *r)
-{
-    enum { EACH = 3 }; /* items for each thread */
-    const struct rf_photo *photo = &r->photo;
-    const int rows = RF_LAMP_ROWS * rf_lamp_cell(photo->width, photo->height);
-    const int items = r->pool.threads > 1 ? EACH * r->pool.threads : 1;
-
-    return rows * ((photo->height + rows * items - 1) / (rows * items));
-}
-
-static void find_item(void *context, int item, int worker)
-{
-    struct refocus_renderer *r = context;
-    const int height = r->photo.height, rows = rows_of_item(r);
-    const int y0 = item * rows, y1 = y0 + rows;
-
-    rf_find_highlights(r, y0, y1 < height ? y1 : height, rf_scratch(&r->exec, worker));
-}
-
-void rf_pass_lamps(struct rf_frame *f)
+void rf_pass_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = f->r;
     struct rf_photo *photo = &r->photo;
-    const int rows = rows_of_item(r);
+    const struct rf_photo_source source = rf_photo_source(r);
 
-    if ((f->params->highlight_gain <= 1 && !f->stars) || photo->highlights_blend == r->blend)
+    if ((f->params->highlight_gain <= 1 && !f->look.has_stars) ||
+        photo->highlights_blend == r->blend)
         return;
     photo->highlights_blend = RF_NO_BLEND;
-    rf_forget_highlights(r);
-    rf_pool_run(&r->pool, find_item, r, (photo->height + rows - 1) / rows);
-    rf_sort_highlights(r);
+    rf_detect_highlights(&r->exec, &source, &photo->highlights);
     photo->highlights_blend = rf_cancelled(&r->exec) ? RF_NO_BLEND : r->blend;
+}
+
+static struct rf_blur_patch patch_of(const struct rf_frame *f)
+{
+    return (struct rf_blur_patch){f->view, f->blur, f->r->bins, f->scale, &f->r->cells};
+}
+
+void rf_pass_silhouettes(struct rf_frame *f)
+{
+    const struct rf_blur_patch patch = patch_of(f);
+
+    rf_patch_silhouettes(f->exec, &f->r->photo.silhouettes, &f->plan, &patch);
 }
 
 static void blur_band(void *context, int band, int worker)
@@ -155,34 +145,39 @@ static double ray_gap(const struct refocus_render_params *p)
     return sqrt(3.14159265358979 / (p->rays == REFOCUS_RAYS_FULL ? INT_MAX : p->rays));
 }
 
-float rf_lamp_gain(const struct rf_frame *f)
+float rf_gathered_gain(const struct rf_frame *f)
 {
-    const float gain = f->draws ? 1 : f->params->highlight_gain;
+    const float gain = f->splats ? 1 : f->params->highlight_gain;
 
     return f->r->yuv.on && f->weighted ? fminf(gain, RF_PLAIN_GAIN) : gain;
 }
 
-static void mark_lamps(struct rf_frame *f)
+static void mark_highlights(struct rf_frame *f)
 {
-    const float gain = rf_lamp_gain(f);
+    const struct rf_highlight_window *window = &f->splat.window;
+    const struct rf_blur_patch patch = patch_of(f);
+    const float gain = rf_gathered_gain(f);
 
     f->bright = RF_WHITE;
-    if (f->params->highlight_gain <= 1 || !rf_mark_highlights(f->r, f->draws) || f->draws)
+    if (f->params->highlight_gain <= 1 || !rf_has_highlights(window->highlights, window->view))
         return;
-    rf_widen_highlights(f->r, f->scale, ray_gap(f->params));
+    rf_mark_highlights(f->exec, window, f->splats);
+    if (f->splats)
+        return;
+    rf_widen_highlights(f->exec, window, &patch, ray_gap(f->params));
     f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT
                 : gain <= 2 * RF_PLAIN_GAIN ? RF_BRIGHTER
                                             : RF_BRIGHTEST;
 }
 
-void rf_pass_bright(struct rf_frame *f)
+void rf_pass_boost(struct rf_frame *f)
 {
     static const int times[] = {
         [RF_WHITE] = 1, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 8, [RF_BRIGHTEST] = 16};
 
     if (f->bright != RF_WHITE)
-        rf_add_highlights(f->r, rf_lamp_gain(f), ray_gap(f->params),
-                          times[f->bright] * RF_LIGHT_MAX);
+        rf_boost_highlights(f->exec, &f->splat.window, f->smooth, rf_gathered_gain(f),
+                            ray_gap(f->params), times[f->bright] * RF_LIGHT_MAX);
 }
 
 /* The light is the photo's again afterwards, whatever happens; of the next as well. */
@@ -190,8 +185,8 @@ void rf_pass_prefilter(struct rf_frame *f)
 {
     if (rf_thin_is_separated(&f->thin))
         rf_thin_swap_light(&f->thin);
-    if (f->draws)
-        rf_take_lamps_out(f->r);
+    if (f->splats)
+        rf_subtract_highlights(f->exec, &f->splat.window, f->background.light);
     prefilter(f);
     if (rf_thin_is_separated(&f->thin))
         rf_thin_swap_light_back(&f->thin);
@@ -262,7 +257,7 @@ void rf_pass_thin(struct rf_frame *f)
 
 void rf_pass_smooth(struct rf_frame *f)
 {
-    mark_lamps(f);
+    mark_highlights(f);
     rf_pool_run(&f->r->pool, range_band, f, rf_bands(&f->r->view));
     if (f->r->yuv.on)
         rf_pool_run(&f->r->pool, chroma_blur_band, f, rf_bands(&f->r->view));
@@ -321,7 +316,7 @@ void rf_pass_behind(struct rf_frame *f, int levels)
         rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels);
     rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
     if (f->bright != RF_WHITE)
-        rf_put_lamps_in_front(r, ray_gap(f->params));
+        rf_raise_highlights(f->exec, &f->splat.window, &r->foreground, ray_gap(f->params));
     rf_pool_run(&r->pool, bare_band, r, rf_bands(&r->view));
 }
 

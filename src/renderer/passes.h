@@ -3,7 +3,8 @@
  *
  *     light of the blend  <-  photo, blend
  *     blur, bins          <-  disparity, K, df
- *     rims, lamps in them <-  photo
+ *     silhouettes and
+ *     highlights in them  <-  photo
  *     smooth              <-  light, blur, spacing of the rays, gain of highlights
  *     background layer    <-  smooth, blur
  *
@@ -30,16 +31,16 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
 
 /* The passes themselves, over the window. */
 void rf_set_weights(struct rf_frame *f);
-float rf_lamp_gain(
-    const struct rf_frame *f); /* once there are: none if they are drawn; of luma what fits */
-void rf_pass_lamps(struct rf_frame *f); /* finds them, in all of the photo in use, once */
-void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after rims */
+float rf_gathered_gain(const struct rf_frame *f);   /* 1 if they are splatted; of luma what fits */
+void rf_pass_highlights(struct rf_frame *f);        /* detects them, in all of the photo, once */
+void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come after silhouettes */
+void rf_pass_silhouettes(struct rf_frame *f);       /* after rf_pass_blur() */
 void rf_pass_thin(struct rf_frame *f);              /* after rf_pass_blur() */
 void rf_pass_smooth(struct rf_frame *f);
 void rf_pass_prefilter(struct rf_frame *f);        /* of rf_pass_smooth() the smooth light alone */
 void rf_pass_mark(struct rf_frame *f, int levels); /* and up the pyramid, but of Y, U and V */
 void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
-void rf_pass_bright(struct rf_frame *f); /* the light that lamps lost, after the background */
+void rf_pass_boost(struct rf_frame *f);              /* gathered highlights, after the background */
 void rf_pass_weights(struct rf_frame *f);
 
 /* Whether what r->made tells of is for this lens, and its light for this frame's; note

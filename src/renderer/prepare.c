@@ -60,7 +60,9 @@ static void take_in(struct refocus_renderer *r, const struct refocus_image *phot
     else
         upsample(r, &guide, disparity);
     if (!rf_cancelled(&r->exec))
-        rf_find_rims(r, rf_whole(r));
+        rf_find_silhouettes(&r->exec,
+                            &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
+                            rf_whole(r), &r->photo.silhouettes);
 }
 
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
@@ -83,15 +85,15 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     own->width = photo->width;
     own->height = photo->height;
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
-    own->rims = 0;
-    r->blend = REFOCUS_BLEND_LINEAR; /* that rims are found in, whatever came before */
+    own->silhouettes.count = 0;
+    r->blend = REFOCUS_BLEND_LINEAR; /* that silhouettes are found in, whatever came before */
     rf_yuv_begin(&r->yuv, photo, r->blend);
     rf_run_begin(r);
     if (r->in_place.on) {
         r->in_place.photo = *photo;
         r->in_place.map = *disparity;
         r->in_place.code_step = rf_code_step(disparity);
-        rf_find_rims_in_blocks(r);
+        rf_find_silhouettes_in_blocks(r);
     } else {
         rf_use(r, rf_whole(r));
         memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(&r->view));

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "highlights/draw.h"
+#include "highlights/highlights.h"
 #include "gather/tile_rows.h"
 #include "image/format.h"
 #include "image/viewport.h"
@@ -32,6 +32,13 @@ static bool region_of(const struct refocus_renderer *r, const struct refocus_ren
     return true;
 }
 
+static void lay_look(const struct rf_frame *f, struct rf_rect rect)
+{
+    const struct rf_canvas canvas = {f->view, f->blur, f->out, f->region};
+
+    rf_look_over(&f->look, &canvas, rect);
+}
+
 static void tile_item(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
@@ -52,23 +59,23 @@ static void tile_item(void *context, int item, int worker)
     else
         rf_copy_tile(f, rect); /* a pinhole */
     if (!rf_cancelled(&f->r->exec))
-        rf_finish_rect(f, rect);
+        lay_look(f, rect);
 }
 
-static void finish_item(void *context, int item, int worker)
+static void look_item(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
     const int tx = f->first_tx + item % f->count_tx, ty = f->first_ty + item / f->count_tx;
 
     (void)worker;
-    rf_finish_rect(f, (struct rf_rect){rf_larger(tx * RF_TILE, f->region.x0),
-                                       rf_larger(ty * RF_TILE, f->region.y0),
-                                       rf_smaller((tx + 1) * RF_TILE, f->region.x1),
-                                       rf_smaller((ty + 1) * RF_TILE, f->region.y1)});
+    lay_look(f, (struct rf_rect){rf_larger(tx * RF_TILE, f->region.x0),
+                                 rf_larger(ty * RF_TILE, f->region.y0),
+                                 rf_smaller((tx + 1) * RF_TILE, f->region.x1),
+                                 rf_smaller((ty + 1) * RF_TILE, f->region.y1)});
 }
 
 /* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. Stills do not move, and
- * lamps keep more of their light where each step is there at once. */
+ * highlights keep more of their light where each step is there at once. */
 static void set_prefilter(struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
@@ -108,10 +115,20 @@ static void set_tiles(struct rf_frame *f)
     f->count_ty = (f->region.y1 - 1) / RF_TILE - f->first_ty + 1;
 }
 
+/* Once, with the photo's light in the blend in use and its highlights found. */
+static void begin_look(struct rf_frame *f)
+{
+    if (f->look_ready)
+        return;
+    f->look.photo = rf_photo_source(f->r);
+    rf_look_begin(&f->look);
+    f->look_ready = true;
+}
+
 static void run_tiles(struct rf_frame *f)
 {
     set_tiles(f);
-    rf_finish_begin(f);
+    begin_look(f);
     rf_pool_run(&f->r->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
@@ -133,13 +150,13 @@ static void run(struct rf_frame *f, struct rf_rect region)
     const enum rf_need need = pinhole ? RF_NEED_LIGHT : layers ? RF_NEED_LAYERS : RF_NEED_BLUR;
 
     rf_set_planes(f);
-    r->last_rims = layers;
+    r->last_silhouettes = layers;
     if (!pinhole)
         rf_ray_sets_make(&r->ray_sets,
                          &(struct rf_ray_request){
                              .aperture = f->aperture,
                              .rays = f->params->rays,
-                             .denser = f->params->highlight_gain > 1 && !f->draws,
+                             .denser = f->params->highlight_gain > 1 && !f->splats,
                              .chroma = r->yuv.on,
                              .max_blur_radius = f->params->max_blur_radius,
                          },
@@ -165,11 +182,11 @@ static void run(struct rf_frame *f, struct rf_rect region)
         return;
     }
     method->frame(f);
-    if (rf_cancelled(&r->exec) || !f->grain)
+    if (rf_cancelled(&r->exec) || !f->look.has_grain)
         return;
     set_tiles(f);
-    rf_finish_begin(f);
-    rf_pool_run(&r->pool, finish_item, f, f->count_tx * f->count_ty);
+    begin_look(f);
+    rf_pool_run(&r->pool, look_item, f, f->count_tx * f->count_ty);
 }
 
 int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *params,
@@ -194,15 +211,24 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         return status;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.fine = rf_aperture_is_fine(f.aperture);
-    f.draws = rf_draws_lamps(&f);
+    f.splats = rf_is_sweep(&f) && !rf_weighs(params) && rf_can_splat(params, f.aperture);
     f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
     rf_focus_plan_make(&f.plan, params, f.focus, r->photo.width, r->photo.height);
     if (f.plan.surface || f.plan.sharp || f.plan.picture)
         f.plan.number = ++r->renders;
     f.scale = rf_bin_scale_of(largest_blur(&f));
-    f.stars = params->star_spikes > 0 && params->star_strength > 0 && params->star_length > 0 &&
-              params->method == REFOCUS_METHOD_SWEEP && params->max_blur_radius > 0;
-    f.grain = params->grain > 0 && params->max_blur_radius > 0;
+    f.look = (struct rf_look){
+        .has_stars = params->star_spikes > 0 && params->star_strength > 0 &&
+                     params->star_length > 0 && params->method == REFOCUS_METHOD_SWEEP &&
+                     params->max_blur_radius > 0,
+        .has_grain = params->grain > 0 && params->max_blur_radius > 0,
+        .exec = &r->exec,
+        .params = params,
+        .plan = &f.plan,
+        .highlights = &r->photo.highlights,
+        .stars = &r->stars,
+        .grain = r->grain,
+    };
     f.method = rf_method_of(r->papers, params->method);
     if (f.method->exact) {
         f.method->exact(&exact, params->blend, params->sigma);

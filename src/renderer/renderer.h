@@ -14,13 +14,12 @@
 #include "background/mark.h"
 #include "background/pyramid.h"
 #include "colour/transfer.h"
-#include "finish/finish.h"
 #include "focus/focus.h"
 #include "gather/work_memory.h"
 #include "highlights/highlights.h"
-#include "highlights/rims.h"
 #include "image/chroma.h"
 #include "image/planes.h"
+#include "look/look.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
 #include "kernels/kernels.h"
@@ -45,29 +44,27 @@ struct rf_photo {
     uint16_t *light[3], *disparity; /* pixel (0, 0); not in strip mode */
     uint8_t *alpha;                 /* unpadded, width a row */
     uint8_t *band_blend;            /* enum refocus_blend that the light of a band of rows is in */
-    uint32_t capacity;              /* of rims */
-    struct rf_rim *rim;
-    uint32_t rims;
-    struct rf_highlights highlights[RF_LAMP_PARTS];
+    struct rf_silhouettes silhouettes;
+    struct rf_highlights highlights;
     uint32_t highlights_blend; /* that they were found in, or RF_NO_BLEND */
     struct rf_thin_list thin;
 };
 
 /* What the planes of the last lens setting hold, so that it need not be made again. */
 struct rf_made {
-    bool blur;   /* front.blur and bins, */
-    bool rims;   /* with the rims in them, */
-    bool lamps;  /* and highlights marked and widened in them, */
-    bool drawn;  /* or marked to be drawn */
-    bool ranges; /* its ranges; before, its cells are where the background's blur will be */
-    bool smooth; /* the pre-filtered light */
-    enum rf_bright bright; /* with light given back to lamps, */
-    bool spread;           /* the light of lamps is in it */
+    bool blur;        /* front.blur and bins, */
+    bool silhouettes; /* with the silhouettes patched in them, */
+    bool gathered;    /* and highlights marked and widened in them, */
+    bool splatted;    /* or marked to be splatted */
+    bool ranges;      /* its ranges; before, its cells are where the background's blur will be */
+    bool smooth;      /* the pre-filtered light */
+    enum rf_bright bright; /* which boosted highlights may exceed white in, */
+    bool boosted;          /* and do */
     bool behind;           /* the background layer, */
     bool weighed;          /* but with weights of `sigma` in place of its blur, */
     bool premultiplied;    /* and the light of both layers times them */
     float sigma;
-    int rays;              /* that lamps were widened for */
+    int rays;              /* that highlights were widened for */
     struct rf_rect window; /* of that photo, to which all of it is limited */
     struct rf_rect exact;  /* where it is as if made for the whole photo */
     struct rf_focus_plan plan;
@@ -120,7 +117,7 @@ struct refocus_renderer {
     struct rf_made made;
     struct rf_in_place in_place;
     struct rf_focus_plan last_plan; /* of the last render, */
-    bool last_rims;                 /* with the rims, */
+    bool last_silhouettes;          /* with the silhouettes, */
     bool blurred;                   /* if there was one */
 
     /*
@@ -157,8 +154,7 @@ struct refocus_renderer {
 
     bool has_thin; /* there is memory for what is thin: */
     struct rf_coverage coverage;
-    struct rf_star *star; /* of this lens setting */
-    int stars;
+    struct rf_stars stars;  /* of this lens setting */
     struct rf_grain *grain; /* of this lens setting */
     uint32_t renders;       /* so far, that had maps of their own */
 
@@ -175,6 +171,9 @@ struct refocus_renderer {
 void rf_use(struct refocus_renderer *r, struct rf_rect window);
 struct rf_frame;
 void rf_set_planes(struct rf_frame *f);
+
+/* All of the photo, in the blend in use. */
+struct rf_photo_source rf_photo_source(const struct refocus_renderer *r);
 static inline struct rf_rect rf_whole(const struct refocus_renderer *r)
 {
     return (struct rf_rect){0, 0, r->photo.width, r->photo.height};

@@ -36,7 +36,7 @@ enum { RUN = 256 };
 static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
     const struct rf_photo *photo = &r->photo;
-    const uint32_t rims = r->last_rims ? photo->rims : 0;
+    const uint32_t silhouettes = r->last_silhouettes ? photo->silhouettes.count : 0;
     int16_t *blur = (int16_t *)out;
     uint16_t row[RUN];
 
@@ -48,11 +48,10 @@ static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t p
             rf_focus_row(&r->last_plan, blur + y * pitch + x, row, x, y, n);
         }
     }
-    for (uint32_t i = 0; i < rims; i++) {
-        const struct rf_rim *rim = &photo->rim[i];
+    for (uint32_t i = 0; i < silhouettes; i++) {
+        const struct rf_silhouette *at = &photo->silhouettes.pixel[i];
 
-        rf_focus_row(&r->last_plan, blur + rim->y * pitch + rim->x, &rim->disparity, rim->x, rim->y,
-                     1);
+        rf_focus_row(&r->last_plan, blur + at->y * pitch + at->x, &at->disparity, at->x, at->y, 1);
     }
     for (int y = 0; y < photo->height; y++)
         for (int x = 0; x < photo->width; x++)

@@ -154,6 +154,19 @@ void rf_set_planes(struct rf_frame *f)
     f->limits = (struct rf_limits){r->max_width, r->max_height, r->view.pad, r->pool.threads,
                                    r->max_blur_radius};
     f->work = &r->work;
+    f->splat = (struct rf_splat){
+        .exec = &r->exec,
+        .window = {.view = &r->view,
+                   .light = r->light,
+                   .blur = r->blur,
+                   .highlights = &r->photo.highlights,
+                   .bins = r->bins,
+                   .channels = r->yuv.on ? 1 : 3},
+        .range = r->range,
+        .aperture = f->aperture,
+        .gain = f->params->highlight_gain,
+        .largest_radius = f->focus.radius,
+    };
     f->thin.exec = &r->exec;
     f->thin.view = &r->view;
     f->thin.plan = &f->plan;
@@ -165,4 +178,23 @@ void rf_set_planes(struct rf_frame *f)
     f->thin.bins = r->bins;
     f->thin.list = &r->photo.thin;
     f->thin.coverage = &r->coverage;
+}
+
+struct rf_photo_source rf_photo_source(const struct refocus_renderer *r)
+{
+    const struct rf_photo *photo = &r->photo;
+    struct rf_photo_source source = {
+        .width = photo->width, .height = photo->height, .transfer = &r->transfer[r->blend]};
+
+    if (r->in_place.on) {
+        source.image = &r->in_place.photo;
+        source.map = &r->in_place.map;
+        source.code_step = r->in_place.code_step;
+        return source;
+    }
+    for (int c = 0; c < 3; c++)
+        source.light.channel[c] = photo->light[c];
+    source.disparity.at = photo->disparity;
+    source.light.stride = source.disparity.stride = photo->stride;
+    return source;
 }

@@ -156,18 +156,22 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
     }
 }
 
-/* The scene as the sweep takes it: rims of bright things have their depth (highlights/rims.h). */
-static struct scene with_rims(const struct scene *s, const struct refocus_renderer *r)
+/* The scene as the sweep takes it: silhouettes of bright things have their depth
+ * (highlights/highlights.h). */
+static struct scene with_silhouettes(const struct scene *s, const struct refocus_renderer *r)
 {
-    const struct rf_photo *photo = &r->photo;
+    const struct rf_silhouettes *list = &r->photo.silhouettes;
     const size_t size = (size_t)s->width * (size_t)s->height * sizeof *s->disparity;
     struct scene patched = *s;
 
     if (!(patched.disparity = malloc(size)))
         exit(1);
     memcpy(patched.disparity, s->disparity, size);
-    for (uint32_t i = 0; i < photo->rims; i++)
-        patched.disparity[pixel_at(s, photo->rim[i].x, photo->rim[i].y)] = photo->rim[i].disparity;
+    for (uint32_t i = 0; i < list->count; i++) {
+        const struct rf_silhouette *at = &list->pixel[i];
+
+        patched.disparity[pixel_at(s, at->x, at->y)] = at->disparity;
+    }
     return patched;
 }
 
@@ -191,7 +195,7 @@ static int compare(struct scene *s, struct refocus_renderer *r, uint32_t method,
     if (refocus_render(r, &params, &out))
         return 1;
     if (method == REFOCUS_METHOD_SWEEP) {
-        struct scene patched = with_rims(s, r);
+        struct scene patched = with_silhouettes(s, r);
 
         sweep_all(&patched, r, light, exact);
         free(patched.disparity);

@@ -278,8 +278,8 @@ static void regions(void **state)
     regions_of(wide_bars());
 }
 
-/* A dark picture with small lamps all over, before and behind. */
-static struct picture make_lamps(uint32_t seed)
+/* A dark picture with small highlights all over, before and behind. */
+static struct picture make_highlights(uint32_t seed)
 {
     struct picture p = picture_make(97, 83, seed);
 
@@ -296,7 +296,7 @@ static struct picture make_lamps(uint32_t seed)
  * half made. */
 static void cancel_at_every_moment(struct refocus_render_params params)
 {
-    struct picture p[2] = {make_lamps(31), make_lamps(32)};
+    struct picture p[2] = {make_highlights(31), make_highlights(32)};
     const struct refocus_image photo[2] = {picture_image(&p[0]), picture_image(&p[1])};
     const struct refocus_disparity disparity[2] = {picture_disparity(&p[0]),
                                                    picture_disparity(&p[1])};
@@ -311,7 +311,7 @@ static void cancel_at_every_moment(struct refocus_render_params params)
     params.blend = REFOCUS_BLEND_GAMMA;
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
     memcpy(expected, out, sizeof out);
-    assert_true(renderer->photo.highlights[0].count > 40); /* rows of lamps */
+    assert_true(renderer->photo.highlights.part[0].count > 40); /* rows of highlights */
     renderer->run.user = &canceller;
     for (int n = 1; status != REFOCUS_OK; n += each) {
         /* another photo and another lens before */
@@ -341,7 +341,7 @@ static void cancel_at_every_moment(struct refocus_render_params params)
         picture_free(&p[i]);
 }
 
-/* Lamps drawn; lamps met by rays, grain and stars. */
+/* Highlights splatted; highlights gathered, grain and stars. */
 static void every_moment(void **state)
 {
     struct refocus_render_params params = refocus_render_params_default(0.3f, 12);

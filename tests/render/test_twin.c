@@ -31,17 +31,18 @@ static double compare(const struct picture *p, const char *name, const struct st
     struct refocus_aperture *aperture = style_aperture(style);
     struct refocus_renderer *renderer = prepared(p, K, 2);
     uint8_t *fixed = malloc(size), *exact = malloc(size);
-    struct twin_rim *rim = calloc(renderer->photo.rims + 1, sizeof *rim);
+    const struct rf_silhouettes *list = &renderer->photo.silhouettes;
+    struct twin_silhouette *silhouette = calloc(list->count + 1, sizeof *silhouette);
     struct twin twin;
     double db;
 
-    assert_true(fixed && exact && rim);
-    for (uint32_t i = 0; i < renderer->photo.rims; i++)
-        rim[i] = (struct twin_rim){renderer->photo.rim[i].x, renderer->photo.rim[i].y,
-                                   renderer->photo.rim[i].disparity};
+    assert_true(fixed && exact && silhouette);
+    for (uint32_t i = 0; i < list->count; i++)
+        silhouette[i] =
+            (struct twin_silhouette){list->pixel[i].x, list->pixel[i].y, list->pixel[i].disparity};
     params.aperture = aperture;
     render_style(renderer, p, style, focus, K, fixed);
-    twin_create(&twin, p, &params, rim, (int)renderer->photo.rims);
+    twin_create(&twin, p, &params, silhouette, (int)list->count);
     if (style->method == REFOCUS_METHOD_SWEEP)
         twin_sweep(&twin, exact);
     else
@@ -50,7 +51,7 @@ static double compare(const struct picture *p, const char *name, const struct st
     printf("%5.1f dB  %s, df = %.2f, K = %g, %s\n", db, name, (double)focus, (double)K,
            style->name);
     twin_destroy(&twin);
-    free(rim);
+    free(silhouette);
     free(fixed);
     free(exact);
     refocus_renderer_destroy(&renderer);

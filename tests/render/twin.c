@@ -34,7 +34,8 @@ static double blur_of(const struct twin *t, int disparity)
 }
 
 void twin_create(struct twin *t, const struct picture *p,
-                 const struct refocus_render_params *params, const struct twin_rim *rim, int rims)
+                 const struct refocus_render_params *params,
+                 const struct twin_silhouette *silhouette, int silhouettes)
 {
     *t = (struct twin){p->width,
                        p->height,
@@ -42,8 +43,8 @@ void twin_create(struct twin *t, const struct picture *p,
                        (double)params->max_blur_radius,
                        (double)params->focus_disparity,
                        p->disparity,
-                       rim,
-                       rims,
+                       silhouette,
+                       silhouettes,
                        {0},
                        {0},
                        {0},
@@ -62,8 +63,8 @@ void twin_create(struct twin *t, const struct picture *p,
     }
     for (int i = 0; i < t->width * t->height; i++)
         t->map_blur[i] = t->blur[i] = blur_of(t, p->disparity[i]);
-    for (int i = 0; i < rims; i++)
-        t->blur[rim[i].y * t->width + rim[i].x] = blur_of(t, rim[i].disparity);
+    for (int i = 0; i < silhouettes; i++)
+        t->blur[silhouette[i].y * t->width + silhouette[i].x] = blur_of(t, silhouette[i].disparity);
 }
 
 void twin_destroy(struct twin *t)

@@ -8,9 +8,9 @@
 
 enum { TWIN_TILE = 16 };
 
-/* A pixel whose disparity is not the map's: see src/highlights/rims.h. Which ones they are
- * is a property of the photo, not of the lens. */
-struct twin_rim {
+/* A pixel whose disparity is not the map's: see src/highlights/highlights.h. Which ones they
+ * are is a property of the photo, not of the lens. */
+struct twin_silhouette {
     int x, y, disparity;
 };
 
@@ -19,17 +19,18 @@ struct twin {
     const struct refocus_render_params *params;
     double K, df;
     const uint16_t *disparity;
-    const struct twin_rim *rim;
-    int rims;
+    const struct twin_silhouette *silhouette;
+    int silhouettes;
     double *light[3], *smooth[3], *behind[3]; /* 0 to 1 */
     double *map_blur;                         /* signed blur in pixels, of the map alone */
-    double *blur;                             /* and with the rims */
+    double *blur;                             /* and with the silhouettes */
     double *behind_blur;
 };
 
 /* The planes of a photo; all NaN or of the photo itself where a method has no use for them. */
 void twin_create(struct twin *twin, const struct picture *picture,
-                 const struct refocus_render_params *params, const struct twin_rim *rim, int rims);
+                 const struct refocus_render_params *params,
+                 const struct twin_silhouette *silhouette, int silhouettes);
 void twin_destroy(struct twin *twin);
 
 /* The passes before the rays. */

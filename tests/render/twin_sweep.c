@@ -55,7 +55,7 @@ static struct bins bins_of_tile(const struct twin *t, double width, int tx, int 
 
     for (int y = ty * TWIN_TILE; y < (ty + 1) * TWIN_TILE && y < t->height; y++) {
         for (int x = tx * TWIN_TILE; x < (tx + 1) * TWIN_TILE && x < t->width; x++) {
-            note(&bins, width, t->map_blur[y * t->width + x]); /* rims as what they were too */
+            note(&bins, width, t->map_blur[y * t->width + x]); /* silhouettes as they were, too */
             note(&bins, width, t->blur[y * t->width + x]);
         }
     }

@@ -1,27 +1,23 @@
 /* grain.c: the noise of the photo, put back where blur has averaged it away.
  *
- * How strong: in each block of 8 x 8 pixels that this lens leaves sharp, the mean
- * square of the second difference of luma along rows is 6 sigma^2 of its noise, and
- * more where there is texture. Of the blocks of one brightness the smoothest quarter
- * holds noise alone; its median, the eighth of all, is 0.71 of the mean where all
- * blocks are noise alone.
+ * Its strength is measured: in each block of 8 x 8 pixels that this lens leaves sharp, the mean
+ * square of the second difference of luma along rows is 6 sigma^2 of its noise, and more where
+ * there is texture. Of the blocks of one brightness the smoothest quarter holds noise alone; its
+ * median, the eighth of all, is 0.71 of the mean where all blocks are noise alone.
  *
- * How much is missing: a mean over a disc of radius r leaves 1 / (pi r^2) of the
+ * Blur takes a known part of it: a mean over a disc of radius r leaves 1 / (pi r^2) of the
  * variance.
  *
  * The grain is a hash of place and seed: the sum of four bytes, nearly Gaussian.
  */
-#include "finish/finish.h"
+#include "look/look.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "depth/dequantise.h"
-#include "gather/frame.h"
 #include "image/format.h"
-#include "image/viewport.h"
-#include "renderer/renderer.h"
 
 #define SMOOTHEST 0.71
 
@@ -32,30 +28,28 @@ static int luma(int r, int g, int b)
     return (54 * r + 183 * g + 19 * b + 128) >> 8;
 }
 
-/* In the photo in use. */
-static int luma_at(const struct refocus_renderer *r, int x, int y)
+static int luma_at(const struct rf_photo_source *photo, int x, int y)
 {
-    const struct rf_photo *photo = &r->photo;
-    const uint8_t *to_code = r->transfer[r->blend].to_code;
-    const ptrdiff_t at = y * photo->stride + x;
+    uint16_t *const *const light = photo->light.channel;
+    const uint8_t *to_code = photo->transfer->to_code;
+    const ptrdiff_t at = y * photo->light.stride + x;
 
-    if (r->in_place.on) {
-        const struct refocus_image *image = &r->in_place.photo;
+    if (!rf_has_planes(photo)) {
+        const struct refocus_image *image = photo->image;
         const struct rf_order o = rf_order_of(image->format);
         const uint8_t *code = image->plane[0] + y * image->stride[0] + (ptrdiff_t)x * o.bytes;
 
         return luma(code[o.r], code[o.g], code[o.b]);
     }
-    return luma(to_code[4 * photo->light[0][at]], to_code[4 * photo->light[1][at]],
-                to_code[4 * photo->light[2][at]]);
+    return luma(to_code[4 * light[0][at]], to_code[4 * light[1][at]], to_code[4 * light[2][at]]);
 }
 
-static bool is_blurred(const struct rf_frame *f, int x0, int y0)
+static bool is_blurred(const struct rf_look *look, int x0, int y0)
 {
     int16_t blur[BLOCK * BLOCK];
 
     _Static_assert((int)BLOCK <= (int)RF_DEQUANTISE_PATCH, "blocks are patches");
-    rf_blurs_at(f, x0, y0, BLOCK, BLOCK, blur);
+    rf_blurs_at(look, x0, y0, BLOCK, BLOCK, blur);
     for (int i = 0; i < BLOCK * BLOCK; i++)
         if (abs(blur[i]) >= SHARP)
             return true;
@@ -64,17 +58,17 @@ static bool is_blurred(const struct rf_frame *f, int x0, int y0)
 
 /* Variance of a block's noise in 1/16, and its mean; -1 when it does not count: it is
  * not sharp, or touches black or white, where noise is cut off. */
-static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blur, int *mean)
+static int block_variance(const struct rf_look *look, int x0, int y0, bool any_blur, int *mean)
 {
     int sum = 0, square = 0;
 
-    if (!any_blur && is_blurred(f, x0, y0))
+    if (!any_blur && is_blurred(look, x0, y0))
         return -1;
     for (int y = y0; y < y0 + BLOCK; y++) {
         int v[BLOCK];
 
         for (int x = 0; x < BLOCK; x++) {
-            v[x] = luma_at(f->r, x0 + x, y);
+            v[x] = luma_at(&look->photo, x0 + x, y);
             sum += v[x];
             if (v[x] < 2 || v[x] > 253)
                 return -1;
@@ -89,17 +83,17 @@ static int block_variance(const struct rf_frame *f, int x0, int y0, bool any_blu
     return 16 * square / (6 * BLOCK * (BLOCK - 2));
 }
 
-static uint32_t count_blocks(const struct rf_frame *f, bool any_blur)
+static uint32_t count_blocks(const struct rf_look *look, bool any_blur)
 {
-    const struct rf_photo *photo = &f->r->photo;
-    struct rf_grain *grain = f->r->grain;
+    const struct rf_photo_source *photo = &look->photo;
+    struct rf_grain *grain = look->grain;
     uint32_t count = 0;
 
     memset(grain->blocks, 0, sizeof grain->blocks);
-    for (int y = 0; y + BLOCK <= photo->height && !rf_cancelled(&f->r->exec); y += BLOCK) {
+    for (int y = 0; y + BLOCK <= photo->height && !rf_cancelled(look->exec); y += BLOCK) {
         for (int x = 0; x + BLOCK <= photo->width; x += BLOCK) {
             int mean;
-            const int variance = block_variance(f, x, y, any_blur, &mean);
+            const int variance = block_variance(look, x, y, any_blur, &mean);
 
             if (variance < 0)
                 continue;
@@ -111,7 +105,7 @@ static uint32_t count_blocks(const struct rf_frame *f, bool any_blur)
     return count;
 }
 
-/* Standard deviation, 1/256 code, or -1 of too few blocks. */
+/* Standard deviation, 1/256 code; -1: there are too few blocks. */
 static int sigma_of(const uint32_t blocks[RF_NOISE_BINS])
 {
     uint32_t sum = 0, passed = 0;
@@ -145,25 +139,25 @@ static void fill_levels(const int sigma[RF_NOISE_LEVELS], uint16_t out[RF_NOISE_
     }
 }
 
-void rf_measure_grain(struct rf_frame *f)
+void rf_measure_grain(const struct rf_look *look)
 {
-    struct refocus_renderer *r = f->r;
+    struct rf_grain *grain = look->grain;
     int sigma[RF_NOISE_LEVELS];
 
-    if (count_blocks(f, false) < FEW)
-        count_blocks(f, true);
+    if (count_blocks(look, false) < FEW)
+        count_blocks(look, true);
     for (int i = 0; i < RF_NOISE_LEVELS; i++)
-        sigma[i] = sigma_of(r->grain->blocks[i]);
-    fill_levels(sigma, r->grain->sigma);
+        sigma[i] = sigma_of(grain->blocks[i]);
+    fill_levels(sigma, grain->sigma);
     for (int i = 0; i < 1024; i++) {
         const double radius = (i * 32 + 16) / 256.0, area = 3.14159265358979 * radius * radius;
         const double left = area > 1 ? 1 / area : 1;
 
-        r->grain->lost[i] = (uint8_t)floor(sqrt(1 - left) * 255 + 0.5);
+        grain->lost[i] = (uint8_t)floor(sqrt(1 - left) * 255 + 0.5);
     }
 }
 
-/* Between the middles of the levels in proportion. */
+/* Standard deviation at a luma: between the middles of the levels in proportion. */
 static int sigma_at(const struct rf_grain *grain, int code)
 {
     const int from = code - LEVEL_WIDTH / 2, last = RF_NOISE_LEVELS - 1;
@@ -193,25 +187,26 @@ static uint8_t clamp(int code)
     return (uint8_t)(code < 0 ? 0 : code > 255 ? 255 : code);
 }
 
-void rf_add_grain(const struct rf_frame *f, struct rf_rect rect)
+void rf_add_grain(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect)
 {
-    const struct refocus_renderer *r = f->r;
-    const int64_t amount = (int64_t)floorf(f->params->grain * 256 + 0.5f);
-    /* of what is multiplied below */
+    const struct rf_viewport *view = canvas->view;
+    const int64_t amount = (int64_t)floorf(look->params->grain * 256 + 0.5f);
+    /* one code of what is multiplied below */
     const int64_t unit = (int64_t)(147.80 * 256 * 256 * 255);
 
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
-            const int lost = r->grain->lost[abs(r->blur.at[y * r->view.stride + x]) >> 5];
+            const int lost =
+                look->grain->lost[abs(canvas->blur.at[y * canvas->blur.stride + x]) >> 5];
             uint8_t *code[3];
             int64_t add;
             int change;
 
             if (lost == 0)
                 continue;
-            rf_pixel_codes(f, x, y, code);
-            add = amount * lost * noise_at(r->view.x0 + x, r->view.y0 + y, f->params->seed) *
-                  sigma_at(r->grain, luma(*code[0], *code[1], *code[2]));
+            rf_codes_at(canvas, x, y, code);
+            add = amount * lost * noise_at(view->x0 + x, view->y0 + y, look->params->seed) *
+                  sigma_at(look->grain, luma(*code[0], *code[1], *code[2]));
             change = (int)((llabs(add) + unit / 2) / unit);
             for (int c = 0; c < 3; c++)
                 *code[c] = clamp(*code[c] + (add < 0 ? -change : change));

@@ -1,5 +1,5 @@
-/* Which clipped things get light back, and how much: drawn ones of known light, measured in the
- * light of their discs with and without. */
+/* test_highlights.c: which clipped things get light back, and how much: things of known light are
+ * drawn, and the light of their discs is measured with and without. */
 #include "pictures.h"
 #include "things.h"
 
@@ -101,14 +101,15 @@ static void expect(const char *what, double size, double times, double least, do
                  least, most);
 }
 
-/* Of every size up to RF_LAMP_SIDE. Discs above white are cut, so small blurs are not looked at. */
-static void lamps(void **state)
+/* Lights of every size up to RF_COMPONENT_SIDE get theirs back. Discs above white are cut, so small
+ * blurs are not looked at. */
+static void highlights(void **state)
 {
     static const double size[] = {2, 3, 5, 8, 12, 14};
 
     (void)state;
     for (size_t i = 0; i < sizeof size / sizeof size[0]; i++) {
-        expect("a round lamp", size[i], times_of(ELLIPSE, size[i], size[i], 12), 2.2, 4.05);
+        expect("a round highlight", size[i], times_of(ELLIPSE, size[i], size[i], 12), 2.2, 4.05);
         expect("a flame", size[i], times_of(ELLIPSE, size[i] / 2 + 1, 1.5 * size[i], 12), 2.2,
                4.05);
     }
@@ -136,8 +137,9 @@ static void large(void **state)
     }
 }
 
-/* Photos that are larger have larger lamps, sharp and soft ones; what is white stays white. Of the
- * largest discs, which 30 pixels of blur make little larger, much lies above white and is cut. */
+/* Photos that are larger have larger highlights, sharp and soft ones; what is white stays white. Of
+ * the largest discs, which 30 pixels of blur make little larger, much lies above white and is cut.
+ */
 static double large_times(int cell, double size, double light, int soft)
 {
     struct picture p = picture_flat(720 * cell, 160 * cell, (uint8_t[3]){0, 0, 0}, BEHIND);
@@ -155,8 +157,9 @@ static void large_photos(void **state)
     (void)state;
     for (int cell = 2; cell <= 4; cell *= 2)
         for (int soft = 0; soft <= 2 * cell; soft += cell) {
-            expect("a small lamp of a large photo", 4, large_times(cell, 4, 30, soft), 2, 4.05);
-            expect("a lamp of a large photo", 9 * cell, large_times(cell, 9 * cell, 12, soft),
+            expect("a small highlight of a large photo", 4, large_times(cell, 4, 30, soft), 2,
+                   4.05);
+            expect("a highlight of a large photo", 9 * cell, large_times(cell, 9 * cell, 12, soft),
                    cell > 2 ? 1.6 : 2.2, 4.05);
             expect("white paint of a large photo", 9 * cell, large_times(cell, 9 * cell, 1, soft),
                    0.99, 1.2);
@@ -165,11 +168,11 @@ static void large_photos(void **state)
         }
 }
 
-/* What a lamp lights around it is not its rim. */
+/* What a highlight lights around it is not its rim. */
 static void lit_walls(void **state)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){60, 60, 60}, BEHIND);
-    const struct thing lamp = {ELLIPSE, 7, 7, {12, 12, 12}};
+    const struct thing highlight = {ELLIPSE, 7, 7, {12, 12, 12}};
     double times[3];
 
     (void)state;
@@ -178,9 +181,9 @@ static void lit_walls(void **state)
 
         memset(p.rgb + 3 * i, picture_code(0.04 + 0.75 / (1 + pow(away / 5, 2))), 3);
     }
-    draw_thing(&p, &lamp, CX + 0.3, CY - 0.2);
+    draw_thing(&p, &highlight, CX + 0.3, CY - 0.2);
     gained_in(&p, times);
-    expect("a lamp that lights what is around it", 7, times[1], 1.02, 1.5);
+    expect("a highlight that lights what is around it", 7, times[1], 1.02, 1.5);
     picture_free(&p);
 }
 
@@ -209,17 +212,17 @@ static void candles(void **state)
     expect("a white thing on another", 9, candle_times(1), 0.99, 1.05);
 }
 
-/* A wire in focus, three pixels wide in the map, thinner in the picture, and a lamp of the given
- * disparity on it: light of the lamp at both sides of the wire. */
+/* A wire in focus, three pixels wide in the map, thinner in the picture, and a highlight of the
+ * given disparity on it: light of the highlight at both sides of the wire. */
 static struct picture wired(uint16_t disparity)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){20, 20, 20}, BEHIND);
-    const struct thing lamp = {ELLIPSE, 9, 9, {12, 12, 12}};
+    const struct thing highlight = {ELLIPSE, 9, 9, {12, 12, 12}};
 
-    draw_thing(&p, &lamp, CX, CY);
+    draw_thing(&p, &highlight, CX, CY);
     for (int y = CY - 5; y <= CY + 5; y++)
         for (int x = CX - 5; x <= CX + 5; x++)
-            if (is_in_thing(&lamp, x - CX, (double)y - CY))
+            if (is_in_thing(&highlight, x - CX, (double)y - CY))
                 p.disparity[y * W + x] = disparity;
     for (int x = 0; x < W; x++) {
         for (int y = CY - 1; y <= CY + 1; y++)
@@ -230,7 +233,7 @@ static struct picture wired(uint16_t disparity)
     return p;
 }
 
-/* Q7.8, of the pixel above the wire in the middle of the lamp. */
+/* Q7.8, of the pixel above the wire in the middle of the highlight. */
 static int wire_blur(uint16_t disparity)
 {
     static uint16_t blur[W * H];
@@ -248,27 +251,27 @@ static int wire_blur(uint16_t disparity)
 static void wires(void **state)
 {
     (void)state;
-    /* a lamp behind the wire is blurred as far as it is seen, one that hangs on it is sharp */
+    /* a highlight behind the wire is blurred as far as it is seen, one that hangs on it is sharp */
     assert_in_range(wire_blur(BEHIND), 11 * 256, 13 * 256);
     assert_in_range(wire_blur(32768), 0, 16);
 }
 
-/* A lamp far before the focus, whose rim the map gives to what is sharp behind it. However little
- * of the lamp a pixel of the rim holds, none stays behind as a dot: of each, how much brighter than
- * the pixels around it is counted. */
+/* A highlight far before the focus, whose rim the map gives to what is sharp behind it. However
+ * little of the highlight a pixel of the rim holds, none stays behind as a dot: of each, how much
+ * brighter than the pixels around it is counted. */
 static int brightest_dot(double light)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){40, 40, 40}, 32768);
-    const struct thing lamp = {ELLIPSE, 9, 9, {light, light, light}};
+    const struct thing highlight = {ELLIPSE, 9, 9, {light, light, light}};
     uint8_t out[3 * W * H];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
     struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
     struct refocus_renderer *renderer;
     int most = 0;
 
-    draw_thing(&p, &lamp, CX + 0.3, CY - 0.2);
+    draw_thing(&p, &highlight, CX + 0.3, CY - 0.2);
     for (int i = 0; i < W * H; i++)
-        if (share_of_thing(&lamp, i % W - CX - 0.3, (double)(i / W) - CY + 0.2) >= 0.5)
+        if (share_of_thing(&highlight, i % W - CX - 0.3, (double)(i / W) - CY + 0.2) >= 0.5)
             p.disparity[i] = 59000;
     renderer = prepared(&p, 30, 2);
     params.highlight_gain = 1;
@@ -288,18 +291,19 @@ static int brightest_dot(double light)
     return most;
 }
 
-static void rims(void **state)
+static void silhouettes(void **state)
 {
     (void)state;
     for (double light = 1; light < 40; light *= 2) {
         const int dot = brightest_dot(light);
 
         if (dot > 36)
-            fail_msg("of a lamp of %g times white a dot is left, brighter by %d codes", light, dot);
+            fail_msg("of a highlight of %g times white a dot is left, brighter by %d codes", light,
+                     dot);
     }
 }
 
-/* Longer than a lamp, but no wider. */
+/* Longer than a highlight, but no wider. */
 static void tubes(void **state)
 {
     (void)state;
@@ -317,13 +321,15 @@ static void colours(void **state)
 
     (void)state;
     gained(&green, times);
-    expect("red of a green lamp", 7, times[0], 0.99, 1.01);
-    expect("green of a green lamp", 7, times[1], 0.99, 1.01);
-    expect("blue of a green lamp", 7, times[2], 0.99, 1.01);
+    expect("red of a green highlight", 7, times[0], 0.99, 1.01);
+    expect("green of a green highlight", 7, times[1], 0.99, 1.01);
+    expect("blue of a green highlight", 7, times[2], 0.99, 1.01);
     gained(&amber, times);
-    expect("red of an amber lamp", 7, times[0], 2.2, 4.05);
-    expect("green of an amber lamp", 7, times[1] - 1, 0.3 * (times[0] - 1), 0.7 * (times[0] - 1));
-    expect("blue of an amber lamp", 7, times[2] - 1, 0.05 * (times[0] - 1), 0.4 * (times[0] - 1));
+    expect("red of an amber highlight", 7, times[0], 2.2, 4.05);
+    expect("green of an amber highlight", 7, times[1] - 1, 0.3 * (times[0] - 1),
+           0.7 * (times[0] - 1));
+    expect("blue of an amber highlight", 7, times[2] - 1, 0.05 * (times[0] - 1),
+           0.4 * (times[0] - 1));
 }
 
 /* A tail light: red is clipped in what glows around it, too. */
@@ -352,7 +358,8 @@ static void glows(void **state)
     }
 }
 
-/* What is cyan among cyan is no lamp, however bright beside it; on something dark it may be one. */
+/* What is cyan among cyan is no highlight, however bright beside it; on something dark it may be
+ * one. */
 static void petals(void **state)
 {
     static const uint8_t among[][3] = {{60, 190, 200}, {20, 65, 70}};
@@ -365,12 +372,12 @@ static void petals(void **state)
 
         draw_thing(&p, &petal, CX + 0.3, CY - 0.2);
         gained_in(&p, times);
-        expect(i ? "a cyan lamp" : "a petal", 6, times[2], i ? 1.04 : 0.999, i ? 1.2 : 1.001);
+        expect(i ? "a cyan highlight" : "a petal", 6, times[2], i ? 1.04 : 0.999, i ? 1.2 : 1.001);
         picture_free(&p);
     }
 }
 
-/* Lamps, tubes and signs anywhere, across the blocks of strip mode and each other. */
+/* Highlights, tubes and signs anywhere, across the blocks of strip mode and each other. */
 enum { NIGHT_W = 330, NIGHT_H = 290 };
 
 static struct picture night(uint32_t seed, int w, int h)
@@ -428,11 +435,11 @@ static void expect_same_night(uint32_t seed, int w, int h, float blur)
     assert_non_null(is);
     render_night(&p, blur, blur, 0, 1, whole);
     render_night(&p, blur, blur, 0, 4, is);
-    assert_same_pixels(is, whole, w, h, "lamps found by four threads");
+    assert_same_pixels(is, whole, w, h, "highlights found by four threads");
     render_night(&p, blur, blur, 1, 1, is);
-    assert_same_pixels(is, whole, w, h, "lamps found in blocks");
+    assert_same_pixels(is, whole, w, h, "highlights found in blocks");
     render_night(&p, blur, 127, 0, 2, is);
-    assert_same_pixels(is, whole, w, h, "lamps by a renderer for larger blurs");
+    assert_same_pixels(is, whole, w, h, "highlights by a renderer for larger blurs");
     free(whole);
     free(is);
     picture_free(&p);
@@ -456,8 +463,8 @@ static void nights(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),        cmocka_unit_test(paint),     cmocka_unit_test(large),
-        cmocka_unit_test(rims),         cmocka_unit_test(tubes),     cmocka_unit_test(colours),
+        cmocka_unit_test(highlights),   cmocka_unit_test(paint),     cmocka_unit_test(large),
+        cmocka_unit_test(silhouettes),  cmocka_unit_test(tubes),     cmocka_unit_test(colours),
         cmocka_unit_test(large_photos), cmocka_unit_test(lit_walls), cmocka_unit_test(wires),
         cmocka_unit_test(candles),      cmocka_unit_test(glows),     cmocka_unit_test(petals),
         cmocka_unit_test(nights),

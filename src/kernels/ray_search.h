@@ -1,6 +1,6 @@
-/* search.h: contracts of the randomized intersection search. */
-#ifndef RF_KERNELS_SEARCH_H
-#define RF_KERNELS_SEARCH_H
+/* ray_search.h: contracts of the randomized intersection search. */
+#ifndef RF_KERNELS_RAY_SEARCH_H
+#define RF_KERNELS_RAY_SEARCH_H
 
 #include <stddef.h>
 #include <stdint.h>

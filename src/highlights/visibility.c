@@ -1,4 +1,6 @@
-#include "highlights/sight.h"
+/* visibility.c: which part of a highlight the pixels of a tile see past nearer surfaces, by the
+ * same test as a ray does (the comment on struct rf_splat). */
+#include "highlights/visibility.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,26 +8,25 @@
 
 #include "kernels/kernels.h"
 #include "support/compare.h"
-#include "renderer/renderer.h"
 #include "tiles/ranges.h"
 
 enum {
-    NEARER = 256, /* Q7.8: what hides a lamp is so much nearer */
+    NEARER = 256, /* Q7.8: what hides a highlight is so much nearer */
     LARGE = 32,   /* pixels: no larger region is looked through */
     MOST_ROWS = 4,
-    LEAST_RADIUS = 2048, /* Q7.8: rows that look at one place are an eighth of a pixel
-                            apart, of larger discs more */
+    LEAST_RADIUS = 2048, /* Q7.8: rows that look at one place are an eighth of a pixel apart, those
+                            of larger discs more */
     TOGETHER = 448,      /* Q7.8: slabs that are no wider are looked at as one */
 };
 
-/* What of a slab may hide the run, and where the tile sees it on its way there. */
+/* The part of a slab that may hide the run, and where on the way to the run it is. */
 struct screen {
     struct rf_slab slab;
     double part; /* of the way */
 };
 
 /* A slab may hold the run itself, and what is about as near. */
-static struct screen screen_of(const struct rf_slab *slab, const struct rf_seen *run)
+static struct screen screen_of(const struct rf_slab *slab, const struct rf_splat_run *run)
 {
     const int most = run->blur - NEARER - slab->low;
     struct screen screen = {*slab, 0};
@@ -53,7 +54,7 @@ static int round_down(double v)
 /* Pixels, from the tile's first one on, among which all lie that rays from pixels
  * `first` to `last` to the run from `from` to `to` see of a screen, in one direction.
  */
-static void extent(const struct screen *screen, const struct rf_seen *run, double first,
+static void extent(const struct screen *screen, const struct rf_splat_run *run, double first,
                    double last, double from, double to, int *least, int *most)
 {
     const double far = run->radius / 256.0 + run->rows * 0.5, part = screen->part;
@@ -70,43 +71,45 @@ static void extent(const struct screen *screen, const struct rf_seen *run, doubl
     *most = round_down(b) + 2;
 }
 
-/* How far the tile looks at most, pixels: by the frame alone, as all that is seen. */
-static int farthest_look(const struct rf_frame *f)
+/* How far the tile looks at most, pixels: by the frame alone, so that it does not depend on the
+ * tile. */
+static int farthest_look(const struct rf_splat *splat)
 {
-    return ((f->focus.radius + 254) >> 8) + 2;
+    return ((splat->largest_radius + 254) >> 8) + 2;
 }
 
-/* Of the photo, where the tile sees the screen on its way to the run; to the last. */
-static struct rf_rect region_of(const struct screen *screen, const struct rf_lamp_sights *tile,
-                                const struct rf_seen *run, const struct rf_disc_job *job)
+/* Where in the window the tile sees the screen on its way to the run; x1 and y1 are part of it. */
+static struct rf_rect region_of(const struct screen *screen, const struct rf_visibility *tile,
+                                const struct rf_splat_run *run, const struct rf_disc_job *job)
 {
     const double middle = run->middle * 0.5, apart = run->rows * 0.5 - 0.25;
-    const int x = tile->tx * RF_TILE, y = tile->ty * RF_TILE, far = farthest_look(tile->f),
+    const int x = tile->tx * RF_TILE, y = tile->ty * RF_TILE, far = farthest_look(tile->splat),
               most = RF_TILE - 1 + far;
     struct rf_rect at;
 
-    extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_LAMP_UNIT,
-           run->to / (double)RF_LAMP_UNIT, &at.x0, &at.x1);
+    extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_SPLAT_UNIT,
+           run->to / (double)RF_SPLAT_UNIT, &at.x0, &at.x1);
     extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart, &at.y0, &at.y1);
     return (struct rf_rect){x + rf_larger(at.x0, -far), y + rf_larger(at.y0, -far),
                             x + rf_smaller(at.x1, most), y + rf_smaller(at.y1, most)};
 }
 
-/* By the ranges of what may be met, tiles/ranges.h. */
-static enum rf_hidden hidden_in_ranges(const struct refocus_renderer *r, const struct rf_slab *slab,
+/* Tells from the ranges of blur alone (tiles/ranges.h) how much of a region is in a slab. */
+static enum rf_hidden hidden_in_ranges(const struct rf_splat *splat, const struct rf_slab *slab,
                                        struct rf_rect at)
 {
+    const struct rf_viewport *view = splat->window.view;
     const int low = slab->low, high = low + slab->width;
-    const int border = rf_range_border(r->view.pad), each = RF_TILE / RF_CELL;
+    const int border = rf_range_border(view->pad), each = RF_TILE / RF_CELL;
     const int first = rf_larger(at.x0 >> 2, -border),
-              end = rf_smaller(at.x1 >> 2, r->view.tiles_x * each - 1 + border),
-              last = rf_smaller(at.y1 >> 2, r->view.tiles_y * each - 1 + border);
+              end = rf_smaller(at.x1 >> 2, view->tiles_x * each - 1 + border),
+              last = rf_smaller(at.y1 >> 2, view->tiles_y * each - 1 + border);
     bool none = true, all = true;
 
     for (int y = rf_larger(at.y0 >> 2, -border); y <= last && (none || all);
          y += RF_STRIP / RF_CELL)
         for (int x = first; x <= end; x += each) {
-            const uint32_t range = r->range.at[y * r->range.stride + x];
+            const uint32_t range = splat->range.at[y * splat->range.stride + x];
             const int least = rf_range_least(range), most = rf_range_most(range);
 
             none = none && (most < low || least > high);
@@ -115,33 +118,34 @@ static enum rf_hidden hidden_in_ranges(const struct refocus_renderer *r, const s
     return all ? RF_HIDDEN_WHOLLY : none ? RF_HIDDEN_NOWHERE : RF_HIDDEN_PARTLY;
 }
 
-/* Whether any pixel of a region, or beside one that is narrow, is in a slab; of a large
- * one some may be. */
-static bool may_meet(const struct refocus_renderer *r, const struct rf_slab *slab,
-                     struct rf_rect at, int far)
+/* Whether any pixel of a region, or beside a narrow one, is in a slab. A large region is not looked
+ * through: some pixel of it may be. */
+static bool may_meet(const struct rf_splat *splat, const struct rf_slab *slab, struct rf_rect at,
+                     int far)
 {
+    const struct rf_blur_q8 *blur = &splat->window.blur;
     const int wide = rf_larger(at.x1 - at.x0 + 1, RF_TILE), high = at.y1 - at.y0 + 1;
     const int x = rf_larger(at.x1 - wide + 1, -far);
 
     return wide > LARGE || high > LARGE ||
-           r->exec.kernels->meets(r->blur.at + at.y0 * r->view.stride + x, r->view.stride, wide,
-                                  high, slab);
+           splat->exec->kernels->meets(blur->at + at.y0 * blur->stride + x, blur->stride, wide,
+                                       high, slab);
 }
 
-static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_lamp_sights *tile,
-                                const struct rf_seen *run, const struct rf_disc_job *job)
+static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_visibility *tile,
+                                const struct rf_splat_run *run, const struct rf_disc_job *job)
 {
-    const struct refocus_renderer *r = tile->f->r;
     const struct rf_rect at = region_of(screen, tile, run, job);
-    const enum rf_hidden hidden = hidden_in_ranges(r, &screen->slab, at);
+    const enum rf_hidden hidden = hidden_in_ranges(tile->splat, &screen->slab, at);
 
-    return hidden == RF_HIDDEN_PARTLY && !may_meet(r, &screen->slab, at, farthest_look(tile->f))
+    return hidden == RF_HIDDEN_PARTLY &&
+                   !may_meet(tile->splat, &screen->slab, at, farthest_look(tile->splat))
                ? RF_HIDDEN_NOWHERE
                : hidden;
 }
 
-/* Rows of pixels that look at about one place: the nearer it is to the run, and the
- * larger the disc, the more. */
+/* How many rows of pixels look at about one place: the nearer it is to the run, and the larger the
+ * disc, the more. */
 static int rows_alike(double part, int radius)
 {
     const double away = rf_larger(radius, LEAST_RADIUS) / (64 * 256.0);
@@ -152,12 +156,13 @@ static int rows_alike(double part, int radius)
     return rows;
 }
 
-/* A look part of the way to the run. No pixel looks farther away than its disc reaches,
- * and half its rows, nor then farther than `far`. */
-static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen *screen, int far)
+/* The look part of the way to the run. No pixel looks farther away than its disc reaches and half
+ * its rows, nor then farther than `far`. */
+static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct screen *screen,
+                                 int far)
 {
-    const int farthest = run->radius / 2 + RF_LAMP_UNIT * run->rows;
-    static const int aside[4] = {14, 6, 2, 10}; /* so that all of a lamp is met */
+    const int farthest = run->radius / 2 + RF_SPLAT_UNIT * run->rows;
+    static const int aside[4] = {14, 6, 2, 10}; /* so that the ways lead to all of a highlight */
     struct rf_disc_way way = {.rows = rows_alike(screen->part, run->radius),
                               .most = far,
                               .middle = run->middle,
@@ -175,12 +180,12 @@ static struct rf_disc_way way_to(const struct rf_seen *run, const struct screen 
 
 /* Whether the slab is near enough to the last one to be tested with it; it then is one
  * with that. */
-static bool joins(struct rf_lamp_sights *sights, const struct rf_slab *next)
+static bool joins(struct rf_visibility *tile, const struct rf_slab *next)
 {
-    struct rf_slab *last = sights->slab + sights->slabs - 1;
+    struct rf_slab *last = tile->slab + tile->slabs - 1;
     int width;
 
-    if (!sights->slabs || last->centre == 0 || next->centre == 0)
+    if (!tile->slabs || last->centre == 0 || next->centre == 0)
         return false;
     width = next->low + next->width - last->low;
     if (width > TOGETHER || (last->low < 0) != (next->low < 0))
@@ -190,31 +195,31 @@ static bool joins(struct rf_lamp_sights *sights, const struct rf_slab *next)
     return true;
 }
 
-void rf_start_sights(struct rf_lamp_sights *sights, const struct rf_frame *f,
-                     const struct rf_tile_plan *plan, int tx, int ty)
+void rf_visibility_begin(struct rf_visibility *tile, const struct rf_splat *splat,
+                         const struct rf_tile_plan *plan, int tx, int ty)
 {
-    sights->f = f;
-    sights->tx = tx;
-    sights->ty = ty;
-    sights->count = 0;
-    sights->slabs = 0;
+    tile->splat = splat;
+    tile->tx = tx;
+    tile->ty = ty;
+    tile->count = 0;
+    tile->slabs = 0;
     for (int k = 0; k < plan->slabs; k++)
-        if (!joins(sights, &plan->slab[k]))
-            sights->slab[sights->slabs++] = plan->slab[k];
+        if (!joins(tile, &plan->slab[k]))
+            tile->slab[tile->slabs++] = plan->slab[k];
 }
 
 /* How far from where it leads the other may lead at most, pixels. */
-static float apart(const struct rf_seen *one, const struct rf_seen *other, int centre)
+static float apart(const struct rf_splat_run *one, const struct rf_splat_run *other, int centre)
 {
     const int right = rf_larger(abs(one->from - other->from), abs(one->to - other->to));
-    const int down = RF_LAMP_UNIT / 2 * abs(one->middle - other->middle);
-    const int blurs = abs(one->blur - other->blur) * RF_LAMP_UNIT / 256;
+    const int down = RF_SPLAT_UNIT / 2 * abs(one->middle - other->middle);
+    const int blurs = abs(one->blur - other->blur) * RF_SPLAT_UNIT / 256;
     const int away = rf_larger(right, down) + blurs;
 
-    return (float)abs(centre * away) / (float)(RF_LAMP_UNIT * one->radius);
+    return (float)abs(centre * away) / (float)(RF_SPLAT_UNIT * one->radius);
 }
 
-static bool serves(const struct rf_lamp_look *look, const struct rf_lamp_look *wanted, int centre)
+static bool serves(const struct rf_look_at *look, const struct rf_look_at *wanted, int centre)
 {
     return look->slab == wanted->slab && look->run.set == wanted->run.set &&
            look->first <= wanted->first && look->end >= wanted->end &&
@@ -234,33 +239,31 @@ static enum rf_hidden hidden_in(const uint16_t *visible, int first, int end)
     return all ? RF_HIDDEN_NOWHERE : any ? RF_HIDDEN_PARTLY : RF_HIDDEN_WHOLLY;
 }
 
-static void set_shade(struct rf_lamp_shade *shade, const struct rf_lamp_sights *tile,
+static void set_shade(struct rf_shade *shade, const struct rf_visibility *tile,
                       const struct rf_disc_job *job)
 {
-    const struct refocus_renderer *r = tile->f->r;
-    const struct rf_seen *run = &shade->look.run;
+    const struct rf_blur_q8 *plane = &tile->splat->window.blur;
+    const struct rf_splat_run *run = &shade->look.run;
     const struct rf_slab *slab = &tile->slab[shade->look.slab];
     const struct screen screen = screen_of(slab, run);
-    const int16_t *const blur =
-        r->blur.at + tile->ty * RF_TILE * r->view.stride + tile->tx * RF_TILE;
+    const int16_t *const blur = plane->at + tile->ty * RF_TILE * plane->stride + tile->tx * RF_TILE;
     struct rf_disc_way way;
 
     shade->hidden = hidden_by(&screen, tile, run, job);
     if (shade->hidden != RF_HIDDEN_PARTLY)
         return;
-    way = way_to(run, &screen, farthest_look(tile->f));
-    r->exec.kernels->hide(shade->visible, blur, r->view.stride, &screen.slab, job, &way);
+    way = way_to(run, &screen, farthest_look(tile->splat));
+    tile->splat->exec->kernels->hide(shade->visible, blur, plane->stride, &screen.slab, job, &way);
     shade->hidden = hidden_in(shade->visible, job->first, job->end);
 }
 
-static const struct rf_lamp_shade *shade_of(struct rf_lamp_sights *tile,
-                                            const struct rf_disc_job *job,
-                                            const struct rf_seen *run, int slab)
+static const struct rf_shade *shade_of(struct rf_visibility *tile, const struct rf_disc_job *job,
+                                       const struct rf_splat_run *run, int slab)
 {
-    const struct rf_lamp_look wanted = {*run, job->first, job->end, slab};
+    const struct rf_look_at wanted = {*run, job->first, job->end, slab};
     const int centre = tile->slab[slab].centre;
     const bool kept = 4 * abs(centre) <= run->radius; /* else it serves for no other row */
-    struct rf_lamp_shade *shade = &tile->other;
+    struct rf_shade *shade = &tile->other;
 
     for (int i = 0; kept && i < RF_SHADES && i < tile->count; i++)
         if (serves(&tile->shade[i].look, &wanted, centre))
@@ -272,9 +275,9 @@ static const struct rf_lamp_shade *shade_of(struct rf_lamp_sights *tile,
     return shade;
 }
 
-/* What is seen past a further slab. */
-static void see_past(struct rf_lamp_sights *tile, struct rf_disc_job *job,
-                     const struct rf_lamp_shade *shade)
+/* Takes from what is visible so far what a further slab hides. */
+static void see_past(struct rf_visibility *tile, struct rf_disc_job *job,
+                     const struct rf_shade *shade)
 {
     for (int side = 0; side < 2; side++) {
         const int first = RF_TILE * (RF_TILE * side + job->first);
@@ -291,20 +294,20 @@ static void see_past(struct rf_lamp_sights *tile, struct rf_disc_job *job,
     job->visible = tile->visible;
 }
 
-static bool is_nearer(const struct rf_slab *slab, const struct rf_seen *run)
+static bool is_nearer(const struct rf_slab *slab, const struct rf_splat_run *run)
 {
     return slab->low <= run->blur - NEARER;
 }
 
-enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights, const struct rf_disc_job *job,
-                              const struct rf_seen *run, uint64_t *clear)
+enum rf_hidden rf_run_hidden(const struct rf_visibility *tile, const struct rf_disc_job *job,
+                             const struct rf_splat_run *run, uint64_t *clear)
 {
     enum rf_hidden hidden = RF_HIDDEN_NOWHERE;
 
     *clear = 0;
-    for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {
-        const struct screen screen = screen_of(&sights->slab[k], run);
-        const enum rf_hidden by = hidden_by(&screen, sights, run, job);
+    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run); k++) {
+        const struct screen screen = screen_of(&tile->slab[k], run);
+        const enum rf_hidden by = hidden_by(&screen, tile, run, job);
 
         if (by == RF_HIDDEN_WHOLLY)
             return by;
@@ -316,20 +319,20 @@ enum rf_hidden rf_lamp_hidden(const struct rf_lamp_sights *sights, const struct 
     return hidden;
 }
 
-bool rf_sees_lamp(struct rf_lamp_sights *sights, struct rf_disc_job *job, const struct rf_seen *run,
-                  uint64_t clear)
+bool rf_run_visible(struct rf_visibility *tile, struct rf_disc_job *job,
+                    const struct rf_splat_run *run, uint64_t clear)
 {
     job->visible = NULL;
-    for (int k = 0; k < sights->slabs && is_nearer(&sights->slab[k], run); k++) {
-        const struct rf_lamp_shade *shade;
+    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run); k++) {
+        const struct rf_shade *shade;
 
         if (k < 64 && clear >> k & 1)
             continue;
-        shade = shade_of(sights, job, run, k);
+        shade = shade_of(tile, job, run, k);
         if (shade->hidden == RF_HIDDEN_WHOLLY)
             return false;
         if (shade->hidden == RF_HIDDEN_PARTLY)
-            see_past(sights, job, shade);
+            see_past(tile, job, shade);
     }
     return true;
 }

@@ -1,27 +1,27 @@
-/* Lamps that are drawn: even discs, hidden where rays say so, of the light that rays
- * would meet. */
+/* test_splat.c: highlights that are splatted are even discs, hidden where rays say so, of the light
+ * that rays would meet. */
 #include "pictures.h"
 #include "things.h"
 
-enum { AROUND = 30 }; /* codes, where there is no lamp */
+enum { AROUND = 30 }; /* codes, where there is no highlight */
 enum { W = 160, H = 144, CX = W / 2, CY = H / 2 };
 enum { BEHIND = 6554 }; /* 12 pixels of blur behind the focus at 0.5 */
 
-/* Openings: so many blades, 0: round, or these. */
+/* Apertures: so many blades, 0: round, or these. */
 enum { HEART = -1, STAR = -2 };
 
-/* One that is turned. Its lamps are drawn, but with a hole rays meet them. */
-static struct refocus_aperture *make_opening(int opening, bool met)
+/* An aperture that is turned. Highlights are splatted through it, but gathered if it has a hole. */
+static struct refocus_aperture *make_aperture(int blades, bool gathered)
 {
     struct refocus_aperture_params params = refocus_aperture_params_default();
     struct refocus_aperture *aperture;
 
-    params.blades = opening > 0 ? opening : 0;
-    params.figure = opening == HEART  ? REFOCUS_FIGURE_HEART
-                    : opening == STAR ? REFOCUS_FIGURE_STAR
-                                      : REFOCUS_FIGURE_NONE;
+    params.blades = blades > 0 ? blades : 0;
+    params.figure = blades == HEART  ? REFOCUS_FIGURE_HEART
+                    : blades == STAR ? REFOCUS_FIGURE_STAR
+                                     : REFOCUS_FIGURE_NONE;
     params.rotation_deg = 17;
-    params.hole = met ? 0.02 : 0;
+    params.hole = gathered ? 0.02 : 0;
     assert_int_equal(refocus_aperture_create(&aperture, &params), REFOCUS_OK);
     return aperture;
 }
@@ -50,7 +50,7 @@ static void render_green(struct refocus_renderer *renderer, int blur, int rays, 
         green[i] = out[3 * i + 1];
 }
 
-/* A lamp of 2 half + 1 pixels at (x, y) is one even disc: what it adds to codes that
+/* A highlight of 2 half + 1 pixels at (x, y) is one even disc: what it adds to codes that
  * are all AROUND differs by an eighth inside, and is nothing outside. */
 static void expect_disc(const int green[W * H], double x, double y, int half, double radius)
 {
@@ -73,7 +73,7 @@ static void expect_disc(const int green[W * H], double x, double y, int half, do
                  most);
 }
 
-/* A small lamp before or behind the focus is one even disc with a crisp rim, of few
+/* A small highlight before or behind the focus is one even disc with a crisp rim, of few
  * rays and of many. */
 static void discs(void **state)
 {
@@ -99,8 +99,8 @@ static void discs(void **state)
     }
 }
 
-/* A lamp on a slanted wall is, too: a tile's slabs are wide where the wall is that much
- * out of focus, and what is about as near as the lamp does not hide it. */
+/* A highlight on a slanted wall is, too: a tile's slabs are wide where the wall is that much
+ * out of focus, and what is about as near as the highlight does not hide it. */
 static void slanted(void **state)
 {
     struct refocus_renderer *renderer;
@@ -123,14 +123,14 @@ static void slanted(void **state)
     }
 }
 
-/* Lamps behind a post: in focus it keeps its codes, and what is nearer cuts discs off
- * where rays say so, too; of a round opening, of one of five blades, which has no two
+/* Highlights behind a post: in focus it keeps its codes, and what is nearer cuts discs off
+ * where rays say so, too; of a round aperture, of one of five blades, which has no two
  * sides alike, and of figures whose rows are several chords. */
-static void expect_hidden(uint16_t post, int opening)
+static void expect_hidden(uint16_t post, int shape)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){30, 30, 30}, BEHIND);
-    struct refocus_aperture *drawn = make_opening(opening, false),
-                            *met = make_opening(opening, true);
+    struct refocus_aperture *splatted = make_aperture(shape, false),
+                            *gathered = make_aperture(shape, true);
     int green[4][W * H];
     struct refocus_renderer *renderer;
     double light = 0, off = 0;
@@ -145,7 +145,7 @@ static void expect_hidden(uint16_t post, int opening)
         }
     renderer = prepared(&p, 30, 2);
     for (int k = 0; k < 4; k++)
-        render_green(renderer, 30, 192, k % 2 ? 6 : 1, k < 2 ? drawn : met, green[k]);
+        render_green(renderer, 30, 192, k % 2 ? 6 : 1, k < 2 ? splatted : gathered, green[k]);
     for (int i = 0; i < W * H; i++) {
         const double own = picture_light(green[1][i]) - picture_light(green[0][i]);
         const double of_rays = picture_light(green[3][i]) - picture_light(green[2][i]);
@@ -156,10 +156,10 @@ static void expect_hidden(uint16_t post, int opening)
         off += (own - of_rays) * (own - of_rays);
     }
     if (off > 0.03 * light || light == 0)
-        fail_msg("opening %d, a post at %u: rays do not meet %.3f of what is drawn", opening, post,
-                 off / light);
-    refocus_aperture_destroy(&drawn);
-    refocus_aperture_destroy(&met);
+        fail_msg("aperture %d, a post at %u: rays do not gather %.3f of what is splatted", shape,
+                 post, off / light);
+    refocus_aperture_destroy(&splatted);
+    refocus_aperture_destroy(&gathered);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
 }
@@ -179,9 +179,9 @@ static void hidden(void **state)
 
 /* Light of each channel, at a gain of 4, through such an iris, of what there is
  * without. */
-static void gained(struct refocus_renderer *renderer, int opening, bool met, double times[3])
+static void gained(struct refocus_renderer *renderer, int shape, bool gathered, double times[3])
 {
-    struct refocus_aperture *aperture = make_opening(opening, met);
+    struct refocus_aperture *aperture = make_aperture(shape, gathered);
     double light[2][3] = {{0}};
 
     for (int k = 0; k < 2; k++) {
@@ -196,27 +196,27 @@ static void gained(struct refocus_renderer *renderer, int opening, bool met, dou
     refocus_aperture_destroy(&aperture);
 }
 
-/* About as much whichever way lamps go. */
+/* About as much whichever way highlights go. */
 static void ways(void **state)
 {
-    const struct thing lamp = {ELLIPSE, 6, 5, {12, 6, 1.5}};
+    const struct thing highlight = {ELLIPSE, 6, 5, {12, 6, 1.5}};
     struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
     struct refocus_renderer *renderer;
 
     (void)state;
-    draw_thing(&p, &lamp, CX + 0.3, CY - 0.2);
+    draw_thing(&p, &highlight, CX + 0.3, CY - 0.2);
     renderer = prepared(&p, 30, 2);
     for (int k = 0; k < 4; k++) {
-        static const int openings[] = {0, 6, HEART, STAR};
-        double drawn[3], met[3];
+        static const int shapes[] = {0, 6, HEART, STAR};
+        double splatted[3], gathered[3];
 
-        gained(renderer, openings[k], false, drawn);
-        gained(renderer, openings[k], true, met);
+        gained(renderer, shapes[k], false, splatted);
+        gained(renderer, shapes[k], true, gathered);
         for (int c = 0; c < 3; c++)
-            if (fabs(drawn[c] - met[c]) > 0.05 * met[c])
-                fail_msg("opening %d: channel %d has %.3f times its light drawn, %.3f "
-                         "met by rays",
-                         openings[k], c, drawn[c], met[c]);
+            if (fabs(splatted[c] - gathered[c]) > 0.05 * gathered[c])
+                fail_msg("aperture %d: channel %d has %.3f times its light splatted, %.3f "
+                         "gathered",
+                         shapes[k], c, splatted[c], gathered[c]);
     }
     refocus_renderer_destroy(&renderer);
     picture_free(&p);

@@ -1,31 +1,28 @@
-/* star.c: spikes of a star filter.
+/* star.c: adds the spikes of a star filter to highlights.
  *
- * Each lamp has `star_spikes` spikes that together carry `star_strength` of its light,
+ * Each highlight has `star_spikes` spikes that together carry `star_strength` of its light,
  * on top of it. Along a spike of length L light falls by 3 / L (1 - l / L)^2, across it
- * by 3 / 4b (1 - (w / b)^2), b the lamp's blur radius, at least 3/4 pixel: the spike of
- * a lamp that is out of focus is as wide as its disc. The filter is before the lens:
+ * by 3 / 4b (1 - (w / b)^2), b the highlight's blur radius, at least 3/4 pixel: the spike of
+ * a highlight that is out of focus is as wide as its disc. The filter is before the lens:
  * nothing hides a spike.
  */
-#include "finish/finish.h"
+#include "look/look.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "aperture/aperture.h"
-#include "gather/frame.h"
-#include "image/viewport.h"
-#include "renderer/renderer.h"
 
 enum { LANES = RF_TILE * RF_TILE };
 
-/* A star that a pixel touches, of the last ones: pixels come row by row. */
-static struct rf_star *touched(struct refocus_renderer *r, int x, int y)
+/* The star that a pixel touches, of the last ones, as pixels come row by row; NULL: none. */
+static struct rf_star *touched(const struct rf_stars *stars, int x, int y)
 {
     enum { LOOK_BACK = 512 };
 
-    for (int i = r->stars - 1; i >= 0 && i >= r->stars - LOOK_BACK; i--) {
-        struct rf_star *star = &r->star[i];
+    for (int i = stars->count - 1; i >= 0 && i >= stars->count - LOOK_BACK; i--) {
+        struct rf_star *star = &stars->star[i];
 
         if (x >= star->x0 - 1 && x <= star->x1 + 1 && y <= star->y1 + 1)
             return star;
@@ -33,63 +30,64 @@ static struct rf_star *touched(struct refocus_renderer *r, int x, int y)
     return NULL;
 }
 
-static struct rf_star *new_star(struct refocus_renderer *r, int x, int y)
+static struct rf_star *new_star(struct rf_stars *stars, int x, int y)
 {
     struct rf_star *star;
 
-    if (r->stars == RF_MOST_STARS)
+    if (stars->count == RF_MOST_STARS)
         return NULL;
-    star = &r->star[r->stars++];
+    star = &stars->star[stars->count++];
     *star = (struct rf_star){.x0 = x, .x1 = x, .y1 = y};
     return star;
 }
 
-/* Pixel i of a lamp: one more of a star, whose place becomes the middle of them all. What a lamp
- * lost, a third of `added`, is its hue at white. */
-static void add_pixel(const struct rf_frame *f, const struct rf_highlight *lamp, int i,
+/* Adds pixel i of a highlight to a star, whose place becomes the middle of all its pixels. A third
+ * of `boost` is the highlight's hue at white. */
+static void add_pixel(const struct rf_look *look, const struct rf_highlight *run, int i,
                       struct rf_star *star)
 {
-    const uint32_t times = (uint32_t)floorf(f->params->highlight_gain * 256 + 0.5f);
-    const int x = lamp->x + i;
+    const uint32_t times = (uint32_t)floorf(look->params->highlight_gain * 256 + 0.5f);
+    const int x = run->x + i;
     int16_t signed_blur;
     int blur;
 
-    rf_blurs_at(f, x, lamp->y, 1, 1, &signed_blur);
+    rf_blurs_at(look, x, run->y, 1, 1, &signed_blur);
     blur = abs(signed_blur);
     star->x0 = x < star->x0 ? x : star->x0;
     star->x1 = x > star->x1 ? x : star->x1;
-    star->y1 = lamp->y;
+    star->y1 = run->y;
     for (int c = 0; c < 3; c++)
-        star->light[c] += lamp->added[c] * times / (3 * 256);
+        star->light[c] += run->boost[c] * times / (3 * 256);
     star->blur = blur > star->blur ? blur : star->blur;
     star->x += x;
-    star->y += lamp->y;
+    star->y += run->y;
     star->pixels++;
 }
 
-void rf_find_stars(struct rf_frame *f)
+void rf_find_stars(const struct rf_look *look)
 {
-    struct refocus_renderer *r = f->r;
-    const struct rf_photo *photo = &r->photo;
+    struct rf_stars *stars = look->stars;
 
-    r->stars = 0;
-    for (int part = 0; part < rf_lamp_parts(photo->height); part++) {
-        for (uint32_t i = 0; i < photo->highlights[part].count; i++) {
-            const struct rf_highlight *lamp = &photo->highlights[part].lamp[i];
+    stars->count = 0;
+    for (int part = 0; part < RF_HIGHLIGHT_PARTS; part++) {
+        const struct rf_highlight_list *list = &look->highlights->part[part];
 
-            if (rf_cancelled_at(&r->exec, i))
+        for (uint32_t i = 0; i < list->count; i++) {
+            const struct rf_highlight *run = &list->run[i];
+
+            if (rf_cancelled_at(look->exec, i))
                 return;
-            for (int k = 0; k < lamp->count; k++) {
-                struct rf_star *star = touched(r, lamp->x + k, lamp->y);
+            for (int k = 0; k < run->count; k++) {
+                struct rf_star *star = touched(stars, run->x + k, run->y);
 
-                star = star ? star : new_star(r, lamp->x + k, lamp->y);
+                star = star ? star : new_star(stars, run->x + k, run->y);
                 if (star)
-                    add_pixel(f, lamp, k, star);
+                    add_pixel(look, run, k, star);
             }
         }
     }
-    for (int i = 0; i < r->stars; i++) {
-        struct rf_star *star = &r->star[i];
+    for (int i = 0; i < stars->count; i++) {
+        struct rf_star *star = &stars->star[i];
 
         star->x = (16 * star->x + star->pixels / 2) / star->pixels;
         star->y = (16 * star->y + star->pixels / 2) / star->pixels;
@@ -120,7 +118,7 @@ static struct spikes spikes_of(const struct refocus_render_params *p)
     return spikes;
 }
 
-/* Q16 of the light of a spike at a place along and across it, Q8 pixels. */
+/* How dense the light of a spike is at a place along and across it, Q8 pixels: Q16 of it. */
 static int64_t density(int64_t along, int64_t across, int64_t length, int64_t wide)
 {
     const int64_t left = ((length - along) << 16) / length; /* Q16 */
@@ -154,17 +152,17 @@ static void add_star(const struct rf_star *star, const struct spikes *spikes, in
     }
 }
 
-/* Add Q20 light to encoded pixels. */
-static void add_light(const struct rf_frame *f, struct rf_rect rect, int64_t sum[3][LANES])
+/* Adds Q20 light to encoded pixels. */
+static void add_light(const struct rf_transfer *transfer, const struct rf_canvas *canvas,
+                      struct rf_rect rect, int64_t sum[3][LANES])
 {
-    const struct rf_transfer *transfer = &f->r->transfer[f->r->blend];
 
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
             const int i = y % RF_TILE * RF_TILE + x % RF_TILE;
             uint8_t *code[3];
 
-            rf_pixel_codes(f, x, y, code);
+            rf_codes_at(canvas, x, y, code);
             for (int c = 0; c < 3; c++) {
                 const int64_t mean =
                     4 * (int64_t)transfer->to_light[*code[c]] + ((sum[c][i] + (1 << 5)) >> 6);
@@ -176,21 +174,20 @@ static void add_light(const struct rf_frame *f, struct rf_rect rect, int64_t sum
     }
 }
 
-void rf_add_stars(const struct rf_frame *f, struct rf_rect rect)
+void rf_add_stars(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect)
 {
-    const struct refocus_renderer *r = f->r;
-    /* of the tile, in the photo */
-    const int x0 = r->view.x0 + rect.x0 / RF_TILE * RF_TILE;
-    const int y0 = r->view.y0 + rect.y0 / RF_TILE * RF_TILE;
-    const struct spikes spikes = spikes_of(f->params);
+    /* the tile's first pixel, in the photo */
+    const int x0 = canvas->view->x0 + rect.x0 / RF_TILE * RF_TILE;
+    const int y0 = canvas->view->y0 + rect.y0 / RF_TILE * RF_TILE;
+    const struct spikes spikes = spikes_of(look->params);
     int64_t sum[3][LANES];
     bool any = false;
 
     if (spikes.length == 0)
         return;
     memset(sum, 0, sizeof sum);
-    for (int i = 0; i < r->stars; i++) {
-        const struct rf_star *star = &r->star[i];
+    for (int i = 0; i < look->stars->count; i++) {
+        const struct rf_star *star = &look->stars->star[i];
         const int reach = (int)(spikes.length + star->blur) / 256 + 2;
         const int x = (int)(star->x / 16), y = (int)(star->y / 16);
 
@@ -201,5 +198,5 @@ void rf_add_stars(const struct rf_frame *f, struct rf_rect rect)
         any = true;
     }
     if (any)
-        add_light(f, rect, sum);
+        add_light(look->photo.transfer, canvas, rect, sum);
 }

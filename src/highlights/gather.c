@@ -1,0 +1,254 @@
+/* gather.c: leaves highlights to the rays, where they are not splatted: makes sure that rays meet
+ * them, and gives the light that rays meet what clipping cost. */
+#include "highlights/highlights.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "highlights/clipped.h"
+#include "highlights/in_window.h"
+#include "highlights/patch.h"
+#include "tiles/ranges.h"
+#include "tiles/tiles.h"
+
+enum {
+    WIDEST = 3,    /* pixels that a highlight is widened by */
+    BLURRED = 512, /* Q7.8: what it may be widened over, */
+    ALIKE = 256, /* if it is farther away than that: else the pre-filter takes it for the same; and
+                    how much blurs may differ that a highlight's light is spread over */
+    DOTS = 2,    /* gaps of the rays that a highlight has to be wide not to show as dots */
+    PLACES = (2 * WIDEST + 1) * (2 * WIDEST + 1), /* that its light is spread over at most */
+};
+
+/* The inputs of the three steps, of which each uses some. */
+struct gather {
+    const struct rf_executor *exec;
+    const struct rf_highlight_window *window;
+    double gap;                                   /* of the rays, times the blur */
+    const struct rf_blur_patch *patch;            /* widen */
+    const struct rf_foreground_cells *foreground; /* raise */
+    struct rf_light_q12 light;                    /* boost: what rays meet, */
+    int share;                                    /* of what clipping cost, Q8, */
+    int most;                                     /* and the light that there may be */
+};
+
+/* Calls `then` for each run of a part; ends early when the run is cancelled. */
+static void for_each(const struct gather *g, int part,
+                     void (*then)(const struct gather *g, const struct rf_highlight *run))
+{
+    const struct rf_highlight_list *list = &g->window->highlights->part[part];
+
+    for (uint32_t i = 0; i < list->count; i++) {
+        if (rf_cancelled_at(g->exec, i))
+            return;
+        then(g, &list->run[i]);
+    }
+}
+
+static int blur_at(const struct gather *g, int x, int y)
+{
+    return g->window->blur.at[y * g->window->blur.stride + x];
+}
+
+/* Half a gap of the rays at a blur, in pixels. */
+static int reach_of(int blur, double gap)
+{
+    const int half = (int)(gap * abs(blur) / 512);
+
+    return half < WIDEST ? half : WIDEST;
+}
+
+/*
+ * Rays whose gaps are wider than a highlight would show it as a disc of dots. What is around
+ * it within half a gap, farther away and blurred itself, takes its blur: then the pre-filter
+ * spreads its light over that.
+ */
+static void widen_pixel(const struct gather *g, int cx, int cy)
+{
+    const struct rf_viewport *view = g->window->view;
+    const int16_t own = (int16_t)blur_at(g, cx, cy);
+    const int reach = reach_of(own, g->gap);
+
+    for (int y = cy - reach; y <= cy + reach; y++) {
+        for (int x = cx - reach; x <= cx + reach; x++) {
+            const int dx = x - cx, dy = y - cy;
+
+            if (x < 0 || y < 0 || x >= view->width || y >= view->height ||
+                dx * dx + dy * dy > reach * reach + 1)
+                continue;
+            if (blur_at(g, x, y) > own + ALIKE && abs(blur_at(g, x, y)) > BLURRED)
+                rf_set_blur(g->patch, x, y, own);
+        }
+    }
+}
+
+/* Notes highlights that rays lie so far apart at that few meet them, and show them as dots. */
+static void note_dots(const struct gather *g, const struct rf_highlight *run)
+{
+    const struct rf_highlight_window *w = g->window;
+    const double dots = run->size * 256 / (DOTS * g->gap); /* from this blur on */
+
+    for (int i = 0, x, y; i < run->count; i++) {
+        struct rf_bins *bins;
+        int blur;
+
+        if (!rf_place_in(w->view, run, i, &x, &y) || rf_is_edge(run, i))
+            continue;
+        bins = &w->bins[(size_t)(y / RF_TILE) * w->view->tiles_x + x / RF_TILE];
+        blur = abs(blur_at(g, x, y));
+        if (blur > dots && blur > bins->dots)
+            bins->dots = (int16_t)blur;
+    }
+}
+
+static void widen_run(const struct gather *g, const struct rf_highlight *run)
+{
+    const struct rf_highlight_window *w = g->window;
+    const struct rf_blur_extent near =
+        rf_blur_extent(&w->blur, rf_around_run(w->view, run, WIDEST));
+
+    if (near.most - near.least <= ALIKE)
+        return;
+    for (int i = 0, x, y; i < run->count; i++)
+        if (rf_place_in(w->view, run, i, &x, &y) && !rf_is_edge(run, i) &&
+            near.most > blur_at(g, x, y) + ALIKE)
+            widen_pixel(g, x, y);
+}
+
+void rf_widen_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                         const struct rf_blur_patch *patch, double gap)
+{
+    const struct gather g = {.exec = exec, .window = window, .gap = gap, .patch = patch};
+    const struct rf_highlight_parts parts = rf_parts_in(window->view);
+
+    for (int i = 0; i < parts.count; i++) {
+        for_each(&g, parts.first + i, note_dots);
+        for_each(&g, parts.first + i, widen_run);
+    }
+}
+
+static void raise_run(const struct gather *g, const struct rf_highlight *run)
+{
+    for (int i = 0, x, y; i < run->count; i++) {
+        int reach;
+
+        if (!rf_place_in(g->window->view, run, i, &x, &y) || rf_is_edge(run, i))
+            continue;
+        reach = 1 + reach_of(blur_at(g, x, y), g->gap);
+        rf_put_in_front(g->window->view, g->foreground,
+                        (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
+    }
+}
+
+void rf_raise_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                         const struct rf_foreground_cells *foreground, double gap)
+{
+    const struct gather g = {.exec = exec, .window = window, .gap = gap, .foreground = foreground};
+    const struct rf_highlight_parts parts = rf_parts_in(window->view);
+
+    for (int i = 0; i < parts.count; i++)
+        for_each(&g, parts.first + i, raise_run);
+}
+
+/* The light that pixel i of a run, so blurred, gets: a share of what clipping cost, Q8 of `boost`.
+ */
+static void gain_of(const struct rf_highlight *run, int i, int blur, int share, int gained[3])
+{
+    /* from half a pixel of blur on, all of it from one pixel and a half on */
+    const int blurred = rf_is_edge(run, i) ? 0 : rf_ramp(abs(blur), 128, 384);
+
+    for (int c = 0; c < 3; c++)
+        gained[c] = (((run->boost[c] * share) >> 8) * blurred) >> 8;
+}
+
+/* Lists places within `reach` of (cx, cy) that have its blur; it itself at least. */
+static int places_of(const struct gather *g, int cx, int cy, int reach, ptrdiff_t place[PLACES])
+{
+    const struct rf_viewport *view = g->window->view;
+    const int own = blur_at(g, cx, cy);
+    int count = 0;
+
+    for (int y = cy - reach; y <= cy + reach; y++) {
+        for (int x = cx - reach; x <= cx + reach; x++) {
+            const int dx = x - cx, dy = y - cy;
+
+            if (x >= 0 && y >= 0 && x < view->width && y < view->height &&
+                dx * dx + dy * dy <= reach * reach + 1 && abs(blur_at(g, x, y) - own) <= ALIKE)
+                place[count++] = y * g->light.stride + x;
+        }
+    }
+    return count;
+}
+
+/* How far the light of a pixel is spread: of highlights that are narrower than one and a half gaps,
+ * which few rays meet, a pixel more. */
+static int spread_of(const struct rf_highlight *run, int blur, double gap)
+{
+    const int reach = reach_of(blur, gap);
+
+    return 512 * run->size < 3 * gap * abs(blur) && reach < WIDEST ? reach + 1 : reach;
+}
+
+/* Notes light in the tiles that rays meet pixels within `reach` of (x, y) from: their sums have to
+ * hold it. */
+static void note_light(const struct rf_highlight_window *w, int x, int y, int reach, int light)
+{
+    const int tx0 = rf_within(x - reach, w->view->width - 1) / RF_TILE;
+    const int tx1 = rf_within(x + reach, w->view->width - 1) / RF_TILE;
+    const int ty0 = rf_within(y - reach, w->view->height - 1) / RF_TILE;
+    const int ty1 = rf_within(y + reach, w->view->height - 1) / RF_TILE;
+
+    for (int ty = ty0; ty <= ty1; ty++)
+        for (int tx = tx0; tx <= tx1; tx++) {
+            struct rf_bins *bins = &w->bins[(size_t)ty * w->view->tiles_x + tx];
+
+            bins->brightest = (uint16_t)(light > bins->brightest ? light : bins->brightest);
+        }
+}
+
+/* Boosts pixel i of a run. */
+static void boost_pixel(const struct gather *g, const struct rf_highlight *run, int i)
+{
+    ptrdiff_t place[PLACES];
+    int x, y, reach, places, gained[3], brightest = 0;
+
+    if (!rf_place_in(g->window->view, run, i, &x, &y))
+        return;
+    reach = spread_of(run, blur_at(g, x, y), g->gap);
+    places = places_of(g, x, y, reach, place);
+    gain_of(run, i, blur_at(g, x, y), g->share, gained);
+    for (int k = 0; k < places; k++) {
+        for (int c = 0; c < g->window->channels; c++) {
+            uint16_t *const at = g->light.channel[c] + place[k];
+            const int sum = *at + (gained[c] + places / 2) / places;
+            const int light = sum < g->most ? sum : g->most;
+
+            *at = (uint16_t)light;
+            brightest = light > brightest ? light : brightest;
+        }
+    }
+    note_light(g->window, x, y, reach, brightest);
+}
+
+static void boost_run(const struct gather *g, const struct rf_highlight *run)
+{
+    for (int i = 0; i < run->count; i++)
+        boost_pixel(g, run, i);
+}
+
+void rf_boost_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                         struct rf_light_q12 smooth, float gain, double gap, int most)
+{
+    const struct gather g = {
+        .exec = exec,
+        .window = window,
+        .gap = gap,
+        .light = smooth,
+        .share = (int)((gain - 1) * (256 / 3) + 0.5f), /* of what is three times white */
+        .most = most,
+    };
+    const struct rf_highlight_parts parts = rf_parts_in(window->view);
+
+    for (int i = 0; i < parts.count; i++)
+        for_each(&g, parts.first + i, boost_run);
+}

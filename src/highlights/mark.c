@@ -1,0 +1,206 @@
+/* mark.c: tells, for a lens setting, which pixels of highlights are but silhouettes of others, how
+ * far they are out of focus, and which rows of them are splatted as one. */
+#include "highlights/highlights.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "highlights/clipped.h"
+#include "highlights/in_window.h"
+#include "kernels/kernels.h"
+#include "support/compare.h"
+
+enum {
+    EDGE_FROM = 128,  /* Q7.8: what something bright is sharper by for this to be its edge, */
+    EDGE_PART = 16,   /* by that part of this blur at least, and wholly so by 3 times that; where
+                         highlights are gathered, by twice that */
+    DISC_EDGE = 256,  /* Q7.8: what a disc goes beyond the blur of a highlight's pixel, half a pixel
+                         at its edge and half of what blurs of a run may differ by, and some */
+    STACKED = 4096,   /* Q7.8: from this blur on two rows of a highlight are splatted as one, from
+                         twice that on four, */
+    STACK_EDGE = 512, /* which may reach farther by what rows differ by at their ends */
+};
+
+static int blur_at(const struct rf_highlight_window *w, int x, int y)
+{
+    return w->blur.at[y * w->blur.stride + x];
+}
+
+/* How much sharper than it the sharpest bright pixel beside (x, y) is, Q7.8. If by a pixel of blur,
+ * this one is the edge of that, and only its depth says otherwise. */
+static int edge_of(const struct rf_highlight_window *w, int x, int y)
+{
+    const int own = abs(blur_at(w, x, y));
+    int sharpest = own;
+
+    for (int j = -2; j <= 2; j++) {
+        for (int i = -2; i <= 2; i++) {
+            const int v = rf_within(y + j, w->view->height - 1);
+            const int u = rf_within(x + i, w->view->width - 1);
+            const int blur = abs(blur_at(w, u, v));
+
+            if (blur < sharpest &&
+                rf_brightest_at(&w->light, v * w->light.stride + u) >= RF_CLIPPED)
+                sharpest = blur;
+        }
+    }
+    return own - sharpest;
+}
+
+int rf_edge_weight(const struct rf_highlight_window *w, int x, int y)
+{
+    const int size = abs(blur_at(w, x, y));
+    const int from = rf_larger(EDGE_FROM, size / EDGE_PART);
+
+    return 256 - rf_ramp(edge_of(w, x, y), from, 3 * from);
+}
+
+/* How far the disc of a pixel so blurred may reach where it is splatted with others. */
+static int disc_reach(int size)
+{
+    return rf_smaller(size + DISC_EDGE + (size < STACKED ? 0 : STACK_EDGE), INT16_MAX);
+}
+
+static void note_reach(const struct rf_highlight_window *w, int x, int y, int reach)
+{
+    struct rf_bins *bins = &w->bins[(size_t)(y / RF_TILE) * w->view->tiles_x + x / RF_TILE];
+
+    bins->lamp = (int16_t)rf_larger(reach, bins->lamp);
+}
+
+/* The mean blur of those pixels of a run that are blurred as its middle is, if that is two thirds
+ * of its weight: the rest, its rim with the depth of what is beside it, belongs to it as well. */
+static int blur_of_most(const struct rf_highlight_window *w, const struct rf_highlight *run)
+{
+    int x, y, middle, sum = 0, weight = 0, reach;
+
+    if (!rf_place_in(w->view, run, run->count / 2, &x, &y))
+        return RF_NO_BLUR;
+    middle = blur_at(w, x, y);
+    for (int i = 0; i < run->count; i++) {
+        const int own = !rf_place_in(w->view, run, i, &x, &y) ? 0
+                        : rf_is_edge(run, i)                  ? rf_edge_weight(w, x, y)
+                                                              : 256;
+        const int blur = own ? blur_at(w, x, y) : 0;
+
+        if (own && 2 * abs(blur - middle) <= rf_alike_within(middle)) {
+            sum += own * blur;
+            weight += own;
+        }
+    }
+    if (3 * weight < 2 * run->weight || !weight)
+        return RF_NO_BLUR;
+    reach = disc_reach(abs(sum / weight));
+    for (int i = 0; i < run->count; i++)
+        if (rf_place_in(w->view, run, i, &x, &y))
+            note_reach(w, x, y, reach);
+    return sum / weight;
+}
+
+static void mark(const struct rf_highlight_window *w, struct rf_highlight *run, bool splat)
+{
+    const struct rf_blur_extent near = rf_blur_extent(&w->blur, rf_around_run(w->view, run, 2));
+    int sum = 0, weight = 0, least = INT16_MAX, most = INT16_MIN;
+
+    run->edges = 0;
+    for (int i = 0, x, y; i < run->count; i++) {
+        int blur, size, own = 256;
+
+        if (!rf_place_in(w->view, run, i, &x, &y))
+            continue;
+        blur = blur_at(w, x, y);
+        size = abs(blur);
+        if (near.sharpest < size - EDGE_FROM)
+            own = rf_edge_weight(w, x, y);
+        if (own < (splat ? 256 : 128))
+            run->edges |= (uint16_t)(1 << i);
+        if (own == 0)
+            continue;
+        note_reach(w, x, y, splat ? disc_reach(size) : size);
+        least = blur < least ? blur : least;
+        most = blur > most ? blur : most;
+        sum += own * blur;
+        weight += own;
+    }
+    run->blur = (int16_t)(weight ? sum / weight : 0);
+    run->weight = (uint16_t)weight;
+    if (most - least > rf_alike_within(least))
+        run->blur = (int16_t)(splat ? blur_of_most(w, run) : RF_NO_BLUR);
+    run->rows = 1;
+    run->below = 0;
+    run->subtracted[0] = run->subtracted[1] = run->subtracted[2] = 0;
+}
+
+static bool is_even(const struct rf_highlight *run)
+{
+    return run->rows == 1 && run->weight && run->blur != RF_NO_BLUR;
+}
+
+/* The run of the same highlight in the next row; NULL: none there is as wide and as blurred. */
+static struct rf_highlight *find_below(struct rf_highlight *run, const struct rf_highlight *end)
+{
+    const int last = run->x + run->count;
+
+    for (struct rf_highlight *under = run + 1;
+         under < end && under <= run + UINT8_MAX && under->y <= run->y + 1; under++)
+        if (under->y > run->y && is_even(under) && abs(under->x - run->x) <= 2 &&
+            abs(under->x + under->count - last) <= 2 &&
+            abs(under->blur - run->blur) <= rf_alike_within(run->blur) / 2)
+            return under;
+    return NULL;
+}
+
+/* The larger a disc, the less it shows that rows beside each other are splatted as one: which rows
+ * these are depends on where they are in the photo, not in the window. */
+static void stack(const struct rf_highlight_list *list)
+{
+    const struct rf_highlight *const end = list->run + list->count;
+
+    for (struct rf_highlight *top = list->run; top < end; top++) {
+        const int size = abs(top->blur);
+        const int most = size < STACKED ? 1 : size < 2 * STACKED ? 2 : RF_HIGHLIGHT_STACK;
+        struct rf_highlight *lowest = top, *under;
+
+        if (!is_even(top))
+            continue;
+        while ((lowest->y & (most - 1)) != most - 1 && (under = find_below(lowest, end))) {
+            lowest->below = (uint8_t)(under - lowest);
+            under->rows = 0;
+            top->rows++;
+            lowest = under;
+        }
+    }
+}
+
+struct marks {
+    const struct rf_executor *exec;
+    const struct rf_highlight_window *window;
+    int first; /* part */
+    bool splat;
+};
+
+/* A part begins with a row of tiles, so that no other one writes to the bins of its tiles. */
+static void mark_part(void *context, int item, int worker)
+{
+    const struct marks *marks = context;
+    const struct rf_highlight_list *list = &marks->window->highlights->part[marks->first + item];
+
+    (void)worker;
+    for (uint32_t i = 0; i < list->count; i++) {
+        if (rf_cancelled_at(marks->exec, i))
+            return;
+        mark(marks->window, &list->run[i], marks->splat);
+    }
+    if (marks->splat)
+        stack(list);
+}
+
+void rf_mark_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                        bool splat)
+{
+    const struct rf_highlight_parts parts = rf_parts_in(window->view);
+    struct marks marks = {exec, window, parts.first, splat};
+
+    if (rf_has_highlights(window->highlights, window->view))
+        rf_pool_run(exec->pool, mark_part, &marks, parts.count);
+}

@@ -1,0 +1,281 @@
+/* silhouette.c: gives pixels at the silhouette of something bright the depth that they belong to.
+ */
+#include "highlights/highlights.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "focus/focus.h"
+#include "highlights/clipped.h"
+#include "highlights/patch.h"
+#include "kernels/kernels.h"
+#include "support/places.h"
+
+enum {
+    JUMP = 65535 / 32,             /* disparities this far apart are two surfaces */
+    LEVEL = RF_LIGHT_MAX * 9 / 10, /* clipped, or nearly */
+    CONTRAST = RF_LIGHT_MAX / 2,   /* least |N - F| */
+    DARK = RF_LIGHT_MAX / 2,
+    AROUND = 6, /* pixels on each side that tell whose light it is */
+    FAR = 3,
+};
+
+static bool is_bright(const struct rf_silhouette_window *w, ptrdiff_t at)
+{
+    return rf_brightest_at(&w->light, at) >= LEVEL;
+}
+
+/* Whether pixel (x, y) is a mixture with the bright, nearer pixel at n. */
+static bool is_mixture(const struct rf_silhouette_window *w, int x, int y, ptrdiff_t n)
+{
+    const ptrdiff_t p = y * w->light.stride + x;
+    const int middle = (w->disparity.at[p] + w->disparity.at[n]) / 2;
+    int64_t sum[3] = {0, 0, 0}, along = 0, contrast = 0, own = 0;
+    int count = 0;
+
+    for (int j = -2; j <= 2; j++) {
+        for (int i = -2; i <= 2; i++) {
+            const ptrdiff_t q = rf_within(y + j, w->view->height - 1) * w->light.stride +
+                                rf_within(x + i, w->view->width - 1);
+
+            if ((i > -2 && i < 2 && j > -2 && j < 2) || w->disparity.at[q] > middle)
+                continue;
+            count++;
+            for (int c = 0; c < 3; c++)
+                sum[c] += w->light.channel[c][q];
+        }
+    }
+    if (!count)
+        return false;
+    for (int c = 0; c < 3; c++) {
+        const int64_t far = sum[c] / count, near = w->light.channel[c][n];
+
+        along += (w->light.channel[c][p] - far) * (near - far);
+        contrast += (near - far) * (near - far);
+        own += w->light.channel[c][p] * (near - far);
+    }
+    return contrast >= (int64_t)CONTRAST * CONTRAST && 20 * along > contrast && 5 * along > 2 * own;
+}
+
+static void add(const struct rf_silhouette_window *w, struct rf_silhouettes *list, int x, int y,
+                uint16_t disparity)
+{
+    const struct rf_silhouette pixel = {(uint16_t)(x + w->view->x0), (uint16_t)(y + w->view->y0),
+                                        disparity};
+
+    rf_add_place(list->pixel, &list->count, list->capacity, &pixel, sizeof pixel);
+}
+
+/* Whether a bright pixel farther than `own` has none of that depth beside it: it is nobody's
+ * silhouette. */
+static bool is_apart(const struct rf_silhouette_window *w, int x, int y, int own)
+{
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            const ptrdiff_t q = rf_within(y + j, w->view->height - 1) * w->light.stride +
+                                rf_within(x + i, w->view->width - 1);
+
+            if (abs(w->disparity.at[q] - own) <= JUMP && is_bright(w, q))
+                return false;
+        }
+    return true;
+}
+
+/* Whether there are bright pixels that are farther. */
+static bool has_far(const struct rf_silhouette_window *w, struct rf_rect in, int own)
+{
+    for (int y = in.y0; y < in.y1; y++)
+        for (int x = in.x0; x < in.x1; x++)
+            if (w->disparity.at[y * w->light.stride + x] < own - JUMP &&
+                is_bright(w, y * w->light.stride + x))
+                return true;
+    return false;
+}
+
+/* Whether half as many pixels there as are bright at that depth are dark at it, and there are
+ * bright ones that are farther. */
+static bool may_be_behind(const struct rf_silhouette_window *w, struct rf_rect in, int own)
+{
+    int dark = 0, bright = 0, far = 0;
+
+    for (int y = in.y0; y < in.y1; y++)
+        for (int x = in.x0; x < in.x1; x++) {
+            const ptrdiff_t q = y * w->light.stride + x;
+            const int away = w->disparity.at[q] - own, light = rf_brightest_at(&w->light, q);
+
+            dark += light < DARK && abs(away) <= JUMP;
+            bright += light >= LEVEL && abs(away) <= JUMP;
+            far += light >= LEVEL && away < -JUMP;
+        }
+    return far >= FAR && 2 * dark >= bright;
+}
+
+/* Whether the bright pixel (x, y) is of something farther, whose disparity it gets. */
+static bool is_behind(const struct rf_silhouette_window *w, int x, int y, uint16_t *disparity)
+{
+    const int own = w->disparity.at[y * w->light.stride + x];
+    const struct rf_rect in = rf_around(w->view, x, y, AROUND);
+    int far = 0, behind = 0;
+
+    if (!has_far(w, rf_around(w->view, x, y, 1), own) || !may_be_behind(w, in, own))
+        return false;
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++) {
+            const ptrdiff_t q = py * w->light.stride + px;
+            const int d = w->disparity.at[q];
+
+            if (d >= own - JUMP || !is_bright(w, q) || !is_apart(w, px, py, own))
+                continue;
+            far++;
+            behind = d > behind ? d : behind;
+        }
+    *disparity = (uint16_t)behind;
+    return far >= FAR;
+}
+
+/* Whether pixel (x, y) is the silhouette of the one at n. */
+static bool is_silhouette(const struct rf_silhouette_window *w, int x, int y, ptrdiff_t n)
+{
+    return w->disparity.at[y * w->light.stride + x] + JUMP < w->disparity.at[n] &&
+           is_bright(w, n) && is_mixture(w, x, y, n);
+}
+
+/* Whether it is the silhouette of one that is nearer than n, or as near and before it. */
+static bool has_other(const struct rf_silhouette_window *w, int x, int y, ptrdiff_t n)
+{
+    const struct rf_rect in = rf_around(w->view, x, y, 1);
+
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++) {
+            const ptrdiff_t q = py * w->light.stride + px;
+
+            if ((w->disparity.at[q] > w->disparity.at[n] ||
+                 (w->disparity.at[q] == w->disparity.at[n] && q < n)) &&
+                is_silhouette(w, x, y, q))
+                return true;
+        }
+    return false;
+}
+
+/* Adds the silhouette around a bright pixel beside something much farther: the pixels of which no
+ * other bright pixel comes first. */
+static void find_around(const struct rf_silhouette_window *w, int x, int y,
+                        struct rf_silhouettes *list)
+{
+    const ptrdiff_t n = y * w->light.stride + x;
+    const struct rf_rect in = rf_around(w->view, x, y, 1);
+    uint16_t behind;
+
+    if (is_behind(w, x, y, &behind)) {
+        if (!has_other(w, x, y, n)) /* else it is a silhouette itself */
+            add(w, list, x, y, behind);
+        return;
+    }
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++)
+            if (is_silhouette(w, px, py, n) && !has_other(w, px, py, n))
+                add(w, list, px, py, w->disparity.at[n]);
+}
+
+enum { RUN = 32 }; /* most runs of pixels hold nothing bright at a jump */
+
+/* Copies disparities of a row in a run, and one on each side. They are made signed, as baseline x86
+ * has signed 16-bit extremes only. */
+static void copy_row(const struct rf_silhouette_window *w, int x0, int y, int16_t row[RUN + 2])
+{
+    const uint16_t *d = w->disparity.at + rf_within(y, w->view->height - 1) * w->light.stride;
+
+    if (x0 > 0 && x0 + RUN < w->view->width)
+        for (int i = 0; i < RUN + 2; i++)
+            row[i] = (int16_t)(d[x0 - 1 + i] ^ 0x8000);
+    else
+        for (int i = 0; i < RUN + 2; i++)
+            row[i] = (int16_t)(d[rf_within(x0 - 1 + i, w->view->width - 1)] ^ 0x8000);
+}
+
+static inline int16_t min16(int16_t a, int16_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Pixels of a run that have something much farther beside them, a bit each. */
+static uint32_t find_jumps(const struct rf_silhouette_window *w, int x0, int y)
+{
+    int16_t above[RUN + 2], own[RUN + 2], below[RUN + 2], least[RUN + 2];
+    uint8_t jump[RUN];
+    uint32_t bits = 0, any = 0;
+
+    copy_row(w, x0, y - 1, above);
+    copy_row(w, x0, y, own);
+    copy_row(w, x0, y + 1, below);
+    for (int i = 0; i < RUN + 2; i++)
+        least[i] = min16(own[i], min16(above[i], below[i]));
+    for (int i = 0; i < RUN; i++) {
+        const int16_t l = min16(least[i + 1], min16(least[i], least[i + 2]));
+
+        jump[i] = (uint16_t)(own[i + 1] - l) > JUMP;
+    }
+    for (int i = 0; i < RUN; i++)
+        any |= jump[i];
+    for (int i = 0; any && i < RUN; i++)
+        bits |= (uint32_t)jump[i] << i;
+    return bits;
+}
+
+void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhouette_window *w,
+                         struct rf_rect part, struct rf_silhouettes *silhouettes)
+{
+    uint16_t *const *const light = w->light.channel;
+
+    for (int y = part.y0; y < part.y1; y++) {
+        const ptrdiff_t row = y * w->light.stride;
+
+        if (rf_cancelled(exec))
+            return;
+        for (int x0 = part.x0; x0 < part.x1; x0 += RUN) {
+            const int n = part.x1 - x0 < RUN ? part.x1 - x0 : RUN;
+            const ptrdiff_t at = row + x0;
+            uint32_t bits;
+
+            if (exec->kernels->brightest(light[0] + at, light[1] + at, light[2] + at, n) < LEVEL)
+                continue;
+            bits = find_jumps(w, x0, y) & (UINT32_MAX >> (RUN - n));
+            if (bits && rf_cancelled(exec))
+                return;
+            for (; bits; bits &= bits - 1) {
+                const int x = x0 + __builtin_ctz(bits);
+
+                if (is_bright(w, row + x))
+                    find_around(w, x, y, silhouettes);
+            }
+        }
+    }
+}
+
+void rf_patch_silhouettes(const struct rf_executor *exec, const struct rf_silhouettes *silhouettes,
+                          const struct rf_focus_plan *plan, const struct rf_blur_patch *patch)
+{
+    const struct rf_viewport *view = patch->view;
+
+    for (uint32_t i = 0; i < silhouettes->count; i++) {
+        const struct rf_silhouette *pixel = &silhouettes->pixel[i];
+        const int x = pixel->x - view->x0, y = pixel->y - view->y0;
+        int16_t blur;
+
+        if (i % 1024 == 0 && rf_cancelled(exec))
+            return;
+        if (x < 0 || y < 0 || x >= view->width || y >= view->height)
+            continue;
+        rf_focus_row(plan, &blur, &pixel->disparity, pixel->x, pixel->y, 1);
+        rf_set_blur(patch, x, y, blur);
+    }
+}
+
+void rf_take_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena, int max_width,
+                         int max_height)
+{
+    const uint64_t pixels = (uint64_t)max_width * (uint64_t)max_height;
+
+    silhouettes->capacity = (uint32_t)(pixels / 64 + 64);
+    silhouettes->pixel = rf_arena_take(arena, silhouettes->capacity, sizeof *silhouettes->pixel);
+}

@@ -1,0 +1,87 @@
+/* look.h: what is laid over the finished picture: spikes of a star filter, and film grain.
+ *
+ * Both change pixels that are already encoded, tile by tile, and only where there is something to
+ * add.
+ */
+#ifndef RF_LOOK_H
+#define RF_LOOK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <refocus/render.h>
+
+#include "focus/focus.h"
+#include "highlights/highlights.h"
+#include "image/photo_source.h"
+#include "image/planes.h"
+#include "image/viewport.h"
+#include "support/executor.h"
+
+/* Most stars of a picture; the highlights after them, row by row, have no spikes. */
+enum { RF_MOST_STARS = 1024, RF_MOST_SPIKES = 16, RF_NOISE_LEVELS = 8, RF_NOISE_BINS = 1024 };
+
+/* A highlight with spikes: its place in 1/16 pixel, its light, and its blur radius, Q7.8. */
+struct rf_star {
+    int64_t x, y;
+    uint64_t light[3]; /* Q12, summed over its pixels */
+    int32_t blur;
+    int32_t pixels;
+    int32_t x0, x1, y1; /* that the pixels lie in */
+};
+
+struct rf_stars {
+    struct rf_star *star; /* room for RF_MOST_STARS */
+    int count;
+};
+
+/* Grain of the photo, measured where it is sharp. */
+struct rf_grain {
+    /* by luma and by variance, 1/16 code^2 */
+    uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS];
+    uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
+    uint8_t lost[1024];              /* by |s| >> 5: how much of it a blur takes, Q8 */
+};
+
+/* The look of a frame. */
+struct rf_look {
+    bool has_stars, has_grain;
+    const struct rf_executor *exec;
+    const struct refocus_render_params *params;
+    struct rf_photo_source photo;
+    const struct rf_focus_plan *plan;
+    const struct rf_highlights *highlights; /* of the photo, if it has stars */
+    struct rf_stars *stars;                 /* which rf_look_begin() finds */
+    struct rf_grain *grain;                 /* and measures */
+};
+
+/* The picture that a frame is written to: `out` covers the part `region` of the window. */
+struct rf_canvas {
+    const struct rf_viewport *view;
+    struct rf_blur_q8 blur;
+    const struct refocus_image *out;
+    struct rf_rect region;
+};
+
+/* Finds out what the next function needs, once a frame, of the whole photo, whatever the window
+ * is. */
+void rf_look_begin(const struct rf_look *look);
+
+/* Lays the look over an encoded part of the window within one tile. */
+void rf_look_over(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect);
+
+/* The parts of both. Stars: reads highlights and their blur, writes the list; adds their light.
+ * Grain: reads the photo and its blur, writes the measure; adds as much noise as blur took. */
+void rf_find_stars(const struct rf_look *look);
+void rf_measure_grain(const struct rf_look *look);
+void rf_add_stars(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect);
+void rf_add_grain(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect);
+
+/* Signed blurs of a few pixels of the photo, at most RF_DEQUANTISE_PATCH in width and height, row
+ * by row. */
+void rf_blurs_at(const struct rf_look *look, int x, int y, int width, int height, int16_t *blur);
+
+/* Finds the codes R, G, B of a pixel of the window in the picture. */
+void rf_codes_at(const struct rf_canvas *canvas, int x, int y, uint8_t *code[3]);
+
+#endif
