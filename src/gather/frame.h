@@ -57,7 +57,7 @@ struct rf_frame {
     const struct rf_cat_shape *cat_shape;
     struct rf_limits limits;
     struct rf_work_memory *work;
-    struct refocus_renderer *r;
+    void *owner; /* private to whoever made the frame */
 
     const struct rf_method *method;
     const struct refocus_render_params *params;

@@ -111,7 +111,7 @@ void rf_find_silhouettes_in_blocks(struct refocus_renderer *r)
 /* Light, blur and smooth light of a block and its margin. */
 static void make_window(struct rf_frame *f, struct rf_rect block, int margin, enum rf_need need)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
 
     load(r, block, margin);
     rf_set_planes(f);
@@ -175,7 +175,7 @@ static void keep_level(struct refocus_renderer *r, struct rf_rect block)
 /* The first time through the photo. */
 static void mark(struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_in_place *in_place = &r->in_place;
 
     rf_pyramid_shape(&in_place->kept, r->photo.width, r->photo.height);
@@ -220,7 +220,7 @@ static void known_band(void *context, int band, int worker)
 /* The background of the window from what is kept. */
 static void make_behind(struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_level *kept = &r->in_place.kept.level[RF_KEPT];
     struct rf_level *level = &r->pyramid.level[RF_KEPT], own;
     ptrdiff_t at;
@@ -244,26 +244,26 @@ static void make_behind(struct rf_frame *f)
 /* Whether the first time through the photo was for this lens and light. */
 static bool is_marked(const struct rf_frame *f)
 {
-    return f->r->made.behind && rf_same_lens(f) && rf_same_light(f);
+    return rf_renderer_of(f)->made.behind && rf_same_lens(f) && rf_same_light(f);
 }
 
 static void mark_once(struct rf_frame *f)
 {
-    struct rf_made *m = &f->r->made;
+    struct rf_made *m = &rf_renderer_of(f)->made;
 
-    if (blocks(f->r, f->r->in_place.block) == 1 || is_marked(f))
+    if (blocks(rf_renderer_of(f), rf_renderer_of(f)->in_place.block) == 1 || is_marked(f))
         return;
     m->behind = false;
     mark(f);
     *m = (struct rf_made){.blur = true, .smooth = true, .plan = f->plan, .shift = f->scale.shift};
     rf_note_light(f);
-    m->behind = !rf_cancelled(&f->r->exec);
+    m->behind = !rf_cancelled(&rf_renderer_of(f)->exec);
 }
 
 void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
                    void (*tiles)(struct rf_frame *f))
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_in_place *in_place = &r->in_place;
     const struct refocus_image *const out = f->out;
 

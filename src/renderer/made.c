@@ -15,7 +15,7 @@
 static void reblend_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     uint8_t *blend = &r->photo.band_blend[band];
 
     if (*blend == f->params->blend)
@@ -35,14 +35,14 @@ static bool contains(struct rf_rect a, struct rf_rect b)
 
 bool rf_same_lens(const struct rf_frame *f)
 {
-    const struct rf_made *m = &f->r->made;
+    const struct rf_made *m = &rf_renderer_of(f)->made;
 
     return m->blur && !memcmp(&m->plan, &f->plan, sizeof m->plan) && m->shift == f->scale.shift;
 }
 
 bool rf_same_light(const struct rf_frame *f)
 {
-    const struct rf_made *m = &f->r->made;
+    const struct rf_made *m = &rf_renderer_of(f)->made;
 
     return m->smooth && m->blend == f->params->blend && m->gain == rf_gathered_gain(f) &&
            m->splatted == f->splats && (!m->gathered || m->rays == f->params->rays) &&
@@ -51,7 +51,7 @@ bool rf_same_light(const struct rf_frame *f)
 
 void rf_note_light(struct rf_frame *f)
 {
-    struct rf_made *m = &f->r->made;
+    struct rf_made *m = &rf_renderer_of(f)->made;
 
     m->blend = f->params->blend;
     m->gain = rf_gathered_gain(f);
@@ -71,14 +71,15 @@ struct parts {
 /* What r->made.thin is for this frame: 0, or the size of discs and the blend. */
 static uint32_t made_thin(const struct rf_frame *f)
 {
-    return rf_thin_is_separated(&f->thin) ? (uint32_t)f->thin.disc_scale << 8 |
-                                                (uint32_t)f->thin.mattes << 7 | (1 + f->r->blend)
-                                          : 0;
+    return rf_thin_is_separated(&f->thin)
+               ? (uint32_t)f->thin.disc_scale << 8 | (uint32_t)f->thin.mattes << 7 |
+                     (1 + rf_renderer_of(f)->blend)
+               : 0;
 }
 
 static bool has_same_thin(const struct rf_frame *f)
 {
-    const struct rf_made *m = &f->r->made;
+    const struct rf_made *m = &rf_renderer_of(f)->made;
 
     return m->thin == made_thin(f) &&
            (!rf_thin_is_separated(&f->thin) || m->splat_blur == f->thin.splat_blur);
@@ -87,7 +88,7 @@ static bool has_same_thin(const struct rf_frame *f)
 /* Whether all of that is there. */
 static bool is_there(const struct rf_frame *f, const struct parts *parts, bool layers)
 {
-    const struct rf_made *m = &f->r->made;
+    const struct rf_made *m = &rf_renderer_of(f)->made;
 
     if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
         return false;
@@ -100,7 +101,7 @@ static bool is_there(const struct rf_frame *f, const struct parts *parts, bool l
 /* Blur, bins and silhouettes of the window. */
 static void make_blur(struct rf_frame *f, bool layers)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_made *m = &r->made;
     const struct rf_rect window = {r->view.x0, r->view.y0, r->view.x0 + r->view.width,
                                    r->view.y0 + r->view.height};
@@ -129,7 +130,7 @@ static void make_blur(struct rf_frame *f, bool layers)
 /* Highlights change the blur: they are marked in one that is new, make_blur(). */
 static void make_smooth(struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_made *m = &r->made;
 
     if (rf_same_light(f)) {
@@ -160,7 +161,7 @@ static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect
 /* How far beyond a tile something thick decides what becomes of what is thin in it. */
 static int thin_margin(const struct rf_frame *f)
 {
-    return rf_thin_is_separated(&f->thin) ? f->r->view.pad + 2 * RF_TILE : 0;
+    return rf_thin_is_separated(&f->thin) ? rf_renderer_of(f)->view.pad + 2 * RF_TILE : 0;
 }
 
 /* How far from the window's sides the mark and the smooth light are those of the whole
@@ -168,7 +169,7 @@ static int thin_margin(const struct rf_frame *f)
  * sides, all. */
 static struct rf_rect sure_part(const struct rf_frame *f)
 {
-    const struct refocus_renderer *r = f->r;
+    const struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_photo *photo = &r->photo;
     const int margin = 2 * r->view.pad + 8 + thin_margin(f);
 
@@ -184,7 +185,7 @@ static struct rf_rect sure_part(const struct rf_frame *f)
  */
 static bool make_behind(struct rf_frame *f, struct rf_rect seen)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_made *m = &r->made;
 
     if (m->behind && contains(m->exact, seen) && (!m->weighed || rf_is_sweep(f)))
@@ -240,7 +241,7 @@ static struct rf_rect around_both(struct rf_rect a, struct rf_rect b)
 
 static void make_in_window(struct rf_frame *f, const struct parts *parts, bool layers)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_rect all = rf_whole(r);
     struct rf_rect window = parts->bins;
     int around = 2 * r->view.pad, step = RF_TILE;
@@ -271,23 +272,23 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
 /* The sweep takes the background's blur from the bins. */
 static void make_weights(struct rf_frame *f)
 {
-    struct rf_made *m = &f->r->made;
+    struct rf_made *m = &rf_renderer_of(f)->made;
 
-    if (rf_cancelled(&f->r->exec) ||
+    if (rf_cancelled(&rf_renderer_of(f)->exec) ||
         (m->weighed && m->sigma == f->params->sigma && m->premultiplied == f->premultiplied))
         return;
     m->weighed = true;
     m->premultiplied = f->premultiplied;
     m->sigma = -1; /* until they are all there */
     rf_pass_weights(f);
-    if (!rf_cancelled(&f->r->exec))
+    if (!rf_cancelled(&rf_renderer_of(f)->exec))
         m->sigma = f->params->sigma;
 }
 
 /* The window is all of the photo. */
 static void find_thin(struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
 
     if (!rf_thin_is_separated(&f->thin) || r->photo.thin.blend == r->blend)
         return;
@@ -296,7 +297,7 @@ static void find_thin(struct rf_frame *f)
 
 void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need, bool whole)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     const bool layers = need == RF_NEED_LAYERS;
     struct parts parts = {rf_whole(r), rf_whole(r)};
 

@@ -24,7 +24,7 @@ static bool may_premultiply(const struct rf_frame *f)
 {
     const struct refocus_render_params *p = f->params;
 
-    if (f->r->yuv.on && f->r->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
+    if (rf_renderer_of(f)->yuv.on && rf_renderer_of(f)->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
         return false;
     return rf_is_sweep(f) && p->highlight_gain <= 2 * RF_PLAIN_GAIN &&
            p->rays != REFOCUS_RAYS_FULL && p->rays <= 8192;
@@ -33,7 +33,7 @@ static bool may_premultiply(const struct rf_frame *f)
 /* Eq. 5 over the Q12 values of the blend in use. */
 void rf_set_weights(struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     uint16_t weight[256];
     const float sigma = f->params->sigma;
 
@@ -56,7 +56,7 @@ void rf_set_weights(struct rf_frame *f)
 
 void rf_pass_highlights(struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_photo *photo = &r->photo;
     const struct rf_photo_source source = rf_photo_source(r);
 
@@ -70,20 +70,21 @@ void rf_pass_highlights(struct rf_frame *f)
 
 static struct rf_blur_patch patch_of(const struct rf_frame *f)
 {
-    return (struct rf_blur_patch){f->view, f->blur, f->r->bins, f->scale, &f->r->cells};
+    return (struct rf_blur_patch){f->view, f->blur, rf_renderer_of(f)->bins, f->scale,
+                                  &rf_renderer_of(f)->cells};
 }
 
 void rf_pass_silhouettes(struct rf_frame *f)
 {
     const struct rf_blur_patch patch = patch_of(f);
 
-    rf_patch_silhouettes(f->exec, &f->r->photo.silhouettes, &f->plan, &patch);
+    rf_patch_silhouettes(f->exec, &rf_renderer_of(f)->photo.silhouettes, &f->plan, &patch);
 }
 
 static void blur_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
 
     (void)worker;
     rf_coc_rows(&r->exec, &r->view, &f->plan, r->disparity, r->blur, rf_band_start(band),
@@ -96,7 +97,7 @@ static void chroma_blur_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
 
-    const struct refocus_renderer *r = f->r;
+    const struct refocus_renderer *r = rf_renderer_of(f);
 
     (void)worker;
     rf_coc_chroma_rows(&r->exec, &r->view, &r->chroma.size, r->blur, r->chroma.blur,
@@ -111,15 +112,15 @@ static struct rf_range_pass range_pass(const struct refocus_renderer *r)
 static void range_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
-    const struct rf_range_pass pass = range_pass(f->r);
+    const struct rf_range_pass pass = range_pass(rf_renderer_of(f));
 
-    rf_range_rows(&f->r->exec, &f->r->view, &pass, band, worker);
+    rf_range_rows(&rf_renderer_of(f)->exec, &rf_renderer_of(f)->view, &pass, band, worker);
 }
 
 /* The background's planes are not in use yet. */
 static void prefilter(struct rf_frame *f)
 {
-    const struct refocus_renderer *r = f->r;
+    const struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_prefilter_chroma chroma;
     struct rf_prefilter pass = {
         .fades = f->prefilter_fades,
@@ -149,7 +150,7 @@ float rf_gathered_gain(const struct rf_frame *f)
 {
     const float gain = f->splats ? 1 : f->params->highlight_gain;
 
-    return f->r->yuv.on && f->weighted ? fminf(gain, RF_PLAIN_GAIN) : gain;
+    return rf_renderer_of(f)->yuv.on && f->weighted ? fminf(gain, RF_PLAIN_GAIN) : gain;
 }
 
 static void mark_highlights(struct rf_frame *f)
@@ -196,7 +197,7 @@ void rf_pass_prefilter(struct rf_frame *f)
  * of a lens differ by K at most, those of tilts and fields by twice that. */
 static int mark_reach(const struct rf_frame *f)
 {
-    const int steps = (f->plan.plain ? 2 : 4) * f->r->view.pad;
+    const int steps = (f->plan.plain ? 2 : 4) * rf_renderer_of(f)->view.pad;
 
     return steps < 2 * RF_SPREAD_MARGIN - 1 ? steps : 2 * RF_SPREAD_MARGIN - 1;
 }
@@ -228,15 +229,15 @@ static void mark_band(void *context, int band, int worker)
 
 void rf_pass_blur(struct rf_frame *f, bool layers)
 {
-    rf_pool_run(&f->r->pool, blur_band, f, rf_bands(&f->r->view));
+    rf_pool_run(&rf_renderer_of(f)->pool, blur_band, f, rf_bands(&rf_renderer_of(f)->view));
     if (!layers)
-        rf_pool_run(&f->r->pool, range_band, f, rf_bands(&f->r->view));
+        rf_pool_run(&rf_renderer_of(f)->pool, range_band, f, rf_bands(&rf_renderer_of(f)->view));
 }
 
 static void thin_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
 
     (void)worker;
     if (!rf_thin_patch_band(&f->thin, band))
@@ -250,7 +251,7 @@ static void thin_band(void *context, int band, int worker)
 void rf_pass_thin(struct rf_frame *f)
 {
     rf_thin_separate(&f->thin);
-    rf_pool_run(&f->r->pool, thin_band, f, rf_bands(&f->r->view));
+    rf_pool_run(&rf_renderer_of(f)->pool, thin_band, f, rf_bands(&rf_renderer_of(f)->view));
     if (f->thin.disc_scale)
         rf_coverage_splat(&f->thin);
 }
@@ -258,9 +259,10 @@ void rf_pass_thin(struct rf_frame *f)
 void rf_pass_smooth(struct rf_frame *f)
 {
     mark_highlights(f);
-    rf_pool_run(&f->r->pool, range_band, f, rf_bands(&f->r->view));
-    if (f->r->yuv.on)
-        rf_pool_run(&f->r->pool, chroma_blur_band, f, rf_bands(&f->r->view));
+    rf_pool_run(&rf_renderer_of(f)->pool, range_band, f, rf_bands(&rf_renderer_of(f)->view));
+    if (rf_renderer_of(f)->yuv.on)
+        rf_pool_run(&rf_renderer_of(f)->pool, chroma_blur_band, f,
+                    rf_bands(&rf_renderer_of(f)->view));
     rf_pass_prefilter(f);
 }
 
@@ -284,7 +286,7 @@ static void bare_band(void *context, int band, int worker)
 static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
-    const struct refocus_renderer *r = f->r;
+    const struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_weights_chroma chroma = {r->chroma.size, r->chroma.smooth,
                                              r->chroma.background};
     const struct rf_weights pass = {
@@ -305,7 +307,7 @@ static void weigh_band(void *context, int band, int worker)
 
 void rf_pass_behind(struct rf_frame *f, int levels)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
 
     if (r->yuv.on)
         rf_background_inpaint_yuv(&r->exec, &r->view, &r->pyramid,
@@ -322,12 +324,12 @@ void rf_pass_behind(struct rf_frame *f, int levels)
 
 void rf_pass_weights(struct rf_frame *f)
 {
-    rf_pool_run(&f->r->pool, weigh_band, f, rf_bands(&f->r->view));
+    rf_pool_run(&rf_renderer_of(f)->pool, weigh_band, f, rf_bands(&rf_renderer_of(f)->view));
 }
 
 void rf_pass_mark(struct rf_frame *f, int levels)
 {
-    const struct refocus_renderer *r = f->r;
+    const struct refocus_renderer *r = rf_renderer_of(f);
     struct mark mark = {.r = r,
                         .pass = {.planes = r->yuv.on ? 1 : 3,
                                  .reach = mark_reach(f),

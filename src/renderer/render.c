@@ -50,15 +50,15 @@ static void tile_item(void *context, int item, int worker)
         rf_smaller((ty + 1) * RF_TILE, f->region.y1),
     };
 
-    if (f->params->max_blur_radius > 0 && f->r->yuv.on)
+    if (f->params->max_blur_radius > 0 && rf_renderer_of(f)->yuv.on)
         rf_sweep_yuv_tile(f, tx, ty, rect, worker);
     else if (f->params->max_blur_radius > 0)
         f->method->tile(f, tx, ty, rect, worker);
-    else if (f->r->yuv.on)
+    else if (rf_renderer_of(f)->yuv.on)
         rf_copy_yuv_tile(f, rect);
     else
         rf_copy_tile(f, rect); /* a pinhole */
-    if (!rf_cancelled(&f->r->exec))
+    if (!rf_cancelled(&rf_renderer_of(f)->exec))
         lay_look(f, rect);
 }
 
@@ -98,11 +98,12 @@ static void set_up_thin(struct rf_frame *f)
 
     rf_thin_set_up(&f->thin,
                    &(struct rf_thin_settings){
-                       .on = p->thin && f->r->has_thin && p->method == REFOCUS_METHOD_SWEEP &&
-                             !f->r->yuv.on && p->max_blur_radius > 0,
+                       .on = p->thin && rf_renderer_of(f)->has_thin &&
+                             p->method == REFOCUS_METHOD_SWEEP && !rf_renderer_of(f)->yuv.on &&
+                             p->max_blur_radius > 0,
                        .splats = p->cat_eye <= 0 && p->fringe == 0 && !f->fine,
                        .rays = p->rays,
-                       .set = &f->r->ray_sets.set[f->r->ray_sets.preset],
+                       .set = &rf_renderer_of(f)->ray_sets.set[rf_renderer_of(f)->ray_sets.preset],
                    });
 }
 
@@ -120,7 +121,7 @@ static void begin_look(struct rf_frame *f)
 {
     if (f->look_ready)
         return;
-    f->look.photo = rf_photo_source(f->r);
+    f->look.photo = rf_photo_source(rf_renderer_of(f));
     rf_look_begin(&f->look);
     f->look_ready = true;
 }
@@ -129,7 +130,7 @@ static void run_tiles(struct rf_frame *f)
 {
     set_tiles(f);
     begin_look(f);
-    rf_pool_run(&f->r->pool, tile_item, f, f->count_tx * f->count_ty);
+    rf_pool_run(&rf_renderer_of(f)->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
 /* The largest blur there can be, pixels. Of a lens the farther of both ends has it. */
@@ -143,7 +144,7 @@ static float largest_blur(const struct rf_frame *f)
 
 static void run(struct rf_frame *f, struct rf_rect region)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_method *method = f->method;
     const bool pinhole = f->params->max_blur_radius <= 0;
     const bool layers = method->layers || f->params->background;
@@ -192,7 +193,7 @@ static void run(struct rf_frame *f, struct rf_rect region)
 int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *params,
                    const struct refocus_image *out)
 {
-    struct rf_frame f = {.r = r, .out = out};
+    struct rf_frame f = {.owner = r, .out = out};
     struct rf_exact exact;
     struct rf_rect region;
     int status;

@@ -18,7 +18,7 @@ static bool has_look(const struct rf_frame *f)
 
 int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
 {
-    const struct refocus_renderer *r = f->r;
+    const struct refocus_renderer *r = rf_renderer_of(f);
     const int odd_rows = r->yuv.down ? 1 : 0;
 
     if (refocus_format_is_yuv(f->out->format) != r->yuv.on)
@@ -37,7 +37,7 @@ int rf_check_yuv(const struct rf_frame *f, struct rf_rect region)
 /* |s| that gaps between the rays of chroma, in its samples, are as wide at as those of luma. */
 static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_STEPS])
 {
-    const struct refocus_renderer *r = f->r;
+    const struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_ray_set *set = &r->ray_sets.set[r->ray_sets.preset];
     const double times = 2 * sqrt((double)set->shared / set->count);
 
@@ -58,7 +58,7 @@ static int largest_blur(const struct rf_frame *f)
 
 struct rf_prefilter_chroma rf_chroma_prefilter(const struct rf_frame *f)
 {
-    const struct rf_chroma_planes *planes = &f->r->chroma;
+    const struct rf_chroma_planes *planes = &rf_renderer_of(f)->chroma;
     struct rf_prefilter_chroma chroma = {
         .size = planes->size,
         .blur = planes->blur,

@@ -15,6 +15,7 @@
 #include "background/pyramid.h"
 #include "colour/transfer.h"
 #include "focus/focus.h"
+#include "gather/frame.h"
 #include "gather/work_memory.h"
 #include "highlights/highlights.h"
 #include "image/chroma.h"
@@ -169,7 +170,6 @@ struct refocus_renderer {
 
 /* Make a part of the photo the window; tell a frame of its planes. */
 void rf_use(struct refocus_renderer *r, struct rf_rect window);
-struct rf_frame;
 void rf_set_planes(struct rf_frame *f);
 
 /* All of the photo, in the blend in use. */
@@ -194,6 +194,12 @@ static inline void rf_run_begin(struct refocus_renderer *r)
 static inline bool rf_run_end(struct refocus_renderer *r)
 {
     return atomic_exchange(&r->run.state, RF_RUN_IDLE) == RF_RUN_CANCELLED;
+}
+
+/* The renderer that a frame belongs to. */
+static inline struct refocus_renderer *rf_renderer_of(const struct rf_frame *f)
+{
+    return f->owner;
 }
 
 #endif

@@ -130,7 +130,7 @@ void rf_use(struct refocus_renderer *r, struct rf_rect part)
 
 void rf_set_planes(struct rf_frame *f)
 {
-    struct refocus_renderer *r = f->r;
+    struct refocus_renderer *r = rf_renderer_of(f);
 
     f->exec = &r->exec;
     f->view = &r->view;
