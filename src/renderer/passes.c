@@ -184,6 +184,11 @@ void rf_pass_boost(struct rf_frame *f)
 /* The light is the photo's again afterwards, whatever happens; of the next as well. */
 void rf_pass_prefilter(struct rf_frame *f)
 {
+    struct rf_lifetimes *lifetimes = &rf_renderer_of(f)->lifetimes;
+
+    rf_plane_read(lifetimes, RF_PLANE_BLUR);
+    rf_plane_begin(lifetimes, RF_PLANE_PREFILTER_SPARE);
+    rf_plane_begin(lifetimes, RF_PLANE_SMOOTH);
     if (rf_thin_is_separated(&f->thin))
         rf_thin_swap_light(&f->thin);
     if (f->splats)
@@ -229,9 +234,13 @@ static void mark_band(void *context, int band, int worker)
 
 void rf_pass_blur(struct rf_frame *f, bool layers)
 {
-    rf_pool_run(&rf_renderer_of(f)->pool, blur_band, f, rf_bands(&rf_renderer_of(f)->view));
+    struct refocus_renderer *r = rf_renderer_of(f);
+
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BLUR);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_CELLS);
+    rf_pool_run(&r->pool, blur_band, f, rf_bands(&r->view));
     if (!layers)
-        rf_pool_run(&rf_renderer_of(f)->pool, range_band, f, rf_bands(&rf_renderer_of(f)->view));
+        rf_pool_run(&r->pool, range_band, f, rf_bands(&r->view));
 }
 
 static void thin_band(void *context, int band, int worker)
@@ -250,19 +259,26 @@ static void thin_band(void *context, int band, int worker)
 
 void rf_pass_thin(struct rf_frame *f)
 {
+    struct refocus_renderer *r = rf_renderer_of(f);
+
+    rf_plane_read(&r->lifetimes, RF_PLANE_CELLS);
     rf_thin_separate(&f->thin);
-    rf_pool_run(&rf_renderer_of(f)->pool, thin_band, f, rf_bands(&rf_renderer_of(f)->view));
-    if (f->thin.disc_scale)
-        rf_coverage_splat(&f->thin);
+    rf_pool_run(&r->pool, thin_band, f, rf_bands(&r->view));
+    if (!f->thin.disc_scale)
+        return;
+    rf_plane_begin(&r->lifetimes, RF_PLANE_COVERAGE_SOURCES);
+    rf_coverage_splat(&f->thin);
 }
 
 void rf_pass_smooth(struct rf_frame *f)
 {
+    struct refocus_renderer *r = rf_renderer_of(f);
+
+    rf_plane_read(&r->lifetimes, RF_PLANE_CELLS);
     mark_highlights(f);
-    rf_pool_run(&rf_renderer_of(f)->pool, range_band, f, rf_bands(&rf_renderer_of(f)->view));
-    if (rf_renderer_of(f)->yuv.on)
-        rf_pool_run(&rf_renderer_of(f)->pool, chroma_blur_band, f,
-                    rf_bands(&rf_renderer_of(f)->view));
+    rf_pool_run(&r->pool, range_band, f, rf_bands(&r->view));
+    if (r->yuv.on)
+        rf_pool_run(&r->pool, chroma_blur_band, f, rf_bands(&r->view));
     rf_pass_prefilter(f);
 }
 
@@ -305,10 +321,12 @@ static void weigh_band(void *context, int band, int worker)
         rf_weigh_rows(&r->view, &pass, band);
 }
 
-void rf_pass_behind(struct rf_frame *f, int levels)
+void rf_pass_inpaint(struct rf_frame *f, int levels)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
 
+    rf_plane_read(&r->lifetimes, RF_PLANE_PYRAMID);
+    rf_plane_read(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
     if (r->yuv.on)
         rf_background_inpaint_yuv(&r->exec, &r->view, &r->pyramid,
                                   &(struct rf_inpaint_chroma){r->chroma.size, r->blur,
@@ -316,6 +334,7 @@ void rf_pass_behind(struct rf_frame *f, int levels)
                                                               r->chroma.background});
     else
         rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_FOREGROUND);
     rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
     if (f->bright != RF_WHITE)
         rf_raise_highlights(f->exec, &f->splat.window, &r->foreground, ray_gap(f->params));
@@ -324,12 +343,18 @@ void rf_pass_behind(struct rf_frame *f, int levels)
 
 void rf_pass_weights(struct rf_frame *f)
 {
-    rf_pool_run(&rf_renderer_of(f)->pool, weigh_band, f, rf_bands(&rf_renderer_of(f)->view));
+    struct refocus_renderer *r = rf_renderer_of(f);
+
+    rf_plane_read(&r->lifetimes, RF_PLANE_SMOOTH);
+    rf_plane_read(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_WEIGHT);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_WEIGHT);
+    rf_pool_run(&r->pool, weigh_band, f, rf_bands(&r->view));
 }
 
-void rf_pass_mark(struct rf_frame *f, int levels)
+void rf_pass_mark_background(struct rf_frame *f, int levels)
 {
-    const struct refocus_renderer *r = rf_renderer_of(f);
+    struct refocus_renderer *r = rf_renderer_of(f);
     struct mark mark = {.r = r,
                         .pass = {.planes = r->yuv.on ? 1 : 3,
                                  .reach = mark_reach(f),
@@ -339,7 +364,14 @@ void rf_pass_mark(struct rf_frame *f, int levels)
                                  .background = r->background},
                         .levels = levels};
 
+    rf_plane_read(&r->lifetimes, RF_PLANE_BLUR);
+    rf_plane_read(&r->lifetimes, RF_PLANE_SMOOTH);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_CONE);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_PYRAMID);
     rf_pool_run(r->exec.pool, dilate_item, &mark, 2);
+    /* each row of the cone is read before the background's light takes its place */
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
     rf_pool_run(r->exec.pool, mark_band, &mark, rf_bands(&r->view));
     if (!r->yuv.on)
         rf_background_push(&r->exec, &r->pyramid, RF_BAND_LEVELS, levels);

@@ -37,20 +37,21 @@ void rf_pass_blur(struct rf_frame *f, bool layers); /* with layers ranges come a
 void rf_pass_silhouettes(struct rf_frame *f);       /* after rf_pass_blur() */
 void rf_pass_thin(struct rf_frame *f);              /* after rf_pass_blur() */
 void rf_pass_smooth(struct rf_frame *f);
-void rf_pass_prefilter(struct rf_frame *f);        /* of rf_pass_smooth() the smooth light alone */
-void rf_pass_mark(struct rf_frame *f, int levels); /* and up the pyramid, but of Y, U and V */
-void rf_pass_behind(struct rf_frame *f, int levels); /* down the pyramid from there */
-void rf_pass_boost(struct rf_frame *f);              /* gathered highlights, after the background */
+void rf_pass_prefilter(struct rf_frame *f); /* of rf_pass_smooth() the smooth light alone */
+void rf_pass_mark_background(struct rf_frame *f,
+                             int levels);             /* and up the pyramid, but of Y, U and V */
+void rf_pass_inpaint(struct rf_frame *f, int levels); /* down the pyramid from there */
+void rf_pass_boost(struct rf_frame *f); /* gathered highlights, after the background */
 void rf_pass_weights(struct rf_frame *f);
 
-/* Whether what r->made tells of is for this lens, and its light for this frame's; note
+/* Whether what r->cache tells of is for this lens, and its light for this frame's; note
  * the frame's there. */
 bool rf_same_lens(const struct rf_frame *f);
 bool rf_same_light(const struct rf_frame *f);
 void rf_note_light(struct rf_frame *f);
 
 /* Strip mode, blocks.c: render the region, whose tiles of a block `tiles` renders. */
-void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
+void rf_run_strips(struct rf_frame *f, struct rf_rect region, enum rf_need need,
                    void (*tiles)(struct rf_frame *f));
 
 #endif

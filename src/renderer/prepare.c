@@ -36,6 +36,9 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
         .out = r->disparity,
     };
 
+    rf_plane_begin(&r->lifetimes, RF_PLANE_UPSAMPLE_WORK);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_UPSAMPLE_CONFIDENCE);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_PREPARE_SPARE);
     rf_upsample(&up, &r->pool);
 }
 
@@ -73,7 +76,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
     r->prepared = r->blurred = false;
-    memset(&r->made, 0, sizeof r->made);
+    memset(&r->cache, 0, sizeof r->cache);
     if (!rf_good_picture(photo) || !rf_good_map(disparity))
         return REFOCUS_ERR_ARGUMENT;
     if (photo->width > r->max_width || photo->height > r->max_height)

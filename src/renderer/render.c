@@ -128,6 +128,7 @@ static void begin_look(struct rf_frame *f)
 
 static void run_tiles(struct rf_frame *f)
 {
+    rf_set_gather_planes(f);
     set_tiles(f);
     begin_look(f);
     rf_pool_run(&rf_renderer_of(f)->pool, tile_item, f, f->count_tx * f->count_ty);
@@ -171,7 +172,7 @@ static void run(struct rf_frame *f, struct rf_rect region)
     set_up_thin(f);
     f->row_gap = pinhole ? 0 : rf_row_gap(f);
     if (r->in_place.on) {
-        rf_run_blocks(f, region, need, run_tiles);
+        rf_run_strips(f, region, need, run_tiles);
         return;
     }
     rf_run_passes(f, region, need,
@@ -182,6 +183,7 @@ static void run(struct rf_frame *f, struct rf_rect region)
         run_tiles(f);
         return;
     }
+    rf_set_gather_planes(f);
     method->frame(f);
     if (rf_cancelled(&r->exec) || !f->look.has_grain)
         return;

@@ -25,6 +25,7 @@
 #include "renderer/renderer.h"
 #include "kernels/kernels.h"
 #include "passes/prefilter.h"
+#include "renderer/memory_plan.h"
 #include "support/executor.h"
 #include "thin/thin.h"
 #include "tiles/bins.h"
@@ -51,27 +52,27 @@ struct rf_photo {
     struct rf_thin_list thin;
 };
 
-/* What the planes of the last lens setting hold, so that it need not be made again. */
-struct rf_made {
-    bool blur;        /* front.blur and bins, */
-    bool silhouettes; /* with the silhouettes patched in them, */
-    bool gathered;    /* and highlights marked and widened in them, */
-    bool splatted;    /* or marked to be splatted */
-    bool ranges;      /* its ranges; before, its cells are where the background's blur will be */
-    bool smooth;      /* the pre-filtered light */
-    enum rf_bright bright; /* which boosted highlights may exceed white in, */
-    bool boosted;          /* and do */
-    bool behind;           /* the background layer, */
-    bool weighed;          /* but with weights of `sigma` in place of its blur, */
-    bool premultiplied;    /* and the light of both layers times them */
+/* The pass cache: which results of the last lens setting the planes still hold (pass_cache.c). */
+struct rf_pass_cache {
+    bool blur;             /* circles of confusion, and bins */
+    bool silhouettes;      /* silhouettes of clipped things are patched in them */
+    bool gathered;         /* highlights are marked and widened in them for the rays */
+    bool splatted;         /* highlights are marked to be splatted */
+    bool ranges;           /* ranges of the tiles; until then their cells live */
+    bool smooth;           /* the pre-filtered light */
+    enum rf_bright bright; /* by how much boosted highlights may exceed white */
+    bool boosted;          /* highlights in the pre-filtered light are boosted */
+    bool background;       /* the hidden background */
+    bool weighted;         /* weights of `sigma` lie in place of its blur */
+    bool premultiplied;    /* the light of both layers is times them */
     float sigma;
-    int rays;              /* that highlights were widened for */
-    struct rf_rect window; /* of that photo, to which all of it is limited */
-    struct rf_rect exact;  /* where it is as if made for the whole photo */
+    int rays;              /* number of rays that highlights were widened for */
+    struct rf_rect window; /* part of the photo that all of it is limited to */
+    struct rf_rect exact;  /* part where the background is that of the whole photo */
     struct rf_focus_plan plan;
     int shift;      /* of the bins */
-    uint32_t thin;  /* as what thin things were taken apart, made_thin(), */
-    int splat_blur; /* and from where on */
+    uint32_t thin;  /* how thin structures were separated: thin_key() */
+    int splat_blur; /* Q7.8: from which blur on they were splatted */
     uint32_t blend;
     float gain;
     int prefilter_above[RF_PREFILTER_STEPS];
@@ -115,7 +116,8 @@ struct refocus_renderer {
     bool prepared;
     struct rf_photo photo;
     uint16_t *seen_group, *behind_group;
-    struct rf_made made;
+    struct rf_pass_cache cache;
+    struct rf_lifetimes lifetimes;
     struct rf_in_place in_place;
     struct rf_focus_plan last_plan; /* of the last render, */
     bool last_silhouettes;          /* with the silhouettes, */
@@ -123,7 +125,7 @@ struct refocus_renderer {
 
     /*
      * The window, and its planes as if it were all there is: set by rf_use(). The background and
-     * what is made of it share memory: see layout.c.
+     * what is computed from it share memory: memory_plan.h.
      */
     struct rf_viewport view;
     ptrdiff_t pitch; /* elements between the planes of a group; see layout.c */
@@ -171,6 +173,9 @@ struct refocus_renderer {
 /* Make a part of the photo the window; tell a frame of its planes. */
 void rf_use(struct refocus_renderer *r, struct rf_rect window);
 void rf_set_planes(struct rf_frame *f);
+
+/* Before the rays: in debug builds the frame gets no view of a plane that does not live. */
+void rf_set_gather_planes(struct rf_frame *f);
 
 /* All of the photo, in the blend in use. */
 struct rf_photo_source rf_photo_source(const struct refocus_renderer *r);

@@ -1,4 +1,8 @@
+/* window.c: the views of the planes of a window, and of what a frame sees of them. */
 #include "renderer/layout.h"
+
+#include <string.h>
+
 #include "renderer/renderer.h"
 #include "gather/frame.h"
 #include "tiles/ranges.h"
@@ -32,13 +36,8 @@ static void place_planes(struct refocus_renderer *r, const struct rf_photo *phot
 }
 
 /*
- * Views of planes that lie in memory of others, as they are never wanted at the same time:
- *
- *     cells               in the background's blur, from the bins until the background is marked
- *     cone                in two planes of the background's light, while it is marked
- *     background_weight   in the background's blur, once the bins have what the sweep needs of it
- *     weight              in the pyramid (layout.c); of a photo of Y, U and V in the background's
- *                         third plane of light
+ * Views of planes that lie in memory of others: memory_plan.h. The weights of a photo of Y, U and V
+ * lie in the third plane of the background's light.
  */
 static void share_planes(struct refocus_renderer *r)
 {
@@ -197,4 +196,25 @@ struct rf_photo_source rf_photo_source(const struct refocus_renderer *r)
     source.disparity.at = photo->disparity;
     source.light.stride = source.disparity.stride = photo->stride;
     return source;
+}
+
+void rf_set_gather_planes(struct rf_frame *f)
+{
+    const struct rf_lifetimes *lifetimes = &rf_renderer_of(f)->lifetimes;
+
+    rf_set_planes(f);
+#ifdef NDEBUG
+    (void)lifetimes;
+#else
+    if (!rf_plane_lives(lifetimes, RF_PLANE_BLUR))
+        f->blur.at = NULL;
+    if (!rf_plane_lives(lifetimes, RF_PLANE_SMOOTH))
+        memset(f->smooth.channel, 0, sizeof f->smooth.channel);
+    if (!rf_plane_lives(lifetimes, RF_PLANE_BACKGROUND_LIGHT))
+        memset(f->background.light.channel, 0, sizeof f->background.light.channel);
+    if (!rf_plane_lives(lifetimes, RF_PLANE_BACKGROUND_BLUR))
+        f->background.blur.at = NULL;
+    if (!rf_plane_lives(lifetimes, RF_PLANE_BACKGROUND_WEIGHT))
+        f->background_weight.at = f->weight.at = NULL;
+#endif
 }

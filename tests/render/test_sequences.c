@@ -203,12 +203,12 @@ static struct picture wide_bars(void)
 static void assert_same_background(const struct refocus_renderer *part,
                                    const struct refocus_renderer *whole)
 {
-    const struct rf_rect e = part->made.exact;
+    const struct rf_rect e = part->cache.exact;
     const ptrdiff_t at = -part->view.y0 * part->view.stride - part->view.x0;
 
-    if (!part->made.behind)
+    if (!part->cache.background)
         return;
-    assert_true(whole->made.behind && part->view.stride == whole->view.stride);
+    assert_true(whole->cache.background && part->view.stride == whole->view.stride);
     for (int y = e.y0; y < e.y1; y++) {
         for (int x = e.x0; x < e.x1; x++) {
             const ptrdiff_t p = y * part->view.stride + x;
@@ -219,8 +219,8 @@ static void assert_same_background(const struct refocus_renderer *part,
                           whole->background.light.channel[c][p];
             if (differ)
                 fail_msg("window %d,%d..%d,%d: the background at %d,%d is another",
-                         part->made.window.x0, part->made.window.y0, part->made.window.x1,
-                         part->made.window.y1, x, y);
+                         part->cache.window.x0, part->cache.window.y0, part->cache.window.x1,
+                         part->cache.window.y1, x, y);
         }
     }
 }
@@ -256,7 +256,7 @@ static void regions_of(struct picture p)
         part = create(1, PLAIN);
         prepare(part, &p);
         assert_int_equal(render(part, &s, out), REFOCUS_OK);
-        windows += part->made.window.x1 - part->made.window.x0 < WIDTH;
+        windows += part->cache.window.x1 - part->cache.window.x0 < WIDTH;
         assert_same_background(part, renderer);
         refocus_renderer_destroy(&renderer);
         refocus_renderer_destroy(&part);

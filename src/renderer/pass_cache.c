@@ -1,4 +1,4 @@
-/* made.c: which passes a frame still needs, and what of the last one serves it as it is. */
+/* pass_cache.c: runs the passes that a frame still needs, and keeps what the last one left. */
 #include "renderer/passes.h"
 
 #include <limits.h>
@@ -35,14 +35,14 @@ static bool contains(struct rf_rect a, struct rf_rect b)
 
 bool rf_same_lens(const struct rf_frame *f)
 {
-    const struct rf_made *m = &rf_renderer_of(f)->made;
+    const struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
     return m->blur && !memcmp(&m->plan, &f->plan, sizeof m->plan) && m->shift == f->scale.shift;
 }
 
 bool rf_same_light(const struct rf_frame *f)
 {
-    const struct rf_made *m = &rf_renderer_of(f)->made;
+    const struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
     return m->smooth && m->blend == f->params->blend && m->gain == rf_gathered_gain(f) &&
            m->splatted == f->splats && (!m->gathered || m->rays == f->params->rays) &&
@@ -51,7 +51,7 @@ bool rf_same_light(const struct rf_frame *f)
 
 void rf_note_light(struct rf_frame *f)
 {
-    struct rf_made *m = &rf_renderer_of(f)->made;
+    struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
     m->blend = f->params->blend;
     m->gain = rf_gathered_gain(f);
@@ -68,8 +68,8 @@ struct parts {
     struct rf_rect bins; /* and the tiles that may reach it */
 };
 
-/* What r->made.thin is for this frame: 0, or the size of discs and the blend. */
-static uint32_t made_thin(const struct rf_frame *f)
+/* What r->cache.thin is for this frame: 0, or the size of discs and the blend. */
+static uint32_t thin_key(const struct rf_frame *f)
 {
     return rf_thin_is_separated(&f->thin)
                ? (uint32_t)f->thin.disc_scale << 8 | (uint32_t)f->thin.mattes << 7 |
@@ -79,22 +79,22 @@ static uint32_t made_thin(const struct rf_frame *f)
 
 static bool has_same_thin(const struct rf_frame *f)
 {
-    const struct rf_made *m = &rf_renderer_of(f)->made;
+    const struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
-    return m->thin == made_thin(f) &&
+    return m->thin == thin_key(f) &&
            (!rf_thin_is_separated(&f->thin) || m->splat_blur == f->thin.splat_blur);
 }
 
 /* Whether all of that is there. */
 static bool is_there(const struct rf_frame *f, const struct parts *parts, bool layers)
 {
-    const struct rf_made *m = &rf_renderer_of(f)->made;
+    const struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
     if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
         return false;
     return rf_same_lens(f) && contains(m->window, parts->bins) && has_same_thin(f) &&
-           (layers ? m->behind && rf_same_light(f) && contains(m->exact, parts->seen) &&
-                         (!m->weighed || rf_is_sweep(f))
+           (layers ? m->background && rf_same_light(f) && contains(m->exact, parts->seen) &&
+                         (!m->weighted || rf_is_sweep(f))
                    : !m->silhouettes);
 }
 
@@ -102,7 +102,7 @@ static bool is_there(const struct rf_frame *f, const struct parts *parts, bool l
 static void make_blur(struct rf_frame *f, bool layers)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
-    struct rf_made *m = &r->made;
+    struct rf_pass_cache *m = &r->cache;
     const struct rf_rect window = {r->view.x0, r->view.y0, r->view.x0 + r->view.width,
                                    r->view.y0 + r->view.height};
 
@@ -110,11 +110,11 @@ static void make_blur(struct rf_frame *f, bool layers)
         !has_same_thin(f) || (m->silhouettes && !layers) ||
         (layers && !rf_same_light(f) &&
          (m->gathered || m->splatted || f->params->highlight_gain > 1))) {
-        *m = (struct rf_made){.window = window,
-                              .plan = f->plan,
-                              .shift = f->scale.shift,
-                              .thin = made_thin(f),
-                              .splat_blur = f->thin.splat_blur};
+        *m = (struct rf_pass_cache){.window = window,
+                                    .plan = f->plan,
+                                    .shift = f->scale.shift,
+                                    .thin = thin_key(f),
+                                    .splat_blur = f->thin.splat_blur};
         rf_pass_blur(f, layers);
         if (rf_thin_is_separated(&f->thin) && !rf_cancelled(&r->exec))
             rf_pass_thin(f);
@@ -131,13 +131,13 @@ static void make_blur(struct rf_frame *f, bool layers)
 static void make_smooth(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
-    struct rf_made *m = &r->made;
+    struct rf_pass_cache *m = &r->cache;
 
     if (rf_same_light(f)) {
         f->bright = m->bright;
         return;
     }
-    m->smooth = m->behind = false;
+    m->smooth = m->background = false;
     m->gathered = rf_gathered_gain(f) > 1;
     if (m->ranges) {
         f->bright = RF_WHITE;
@@ -183,25 +183,25 @@ static struct rf_rect sure_part(const struct rf_frame *f)
 
 /* The background layer of the window; true: `seen` is as if made for the whole photo.
  */
-static bool make_behind(struct rf_frame *f, struct rf_rect seen)
+static bool make_background(struct rf_frame *f, struct rf_rect seen)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
-    struct rf_made *m = &r->made;
+    struct rf_pass_cache *m = &r->cache;
 
-    if (m->behind && contains(m->exact, seen) && (!m->weighed || rf_is_sweep(f)))
+    if (m->background && contains(m->exact, seen) && (!m->weighted || rf_is_sweep(f)))
         return true;
-    m->behind = false;
-    rf_pass_mark(f, r->pyramid.levels);
+    m->background = false;
+    rf_pass_mark_background(f, r->pyramid.levels);
     if (rf_cancelled(&r->exec))
         return false;
     if (!contains(m->window, rf_whole(r)) &&
         !rf_background_is_exact(&r->view, &r->pyramid, in_window(r, seen), sure_part(f)))
         return false;
     m->exact = contains(m->window, rf_whole(r)) ? m->window : seen;
-    rf_pass_behind(f, r->pyramid.levels);
-    m->behind = !rf_cancelled(&r->exec);
-    m->weighed = false;
-    return m->behind;
+    rf_pass_inpaint(f, r->pyramid.levels);
+    m->background = !rf_cancelled(&r->exec);
+    m->weighted = false;
+    return m->background;
 }
 
 static int floor_to(int v, int step)
@@ -246,7 +246,7 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
     struct rf_rect window = parts->bins;
     int around = 2 * r->view.pad, step = RF_TILE;
 
-    if (rf_same_lens(f) && contains(r->made.window, all))
+    if (rf_same_lens(f) && contains(r->cache.window, all))
         window = all; /* much of it is there */
     for (;;) {
         if (layers && !contains(window, all)) {
@@ -263,7 +263,7 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
         if (!layers || rf_cancelled(&r->exec))
             return;
         make_smooth(f);
-        if (rf_cancelled(&r->exec) || make_behind(f, parts->seen) || rf_cancelled(&r->exec))
+        if (rf_cancelled(&r->exec) || make_background(f, parts->seen) || rf_cancelled(&r->exec))
             return;
         around *= 2;
     }
@@ -272,12 +272,12 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
 /* The sweep takes the background's blur from the bins. */
 static void make_weights(struct rf_frame *f)
 {
-    struct rf_made *m = &rf_renderer_of(f)->made;
+    struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
     if (rf_cancelled(&rf_renderer_of(f)->exec) ||
-        (m->weighed && m->sigma == f->params->sigma && m->premultiplied == f->premultiplied))
+        (m->weighted && m->sigma == f->params->sigma && m->premultiplied == f->premultiplied))
         return;
-    m->weighed = true;
+    m->weighted = true;
     m->premultiplied = f->premultiplied;
     m->sigma = -1; /* until they are all there */
     rf_pass_weights(f);
@@ -322,18 +322,18 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         parts.bins = grown(r, region, r->view.pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
     if (is_there(f, &parts, layers)) {
-        rf_use(r, r->made.window);
+        rf_use(r, r->cache.window);
         rf_set_planes(f);
-        f->bright = layers ? r->made.bright : RF_WHITE;
+        f->bright = layers ? r->cache.bright : RF_WHITE;
     } else {
         /* the background takes smooth light without it */
-        if (r->made.boosted || r->made.premultiplied)
-            r->made = (struct rf_made){0};
+        if (r->cache.boosted || r->cache.premultiplied)
+            r->cache = (struct rf_pass_cache){0};
         make_in_window(f, &parts, layers);
     }
-    if (layers && !rf_cancelled(&r->exec) && !r->made.boosted && f->bright != RF_WHITE) {
+    if (layers && !rf_cancelled(&r->exec) && !r->cache.boosted && f->bright != RF_WHITE) {
         rf_pass_boost(f);
-        r->made.boosted = true;
+        r->cache.boosted = true;
     }
     if (layers && f->weighted && rf_is_sweep(f))
         make_weights(f);

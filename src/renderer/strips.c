@@ -1,4 +1,4 @@
-/* blocks.c: strip mode. The photo is in the caller's memory; the planes hold a block of
+/* strips.c: strip mode. The photo is in the caller's memory; the planes hold a block of
  * it and a margin at a time, and the passes work on that window.
  *
  * The fill of the background takes its colours from all over the photo. So the photo is
@@ -183,7 +183,7 @@ static void mark(struct rf_frame *f)
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
         make_window(f, block, in_place->mark_margin, RF_NEED_LAYERS);
-        rf_pass_mark(f, RF_KEPT);
+        rf_pass_mark_background(f, RF_KEPT);
         keep_known(r, block);
         if (!rf_cancelled(&r->exec))
             keep_level(r, block);
@@ -218,7 +218,7 @@ static void known_band(void *context, int band, int worker)
 }
 
 /* The background of the window from what is kept. */
-static void make_behind(struct rf_frame *f)
+static void make_background(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_level *kept = &r->in_place.kept.level[RF_KEPT];
@@ -226,10 +226,13 @@ static void make_behind(struct rf_frame *f)
     ptrdiff_t at;
 
     if (blocks(r, r->in_place.block) == 1) { /* the window is all of the photo */
-        rf_pass_mark(f, r->pyramid.levels);
-        rf_pass_behind(f, r->pyramid.levels);
+        rf_pass_mark_background(f, r->pyramid.levels);
+        rf_pass_inpaint(f, r->pyramid.levels);
         return;
     }
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_PYRAMID);
     rf_pool_run(&r->pool, known_band, r, rf_bands(&r->view));
     own = *level;
     at = (r->view.y0 >> RF_KEPT) * kept->blur.stride + (r->view.x0 >> RF_KEPT);
@@ -237,30 +240,31 @@ static void make_behind(struct rf_frame *f)
         level->light.channel[c] = kept->light.channel[c] + at;
     level->blur.at = kept->blur.at + at;
     level->light.stride = level->blur.stride = kept->blur.stride;
-    rf_pass_behind(f, RF_KEPT);
+    rf_pass_inpaint(f, RF_KEPT);
     *level = own;
 }
 
 /* Whether the first time through the photo was for this lens and light. */
 static bool is_marked(const struct rf_frame *f)
 {
-    return rf_renderer_of(f)->made.behind && rf_same_lens(f) && rf_same_light(f);
+    return rf_renderer_of(f)->cache.background && rf_same_lens(f) && rf_same_light(f);
 }
 
 static void mark_once(struct rf_frame *f)
 {
-    struct rf_made *m = &rf_renderer_of(f)->made;
+    struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
     if (blocks(rf_renderer_of(f), rf_renderer_of(f)->in_place.block) == 1 || is_marked(f))
         return;
-    m->behind = false;
+    m->background = false;
     mark(f);
-    *m = (struct rf_made){.blur = true, .smooth = true, .plan = f->plan, .shift = f->scale.shift};
+    *m = (struct rf_pass_cache){
+        .blur = true, .smooth = true, .plan = f->plan, .shift = f->scale.shift};
     rf_note_light(f);
-    m->behind = !rf_cancelled(&rf_renderer_of(f)->exec);
+    m->background = !rf_cancelled(&rf_renderer_of(f)->exec);
 }
 
-void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
+void rf_run_strips(struct rf_frame *f, struct rf_rect region, enum rf_need need,
                    void (*tiles)(struct rf_frame *f))
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -285,7 +289,7 @@ void rf_run_blocks(struct rf_frame *f, struct rf_rect region, enum rf_need need,
             continue;
         make_window(f, b, in_place->margin, need);
         if (need == RF_NEED_LAYERS && !rf_cancelled(&r->exec))
-            make_behind(f);
+            make_background(f);
         if (need == RF_NEED_LAYERS && !rf_cancelled(&r->exec))
             rf_pass_boost(f);
         if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(&r->exec))
