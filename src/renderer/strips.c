@@ -183,6 +183,8 @@ static void mark(struct rf_frame *f)
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
         make_window(f, block, in_place->mark_margin, RF_NEED_LAYERS);
+        if (rf_cancelled(&r->exec))
+            break;
         rf_pass_mark_background(f, RF_KEPT);
         keep_known(r, block);
         if (!rf_cancelled(&r->exec))
