@@ -6,7 +6,7 @@
  *     ranges.h      least and greatest blur of cells and windows
  *     rays.h        where rays look, and what they need not test
  *     gather.h      the sweeps: sums of what rays see
- *     search.h      the randomized intersection search
+ *     ray_search.h  the randomized intersection search
  *     blur.h        blur radii, and the pre-filter
  *     background.h  marking and inpainting the hidden background
  *     light.h       means, weights, softening, and what is drawn over them
