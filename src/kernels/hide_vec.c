@@ -55,7 +55,7 @@ static inline void meet(uint16_t *at, const int16_t *row)
         at[x] = (uint16_t)row[at[x]];
 }
 
-/* The masks of rows y to end - 1, by the blurs that the pixels of one row met. */
+/* The masks of rows y to end - 1, by the blurs that the pixels of one row hit. */
 static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, vec_u16 to, int y,
                          int end)
 {

@@ -68,7 +68,7 @@ typedef void rf_weigh_chroma_fn(uint16_t *chroma, const uint16_t *weight, int n)
 typedef void rf_weighed_means_fn(uint16_t *mean, const uint32_t *sum, const uint32_t *weight,
                                  int n);
 
-/* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (methods/tile_rows.h), by
+/* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (gather/tile_rows.h), by
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 static_assert((uint64_t)13 * (1 << 14) / 8 * UINT16_MAX <= INT32_MAX,
               "shares of magnitudes up to 1.625 in all: sums fit 32 bits");
@@ -85,7 +85,7 @@ typedef void rf_soften_fn(uint16_t *mean, int rows, int each, bool down, uint16_
 
 /*
  * lay_veil: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn
- * in cells of 4 x 4 pixels (thin/veil.h): 6 x 6 of them, the first one above and to the
+ * in cells of 4 x 4 pixels (thin/coverage.h): 6 x 6 of them, the first one above and to the
  * left of the tile, each of light times cover and cover, Q12 times 2^RF_VEIL_SHIFT,
  * between -2 and 2. Between the middles of cells it is linear, rounded down twice, at
  * 2^-8 of Q12 and at Q14.

@@ -44,7 +44,7 @@ struct aims {
 struct rest {
     int rays, ray[STEPS];
     vec_mask others[STEPS], pending[STEPS];
-    vec_u16 seen[STEPS]; /* by those that test again */
+    vec_u16 seen[STEPS]; /* blurs that the rays which test again have seen */
 };
 
 /* x in the low byte, y in the high one, both within 127. */

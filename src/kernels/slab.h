@@ -7,7 +7,7 @@
 
 enum {
     RF_TILE = 16,  /* tiles are RF_TILE x RF_TILE pixels */
-    RF_BINS = 256, /* of signed blur in a tile; no more slabs than bins */
+    RF_BINS = 256, /* bins of signed blur in a tile; no more slabs than bins */
 };
 
 /* Ray u sees the slab at round(u centre). */
@@ -29,7 +29,7 @@ static inline uint16_t rf_range_until(const struct rf_slab *slab)
     return (uint16_t)(slab->low + slab->width + 1);
 }
 
-/* Of all from the first slab's low to the last one's end. */
+/* Returns `to` for the range from the first slab's low to the last one's end. */
 static inline uint16_t rf_range_to(const struct rf_slab *first, const struct rf_slab *last)
 {
     return (uint16_t)(rf_range_until(last) - rf_range_from(first));

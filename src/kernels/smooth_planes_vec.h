@@ -12,7 +12,7 @@ struct rf_smooth_use {
     vec_u16 not_before, not_after, share;
 };
 
-/* From which blur on, and how the neighbours come in. */
+/* The blur from which on the mean comes in, and how it fades in. */
 struct rf_smooth_fade {
     vec_u16 least, over, unit;
 };
@@ -35,7 +35,7 @@ static inline struct rf_smooth_use rf_smooth_use(const int16_t *blur, ptrdiff_t 
                                                  const struct rf_smooth_fade *fade)
 {
     const vec_u16 s = vec_u16_load(blur);
-    /* As unsigned numbers, the lesser of s and -s is |s|, which is below 2^15. */
+    /* The lesser of s and -s as unsigned numbers is |s|, which is below 2^15. */
     const vec_u16 size = vec_u16_min(s, vec_u16_sub(vec_u16_set(0), s)),
                   t = rf_smooth_tolerance(size);
     const vec_u16 above = vec_u16_sub(vec_u16_max(size, fade->least), fade->least);

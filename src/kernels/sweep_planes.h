@@ -1,10 +1,10 @@
-/* sweep_planes.h: the template of the plain sweeps: what a ray of one lane meets. */
+/* sweep_planes.h: the template of the plain sweeps: what a ray of one lane hits. */
 #ifndef RF_KERNELS_SWEEP_PLANES_H
 #define RF_KERNELS_SWEEP_PLANES_H
 
 #include "kernels/sweep_view.h"
 
-/* Where the light of the first plane lies that a ray meets, and its weight. */
+/* Where the light of the first plane lies that a ray hits, and its weight. */
 struct rf_sweep_hit {
     const uint16_t *light, *weight;
 };

@@ -13,7 +13,7 @@
 
 enum { RF_WEIGHTED_VECS = 2 }; /* at most, together */
 
-/* Light and weight that one ray of each lane meets. */
+/* Light and weight that one ray of each lane hits. */
 struct rf_met {
     vec_u16 light[3][RF_WEIGHTED_VECS], weight[RF_WEIGHTED_VECS];
 };
@@ -33,7 +33,7 @@ static RF_ALWAYS_INLINE void rf_put_where(struct rf_met *met, int j, const uint1
     met->weight[j] = vec_u16_put_where(where, met->weight[j], vec_u16_load(weight));
 }
 
-/* Ray n of three planes, from the front to the back; all that is met is 0 before. */
+/* Ray n of three planes, from the front to the back; all that is hit is 0 before. */
 static RF_ALWAYS_INLINE void rf_follow_forwards(struct rf_met *met, const struct rf_sweep_view *v,
                                                 const struct rf_vec_place *p, int n,
                                                 const int planes, const int vecs)

@@ -47,9 +47,9 @@ struct rf_thin_tile {
  *     met         the first clean pixel of each direction, one of them at 4 steps or nearer;
  *                 else, or if the width is 1, the first far one
  *     weight      1440 / squared distance, rounded down
- *     surface     the met disparity d with the most weight within 2 J of it, the least of
+ *     surface     the disparity d that was hit with the most weight within 2 J of it, the least of
  *                 equals
- *     F, spread   mean by weight of those met within 2 J of it, half up; mean of their
+ *     F, spread   mean by weight of those hit within 2 J of it, half up; mean of their
  *                 squared distances from F, rounded down
  *     N           mean, half up, of near pixels of the 5 x 5 around by 1 + sum of
  *                 (L - F)^2 / 64, each rounded down

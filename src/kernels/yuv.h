@@ -29,9 +29,9 @@ struct rf_decode_job {
     const struct rf_yuv_curve *curve;
     int down;
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE]; /* rows of RF_TILE, Q14 */
-    const uint16_t *own_luma, *own_chroma;               /* Q12, of the tile's first element */
-    ptrdiff_t stride;                                    /* of both */
-    uint16_t within[2];                                  /* of luma and of chroma; 15 at most */
+    const uint16_t *own_luma, *own_chroma; /* Q12, of the tile's first element */
+    ptrdiff_t stride;                      /* stride of both planes */
+    uint16_t within[2];                    /* bounds of luma and of chroma; 15 at most */
     uint8_t y[RF_TILE * RF_TILE], uv[RF_TILE * RF_TILE]; /* in: codes that were; out */
 };
 typedef void rf_decode_fn(struct rf_decode_job *job);

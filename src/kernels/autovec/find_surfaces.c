@@ -59,7 +59,7 @@ static int find_samples(struct rf_surface *s, const uint16_t disparity[SAMPLES],
     return count(s->samples);
 }
 
-/* By what n samples are multiplied to be 64 to 127, and 64 / (6 n grow) in Q32. */
+/* Two numbers for n samples: 64 / (6 n grow) in Q32, and `grow`, which brings n to 64 to 127. */
 /* clang-format off */
 #define GROW(n, grow) {65536 * 64 / ((n) * (grow)) * (65536 / 6 + 1), grow}
 /* clang-format on */
@@ -124,8 +124,8 @@ static inline void take_taps(int16_t e[TAPS], uint16_t own[TAPS], const struct r
     }
 }
 
-/* By rows of a column: bits 0 to 7 the sum of (1, 3, 3, 1), bits 8 to 15 of those times
- * (-3, -1, 1, 3) and 8, bits 16 to 23 of those times their squares. */
+/* Sums for each set of rows of a column: bits 0 to 7 hold the sum of (1, 3, 3, 1), bits 8 to 15
+ * that of these times (-3, -1, 1, 3) plus 8, bits 16 to 23 that of these times the squares. */
 #define COLUMN(a, b, c, d)                                                                         \
     (((a) + 3 * (b) + 3 * (c) + (d)) + ((8 - 3 * (a)-3 * (b) + 3 * (c) + 3 * (d)) << 8) +          \
      ((9 * (a) + 3 * (b) + 3 * (c) + 9 * (d)) << 16))

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* By steps less one of the two kinds of directions: weights, */
+/* Weights of what is hit, by steps less one, for each of the two kinds of directions. */
 #define SQUARES(of)                                                                                \
     {                                                                                              \
         of(1), of(4), of(9), of(16), of(25), of(36), of(49), of(64), of(81), of(100), 0            \
@@ -12,7 +12,7 @@
 #define SLANTED(square)  1440 / (2 * (square))
 static const uint16_t weight_of[2][FAR + 1] = {SQUARES(STRAIGHT), SQUARES(SLANTED)};
 
-/* and where what is met lies in rows of some stride. */
+/* Finds where a pixel that is hit in each direction lies, in rows of the given stride. */
 static void find_places(int32_t place[WAYS][FAR + 1], ptrdiff_t stride)
 {
     for (int i = 0; i < WAYS; i++) {
@@ -63,8 +63,8 @@ static bool shines(const struct rf_thin_batch *b, const struct rf_thin_mixture *
     return false;
 }
 
-/* Those that are of something thin, or beside it and a mixture. The batch is empty
- * then. */
+/* Writes the mixtures among the batch: pixels of something thin, or beside it and mixed. The
+ * batch is empty afterwards. */
 static int take_apart(struct rf_thin *out, int most, struct rf_thin_batch *b,
                       const struct rf_thin_tile *t, const struct rf_thin_window *w)
 {

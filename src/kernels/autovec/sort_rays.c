@@ -5,8 +5,8 @@ enum { BITS = RF_JOIN_BLOCK, BLOCKS = RF_BINS / BITS };
 
 /* The tests of all rays at once. */
 struct state {
-    uint16_t first[BLOCKS][RF_RAY_CHUNK];  /* bit k % BITS of block k / BITS: test slab k, */
-    uint16_t joined[BLOCKS][RF_RAY_CHUNK]; /* or with the one before */
+    uint16_t first[BLOCKS][RF_RAY_CHUNK];  /* bit k % BITS of block k / BITS: it tests slab k */
+    uint16_t joined[BLOCKS][RF_RAY_CHUNK]; /* this bit: it tests it with slab k - 1 */
     uint16_t open[RF_RAY_CHUNK];           /* all bits: no slab so far takes all */
     uint16_t tests[RF_RAY_CHUNK];
     uint16_t last[RF_RAY_CHUNK];    /* slab, or their number: the background, */

@@ -1,4 +1,4 @@
-/* thin_far.c: F, the light behind a mixture, of a batch of pixels. */
+/* thin_far.c: computes F, the hidden background's light, for a batch of mixtures. */
 #include "kernels/autovec/thin_parts.h"
 
 #include <string.h>

@@ -12,15 +12,15 @@
 
 enum {
     JUMP = 65535 / 32, /* disparities this far apart are two surfaces */
-    AROUND = 3,        /* what is thin has something far within 7 x 7 pixels */
+    AROUND = 3,        /* a thin pixel has something far within 7 x 7 pixels */
     THIN = 2 * AROUND + 1,
-    WIDE = 2 * THIN,     /* not thin */
-    FAR = RF_THIN_REACH, /* how far what is behind is looked for, */
-    CLEAN = 4,           /* and how near it must be not to be taken from the edge itself */
+    WIDE = 2 * THIN,     /* more pixels across than any thin structure has */
+    FAR = RF_THIN_REACH, /* how far the hidden background is looked for */
+    CLEAN = 4,           /* how near it must be not to be taken from the edge itself */
     BEFORE = 2,          /* how far N is looked for */
     ACROSS = 2 * BEFORE + 1,
     FAINT = 12 * 12, /* squared distance of light that is none */
-    SHINES = 4000,   /* lamps, which highlights are for, and what is clipped */
+    SHINES = 4000,   /* lights, which highlights are for, and what is clipped */
     LEAST = 12,      /* alpha that a far pixel must have */
     WHITE = 4095,
 
@@ -56,10 +56,10 @@ static const int8_t way[WAYS][2] = {{1, 0}, {-1, 0},  {0, 1},  {0, -1},
 /* The tile and what is around it; pixel (x, y) at [y + MARGIN][x + MARGIN]. */
 struct rf_thin_window {
     uint16_t map[SPAN][ROW];    /* 65535 beyond the photo, which is never far */
-    uint16_t clean[SPAN][ROW];  /* 65535 of those that are not */
+    uint16_t clean[SPAN][ROW];  /* 65535 where a pixel is not clean */
     uint16_t inside[SPAN][ROW]; /* 0 beyond the photo, which is never near */
-    uint16_t (*before)[ROW];    /* that, or map */
-    uint16_t most[RF_TILE][WIDER], least[RF_TILE][WIDER]; /* of 3 x 3, of 7 x 7 */
+    uint16_t (*before)[ROW];    /* `inside`, or `map` */
+    uint16_t most[RF_TILE][WIDER], least[RF_TILE][WIDER]; /* over 3 x 3, over 7 x 7 */
 };
 
 /* A row of a tile, pixel by pixel. */
@@ -72,8 +72,8 @@ struct rf_thin_row {
     uint16_t near[WAYS][RF_TILE], beside[WAYS][RF_TILE], met[WAYS][RF_TILE];
 };
 
-/* Pixels, and what is met in all directions, and how much each counts: by the inverse
- * square of its distance. Those beyond `count` meet nothing. */
+/* Pixels, what is hit in all directions, and how much each counts: by the inverse
+ * square of its distance. Pixels beyond `count` hit nothing. */
 struct rf_thin_batch {
     int count;
     uint8_t at[BATCH];                              /* 16 y + x */
@@ -82,7 +82,7 @@ struct rf_thin_batch {
     uint16_t weight[WAYS][BATCH], disparity[WAYS][BATCH], met[3][WAYS][BATCH];
 };
 
-/* What was found of them. */
+/* Results of the kernel for the pixels of a batch. */
 struct rf_thin_mixture {
     uint16_t far[BATCH];                        /* disparity of F */
     uint16_t near[BATCH];                       /* nearest of N, 0: there is none */

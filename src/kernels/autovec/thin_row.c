@@ -1,4 +1,4 @@
-/* thin_row.c: which pixels of a row may be thin, or beside what is, and what they meet. */
+/* thin_row.c: which pixels of a row may be thin, or lie beside one that is, and what they hit. */
 #include "kernels/autovec/thin_parts.h"
 
 static ptrdiff_t step_of(int i)
@@ -18,7 +18,7 @@ static unsigned bits_of(const uint16_t mask[RF_TILE])
     return bits;
 }
 
-/* Which are looked at. */
+/* Finds which pixels are looked at, a bit each. */
 static unsigned find_level(struct rf_thin_row *row, const struct rf_thin_window *w, int y,
                            int columns)
 {
@@ -86,7 +86,7 @@ static void count_unclean(uint16_t *restrict unclean, const uint16_t *restrict a
     }
 }
 
-/* Which are thin, or beside what is. */
+/* Finds which pixels are thin, or beside one that is, a bit each. */
 static unsigned find_width(struct rf_thin_row *row)
 {
     for (int x = 0; x < RF_TILE; x++) {
@@ -106,7 +106,7 @@ static unsigned find_width(struct rf_thin_row *row)
     return bits_of(row->thin);
 }
 
-/* Steps to what is met. A hair of one pixel has nothing clean beside it that is as like
+/* Counts the steps to what is hit. A hair of one pixel has nothing clean beside it that is as like
  * what it hides. */
 static void choose_steps(struct rf_thin_row *row)
 {

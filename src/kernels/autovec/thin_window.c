@@ -53,7 +53,7 @@ static void fill(uint16_t *row, uint16_t with, int first, int end)
         row[i] = with;
 }
 
-/* What is beyond the photo repeats its last row or column. */
+/* Repeats the last row or column of the photo beyond its sides. */
 static void copy_around(struct rf_thin_window *w, const struct rf_thin_tile *t, struct part p)
 {
     for (int j = p.y0; j < p.y1; j++) {
