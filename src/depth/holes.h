@@ -9,7 +9,7 @@
 enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
 
 /*
- * Fills the unknown disparities from the known ones around them.
+ * Inpaints the unknown disparities from the known ones around them.
  *
  * An unknown sample p takes the disparity of the known sample q with the least
  *
@@ -17,7 +17,7 @@ enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
  *
  * over paths through unknown samples: the nearest one on a continuous surface, whose d
  * changes by less than 1/w a sample, and the farther of two surfaces that meet, up to w
- * times their difference away. What is filled is then smoothed where it is continuous,
+ * times their difference away. What is inpainted is then smoothed where it is continuous,
  * the wider the deeper it lies in a hole.
  *
  * Time is linear in the number of samples. At least one sample is known.

@@ -32,7 +32,7 @@ struct rf_block_lists {
 
 /* A span: the columns of pixels between the same columns of samples, up to the next span. */
 struct rf_span {
-    int32_t begin; /* its first column */
+    int32_t begin; /* first column of the span */
     int32_t alike; /* the first one whose pixels lie the same way */
     int32_t shown; /* the one in the middle of the column of samples of this number */
 };

@@ -323,7 +323,7 @@ static void list_unsure(const struct rf_upsampler *up, int y)
         } else {
             memcpy(half, sure, sizeof half);
         }
-        unsure[n + 1] = (uint16_t)i; /* what is not counted is overwritten */
+        unsure[n + 1] = (uint16_t)i; /* overwritten by the next one if it is not counted */
         n += (half[0] & half[1]) != UINT64_MAX;
     }
     unsure[0] = (uint16_t)n;
