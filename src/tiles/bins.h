@@ -20,7 +20,7 @@ struct rf_bins {
 
 /* The least and the greatest circle of confusion around each cell of a window; tiles/ranges.h. */
 struct rf_range_plane {
-    uint32_t *at; /* of the cell of pixel (0, 0) */
+    uint32_t *at; /* address of the cell of pixel (0, 0) */
     ptrdiff_t stride;
 };
 

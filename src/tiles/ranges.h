@@ -48,7 +48,7 @@ void rf_cell_rows(const struct rf_executor *exec, const struct rf_viewport *view
 /* Adds a blur to the cell of pixel (x, y). */
 void rf_add_to_cell(const struct rf_cells *cells, int x, int y, int16_t blur);
 
-/* What ranges are made of, and where they go. */
+/* Arguments of the passes that make ranges, and where these go. */
 struct rf_range_pass {
     struct rf_cells cells;                 /* read by rf_range_rows() */
     struct rf_foreground_cells foreground; /* read by rf_bare_rows() */

@@ -13,7 +13,7 @@ enum {
     OVERLAP = 32,         /* a slab reaches so far into each of those beside it */
     CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
     WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
-    MOST_SPREAD = 60416,  /* blurs within it meet no slab of up to 20 pixels modulo 2^16 */
+    MOST_SPREAD = 60416,  /* blurs within it hit no slab of up to 20 pixels modulo 2^16 */
 };
 
 struct rf_bin_scale rf_bin_scale_of(float largest_blur)
@@ -162,7 +162,7 @@ static int gap_of(int n)
     return n ? (n - 1) * RF_TILE + 1 : 0;
 }
 
-/* A ray meets a pixel g away only if |s| >= g - 1. */
+/* A ray hits a pixel g away only if |s| >= g - 1. */
 static struct rf_kept kept_at(struct rf_bin_scale scale, int gx, int gy, bool square)
 {
     struct rf_kept kept = {.word = {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX}};
@@ -262,7 +262,7 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
  * takes what is nearer by up to CLOSED, which the slabs before it have left; and the one after it
  * takes what is sharp, by as much, for rays of pixels that are blurred. With 1/4 pixel that closes
  * surfaces of slope up to 1/4: a ray of a pixel of blur 0.60 looks at its neighbour, of blur 0.45,
- * and meets it, where it missed it before, and at offset 0 itself. */
+ * and hits it, where it missed it before, and at offset 0 itself. */
 static void cover(const struct rf_bins *bins, struct rf_bin_scale scale, struct rf_tile_plan *plan)
 {
     const int pixel = 256 >> scale.shift;

@@ -27,14 +27,14 @@ struct rf_tile_plan {
     bool sharp;         /* nothing here or reaching here is blurred by half a pixel */
     int lamp;           /* largest |s| of a highlight in reach, Q7.8; 0: none is in reach */
     bool dots;          /* a highlight that is small beside the gaps of the rays is in reach */
-    uint16_t brightest; /* as rf_bins has it, of the tiles in reach */
+    uint16_t brightest; /* brightest light of the tiles in reach, as in rf_bins */
     struct rf_slab slab[RF_MAX_SLABS];
     bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */
 };
 
-/* Which blurs reach from a tile to another that is some tiles away. */
+/* Blurs that reach from a tile to another that is some tiles away. */
 struct rf_kept {
-    uint64_t word[RF_BINS / 64]; /* bins that reach it */
+    uint64_t word[RF_BINS / 64]; /* bit set of the bins that reach it */
     int low, high;               /* blurs from low to high - 1 do not reach it; Q7.8 */
     int blur;                    /* the least |s| that does */
 };
