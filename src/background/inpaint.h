@@ -30,7 +30,7 @@ void rf_background_push(const struct rf_executor *exec, const struct rf_pyramid 
 void rf_background_pull(const struct rf_executor *exec, const struct rf_viewport *view,
                         const struct rf_pyramid *pyramid, int from, int to);
 
-/* What is read and written beside the pyramid of a photo of Y, U and V. */
+/* Chroma that is read and written beside the pyramid, for a photo of Y, U and V. */
 struct rf_inpaint_chroma {
     struct rf_chroma_size size;
     struct rf_blur_q8 blur;          /* read: of each pixel */

@@ -1,4 +1,4 @@
-/* mark.c: marks the foreground whose surroundings are to be inpainted behind it. */
+/* mark.c: marks the foreground behind which the background is to be inpainted. */
 #include "background/mark.h"
 
 #include <string.h>

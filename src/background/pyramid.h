@@ -4,7 +4,7 @@
 
 #include "image/planes.h"
 
-enum { RF_LEVELS = 18 }; /* of the largest picture, without level 0 */
+enum { RF_LEVELS = 18 }; /* levels of the largest picture, without level 0 */
 
 /* A level, its blur RF_NO_BLUR where nothing is known. Levels from 1 on have an even stride and no
  * padding, but a column more if their width is odd. */
