@@ -16,7 +16,7 @@ uint64_t rf_coverage_source_bytes(void)
 
 /* Sums over the pixels of a cell. */
 struct sum {
-    int32_t light[4]; /* of alpha N, and of alpha: 4096 = 1 */
+    int32_t light[4]; /* sums of alpha N (three channels) and of alpha, 4096 = 1 */
     int32_t blur, weight;
 };
 
@@ -62,8 +62,8 @@ static int chord(int dy, int radius) /* Q8 both, below 2^16 */
                  23);
 }
 
-/* What a cell adds to each cell of its disc, light and cover: the disc has as many as
- * its rows are long together. */
+/* Divides the light and the coverage of a cell among the cells of its disc: there are as many of
+ * these as the disc's rows are long together. */
 static void share(const int32_t light[4], int radius, int32_t each[4])
 {
     int64_t length = chord(0, radius);

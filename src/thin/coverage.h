@@ -17,9 +17,9 @@
 #include "thin/thin.h"
 
 struct rf_coverage_source {
-    uint16_t x, y;   /* cell */
-    uint16_t radius; /* of its disc, cells in Q8 */
-    int32_t each[4]; /* what each cell of the disc gets of alpha N and of alpha, in the unit of
+    uint16_t x, y;   /* cell that the disc is centred on */
+    uint16_t radius; /* radius of its disc, cells in Q8 */
+    int32_t each[4]; /* alpha N and alpha that each cell of the disc gets, in the unit of
                         struct rf_coverage */
 };
 

@@ -8,7 +8,7 @@
 const struct rf_thin_run *rf_thin_run_of(const struct rf_thin_pass *t, int tx, int ty);
 struct rf_thin *rf_thin_of(const struct rf_thin_pass *t, int tx, int ty, uint32_t *count);
 
-/* Which of them are separated. */
+/* Returns which of these mixtures are separated. */
 struct rf_thin_choice *rf_thin_choice_of(const struct rf_thin_pass *t, int tx, int ty);
 
 static inline bool rf_has_bit(const uint64_t bits[4], uint32_t i)

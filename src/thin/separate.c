@@ -1,5 +1,5 @@
-/* separate.c: chooses which mixtures are separated, and exchanges their light with that behind
- * them. */
+/* separate.c: chooses which mixtures are separated, and exchanges their light with that of
+ * the background. */
 #include <stdlib.h>
 
 #include "thin/mixture.h"

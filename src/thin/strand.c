@@ -4,15 +4,15 @@
 #include "thin/mixture.h"
 
 enum {
-    REACH = 4,           /* pixels on each side that are looked at: */
-    LEAST = 4,           /* so many of the strand's at least, */
-    MOST = 13,           /* and at most, */
-    CLOSE = 4,           /* and of the 3 x 3 */
-    JUMP = 65535 / 32,   /* of disparities: two things */
+    REACH = 4,           /* pixels that are looked at on each side */
+    LEAST = 4,           /* so many of them belong to the strand at least */
+    MOST = 13,           /* so many belong to it at most */
+    CLOSE = 4,           /* so many of the 3 x 3 around the pixel belong to it at most */
+    JUMP = 65535 / 32,   /* disparities this far apart are two things */
     PATTERN = 400 * 400, /* least variance of F, Q12 squared */
-    SOLID = 32,          /* 1 - alpha, 255 = 1: less has no pattern, */
-    CLEAR = 225,         /* more is taken for so much, */
-    STEEPEST = 380,      /* and what is above is none */
+    SOLID = 32,          /* 1 - alpha, 255 = 1: below this a pixel shows no pattern */
+    CLEAR = 225,         /* 1 - alpha above this is taken for as much as this */
+    STEEPEST = 380,      /* a slope above this is none */
 };
 
 /* Where C goes with F, sums over a strand's pixels, of the products over the three channels. */

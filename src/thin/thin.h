@@ -1,4 +1,5 @@
-/* thin.h: thin structures, and the depth edges beside them, are separated from what is behind them.
+/* thin.h: thin structures, and the depth edges beside them, are separated from the background that
+ * they hide.
  *
  * A wire of two pixels that is blurred over forty is hit by few rays, here by more and there by
  * less, and shows as streaks. And the pixels at its edge that have the depth of what is behind stay
@@ -67,8 +68,8 @@ static inline uint64_t rf_thin_capacity(int width)
 struct rf_thin_list {
     struct rf_thin *pixel;   /* rf_thin_capacity() for each row of tiles; while the light planes
                                 hold F, `light` of each holds that of the photo */
-    struct rf_thin_run *run; /* of each tile */
-    uint32_t blend;          /* that they were found in, or RF_NO_BLEND */
+    struct rf_thin_run *run; /* run of each tile */
+    uint32_t blend;          /* blend of the light that they were found in, or RF_NO_BLEND */
 };
 
 /*
@@ -89,24 +90,24 @@ struct rf_thin_bounds {
     int splat_from, matte_from, matte_to, matte_far;
 };
 
-/* Which mixtures of a tile are separated, a bit each. */
+/* Mixtures of a tile that are separated, a bit each. */
 struct rf_thin_choice {
-    bool splats, mattes; /* any of them */
+    bool splats, mattes; /* whether any of them is */
     uint64_t splat[4], matte[4];
 };
 
 /* The coverage layer that is composited over the picture; coverage.h has its parts. */
 struct rf_coverage_source;
 struct rf_coverage {
-    struct rf_coverage_source *source; /* 16 for each tile, in rows of tiles */
-    uint32_t *sources;                 /* of each row of tiles */
-    struct rf_thin_choice *choice;     /* of each tile */
-    bool *swapped;                     /* of each row of tiles: the light planes hold F */
+    struct rf_coverage_source *source; /* 16 sources for each tile, in rows of tiles */
+    uint32_t *sources;                 /* number of sources of each row of tiles */
+    struct rf_thin_choice *choice;     /* choice of each tile */
+    bool *swapped;                     /* whether the light planes hold F, for each row of tiles */
     int32_t (*cell)[4];                /* alpha N and alpha, Q12 times 2^RF_VEIL_SHIFT */
     int stride;
 };
 
-/* What the passes of this folder read and write. */
+/* Arguments of the passes of this folder: the planes and lists that they read and write. */
 struct rf_thin_pass {
     const struct rf_executor *exec;
     const struct rf_viewport *view;
@@ -114,9 +115,9 @@ struct rf_thin_pass {
     struct rf_disparity_q16 disparity; /* read */
     struct rf_light_q12 light;         /* read, and exchanged with the list */
     struct rf_blur_q8 blur;            /* patched */
-    const int16_t *cell_most;          /* the greatest blur of each cell, */
-    ptrdiff_t cell_stride;             /* rows of cells so far apart; tiles/ranges.h */
-    const struct rf_bins *bins;        /* of each tile */
+    const int16_t *cell_most;          /* greatest blur of each cell */
+    ptrdiff_t cell_stride;             /* stride of rows of cells; tiles/ranges.h */
+    const struct rf_bins *bins;        /* bins of each tile */
     struct rf_thin_list *list;
     struct rf_coverage *coverage;
     int disc_scale; /* Q8: radius of a splatted disc, as part of its blur; 0: none is splatted */
@@ -130,18 +131,18 @@ enum {
     RF_COVERAGE_BLUR = 8 << 8,   /* Q7.8: two cells, the least blur that is splatted */
     RF_COVERAGE_SOURCES = 4 * 4, /* cells of a tile */
 };
-uint64_t rf_coverage_source_bytes(void); /* of one source */
+uint64_t rf_coverage_source_bytes(void); /* Returns the size of one source. */
 
 /* Finds the mixtures of the photo, all of which is in the window, whose light is of `blend`. */
 void rf_thin_find(const struct rf_thin_pass *t, uint32_t blend);
 
-/* What a lens setting asks for. */
+/* Settings of a lens that decide which mixtures are separated. */
 struct rf_thin_settings {
     bool on;
     bool splats; /* discs are as good as rays: an aperture without fine structure, the same all over
                     the picture */
-    int rays;    /* of the preset, or REFOCUS_RAYS_FULL */
-    const struct rf_ray_set *set; /* those rays */
+    int rays;    /* rays of the preset, or REFOCUS_RAYS_FULL */
+    const struct rf_ray_set *set; /* the set of these rays */
 };
 
 /* Sets t->splat_blur, bounds, disc_scale and mattes, by t->plan. */
