@@ -6,13 +6,14 @@
 
 /* Measures of what may be a highlight, and of what is around it. */
 struct rf_measured {
-    int64_t own[3], around[3]; /* mean colours, */
-    int64_t beyond[3];         /* that 2 or 3 cells away, which the light falls to, */
-    int64_t base;              /* and the brightest channel there */
-    int64_t rim[3];            /* what the pixels beside it have more than that, or than the
-                                  surroundings, added up */
+    int64_t own[3], around[3]; /* mean colours of the component and of its surroundings */
+    int64_t beyond[3];         /* mean colour 2 or 3 cells away, which the light falls to */
+    int64_t base;              /* the brightest channel of `beyond` */
+    int64_t rim[3]; /* excess of the pixels beside the component over `beyond`, or over the
+                       surroundings, added up */
     int pixels;
-    int edge, half_lit; /* its pixels that are beside others, and the half lit pixels beside it */
+    int edge, half_lit; /* the component's pixels that lie beside others, and the half lit pixels
+                           beside it */
     int fade[2]; /* pixels in its cells and beside them, on the way to its surroundings: the upper
                     part of the way, from 0.4 on, and the lower one, from 0.1 */
 };
@@ -55,12 +56,13 @@ int rf_add_clipped(const struct rf_cell_photo *p, int x, int y, int64_t own[3]);
 bool rf_measure_colours(const struct rf_cell_photo *p, const struct rf_component *body,
                         const struct rf_component *component, struct rf_measured *m);
 
-/* Measures what lies beyond a body's rim, and then the rim: where the body meets a limb, there is
- * nothing to be told. The body of a photo with `core` set is a core, whose glow is no limb. */
+/* Measures what lies beyond a body's edge, and then the edge: where the body meets a
+ * limb, there is nothing to be told. The body of a photo with `core` set is a core, whose glow is
+ * no limb. */
 void rf_measure_rim(const struct rf_cell_photo *p, const struct rf_component *body,
                     const struct rf_component *component, struct rf_measured *m);
 
-/* Gives the rim of a core in its own glow the colour of the glow. */
+/* Gives the edge of a core in its own glow the colour of the glow. */
 void rf_measure_glow(const struct rf_cell_photo *p, const struct rf_component *core,
                      struct rf_measured *m);
 
@@ -68,7 +70,7 @@ void rf_measure_glow(const struct rf_cell_photo *p, const struct rf_component *c
  * and wholly at 3/2 of that. */
 int rf_isolation(const struct rf_measured *m, int halves);
 
-/* Q12 light of full strength: the colour of the rim, white if it has none. */
+/* Q12 light of full strength: the colour of the edge, white if it has none. */
 void rf_boost_of(const int64_t rim[3], int boost[3]);
 
 /* Lists a clipped pixel as part of a highlight. */

@@ -3,7 +3,7 @@
  *
  * Each of its cells is classified by the 25 x 25 and 7 x 7 cells around it: by how much brighter it
  * is than the former, from 3 times on and wholly from 4.5, and by how few half lit cells there are
- * to the clipped ones among the latter. The hue is that of the rim there.
+ * to the clipped ones among the latter. The hue is that of the edge there.
  */
 #include "highlights/classify.h"
 
@@ -12,7 +12,7 @@
 enum {
     AROUND = 12, /* surroundings: so many cells on each side, */
     GRID = 3,    /* every third of them */
-    NEAR = 3,    /* cells on each side that tell of the rim */
+    NEAR = 3,    /* cells on each side that tell of the edge */
     HALF_LIT = RF_LIGHT_MAX * 40 / 100,
     LARGE = 6, /* halves of its surroundings that a cell has to exceed */
 };

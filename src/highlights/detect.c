@@ -19,7 +19,7 @@ enum {
     MOST = RF_COMPONENT_SIDE,
     FULL = 12,                /* cells on each side that tell what is wide */
     BEFORE = 7,               /* rows; no tube is higher */
-    ROWS = BEFORE + MOST + 1, /* of bits: 32, which fit the scratch of a worker */
+    ROWS = BEFORE + MOST + 1, /* rows of bits, 32, which fit the scratch of a worker */
     SEED = 28,                /* column of a word that the first cell of a component is in */
     PAD = 4,                  /* words of 16 bits before and after a row */
 };
@@ -57,7 +57,7 @@ static bool may_be_clipped(const struct search *s, int x, int y, int n)
                                                     p->light[2] + at, n) > RF_CLIPPED;
 }
 
-/* Which of n pixels of a row are clipped, n at most 64: a bit each. */
+/* Returns a bit for each of n pixels of a row, n at most 64: whether it is clipped. */
 static uint64_t clipped_in(const struct rf_cell_photo *p, int x, int y, int n)
 {
     uint8_t clipped[64];
@@ -85,7 +85,7 @@ static void add_bits(const struct search *s, uint16_t *bits, int y)
     enum { RUN = 64 };
     const struct rf_cell_photo *p = &s->found.photo;
     const int cell = p->cell;
-    const uint64_t first = UINT64_MAX >> (RUN - cell); /* of the pixels of a cell */
+    const uint64_t first = UINT64_MAX >> (RUN - cell); /* bits of the pixels of one cell */
 
     if (!may_be_clipped(s, 0, y, p->width))
         return;
@@ -308,7 +308,7 @@ struct detect {
     const struct rf_executor *exec;
     struct rf_cell_photo photo;
     struct rf_highlights *highlights;
-    int rows; /* of an item */
+    int rows; /* rows of a work item */
 };
 
 static void detect_item(void *context, int item, int worker)

@@ -27,9 +27,9 @@ struct rf_detection {
     struct rf_cell_photo photo;
     struct rf_highlights *highlights;
     int y0, y1;
-    struct rf_highlight run; /* what was listed last may go on; count 0: nothing */
-    int lost[3];             /* by its pixels in all, Q12 */
-    int full[3];             /* by each that is clipped wholly */
+    struct rf_highlight run; /* the run that was listed last, which may go on; count 0: nothing */
+    int lost[3];             /* light that its pixels have lost in all, Q12 */
+    int full[3];             /* light that each wholly clipped pixel has lost */
 };
 
 /* Connected clipped cells: bit i of row[j] is cell (x + i, y + j). The row after the last is 0. */

@@ -1,5 +1,5 @@
-/* gather.c: leaves highlights to the rays, where they are not splatted: makes sure that rays meet
- * them, and gives the light that rays meet what clipping cost. */
+/* gather.c: leaves highlights to the rays, where they are not splatted: makes sure that rays hit
+ * them, and gives the light that rays hit what clipping cost. */
 #include "highlights/highlights.h"
 
 #include <stdbool.h>
@@ -17,19 +17,19 @@ enum {
     ALIKE = 256, /* if it is farther away than that: else the pre-filter takes it for the same; and
                     how much blurs may differ that a highlight's light is spread over */
     DOTS = 2,    /* gaps of the rays that a highlight has to be wide not to show as dots */
-    PLACES = (2 * WIDEST + 1) * (2 * WIDEST + 1), /* that its light is spread over at most */
+    PLACES = (2 * WIDEST + 1) * (2 * WIDEST + 1), /* pixels that light spreads over */
 };
 
 /* The inputs of the three steps, of which each uses some. */
 struct gather {
     const struct rf_executor *exec;
     const struct rf_highlight_window *window;
-    double gap;                                   /* of the rays, times the blur */
+    double gap;                                   /* gap of the rays, times the blur */
     const struct rf_blur_patch *patch;            /* widen */
     const struct rf_foreground_cells *foreground; /* raise */
-    struct rf_light_q12 light;                    /* boost: what rays meet, */
-    int share;                                    /* of what clipping cost, Q8, */
-    int most;                                     /* and the light that there may be */
+    struct rf_light_q12 light;                    /* boost: light that rays hit */
+    int share; /* boost: part of what clipping cost that is given back, Q8 */
+    int most;  /* boost: greatest light that a pixel may get */
 };
 
 /* Calls `then` for each run of a part; ends early when the run is cancelled. */
@@ -82,7 +82,7 @@ static void widen_pixel(const struct gather *g, int cx, int cy)
     }
 }
 
-/* Notes highlights that rays lie so far apart at that few meet them, and show them as dots. */
+/* Notes highlights that rays lie so far apart at that few hit them, and show them as dots. */
 static void note_dots(const struct gather *g, const struct rf_highlight *run)
 {
     const struct rf_highlight_window *w = g->window;
@@ -181,7 +181,7 @@ static int places_of(const struct gather *g, int cx, int cy, int reach, ptrdiff_
 }
 
 /* How far the light of a pixel is spread: of highlights that are narrower than one and a half gaps,
- * which few rays meet, a pixel more. */
+ * which few rays hit, a pixel more. */
 static int spread_of(const struct rf_highlight *run, int blur, double gap)
 {
     const int reach = reach_of(blur, gap);
@@ -189,7 +189,7 @@ static int spread_of(const struct rf_highlight *run, int blur, double gap)
     return 512 * run->size < 3 * gap * abs(blur) && reach < WIDEST ? reach + 1 : reach;
 }
 
-/* Notes light in the tiles that rays meet pixels within `reach` of (x, y) from: their sums have to
+/* Notes light in the tiles that rays hit pixels within `reach` of (x, y) from: their sums have to
  * hold it. */
 static void note_light(const struct rf_highlight_window *w, int x, int y, int reach, int light)
 {
@@ -244,7 +244,7 @@ void rf_boost_highlights(const struct rf_executor *exec, const struct rf_highlig
         .window = window,
         .gap = gap,
         .light = smooth,
-        .share = (int)((gain - 1) * (256 / 3) + 0.5f), /* of what is three times white */
+        .share = (int)((gain - 1) * (256 / 3) + 0.5f), /* part of the light of three times white */
         .most = most,
     };
     const struct rf_highlight_parts parts = rf_parts_in(window->view);

@@ -13,7 +13,7 @@
  *
  * then, where the aperture and the method allow it (rf_can_splat()),
  *
- *     subtract    takes from the light that rays meet what a highlight has beyond its surroundings
+ *     subtract    takes from the light that rays hit what a highlight has beyond its surroundings
  *     splat       draws that, and what clipping cost, as sprites of the aperture
  *
  * and elsewhere, where the rays have to gather the light,
@@ -55,17 +55,17 @@ struct rf_highlight {
                                of them fade */
     int16_t blur;           /* mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ */
     uint16_t weight;        /* how many of the pixels are no edges, 256 for each */
-    uint16_t subtracted[3]; /* Q12 light that was taken from what rays meet, mean by weight */
-    uint8_t rows;           /* that are splatted as one, from this one on; 0: with one above */
-    uint8_t below;          /* the next of them is so much further in the list */
+    uint16_t subtracted[3]; /* Q12 light that was taken from what rays hit, mean by weight */
+    uint8_t rows;  /* rows from this one on that are splatted as one; 0: splatted with one above */
+    uint8_t below; /* how much further on in the list the next of these rows is */
 };
 
 /* The photo's rows are listed in parts, each with room for one run in 76 pixels; of more than fit,
  * the first stay, row by row, and the others stay as they are in the photo. */
 enum {
     RF_HIGHLIGHT_RUN = 16,
-    RF_HIGHLIGHT_STACK = 4, /* rows that are splatted as one at most */
-    RF_HIGHLIGHT_ROWS = 64, /* of a part */
+    RF_HIGHLIGHT_STACK = 4, /* most rows that are splatted as one */
+    RF_HIGHLIGHT_ROWS = 64, /* rows of a part of the photo */
     RF_HIGHLIGHT_PARTS = (REFOCUS_MAX_SIDE + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS
 };
 
@@ -81,7 +81,7 @@ struct rf_highlights {
 /* Pixels at the edge of something bright that are rendered at another depth than the map gives. */
 struct rf_silhouette {
     uint16_t x, y;      /* in the photo */
-    uint16_t disparity; /* of the bright pixels that they belong to */
+    uint16_t disparity; /* disparity of the bright pixels that they belong to */
 };
 
 /* Each of another pixel; of more than fit, the first stay, row by row. */
@@ -108,11 +108,11 @@ bool rf_has_highlights(const struct rf_highlights *highlights, const struct rf_v
  * them it reads and writes. */
 struct rf_highlight_window {
     const struct rf_viewport *view;
-    struct rf_light_q12 light; /* of the photo, not pre-filtered */
+    struct rf_light_q12 light; /* light of the photo, not pre-filtered */
     struct rf_blur_q8 blur;
-    struct rf_highlights *highlights; /* of the photo */
-    struct rf_bins *bins;             /* of each tile of the window */
-    int channels;                     /* of light: 3, or 1 of a photo of Y, U and V */
+    struct rf_highlights *highlights; /* highlights of the photo */
+    struct rf_bins *bins;             /* bins of each tile of the window */
+    int channels;                     /* channels of light: 3, or 1 for a photo of Y, U and V */
 };
 
 /* The places where the blur of a pixel is kept: its plane, the bins of its tile and the extremes of
@@ -164,7 +164,7 @@ void rf_mark_highlights(const struct rf_executor *exec, const struct rf_highligh
                         bool splat);
 
 /*
- * Splat. What is out of focus by s spreads over the pixels p whose rays meet it, p + u s(q) = q
+ * Splat. What is out of focus by s spreads over the pixels p whose rays hit it, p + u s(q) = q
  * (Yang et al. 2016, eq. 4): a disc of radius |s| around q. Rays are too few to show a highlight of
  * a pixel or two as an even disc with a crisp edge, and every ray of a full mask, rounded to whole
  * pixels, shows it as a mesh. So what clipping cost is kept out of the planes that rays look into,
@@ -189,7 +189,7 @@ struct rf_splat {
     struct rf_range_plane range;
     const struct refocus_aperture *aperture;
     float gain;         /* 1 to 16 */
-    int largest_radius; /* of the frame's plain focus, Q7.8: struct rf_focus */
+    int largest_radius; /* largest radius of the frame's plain focus, Q7.8: struct rf_focus */
 };
 
 /* Whether discs through that aperture can be splatted with these parameters, and there is a gain.
@@ -208,7 +208,7 @@ void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan
                          int ty, uint16_t *const mean[3]);
 
 /* Widens marked highlights that rays `gap` times their blur apart would miss: pixels around them
- * take their blur. Reads and writes blur; notes in bins where few rays meet a highlight. */
+ * take their blur. Reads and writes blur; notes in bins where few rays hit a highlight. */
 void rf_widen_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
                          const struct rf_blur_patch *patch, double gap);
 

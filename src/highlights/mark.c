@@ -11,14 +11,15 @@
 #include "support/compare.h"
 
 enum {
-    EDGE_FROM = 128,  /* Q7.8: what something bright is sharper by for this to be its edge, */
-    EDGE_PART = 16,   /* by that part of this blur at least, and wholly so by 3 times that; where
-                         highlights are gathered, by twice that */
+    EDGE_FROM = 128,  /* Q7.8: something bright is the edge of a highlight if it is sharper by this,
+                         at least */
+    EDGE_PART = 16,   /* it is also sharper by this part of the highlight's blur at least, wholly so
+                         by 3 times that part; where highlights are gathered, by twice that */
     DISC_EDGE = 256,  /* Q7.8: what a disc goes beyond the blur of a highlight's pixel, half a pixel
                          at its edge and half of what blurs of a run may differ by, and some */
     STACKED = 4096,   /* Q7.8: from this blur on two rows of a highlight are splatted as one, from
-                         twice that on four, */
-    STACK_EDGE = 512, /* which may reach farther by what rows differ by at their ends */
+                         twice that on four */
+    STACK_EDGE = 512, /* Q7.8: stacked rows reach farther by this at most, as their ends differ */
 };
 
 static int blur_at(const struct rf_highlight_window *w, int x, int y)
@@ -69,7 +70,8 @@ static void note_reach(const struct rf_highlight_window *w, int x, int y, int re
 }
 
 /* The mean blur of those pixels of a run that are blurred as its middle is, if that is two thirds
- * of its weight: the rest, its rim with the depth of what is beside it, belongs to it as well. */
+ * of its weight: the rest, its silhouette with the depth of what is beside it, belongs to it as
+ * well. */
 static int blur_of_most(const struct rf_highlight_window *w, const struct rf_highlight *run)
 {
     int x, y, middle, sum = 0, weight = 0, reach;

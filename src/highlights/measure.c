@@ -1,13 +1,13 @@
-/* measure.c: measures a clipped component: its colour, its surroundings, and how its rim fades. */
+/* measure.c: measures a clipped component: its colour, its surroundings, and how its edge fades. */
 #include "highlights/classify.h"
 
 #include <string.h>
 
 enum {
-    AROUND = 12, /* surroundings: so many cells on each side, */
-    GRID = 3,    /* every third of them */
-    OUTER = 3,   /* cells that a component is grown by at most, */
-    BESIDE = 2,  /* and its limbs */
+    AROUND = 12, /* cells on each side that are the surroundings */
+    GRID = 3,    /* every third cell of them is measured */
+    OUTER = 3,   /* cells that a component is grown by at most */
+    BESIDE = 2,  /* cells that the limbs of a component are grown by */
 };
 
 int rf_add_clipped(const struct rf_cell_photo *p, int x, int y, int64_t own[3])
@@ -149,7 +149,7 @@ static struct grown near_limbs(const struct rf_component *body,
 }
 
 /* Measures what is 2 or 3 cells away. A highlight may light what is beside it: that is not its
- * rim. */
+ * edge. */
 static void measure_beyond(const struct rf_cell_photo *p, const struct rf_component *body,
                            const struct grown *limbs, struct rf_measured *m)
 {
@@ -206,8 +206,8 @@ void rf_measure_rim(const struct rf_cell_photo *p, const struct rf_component *bo
     measure_edge(p, body, &limbs, m);
 }
 
-/* The rim of a core in its own glow tells little, as the highlight's channel is clipped there too:
- * if it mostly is two cells away, the core has the colour of what is there. */
+/* The edge of a core in its own glow tells little, as the highlight's channel is clipped
+ * there too: if it mostly is two cells away, the core has the colour of what is there. */
 void rf_measure_glow(const struct rf_cell_photo *p, const struct rf_component *core,
                      struct rf_measured *m)
 {

@@ -12,9 +12,9 @@
 #include "support/compare.h"
 
 enum {
-    BLURRED = 128, /* Q7.8: a highlight has its light from there on, */
-    WHOLLY = 384,  /* and all of it from here on */
-    PAIRS = 8192,  /* rows that are hidden in part are drawn by twos from there on */
+    BLURRED = 128, /* Q7.8: a splatted highlight begins to have its light at this blur */
+    WHOLLY = 384,  /* Q7.8: it has all of its light from this blur on */
+    PAIRS = 8192,  /* Q7.8: rows that are hidden in part are drawn by twos from this blur on */
 };
 
 bool rf_can_splat(const struct refocus_render_params *params,

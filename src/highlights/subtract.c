@@ -9,9 +9,9 @@
 #include "support/compare.h"
 
 enum {
-    SOME_FROM = 512, /* Q7.8: blurs whose discs have fewer rays than pixels, or so: from there on
-                        some of it is subtracted, */
-    ALL_FROM = 1024, /* and all of it from here on */
+    SOME_FROM = 512, /* Q7.8: from this blur on some of it is subtracted; discs have fewer rays than
+                        pixels there, or so */
+    ALL_FROM = 1024, /* Q7.8: from this blur on all of it is subtracted */
 };
 
 /* Runs side by side in a row, which have the same pixels on either side. */
@@ -35,7 +35,7 @@ static struct chain chain_of(const struct rf_viewport *view, struct rf_highlight
     return chain;
 }
 
-/* Enough rays meet wide ones, which may be in part beyond the window; what is there is not known,
+/* Enough rays hit wide ones, which may be in part beyond the window; what is there is not known,
  * and repeats what is at the photo's sides. */
 static bool may_subtract(const struct rf_viewport *view, const struct chain *chain)
 {

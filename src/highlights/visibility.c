@@ -22,7 +22,7 @@ enum {
 /* The part of a slab that may hide the run, and where on the way to the run it is. */
 struct screen {
     struct rf_slab slab;
-    double part; /* of the way */
+    double part; /* how far along the way, 0 to 1 */
 };
 
 /* A slab may hold the run itself, and what is about as near. */

@@ -10,7 +10,7 @@
 #include "tiles/tiles.h"
 
 enum {
-    RF_SPLAT_UNIT = 64, /* of lengths, in a pixel */
+    RF_SPLAT_UNIT = 64, /* units of length in a pixel */
     RF_SHADES = 16,
 };
 
@@ -19,17 +19,18 @@ enum {
 struct rf_splat_run {
     int from, to;     /* RF_SPLAT_UNIT */
     int middle, rows; /* half pixels; so many */
-    int turn;         /* which of such runs, in the photo */
-    int set;          /* which of the chords of a row of the aperture */
+    int turn;         /* number of the run among those of as many rows, in the photo */
+    int set;          /* number of the chord in each row of the aperture; rows may have several */
     int blur;         /* Q7.8, signed */
     int radius;
-    double light[3]; /* of all its pixels, Q12 times 256 */
+    double light[3]; /* light of all its pixels, Q12 times 256 */
 };
 
-/* What one slab hides of a run. Runs of about one place are hidden alike: all rows of a highlight
- * are behind something in focus, the slab just before them hides each otherwise. So what was found
- * for one serves for those whose looks at the slab are no farther than a quarter of a pixel from
- * its own; with half a pixel, highlights behind hair flicker as the focus moves. */
+/* Visibility of a run past one slab. Runs of about one place are hidden alike: all rows of a
+ * highlight are occluded by something in focus, the slab just before them hides each otherwise.
+ * So a shade that was found for one serves for those whose looks at the slab are no farther than
+ * a quarter of a pixel from its own; with half a pixel, highlights behind hair flicker as the
+ * focus moves. */
 struct rf_shade {
     struct rf_look_at {
         struct rf_splat_run run;
@@ -40,11 +41,11 @@ struct rf_shade {
     uint16_t visible[2 * RF_TILE * RF_TILE]; /* where hidden partly */
 };
 
-/* What highlights are seen past from a tile, and the last shades, which may serve again. */
+/* Slabs that highlights are seen past from a tile, and the last shades, which may serve again. */
 struct rf_visibility {
     const struct rf_splat *splat;
     int tx, ty, slabs;
-    struct rf_slab slab[RF_MAX_SLABS]; /* those of the tile; ones that lie close as one */
+    struct rf_slab slab[RF_MAX_SLABS]; /* slabs of the tile; ones that lie close are merged */
     int count;                         /* shades that were kept so far */
     struct rf_shade shade[RF_SHADES], other;
     uint16_t visible[2 * RF_TILE * RF_TILE]; /* past more than one slab */
