@@ -27,7 +27,7 @@ struct rf_star {
     uint64_t light[3]; /* Q12, summed over its pixels */
     int32_t blur;
     int32_t pixels;
-    int32_t x0, x1, y1; /* that the pixels lie in */
+    int32_t x0, x1, y1; /* bounds of the pixels */
 };
 
 struct rf_stars {
@@ -37,10 +37,10 @@ struct rf_stars {
 
 /* Grain of the photo, measured where it is sharp. */
 struct rf_grain {
-    /* by luma and by variance, 1/16 code^2 */
+    /* number of blocks by luma and by variance, 1/16 code^2 */
     uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS];
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
-    uint8_t lost[1024];              /* by |s| >> 5: how much of it a blur takes, Q8 */
+    uint8_t lost[1024];              /* how much of the grain a blur takes, Q8, by |s| >> 5 */
 };
 
 /* The look of a frame. */
@@ -50,9 +50,9 @@ struct rf_look {
     const struct refocus_render_params *params;
     struct rf_photo_source photo;
     const struct rf_focus_plan *plan;
-    const struct rf_highlights *highlights; /* of the photo, if it has stars */
-    struct rf_stars *stars;                 /* which rf_look_begin() finds */
-    struct rf_grain *grain;                 /* and measures */
+    const struct rf_highlights *highlights; /* highlights of the photo, if it has stars */
+    struct rf_stars *stars;                 /* stars, which rf_look_begin() finds */
+    struct rf_grain *grain;                 /* grain, which rf_look_begin() measures */
 };
 
 /* The picture that a frame is written to: `out` covers the part `region` of the window. */

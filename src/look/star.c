@@ -98,7 +98,7 @@ void rf_find_stars(const struct rf_look *look)
 struct spikes {
     int count;
     int64_t x[RF_MOST_SPIKES], y[RF_MOST_SPIKES], length;
-    int64_t share; /* of the light, in one spike, Q16 */
+    int64_t share; /* part of the light that goes into one spike, Q16 */
 };
 
 static struct spikes spikes_of(const struct refocus_render_params *p)
