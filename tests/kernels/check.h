@@ -1,4 +1,4 @@
-/* What the files of check-kernels share. */
+/* check.h: subjects and random numbers that the files of check-kernels share. */
 #ifndef KERNELS_CHECK_H
 #define KERNELS_CHECK_H
 

@@ -1,4 +1,5 @@
-/* What rays look at: each kernel against its contract's words, one element at a time. */
+/* check_aim.c: checks the kernels that aim rays at light, against their contracts' words, one
+ * element at a time. */
 #include "check.h"
 
 #include <stdio.h>
@@ -7,7 +8,7 @@
 
 enum {
     MOST_BLUR = 127 * 256,
-    SIDE = 9, /* of the ranges that rays may see */
+    SIDE = 9, /* side of the ranges that rays may see */
     MOST_SLABS = 70,
 };
 
@@ -87,7 +88,7 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
     }
     for (int k = 0; k <= slabs; k++) {
         for (int i = 0; i < n; i++) {
-            const bool same = k > 0 && noise(&seed) % 2; /* as the slab before */
+            const bool same = k > 0 && noise(&seed) % 2; /* the slab before has this offset, too */
 
             s->offset[k][i] = same ? s->offset[k - 1][i] : noise_between(&seed, 0, 999);
             s->chroma_offset[k][i] = noise_between(&seed, 0, 999);
@@ -125,7 +126,7 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
     };
 }
 
-/* The last that the m-th ray sees: slab k, or what lies behind there, of ray n. */
+/* Expects ray n, the m-th, to see last what lies in slab k, or the hidden background there. */
 static void expect_last(struct sight *s, int n, int m, int k, bool behind)
 {
     const uint16_t *weight = behind ? s->behind_weight : s->weight;
@@ -138,7 +139,7 @@ static void expect_last(struct sight *s, int n, int m, int k, bool behind)
     s->expected.chroma_last_weight[m] = weight + s->chroma_weight_offset[k][n];
 }
 
-/* What lies where ray n sees slab k. */
+/* Bounds of the light where ray n sees slab k. */
 struct seen {
     int low, high;
     bool bare;

@@ -1,5 +1,5 @@
-/* Discs of lamps, and what hides them: each kernel against its contract's words, one
- * pixel at a time. */
+/* check_discs.c: discs of highlights, and what hides them: each kernel against its contract's
+ * words, one pixel at a time. */
 #include "check.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[2 * LANES])
     return job;
 }
 
-/* What pixel x sees of the run, 1/64 pixel. */
+/* Returns how much of the run pixel x sees, 1/64 pixel. */
 static int seen(const struct rf_disc_job *job, int x, int y)
 {
     const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
@@ -109,7 +109,7 @@ static double mean_half(double radius, int y, int tall)
     return sum / (2 * tall);
 }
 
-/* The same in plain C, and nearly that in double precision. */
+/* Compares with the chords of plain C, and roughly with those of double precision. */
 static int check_chords(const struct subject *subject)
 {
     for (int radius = 0; radius <= 127 * 256; radius += radius < 1024 ? 1 : 61) {

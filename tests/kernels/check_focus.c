@@ -1,4 +1,4 @@
-/* What the numbers that kernels are given mean, against double precision. */
+/* check_focus.c: checks what the numbers that kernels are given mean, against double precision. */
 #include "check.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
-/* check-kernels: every kernel of every instruction set that this build and this processor have,
- * bit for bit against a reference. With --bench, their times beside those of plain C.
+/* check_kernels.c: check-kernels: every kernel of every instruction set that this build and this
+ * processor have, bit for bit against a reference. With --bench, their times beside those of
+ * plain C.
  *
  * usage: check-kernels [--bench] */
 #include "check.h"

@@ -1,4 +1,5 @@
-/* Means of weighted sums, and the brightest of a row. */
+/* check_light.c: checks the kernels for means of weighted sums and for the brightest light of a
+ * row. */
 #include "check.h"
 
 #include <math.h>
@@ -39,8 +40,8 @@ static int check_equal(const struct subject *subject)
     return 0;
 }
 
-/* Of any sums: half up in whole numbers, but where the half is nearer than 2^-30. Any count,
- * and nothing written after it. */
+/* Sums of any size round half up in whole numbers, but where the half is nearer than 2^-30. Any
+ * count works, and nothing is written after it. */
 static int check_any(const struct subject *subject)
 {
     uint64_t sum[LANES], weight[LANES];

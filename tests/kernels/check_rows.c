@@ -1,5 +1,5 @@
-/* Row kernels: an engine that gives each of them every length, place and extreme, and
- * compares all that it may touch with what it should be. */
+/* check_rows.c: row kernels: an engine that gives each of them every length, place and extreme,
+ * and compares all that it may touch with what it should be. */
 #include "check.h"
 
 #include <stdio.h>
@@ -10,8 +10,8 @@
 #include "row_kernels.h"
 
 enum {
-    MOST = 300,   /* of n */
-    PATTERNS = 8, /* of contents; see value() */
+    MOST = 300,   /* largest n */
+    PATTERNS = 8, /* kinds of contents; see value() */
     MOST_BLUR = 127 * 256,
     ROW_BYTES = 4 * (2 * MOST + 2 * RF_SPREAD_MARGIN + 2),
 };

@@ -1,4 +1,5 @@
-/* The search over one strip, against the contract's words, one pixel and ray at a time. */
+/* check_search.c: the search over one strip, against the contract's words, one pixel and ray at
+ * a time. */
 #include "check.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* The row of heat flow, bit for bit against the contract's words. */
+/* check_series.c: the row of heat flow, bit for bit against the contract's words. */
 #include "check.h"
 
 #include <stdio.h>

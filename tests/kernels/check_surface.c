@@ -1,4 +1,4 @@
-/* The kernels of the depth upsampler. */
+/* check_surface.c: checks the kernels of the depth upsampler. */
 #include "check.h"
 
 #include <stdio.h>
@@ -12,7 +12,7 @@ static struct {
     uint16_t disparity[RF_AROUND][ACROSS];
     uint8_t colour[3][RF_AROUND][ACROSS], trust[RF_AROUND][ACROSS];
 } samples;
-/* The same, column by column. */
+/* The samples once more, column by column. */
 static struct {
     uint16_t disparity[ACROSS * RF_AROUND];
     uint8_t colour[3][ACROSS * RF_AROUND], trust[ACROSS * RF_AROUND];
@@ -22,7 +22,7 @@ static struct rf_cell cell, plain;
 static struct rf_lie lie;
 static uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE];
 
-/* Of one to five surfaces, with noise, slopes, extremes and holes. */
+/* Makes samples of one to five surfaces, with noise, slopes, extremes and holes. */
 static void make_samples(uint32_t *seed)
 {
     const int surfaces = noise_between(seed, 1, 5), slope = noise_between(seed, -3000, 3000);
@@ -174,7 +174,7 @@ static int compare(const void *a, const void *b)
     return *(const uint16_t *)a - *(const uint16_t *)b;
 }
 
-/* Of n cells: their taps in order, and where they are parted. */
+/* Checks n cells: their taps are in order, and parted where they should be. */
 static bool are_parts(int n)
 {
     for (int i = 0; i < n; i++) {

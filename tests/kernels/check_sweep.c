@@ -1,4 +1,5 @@
-/* The sweep over one strip, against a reference that follows one ray of one pixel at a time. */
+/* check_sweep.c: the sweep over one strip, against a reference that follows one ray of one pixel
+ * at a time. */
 #include "check.h"
 
 #include <stdio.h>
@@ -16,12 +17,12 @@ enum {
     LANES = RF_STRIP_LANES,
 };
 
-/* What a run sums: light; light and weights; or light times weight and weights. */
+/* Sums of a run: light; light and weights; or light times weight and weights. */
 enum kind { PLAIN, WITH_WEIGHTS, WEIGHTED };
 
 struct stage {
     struct guarded front, behind; /* groups of planes: blur and light, light and weight */
-    struct guarded weight;        /* of the front */
+    struct guarded weight;        /* weight of the front */
     struct rf_slab slab[MOST_SLABS];
     struct rf_sorted_rays rays;
     uint8_t tested[MOST_SLABS][RF_RAY_CHUNK]; /* slab of a test */
@@ -226,7 +227,7 @@ static bool check_case(const struct subject *subject, struct stage *s, int tests
         for (int n = 0; n < s->rays.rays; n++)
             follow(s, i, n);
     run(&subject->kernels, s, s->kind);
-    if (s->job.bright != RF_BRIGHTEST) /* by contract */
+    if (s->job.bright != RF_BRIGHTEST) /* the contract bounds the light that is weighed */
         run(&subject->kernels, s, WEIGHTED);
     for (int c = 0; c < (s->kind == WITH_WEIGHTS ? 4 : 3); c++)
         for (int i = 0; i < LANES; i++)

@@ -1,4 +1,4 @@
-/* find_thin against its reference: wires, hair, surfaces and noise, all sizes of
+/* check_thin.c: find_thin against its reference: wires, hair, surfaces and noise, all sizes of
  * photos. */
 #include "check.h"
 

@@ -1,5 +1,5 @@
-/* The operations of simd/vec.h against their meaning in C; compiled for each instruction
- * set, as the kernels are. Lanes take every pair of some extremes, then noise. */
+/* check_vec.c: the operations of simd/vec.h against their meaning in C; compiled for each
+ * instruction set, as the kernels are. Lanes take every pair of some extremes, then noise. */
 #include "check_vec.h"
 
 #include <stdio.h>

@@ -1,4 +1,5 @@
-/* Operations of simd/vec.h that move lanes, or are of bytes or of groups of elements. */
+/* check_vec_across.c: operations of simd/vec.h that move lanes, or are of bytes or of groups of
+ * elements. */
 #include "check_vec.h"
 
 #include <stdio.h>
@@ -123,7 +124,7 @@ static int check_bytes(void)
     return 0;
 }
 
-/* What all bytes say together. */
+/* Checks the operations that ask something of all bytes together. */
 static int check_together(void)
 {
     uint32_t seed = 12;

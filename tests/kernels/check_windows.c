@@ -1,5 +1,5 @@
-/* Which blurs lie around a place: each kernel against its contract's words, one element at a
- * time. */
+/* check_windows.c: checks the kernels that find which blurs lie around a place, against their
+ * contracts' words, one element at a time. */
 #include "check.h"
 
 #include <stdio.h>

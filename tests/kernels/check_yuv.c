@@ -1,5 +1,5 @@
-/* Kernels of luma and chroma: encode and decode against colour/yuv.h a sample at a time, the
- * sweep of one plane and the aim of chroma against their contracts. */
+/* check_yuv.c: kernels of luma and chroma: encode and decode against colour/yuv.h a sample at a
+ * time, the sweep of one plane and the aim of chroma against their contracts. */
 #include "check.h"
 
 #include <math.h>
@@ -302,7 +302,7 @@ static void make_stage(struct stage *s, uint32_t seed, enum place place)
             int16_t *blur = (int16_t *)(uintptr_t)s->job.blur + y * STRIDE + x;
 
             *blur = (int16_t)(slab->low + noise_between(&state, -100, slab->width + 100));
-            if (chroma && x % 2 && x > -PAD) /* that of chroma comes twice */
+            if (chroma && x % 2 && x > -PAD) /* the blur of chroma comes twice */
                 *blur = blur[-1];
         }
     s->rays.rays = (int)(seed % (RF_RAY_CHUNK + 1));

@@ -1,3 +1,4 @@
+/* guarded.c: maps rows of memory between unreadable pages, and checks their canaries. */
 #include "guarded.h"
 
 #include <string.h>

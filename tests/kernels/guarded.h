@@ -1,4 +1,4 @@
-/* Rows of memory between unreadable pages, with canaries on the sides that have room. */
+/* guarded.h: rows of memory between unreadable pages, with canaries on the sides that have room. */
 #ifndef KERNELS_GUARDED_H
 #define KERNELS_GUARDED_H
 

@@ -1,3 +1,4 @@
+/* row_kernels.c: the table of row kernels, and a plain reference for each. */
 #include "row_kernels.h"
 
 #include <math.h>
@@ -47,7 +48,7 @@ static int apart_of(int parameter)
     return 1 + parameter % 4;
 }
 
-/* And over how much the mean comes in. */
+/* Returns over how much blur the mean comes in. */
 static int over_of(int parameter)
 {
     return parameter % 3 ? 1 + parameter / 4 : 1;

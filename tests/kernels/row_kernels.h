@@ -1,15 +1,15 @@
-/* The kernels that work on rows: what each touches, how it is called, and what it should
- * give, written from kernels.h alone, a pixel at a time. */
+/* row_kernels.h: the kernels that work on rows: what each touches, how it is called, and what it
+ * should give, written from kernels.h alone, a pixel at a time. */
 #ifndef KERNELS_ROW_KERNELS_H
 #define KERNELS_ROW_KERNELS_H
 
 #include "check.h"
 
-/* What the elements of a row are. */
+/* Kinds of elements of a row. */
 enum kind {
     DISPARITY,    /* Q16 */
     BLUR,         /* Q7.8, |s| at most 127 pixels */
-    BLUR_OR_NONE, /* or RF_NO_BLUR */
+    BLUR_OR_NONE, /* blur as in BLUR, or RF_NO_BLUR */
     LIGHT,        /* Q12, highlights up to 4 times white */
     RAISED,       /* s + 2^15, or 0 */
     SUM,          /* 32-bit sums of as many rays as the parameter says */

@@ -1,18 +1,18 @@
-/* find_thin, pixel by pixel: the contract of kernels/thin.h in plain words. */
+/* thin_plain.c: find_thin, pixel by pixel: the contract of kernels/thin.h in plain words. */
 #include "thin_plain.h"
 
 #include <stdlib.h>
 
 enum {
     JUMP = 65535 / 32,     /* disparities this far apart are two surfaces */
-    AROUND = 3,            /* what is thin has something far within 7 x 7 pixels */
+    AROUND = 3,            /* a thin pixel has something far within 7 x 7 pixels */
     THIN = 2 * AROUND + 1, /* pixels across */
     WIDE = 2 * THIN,       /* not thin */
-    FAR = 10,              /* how far what is behind is looked for, */
-    CLEAN = 4,             /* and how near it must be not to be taken from the edge itself */
+    FAR = 10,              /* how far the hidden background is looked for */
+    CLEAN = 4,             /* how near it must be not to be taken from the edge itself */
     BEFORE = 2,            /* how far N is looked for */
     FAINT = 12 * 12,       /* squared distance of light that is none */
-    SHINES = 4000,         /* lamps, which highlights are for, and what is clipped */
+    SHINES = 4000,         /* lights, which highlights are for, and what is clipped */
     LEAST = 12,            /* alpha that a far pixel must have */
     WHITE = 4095,
 };
@@ -22,8 +22,8 @@ struct look {
     const struct photo *p;
     int x, y, own;                      /* own disparity */
     bool near;                          /* the map has it near */
-    int above;                          /* what is above this disparity is near */
-    int width;                          /* of what is near, where it is least */
+    int above;                          /* a disparity above this one is near */
+    int width;                          /* width of what is near, where it is least */
     int far;                            /* disparity of F */
     int light[3], behind[3], before[3]; /* C, F, N */
     int spread;                         /* mean squared distance of what F is the mean of */
@@ -113,8 +113,8 @@ static int own_width(const struct look *l)
     return width;
 }
 
-/* What is met in all directions, and how much each counts: by the inverse square of its
- * distance. */
+/* The pixels that are hit in all directions, and how much each counts: by the inverse square of
+ * its distance. */
 struct ring {
     struct met met[8];
     int weight[8], disparity[8];
@@ -161,7 +161,7 @@ static bool look_around(const struct look *l, bool clean, struct ring *ring)
     return nearest <= (clean ? CLEAN : FAR);
 }
 
-/* F from what is met; false: there is none. */
+/* Finds F from what is hit; false: there is none. */
 static bool set_far(struct look *l, bool clean)
 {
     struct ring ring;

@@ -1,4 +1,4 @@
-/* The reference of find_thin. */
+/* thin_plain.h: the plain reference of find_thin. */
 #ifndef KERNELS_THIN_PLAIN_H
 #define KERNELS_THIN_PLAIN_H
 
