@@ -1,6 +1,6 @@
-/* Golden pictures: hashes of every kind of picture that the core makes, on every instruction
- * set of this processor and by 1, 2, 3 and 8 threads. The same are expected from every
- * compiler and processor.
+/* digest.c: golden pictures: hashes of every kind of picture that the core makes, on every
+ * instruction set of this processor and by 1, 2, 3 and 8 threads. The same are expected from
+ * every compiler and processor.
  *
  * usage: render-digest golden.txt            compares with the file
  *        render-digest golden.txt --update   writes it: after a change of the arithmetic
@@ -48,14 +48,14 @@ static void check_golden(uint64_t is, const char *name)
     fail_msg("%s: not in %s", name, golden_path);
 }
 
-/* What is rendered: a picture, its depth in samples as large as `coarse` pixels, a lens, and
- * the formats of the photo and of the result. */
+/* Views to render: a picture, its depth in samples as large as `coarse` pixels, a lens, and the
+ * formats of the photo and of the result. */
 static const struct view {
     int width, height, coarse;
     float blur, focus;
     uint32_t in, out;
     bool all_styles;
-    float gain; /* of highlights, 0: none, else the photo is darkened but for its lights */
+    float gain; /* gain of highlights; 0: none, else the photo is darkened but for its lights */
 } views[] = {
     {83, 47, 1, 9, 0.6f, REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_RGB8, true, 0},
     {64, 33, 1, 14.5f, 0, REFOCUS_FORMAT_BGR8, REFOCUS_FORMAT_RGBA8, true, 0},
@@ -319,7 +319,7 @@ static void yuv_views_same(void **state)
     }
 }
 
-/* A dark picture with lamps of 4 x 4 pixels. */
+/* A dark picture with highlights of 4 x 4 pixels. */
 static struct picture night(int width, int height)
 {
     struct picture p = picture_make(width, height, 123);

@@ -1,5 +1,5 @@
-/* How soon a renderer answers, on a picture of 12 megapixels: the first picture after a
- * tap, changes of the lens, regions, and a cancel at any moment. Prints JSON.
+/* interactive.c: how soon a renderer answers, on a picture of 12 megapixels: the first picture
+ * after a tap, changes of the lens, regions, and a cancel at any moment. Prints JSON.
  *
  * usage: render-interactive [--size WxH] [--blur K] [--threads N] [--tries N] */
 #include <pthread.h>
@@ -213,7 +213,7 @@ static void measure(void **state)
             call.params = refocus_render_params_default(0.5f, blur);
             call.params.method = m;
             call.params.rays = full ? REFOCUS_RAYS_FULL : 128;
-            call.params.highlight_gain = full ? 4 : 9.5f; /* met by rays; drawn */
+            call.params.highlight_gain = full ? 4 : 9.5f; /* hit by rays; splatted */
             call.params.star_spikes = 8;
             call.params.star_length = 127;
             call.params.attention_angle = 90;

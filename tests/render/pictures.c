@@ -1,3 +1,4 @@
+/* pictures.c: draws the pictures of the render tests, and lists the settings that they try. */
 #include "pictures.h"
 
 const struct style styles[] = {

@@ -1,4 +1,4 @@
-/* Pictures and settings that the render tests share. */
+/* pictures.h: pictures and settings that the render tests share. */
 #ifndef RENDER_PICTURES_H
 #define RENDER_PICTURES_H
 
@@ -55,8 +55,8 @@ struct style {
     uint32_t blend;
     float sigma; /* 0: plain average */
     int blades;  /* 0: disc; -1: a mask with an L in it */
-    int variant; /* of the method's own settings; see style_params() */
-    int leaks;   /* what is sharp may change beside what is blurred */
+    int variant; /* selects the method's own settings; see style_params() */
+    int leaks;   /* pixels in focus may change beside blurred ones */
 };
 extern const struct style styles[];
 extern const int style_count;

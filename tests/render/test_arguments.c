@@ -1,4 +1,5 @@
-/* Each argument out of its documented range is refused, and nothing is written. */
+/* test_arguments.c: each argument out of its documented range is refused, and nothing is
+ * written. */
 #include "gather/method.h"
 #include "pictures.h"
 
@@ -172,7 +173,7 @@ static void bad_settings(void **state)
         BAD(refocus_render_params, conductivity, 0),
         BAD(refocus_render_params, conductivity, 1.1f),
         BAD(refocus_render_params, field_map, &(struct refocus_disparity){0}),
-        BAD(refocus_render_params, field, REFOCUS_FIELD_PICTURE), /* which is missing */
+        BAD(refocus_render_params, field, REFOCUS_FIELD_PICTURE), /* the picture is missing */
         BAD(refocus_render_params, tilt_x, -0.1f),
         BAD(refocus_render_params, tilt_y, 1.1f),
         BAD(refocus_render_params, tilt_across, 64.1f),

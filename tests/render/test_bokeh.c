@@ -1,4 +1,5 @@
-/* The look of the blur: discs of single lamps, measured in linear light; star filter, grain. */
+/* test_bokeh.c: the look of the blur: discs of single highlights, measured in linear light; star
+ * filter, grain. */
 #include "pictures.h"
 
 enum { W = 144, H = 112 };
@@ -7,7 +8,7 @@ static uint8_t out[3 * W * H];
 static const struct refocus_image image = {
     .format = REFOCUS_FORMAT_RGB8, .width = W, .height = H, .plane = {out}, .stride = {3 * W}};
 
-/* A lamp of 5 x 5 pixels in the dark, in front of nothing, at disparity d. */
+/* A light of 5 x 5 pixels in the dark, in front of nothing, at disparity d. */
 static struct refocus_renderer *lamp_at(int x, int y, uint16_t d)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, d);
@@ -106,7 +107,7 @@ static void hearts(void **state)
     about("its place", before.y, -behind.y, 0.1);
 }
 
-/* Bright rims behind the focus, fading discs before it. */
+/* Discs have bright edges behind the focus, and fade before it. */
 static void sides(void **state)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
@@ -181,7 +182,7 @@ static void fringes(void **state)
     }
 }
 
-/* Discs of lamps are as bright as the gain says. */
+/* Discs of highlights are as bright as the gain says. */
 static void stops(void **state)
 {
     struct refocus_render_params params = twelve();
@@ -223,7 +224,7 @@ static void star(void **state)
     assert_int_equal(out[3 * (y * W + x + 32)], 0);
     for (int i = 0; i < W * H; i++)
         added += picture_light(out[3 * i]) - picture_light(plain[3 * i]);
-    /* half of 25 lights, less what falls on the lamp itself, that is white already */
+    /* half of 25 lights, less the part that falls on the light itself, which is white already */
     assert_true(added > 12.5 * 0.6 && added < 12.5);
 }
 
@@ -269,7 +270,7 @@ static void grain(void **state)
         params.grain = (float)amount;
         assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
         about("grain", noise_of(W / 2 + 20, W), 4.9 * amount, 0.12);
-        for (int y = 0; y < H; y++) /* what is sharp has its own */
+        for (int y = 0; y < H; y++) /* a sharp pixel has its own grain */
             assert_memory_equal(out + 3 * y * W, p.rgb + 3 * y * W, 3 * (W / 2 - 16));
     }
     memcpy(first, out, sizeof out);
@@ -315,7 +316,7 @@ static void regions(void **state)
     picture_free(&p);
 }
 
-/* A night of 300 x 260 pixels with lamps, larger than a block of strip mode. */
+/* A night of 300 x 260 pixels with lights, larger than a block of strip mode. */
 enum { NIGHT_W = 300, NIGHT_H = 260 };
 
 static struct picture night(void)

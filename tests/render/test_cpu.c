@@ -1,4 +1,4 @@
-/* Every instruction set that this processor has renders what plain C renders. */
+/* test_cpu.c: every instruction set that this processor has renders what plain C renders. */
 #include "pictures.h"
 
 static struct refocus_renderer *with_cpu(const struct picture *p, float blur, uint32_t cpu)

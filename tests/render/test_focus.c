@@ -1,5 +1,5 @@
-/* Focus beyond a plain lens: the signed blur against the formulas in double precision, and
- * what equals a plain lens against that lens, byte for byte. */
+/* test_focus.c: focus beyond a plain lens: the signed blur against the formulas in double
+ * precision, and what equals a plain lens against that lens, byte for byte. */
 #include "pictures.h"
 
 enum { W = 93, H = 58 };
@@ -122,7 +122,7 @@ static void formulas(void **state)
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     (void)state;
-    params.method = REFOCUS_METHOD_SEARCH; /* sweep moves single rims */
+    params.method = REFOCUS_METHOD_SEARCH; /* sweep moves single edges */
     params.rays = 1;
     for (int i = 0; make_way(i, &params, &small, &full); i++) {
         double worst = 0;

@@ -19,7 +19,7 @@ static void soften_line(double *v, int n, int step)
     }
 }
 
-/* The same as a soft lens draws it, on black: before what is above white is cut off. */
+/* Draws a thing as a soft lens does, on black: before light above white is cut off. */
 static void draw_soft(struct picture *p, const struct thing *t, double cx, double cy, int passes)
 {
     const int w = p->width, h = p->height;
@@ -168,7 +168,7 @@ static void large_photos(void **state)
         }
 }
 
-/* What a highlight lights around it is not its rim. */
+/* A wall that a highlight lights around it is not its edge. */
 static void lit_walls(void **state)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){60, 60, 60}, BEHIND);
@@ -256,8 +256,8 @@ static void wires(void **state)
     assert_in_range(wire_blur(32768), 0, 16);
 }
 
-/* A highlight far before the focus, whose rim the map gives to what is sharp behind it. However
- * little of the highlight a pixel of the rim holds, none stays behind as a dot: of each, how much
+/* A highlight far before the focus, whose edge the map gives to what is sharp behind it. However
+ * little of the highlight a pixel of the edge holds, none stays behind as a dot: of each, how much
  * brighter than the pixels around it is counted. */
 static int brightest_dot(double light)
 {
@@ -311,8 +311,8 @@ static void tubes(void **state)
     expect("an upright tube", 100, times_of(BOX, 2.7, 100, 12), 2, 4.05);
 }
 
-/* What is not clipped has lost nothing, and where one channel alone is clipped neither; the rest is
- * of the colour of the rim. */
+/* A channel that is not clipped has lost nothing, and where one alone is clipped it has lost
+ * nothing either; the rest is of the colour of the edge. */
 static void colours(void **state)
 {
     const struct thing green = {ELLIPSE, 7, 7, {0.3, 12, 0.5}};
@@ -358,8 +358,7 @@ static void glows(void **state)
     }
 }
 
-/* What is cyan among cyan is no highlight, however bright beside it; on something dark it may be
- * one. */
+/* Cyan among cyan is no highlight, however bright beside it; on something dark it may be one. */
 static void petals(void **state)
 {
     static const uint8_t among[][3] = {{60, 190, 200}, {20, 65, 70}};
@@ -403,7 +402,7 @@ static struct picture night(uint32_t seed, int w, int h)
     return p;
 }
 
-/* By a renderer for blurs up to `most`. */
+/* Renders the night by a renderer for blurs up to `most`. */
 static void render_night(const struct picture *p, float blur, float most, uint32_t in_place,
                          int threads, uint8_t *out)
 {

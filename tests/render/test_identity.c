@@ -1,4 +1,4 @@
-/* Pictures whose result is known to the bit: one colour, no blur, in focus. */
+/* test_identity.c: pictures whose result is known to the bit: one colour, no blur, in focus. */
 #include "pictures.h"
 
 /* Any colour, depth, aperture, number of rays and blending: the colour comes back. */

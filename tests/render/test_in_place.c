@@ -1,4 +1,5 @@
-/* Strip mode: the photo stays with the caller, and the bytes are those of the whole. */
+/* test_in_place.c: strip mode: the photo stays with the caller, and the bytes are those of the
+ * whole. */
 #include "pictures.h"
 
 static struct refocus_renderer *create(const struct picture *p, float blur, int in_place)
@@ -37,14 +38,14 @@ static void draw_bars(struct picture *p, int bars)
     }
 }
 
-/* Of one and several blocks, at whose sides the photo ends in all ways. */
+/* Pictures of one and of several blocks come out the same, at whose sides the photo ends in all
+ * ways. */
 static void same_bytes(void **state)
 {
     static const struct {
         int width, height;
         float blur;
-        int bars; /* their width, of every other picture; else what picture_make() draws
-                   */
+        int bars; /* width of the bars of every other picture; 0: what picture_make() draws */
     } views[] = {{203, 190, 6, 0},  {1, 1, 6, 1},       {1, 700, 6, 0},      {700, 1, 6, 11},
                  {160, 160, 6, 0},  {161, 175, 6, 13},  {191, 333, 6, 0},    {193, 17, 6, 9},
                  {640, 480, 20, 0}, {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
@@ -57,7 +58,8 @@ static void same_bytes(void **state)
         uint8_t *expected, *out;
         struct picture p;
 
-        if (left_out(size > 3 * 403 * 299, 2)) /* of 3 x 2 blocks or fewer */
+        if (left_out(size > 3 * 403 * 299,
+                     2)) /* a short run leaves out what has more than 3 x 2 blocks */
             continue;
         p = picture_make(views[v].width, views[v].height, 3);
         expected = malloc(size), out = malloc(size);

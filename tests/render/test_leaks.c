@@ -1,5 +1,6 @@
-/* Surfaces are closed: nothing of the background shows through a smooth subject, whatever codes
- * its map has and wherever its blur crosses from one slab of the sweep to the next. */
+/* test_leaks.c: surfaces are closed: nothing of the background shows through a smooth subject,
+ * whatever codes its map has and wherever its blur crosses from one slab of the sweep to the
+ * next. */
 #include "pictures.h"
 #include "yuv_pictures.h"
 
@@ -122,7 +123,7 @@ static void of_8_bits_and_small(void **state)
     picture_free(&p);
 }
 
-/* The same scene as Y, U and V: its luma. */
+/* Nothing shows through in the luma of a photo of Y, U and V either. */
 static void of_luma(void **state)
 {
     struct picture p = wavy();

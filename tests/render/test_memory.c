@@ -1,10 +1,10 @@
-/* What the renderer takes from its allocator: as much as it says, at creation only.
+/* test_memory.c: the renderer takes as much from its allocator as it says, at creation only.
  *
  * This program is linked with --wrap=malloc and so on, so that it also sees a call that
  * goes past the allocator. */
 #include "pictures.h"
 
-static int wrapped_calls; /* of malloc, calloc, realloc, aligned_alloc, posix_memalign */
+static int wrapped_calls; /* calls of malloc, calloc, realloc, aligned_alloc, posix_memalign */
 
 void *__real_malloc(size_t size);
 void *__wrap_malloc(size_t size);
@@ -148,7 +148,7 @@ static void formula(void **state)
     }
 }
 
-/* What strip mode takes at the most; the text of render.h. */
+/* Returns the most memory that strip mode takes, by the text of render.h. */
 static double stated_in_place(int width, int height, float blur, int threads)
 {
     const double p = ceil((double)blur) + 2, m = 16 * ceil((p + 28) / 16);
@@ -188,7 +188,7 @@ static void formula_of_modes(void **state)
     }
 }
 
-/* What each method of whole frames may add; the text of render.h. */
+/* Returns how much each method of whole frames may add, by the text of render.h. */
 static double extra(uint32_t method, int width, int height, float blur, int threads)
 {
     const double w = width, h = height, p = ceil((double)blur) + 2, t = threads;

@@ -1,5 +1,5 @@
-/* Scenes whose answer is known from optics: a point of light out of focus is the image
- * of the aperture, of radius K |d - df|.
+/* test_optics.c: scenes whose answer is known from optics: a point of light out of focus is the
+ * image of the aperture, of radius K |d - df|.
  *
  * The point is the one white pixel of a black plane. Plain averaging would leave less than
  * one code of it; the weights of eq. 5 bring it out: a pixel that sees the point through
@@ -9,7 +9,7 @@
 
 enum { SIDE = 175, MIDDLE = SIDE / 2 };
 
-/* What to look at: the point's disparity through which lens. */
+/* A view of the point: its disparity, and the lens that it is seen through. */
 struct view {
     uint32_t method;
     struct refocus_aperture *aperture;
@@ -122,7 +122,7 @@ static void disc(void **state)
         check_disc(method, 0.25f, 1, 40);      /* 30 pixels */
         check_disc(method, 0.625f, 0.25f, 64); /* 24 pixels */
     }
-    /* Of two pixels at exactly half a pixel the nearer surface wins, so K / r = 2 would
+    /* The nearer surface wins where two pixels lie at exactly half a pixel, so K / r = 2 would
      * pull every second ray inwards. */
     check_disc(REFOCUS_METHOD_RAYTRACE, 0, 1, 20);
     check_disc(REFOCUS_METHOD_RAYTRACE, 0.3f, 0.85f, 27);
@@ -238,7 +238,7 @@ static void ray_sets(void **state)
             uu += a * a / n, vv += b * b / n, uv += a * b / n;
             inner += (a * a + b * b < 0.5) / (double)n;
         }
-        /* Of a full disc: 0, 0, 1/4, 1/4, 0, 1/2. */
+        /* A full disc has 0, 0, 1/4, 1/4, 0, 1/2. */
         if (hypot(u, v) > 0.03 || fabs(uu - 0.25) > 0.02 || fabs(vv - 0.25) > 0.02 ||
             fabs(uv) > 0.02 || fabs(inner - 0.5) > 0.06)
             fail_msg("%d rays: mean %.3f %.3f, moments %.3f %.3f %.3f, inner half %.3f", n, u, v,

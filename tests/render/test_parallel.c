@@ -1,4 +1,4 @@
-/* The caller's parallel_for: whatever it does with the items, the same bytes. */
+/* test_parallel.c: the caller's parallel_for: whatever it does with the items, the same bytes. */
 #include <pthread.h>
 
 #include "pictures.h"

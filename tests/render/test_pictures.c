@@ -1,4 +1,5 @@
-/* What goes in and out: formats, strides, regions, sizes, coarse depth. */
+/* test_pictures.c: pictures go in and come out in all formats, strides, regions and sizes, with
+ * coarse depth. */
 #include "pictures.h"
 
 /* A copy of a picture in another format and stride. */
@@ -263,7 +264,8 @@ static void other_depth_sizes(void **state)
         struct picture depth = picture_flat(size[i][0], size[i][1], (uint8_t[3]){0}, 30000);
         struct refocus_disparity map = picture_disparity(&depth);
 
-        /* The same everywhere stays the same everywhere, so focused there: unchanged. */
+        /* A map of one value everywhere keeps this value, so a lens focused there changes
+         * nothing. */
         assert_int_equal(refocus_prepare(renderer, &photo, &map), 0);
         assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view, 96), 0);
         for (int k = 0; k < 48 * 36; k++)

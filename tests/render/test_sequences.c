@@ -1,5 +1,5 @@
-/* Whatever was rendered or cancelled before, a picture is that of a new renderer; and a
- * region that of the whole. */
+/* test_sequences.c: whatever was rendered or cancelled before, a picture is that of a new
+ * renderer; and a region that of the whole. */
 #include "pictures.h"
 
 #include "renderer/renderer.h"
@@ -163,7 +163,7 @@ static void sequence(uint32_t seed, int steps, enum mode mode)
             cancelled += render(renderer, &other, out) == REFOCUS_ERR_CANCELLED;
             renderer->run.looked_at = NULL;
             if (pick(&state, 2))
-                s = other; /* the same again, to its end */
+                s = other; /* this time the frame is rendered to its end */
         }
         assert_int_equal(render(renderer, &s, out), REFOCUS_OK);
         fresh = create(1, PLAIN);

@@ -73,7 +73,7 @@ static void expect_disc(const int green[W * H], double x, double y, int half, do
                  most);
 }
 
-/* A small highlight before or behind the focus is one even disc with a crisp rim, of few
+/* A small highlight before or behind the focus is one even disc with a crisp edge, of few
  * rays and of many. */
 static void discs(void **state)
 {

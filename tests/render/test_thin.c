@@ -1,4 +1,4 @@
-/* Thin things far before the focus, and in it: src/thin. */
+/* test_thin.c: thin structures far before the focus, and in it: src/thin. */
 #include "pictures.h"
 
 #include "renderer/renderer.h"
@@ -219,7 +219,7 @@ static void elsewhere(void **state)
     assert_same_pixels(out, expected, WIDTH, HEIGHT, "a renderer without");
     render_fresh(&p, true, &on, out);
     assert_true(memcmp(out, expected, MOST));
-    on.blur = off.blur = 8; /* too little for veils, too much for what is in focus */
+    on.blur = off.blur = 8; /* too little for splatted coverage, too much for what is in focus */
     render_fresh(&p, true, &on, out);
     render_fresh(&p, true, &off, expected);
     assert_same_pixels(out, expected, WIDTH, HEIGHT, "the fence a little blurred");

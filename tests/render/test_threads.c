@@ -1,4 +1,4 @@
-/* The same picture from any number of threads; cancelling from another thread. */
+/* test_threads.c: any number of threads renders equal pictures; another thread can cancel. */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <time.h>

@@ -1,6 +1,6 @@
-/* What fixed point costs: whole pictures against the same algorithms in double precision, all
- * passes of them. Where a rounded blur takes a neighbouring pixel or slab, single rays
- * differ; the sum of all that stays above 50 dB.
+/* test_twin.c: measures what fixed point costs: whole pictures against equal algorithms in
+ * double precision, all passes of them. Where a rounded blur takes a neighbouring pixel or slab,
+ * single rays differ; the sum of all that stays above 50 dB.
  *
  * With the shipped scene if the test was built with PNG, and with drawn pictures. */
 #include "twin.h"

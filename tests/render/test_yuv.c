@@ -1,5 +1,5 @@
-/* Photos of Y, U and V: what comes back as it went in, what agrees with what, what is
- * refused. */
+/* test_yuv.c: photos of Y, U and V: what comes back as it went in, what agrees with what, what
+ * is refused. */
 #include "yuv_pictures.h"
 
 static struct refocus_renderer *renderer_for(int width, int height, float blur, int threads)
@@ -166,8 +166,8 @@ static void in_focus(void **state)
     columns_stay(0, 49, 49 + 9 + 3, 96);
 }
 
-/* The same picture in NV12, NV21 and I420, rows upside down, gaps between them: the same
- * result, into whichever of them. */
+/* NV12, NV21 and I420, rows upside down and gaps between them give one result, into whichever of
+ * them. */
 static void layouts(void **state)
 {
     enum { W = 75, H = 53 };
@@ -205,7 +205,7 @@ static void layouts(void **state)
 }
 
 /* Grey stays grey, and its luma is that of the same picture in R, G, B, to one code. Up to 64 rays
- * what is deepest in the sight of half a tile, or of all of it, is taken from the background, so
+ * what is deepest in view of half a tile, or of all of it, is taken from the background, so
  * that more rays are needed for that. */
 static void grey(void **state)
 {

@@ -1,3 +1,5 @@
+/* things.c: draws bright things of known light, each pixel by the share that they cover, into test
+ * pictures. */
 #include "things.h"
 
 bool is_in_thing(const struct thing *t, double x, double y)

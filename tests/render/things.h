@@ -8,7 +8,7 @@
 /* Centred at the origin. */
 struct thing {
     enum { ELLIPSE, BOX, DIAMOND } kind;
-    double wide, high; /* of all of it */
+    double wide, high; /* size of the whole thing */
     double light[3];
 };
 

@@ -1,3 +1,5 @@
+/* twin.c: makes a twin in double precision: its blur, its pre-filtered light, its rays and means.
+ */
 #include "twin.h"
 
 double twin_to_light(uint32_t blend, double code)

@@ -1,6 +1,6 @@
-/* The methods once more, in double precision and from their descriptions: nothing is rounded
- * but the place of a pixel, nothing is kept in a table. A twin of a picture holds the passes
- * of one lens setting. */
+/* twin.h: the methods once more, in double precision and from their descriptions: nothing is
+ * rounded but the place of a pixel, nothing is kept in a table. A twin of a picture holds the
+ * passes of one lens setting. */
 #ifndef RENDER_TWIN_H
 #define RENDER_TWIN_H
 
@@ -23,7 +23,7 @@ struct twin {
     int silhouettes;
     double *light[3], *smooth[3], *behind[3]; /* 0 to 1 */
     double *map_blur;                         /* signed blur in pixels, of the map alone */
-    double *blur;                             /* and with the silhouettes */
+    double *blur;                             /* signed blur in pixels, with the silhouettes */
     double *behind_blur;
 };
 

@@ -1,4 +1,4 @@
-/* What is behind the foreground, in double precision; see src/background/mark.h. */
+/* twin_background.c: the hidden background in double precision; see src/background/mark.h. */
 #include "twin.h"
 
 /* Rows from one end to the other: a step straight costs half a pixel of blur, one

@@ -1,5 +1,5 @@
-/* Yang et al. 2016's randomized intersection search in double precision; see
- * src/methods/search.c. */
+/* twin_search.c: Yang et al. 2016's randomized intersection search in double precision; see
+ * src/gather/search.c. */
 #include "twin.h"
 
 /* Adds what ray `ray` of (x, y) sees. */

@@ -1,5 +1,5 @@
-/* The sweep in double precision: which blurs reach a tile, slabs over them, rays. See
- * src/tiles/tiles.h and src/methods/sweep.c. */
+/* twin_sweep.c: the sweep in double precision: which blurs reach a tile, slabs over them, rays.
+ * See src/tiles/tiles.h and src/gather/sweep.c. */
 #include "twin.h"
 
 enum { BINS = 256, FOCUS_BIN = 127, SETS = 6 };
@@ -13,8 +13,8 @@ struct bins {
 };
 
 struct slab {
-    double low, high, centre; /* met if low <= s <= high */
-    double least, most;       /* of the blurs that it is for */
+    double low, high, centre; /* hit if low <= s <= high */
+    double least, most;       /* extremes of the blurs that the slab is for */
 };
 
 struct plan {
@@ -24,7 +24,7 @@ struct plan {
     bool sharp;
 };
 
-/* By the largest blur. */
+/* Returns the width of a bin, by the largest blur. */
 static double bin_width(const struct twin *t)
 {
     const double largest = t->K * fmax(t->df, 1 - t->df);
@@ -76,7 +76,7 @@ static void drop_short(struct bins *bins, double width, double s)
         bins->most = low;
 }
 
-/* The blurs that can be met from tile (tx, ty): those of a tile g pixels away that are g - 1
+/* The blurs that can be hit from tile (tx, ty): those of a tile g pixels away that are g - 1
  * pixels or more. */
 static struct bins reach_of_tile(const struct twin *t, const struct bins *tiles, int across,
                                  int down, double width, int tx, int ty)
@@ -224,12 +224,12 @@ static void trace(const struct twin *t, const struct plan *plan, int deepest, in
     twin_add(t, sum, t->behind, twin_meets(t, x, y, ray, behind), ray.weight);
 }
 
-/* Rows that are computed: see src/methods/tile_rows.h. */
+/* Rows that are computed: see src/gather/tile_rows.h. */
 struct rows {
     int count, at[TWIN_TILE];
 };
 
-/* Of all that is seen from a tile, pixels. */
+/* Returns the least blur of all that is visible from a tile, pixels. */
 static double least_blur(const struct plan *plan, double behind)
 {
     double least = fabs(behind);

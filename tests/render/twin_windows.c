@@ -1,5 +1,5 @@
-/* What lies around each place, in double precision; see src/tiles/ranges.h and sort_rays in
- * src/kernels/kernels.h. */
+/* twin_windows.c: the blurs that lie around each place, in double precision; see
+ * src/tiles/ranges.h and sort_rays in src/kernels/kernels.h. */
 #include "twin.h"
 
 static int clamp(int v, int most)

@@ -1,3 +1,4 @@
+/* yuv_pictures.c: makes and compares photos of Y, U and V for the render tests. */
 #include "yuv_pictures.h"
 
 enum { MARGIN = 64, FILL = 0xaa };

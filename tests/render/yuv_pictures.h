@@ -1,4 +1,4 @@
-/* Photos of Y, U and V for the render tests. */
+/* yuv_pictures.h: photos of Y, U and V for the render tests. */
 #ifndef RENDER_YUV_PICTURES_H
 #define RENDER_YUV_PICTURES_H
 
