@@ -1,4 +1,4 @@
-/* Apertures: rays against the light of the same opening, point by point. */
+/* test_aperture.c: apertures: rays against the light through the same shape, point by point. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +16,7 @@
 
 enum { RAYS = 1024 };
 
-/* Light of an opening: mean place, mean squares, and how much of the unit square there is. */
+/* Light of an aperture: mean place, mean squares, and how much of the unit square there is. */
 struct light {
     double x, y, xx, yy, all;
 };
@@ -114,7 +114,7 @@ static void light(void **state)
     }
 }
 
-/* What the older functions make is made the same. */
+/* The older functions still make equal apertures. */
 static void simple(void **state)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
@@ -297,7 +297,7 @@ static bool in_lens(const struct refocus_aperture *a, double x, double y, double
     return hypot(x - d * ex, y - d * ey) <= 1 + slack && hypot(x + d * ex, y + d * ey) <= 1 + slack;
 }
 
-/* The light of the opening that is common to the aperture and the two circles. */
+/* Returns the light that is common to the aperture and the two circles. */
 static struct light of_common(const struct refocus_aperture *a, double d, double ex, double ey)
 {
     enum { STEPS = 150 };
@@ -403,7 +403,7 @@ static void cut_off(void **state)
             near_to(cases[i].name, sqrt(is.xx), sqrt(should.xx), 0.004);
             near_to(cases[i].name, sqrt(is.yy), sqrt(should.yy), 0.004);
         }
-        /* nothing pushed: nothing moves by more than steps of the rim are long */
+        /* nothing pushed: nothing moves by more than steps of the outline are long */
         struct rf_cat_shape_here whole;
         rf_cat_shape_at(&shape, 1, 0, CORNER, 0, &whole);
         for (int n = 0; n < RAYS; n++) {

@@ -1,4 +1,4 @@
-/* refocus_depth_to_disparity(): samples, meanings, ranges, strides, holes. */
+/* test_depth.c: refocus_depth_to_disparity(): samples, meanings, ranges, strides, holes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdbool.h>
@@ -165,7 +165,7 @@ static void test_unknown_samples(void **state)
             assert_int_equal(out[i], 0); /* the farther side */
     }
 
-    /* As disparities 0 and -2 do hold values, unless 0 is said not to. */
+    /* Disparities 0 and -2 do hold values, unless 0 is said not to. */
     map = map_of(REFOCUS_SAMPLE_F32, f32, 7, 1);
     assert_int_equal(refocus_depth_to_disparity(&map, out, 14, &report), REFOCUS_OK);
     assert_int_equal(report.unknown, 3);
@@ -194,7 +194,7 @@ static void large_like_rows(uint32_t sample, uint32_t meaning)
 
     for (int i = 0; i < W * H; i++) {
         samples[i] = (uint16_t)((uint32_t)i * 2654435761u >> 16);
-        if (i / W % 3) /* and rows without extremes */
+        if (i / W % 3) /* two rows of three have no extremes */
             samples[i] = (uint16_t)(20000 + samples[i] % 9000);
         if (i % 89 == 0)
             samples[i] = (uint16_t)(i % 2 ? 0 : 65535);
@@ -292,7 +292,7 @@ static void test_strides(void **state)
             assert_int_equal(out[y][W], 0xa5a5);
             assert_int_equal(out[y][W + 1], 0xa5a5);
             for (int x = 0; x < W; x++)
-                if (y != 1 || x != 2) /* the hole may be filled from another side */
+                if (y != 1 || x != 2) /* the hole may be inpainted from another side */
                     assert_int_equal(out[y][x], straight[y * W + x]);
         }
     }
@@ -414,7 +414,7 @@ static void test_fill_takes_the_farther_side(void **state)
     assert_memory_equal(out, again, sizeof out);
 }
 
-/* A tilted, noisy floor with a round hole: filled near its plane, and rows inside do not
+/* A tilted, noisy floor with a round hole: inpainted near its plane, and rows inside do not
  * differ from those above and below more than the surface itself does. */
 static void test_fill_leaves_no_streaks(void **state)
 {
@@ -450,7 +450,7 @@ static void test_fill_leaves_no_streaks(void **state)
             n++;
         }
     assert_true(n > 1700);
-    assert_true(worst < 100 * R + 512); /* no farther off than its nearest rim and noise */
+    assert_true(worst < 100 * R + 512); /* no farther off than its nearest edge and noise */
     assert_true(across / n < 200);      /* streaks: a mean step of some 340, the noise's */
     assert_true(along / n < 200);
 }

@@ -1,4 +1,5 @@
-/* Depth with every allocation failing once: a documented error, and nothing is left.
+/* test_depth_memory.c: depth with every allocation failing once: a documented error, and nothing
+ * is left.
  *
  * This program is linked with --wrap=malloc and so on. */
 #include <setjmp.h>
@@ -160,7 +161,7 @@ static void fail_each(int (*run)(void), int least, int whole)
         if (whole)
             assert_true(is_untouched());
     }
-    assert_int_equal(run(), REFOCUS_OK); /* and nothing is remembered of it */
+    assert_int_equal(run(), REFOCUS_OK); /* nothing is remembered of the failure */
     assert_memory_equal(out, expected, sizeof out);
     assert_int_equal(failing.live, 0);
 }

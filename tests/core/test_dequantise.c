@@ -1,4 +1,4 @@
-/* Which maps are taken for maps of few codes, and what becomes of them. */
+/* test_dequantise.c: which maps are taken for maps of few codes, and what becomes of them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -141,7 +141,8 @@ static void slopes_come_back(void **state)
     assert_true(greatest_error(map) <= 257);
     for (int i = 0; i < PIXELS; i++)
         assert_in_range(abs(map[i] - coarse[i]), 0, 128);
-    for (int i = 1; i < PIXELS; i++) /* of the ball: as high as they were, within two halves */
+    for (int i = 1; i < PIXELS;
+         i++) /* edges of the ball are as high as they were, within two halves */
         if (i % WIDTH && abs(coarse[i] - coarse[i - 1]) > 3000) {
             assert_in_range(abs(map[i] - map[i - 1]), abs(coarse[i] - coarse[i - 1]) - 256,
                             abs(coarse[i] - coarse[i - 1]) + 256);

@@ -1,4 +1,4 @@
-/* What is meant by a tap, a rectangle, three points or a line. */
+/* test_focus.c: the focus that a tap, a rectangle, three points or a line mean. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

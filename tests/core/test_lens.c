@@ -1,5 +1,5 @@
-/* refocus/lens.h against Potmesil & Chakravarty 1981, Table 1, against the reference scenes,
- * and against itself. */
+/* test_lens.c: refocus/lens.h against Potmesil & Chakravarty 1981, Table 1, against the
+ * reference scenes, and against itself. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -191,7 +191,7 @@ static void test_bad_arguments(void **state)
             {bad[i], 5}, {1, -bad[i]}, {5, 1}, {1, 1}, {1, NAN}};
         for (int j = 0; j < 5; j++) {
             if (ranges[j].near_m == 1 && ranges[j].far_m > 1)
-                continue; /* that one is good */
+                continue; /* this range is good */
             assert_true(isnan(refocus_disparity_of_depth(ranges + j, 2)));
             assert_true(isnan(refocus_depth_of_disparity(ranges + j, 0.5)));
             assert_true(isnan(refocus_max_blur_radius(&good, ranges + j, 100)));

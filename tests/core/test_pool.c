@@ -1,5 +1,5 @@
-/* The pool: each item once, whoever is asleep; it neither waits for nor keeps awake in
- * vain. */
+/* test_pool.c: the pool: each item once, whoever is asleep; it neither waits for nor keeps awake
+ * in vain. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* The temporal filter of depth. */
+/* test_temporal.c: the temporal filter of depth. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -201,8 +201,8 @@ static void any_layout(void **state)
     }
 }
 
-/* Of Y, U and V the brightness is the guide: where it is that of the grey photo, the maps are
- * the same, whatever U and V are. */
+/* The guide for a photo of Y, U and V is its brightness: where it is that of the grey photo, the
+ * maps are the same, whatever U and V are. */
 static void any_photo(void **state)
 {
     static const uint32_t formats[] = {REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_NV21,
@@ -250,7 +250,7 @@ static void follows_the_range(void **state)
             v.seed = (uint32_t)t;
             draw(30);
             for (int i = 0; i < W * H; i++)
-                v.map[i] = (uint16_t)(v.map[i] / 2 + 10000); /* as of the wider range */
+                v.map[i] = (uint16_t)(v.map[i] / 2 + 10000); /* disparity of the wider range */
             run(narrow, with_photo);
             memcpy(after, v.out, sizeof after);
             for (int i = 0; i < W * H && t < 4; i++)

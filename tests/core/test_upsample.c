@@ -1,4 +1,4 @@
-/* The depth upsampler through its public face. */
+/* test_upsample.c: the depth upsampler through its public face. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -73,7 +73,7 @@ static const int sizes[][4] = {{64, 48, 16, 12}, {97, 61, 13, 29}, {40, 31, 1, 1
                                {300, 20, 3, 20}, {16, 16, 40, 9},  {129, 70, 2, 3}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
-/* The same bits from every instruction set and any number of threads. */
+/* Every instruction set and any number of threads give equal bits. */
 static void same_everywhere(void **state)
 {
     (void)state;
