@@ -1,3 +1,5 @@
+/* depth_fit.c: measures how well the edges and surfaces of a map of disparities fit the exact ones.
+ */
 #include "depth_fit.h"
 
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-/* How well the edges and surfaces of a map of disparities fit the exact ones. */
+/* depth_fit.h: how well the edges and surfaces of a map of disparities fit the exact ones. */
 #ifndef QUALITY_DEPTH_FIT_H
 #define QUALITY_DEPTH_FIT_H
 

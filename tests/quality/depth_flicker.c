@@ -1,4 +1,5 @@
-/* refocus-depth-flicker: how much the depth of a video flickers, as it comes and filtered.
+/* depth_flicker.c: refocus-depth-flicker: how much the depth of a video flickers, as it comes
+ * and filtered.
  *
  *     refocus-depth-flicker MAP.png...           maps of a video, in order
  *     refocus-depth-flicker --scenes FOLDER...   videos made of reference scenes
@@ -67,7 +68,7 @@ static void print(const char *name, const char *way, const struct flicker *f)
            100.0 * (double)f->flips / n, 1000 * f->error / n, 100.0 * (double)f->ghosts / n);
 }
 
-/* What a sensor sees of the window at x: noise of 1 % of the distance, holes as zeros. */
+/* Simulates a sensor that sees the window at x: noise of 1 % of the distance, holes as zeros. */
 static void look(const struct quality_scene *s, int from, int w, int h, int step, uint16_t *truth,
                  uint16_t *mm, uint8_t *rgb)
 {

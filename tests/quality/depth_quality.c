@@ -1,4 +1,4 @@
-/* refocus-depth-quality: what coarse depth costs, and what upsampling it costs.
+/* depth_quality.c: refocus-depth-quality: what coarse depth costs, and what upsampling it costs.
  *
  *     refocus-depth-quality SCENE_FOLDER...   quality against the exact disparities
  *     refocus-depth-quality --time SCENE_FOLDER...   CPU time of refocus_upsample()
@@ -164,7 +164,7 @@ done:
     return result;
 }
 
-/* The samples that are there as disparities over the whole range, the others filled. */
+/* The samples that are there as disparities over the whole range, the others inpainted. */
 static int spread(const uint16_t *raw, int width, int height, const double range[2],
                   uint16_t *disparity, uint8_t *confidence, struct refocus_depth_report *report)
 {
@@ -294,7 +294,7 @@ static int compare(const void *a, const void *b)
     return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
 }
 
-/* By the core, or by a filter of OpenCV: with the threads that it takes. */
+/* Upsamples by the core, or by a filter of OpenCV, with the given number of threads. */
 static int run_way(const struct quality_scene *scene, const struct depth_coarse *c, int threads,
                    uint32_t cpu, uint32_t filter, uint16_t *out)
 {

@@ -1,3 +1,5 @@
+/* depth_ways.c: ways to bring coarse depth to the size of a photo, simple ones beside the
+ * library's. */
 #include "depth_ways.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Ways to bring coarse depth to the size of a photo. */
+/* depth_ways.h: ways to bring coarse depth to the size of a photo. */
 #ifndef QUALITY_DEPTH_WAYS_H
 #define QUALITY_DEPTH_WAYS_H
 
@@ -25,7 +25,7 @@ struct depth_way {
 extern const struct depth_way depth_ways[]; /* until one without a name */
 
 #ifdef RF_HAVE_OPENCV
-/* By a filter of refocus_cv_upsample_by(). */
+/* Upsamples by a filter of refocus_cv_upsample_by(). */
 int depth_by_opencv(uint32_t filter, const struct quality_scene *scene,
                     const struct depth_coarse *c, uint16_t *out);
 #endif

@@ -1,5 +1,5 @@
-/* refocus-format-times: whole frames, prepared and rendered, in each pixel format by turns; the
- * best CPU time of one thread.
+/* format_times.c: refocus-format-times: whole frames, prepared and rendered, in each pixel
+ * format by turns; the best CPU time of one thread.
  *
  * usage: refocus-format-times SCENE_FOLDER K RAYS REPEATS [SIGMA [FORMAT]]
  *

@@ -1,3 +1,4 @@
+/* png_io.c: reads and writes PNG files for the quality tool. */
 #include "png_io.h"
 
 #include <png.h>

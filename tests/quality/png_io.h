@@ -1,5 +1,5 @@
-/* PNG files for the quality tool: on libpng alone, so that the tool does not depend
- * on the file readers that it helps to judge. */
+/* png_io.h: PNG files for the quality tool: on libpng alone, so that the tool does not depend on
+ * the file readers that it helps to judge. */
 #ifndef QUALITY_PNG_IO_H
 #define QUALITY_PNG_IO_H
 

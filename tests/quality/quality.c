@@ -1,4 +1,4 @@
-/* refocus-quality: how good the pictures are.
+/* quality.c: refocus-quality: how good the pictures are.
  *
  * Renders reference scenes through the public API and scores the result against the
  * pictures that a path tracer with a real thin lens made of the same scenes. */
@@ -174,7 +174,7 @@ static void report(const struct job *job, const char *scene, const struct qualit
                   (int)s->pixels, "edge_pixels", (int)s->edge_pixels, "render_ms", ms));
 }
 
-/* What to score a run against: an earlier run's picture, or the reference. */
+/* Returns the picture to score a run against: an earlier run's, or the reference. */
 static const uint8_t *standard(const struct job *job, int run, uint8_t *const *pictures,
                                const uint8_t *reference)
 {

@@ -1,3 +1,4 @@
+/* scene.c: reads a folder with a reference scene. */
 #include "scene.h"
 
 #include <jansson.h>

@@ -1,4 +1,4 @@
-/* A folder with a reference scene: allfocus.png, disparity.png, scene.json and the
+/* scene.h: a folder with a reference scene: allfocus.png, disparity.png, scene.json and the
  * pictures gt_*.png that a lens would have taken. */
 #ifndef QUALITY_SCENE_H
 #define QUALITY_SCENE_H

@@ -1,3 +1,4 @@
+/* settings.c: parses a way to render, as it is named on the command line. */
 #include "settings.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* One way to render, as named on the command line:
+/* settings.h: one way to render, as named on the command line:
  *
  *     LABEL:key=value,key=value      e.g. paper:method=search,iterations=1,rays=full
  */
@@ -14,8 +14,8 @@ struct quality_settings {
     int input;        /* method=input: the untouched photo, the floor */
     int32_t threads;
     int32_t cpu;
-    int32_t format;  /* of Y, U, V: to prepare and render in; 0: R, G, B */
-    int32_t through; /* the same, but to convert to and from only, rendered in R, G, B */
+    int32_t format;  /* a format of Y, U, V to prepare and render in; 0: R, G, B */
+    int32_t through; /* a format to convert to and from only, rendered in R, G, B */
     struct refocus_render_params render;
 };
 

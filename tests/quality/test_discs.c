@@ -1,5 +1,5 @@
-/* Bokeh against the path tracer's: discs of lamps as bright as behind a real lens, six blades
- * scored as well as the round aperture.
+/* test_discs.c: bokeh against the path tracer's: discs of highlights as bright as behind a real
+ * lens, six blades scored as well as the round aperture.
  *
  *     test-discs SCENES    a folder with the reference scenes, unless $REFOCUS_SCENES names one;
  *                          skipped when it is not there
@@ -59,8 +59,8 @@ static void view_free(struct view *view)
     free(view->out);
 }
 
-/* As --quality best renders, with the light that lamps of the night scene have lost: their rims,
- * where one channel alone is clipped, get none of it. */
+/* Renders as --quality best does, with the light that highlights of the night scene have lost:
+ * their edges, where one channel alone is clipped, get none of it. */
 static void render(struct view *view, const struct refocus_aperture *aperture)
 {
     struct refocus_renderer_params limits =
@@ -195,8 +195,8 @@ static int find_lamps(const struct view *view, struct lamp lamps[MOST_LAMPS])
     return count;
 }
 
-/* Light in the inner 0.6 of a lamp's disc, ours and the reference's; false: the reference is
- * clipped itself. */
+/* Adds the light in the inner 0.6 of a highlight's disc, ours and the reference's; false: the
+ * reference is clipped itself. */
 static bool add_disc(const struct view *view, const struct lamp *lamp, double radius, double sum[2])
 {
     double own[2] = {0, 0};

@@ -1,4 +1,5 @@
-/* What fixed point costs: the methods once more in double precision, on a photo.
+/* test_fixed.c: measures what fixed point costs: the methods once more in double precision, on a
+ * photo.
  *
  * Light by the exact curve, blur and offsets as real numbers until a pixel has to be named,
  * means without rounding. The same rays, the same plan of slabs, the same background layer.
@@ -102,7 +103,7 @@ static void search_all(const struct scene *s, const double light[256], int tests
     }
 }
 
-/* One ray of the sweep: the first slab in which something is met, else the background. */
+/* One ray of the sweep: the first slab in which something is hit, else the background. */
 static void sweep_ray(const struct scene *s, const struct refocus_renderer *r,
                       const struct rf_tile_plan *plan, const struct refocus_ray *ray, int x, int y,
                       double behind, const double light[256], double sum[3])

@@ -1,4 +1,4 @@
-/* The metrics themselves, on cases with answers worked out by hand. */
+/* test_metrics.c: the metrics themselves, on cases with answers worked out by hand. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

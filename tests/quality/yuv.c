@@ -1,3 +1,4 @@
+/* yuv.c: converts pictures of R, G, B to formats of Y, U, V and back. */
 #include "yuv.h"
 
 #include <math.h>

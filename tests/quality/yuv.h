@@ -1,5 +1,5 @@
-/* Pictures of R, G, B in formats of Y, U, V and back, as a camera and a display do: BT.601,
- * limited range, U and V the mean of the pixels that share them, or repeated for them. */
+/* yuv.h: pictures of R, G, B in formats of Y, U, V and back, as a camera and a display do:
+ * BT.601, limited range, U and V the mean of the pixels that share them, or repeated for them. */
 #ifndef QUALITY_YUV_H
 #define QUALITY_YUV_H
 
