@@ -1,4 +1,4 @@
-/* lightfield-truth FOLDER OUT FOCUS RADIUS: ground truth from a light field.
+/* lightfield_truth.c: lightfield-truth FOLDER OUT FOCUS RADIUS: ground truth from a light field.
  *
  * FOLDER holds the views of a 9 x 9 camera array, input_CamNNN.png with NNN = 9 row + column, at
  * least those inside a circle, and the disparity of the centre view in gt_disp_lowres.pfm. A

@@ -1,4 +1,5 @@
-/* Kosloff & Barsky 2007: figure 2, and the series against the paper's single steps. */
+/* test_diffusion.c: Kosloff & Barsky 2007: figure 2, and the series against the paper's single
+ * steps. */
 #include <time.h>
 
 #include "papers/diffusion.h"
@@ -12,7 +13,7 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* A near disc, its rim sharp and its middle blurred, before a far wall: the field is a picture
+/* A near disc, its edge sharp and its middle blurred, before a far wall: the field is a picture
  * that is white in the middle. Red before green: green in the middle means it leaks. */
 static void figure_2(void **state)
 {
@@ -59,7 +60,7 @@ static void figure_2(void **state)
     }
     /* The naive filter: alpha averaged over a disc of the pixel's own radius. */
     for (int y = -30; y <= 30; y++)
-        for (int x = -30; x <= 30; x++) /* about a pixel near the rim, blurred by 30 */
+        for (int x = -30; x <= 30; x++) /* about a pixel near the edge, blurred by 30 */
             naive_leak += hypot(x, y) <= 30 && hypot(x + RADIUS - RIM - 2, y) >= RADIUS;
     naive_leak /= 30 * 30 * 3.14159;
     assert_true(naive_leak > 0.1);

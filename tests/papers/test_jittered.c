@@ -1,4 +1,4 @@
-/* Jittered sampling: repeatable by its seed, the mean of many is full tracing. */
+/* test_jittered.c: jittered sampling: repeatable by its seed, the mean of many is full tracing. */
 #include "pictures.h"
 
 enum { W = 40, H = 30 };
@@ -36,7 +36,7 @@ static void seeds(void **state)
     picture_free(&p);
 }
 
-/* Cells of one pixel leave nothing to chance: full tracing, but for how mask pixels at the rim
+/* Cells of one pixel leave nothing to chance: full tracing, but for how mask pixels at the edge
  * count. Larger cells scatter about it without a bias. */
 static void mean_of_many(void **state)
 {

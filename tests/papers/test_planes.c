@@ -1,5 +1,5 @@
-/* One plane facing the camera: nothing hides anything, so every method that takes all rays of
- * the mask computes the same convolution. */
+/* test_planes.c: one plane facing the camera: nothing hides anything, so every method that takes
+ * all rays of the mask computes the same convolution. */
 #include "pictures.h"
 
 enum { W = 90, H = 60, K = 7 };
@@ -39,7 +39,8 @@ static void differences(const uint8_t *a, const uint8_t *b, double *mean, int *m
 
 static void one_plane(void **state)
 {
-    /* What mask pixels at the rim count differs, and Mulder's discs are 2 K + 1 across. */
+    /* The methods count mask pixels at the edge differently, and Mulder's discs are 2 K +
+     * 1 across. */
     static const struct {
         uint32_t method;
         int most;

@@ -1,5 +1,5 @@
-/* The two quick ones: NVIDIA's table against its formula, and the volume of attention of
- * Mulder & van Liere. */
+/* test_preview.c: the two quick methods: NVIDIA's table against its formula, and the volume of
+ * attention of Mulder & van Liere. */
 #include "papers/blurriness.h"
 #include "pictures.h"
 
@@ -80,7 +80,7 @@ static void volume(void **state)
     render(renderer, &p, 165, 1, all);
     render(renderer, &p, 0, 1, none);
     render(renderer, &p, 20, 1, some);
-    render(renderer, &p, 165, 0.1f, flat); /* by depth */
+    render(renderer, &p, 165, 0.1f, flat); /* attention by depth */
     for (int i = 0; i < W * H; i++) {
         const double r = hypot(i % W - 0.25 * (W - 1), i / W - 0.5 * (H - 1));
         const double d = fabs(p.disparity[i] / 65535.0 - (double)0.4f);

@@ -1,6 +1,6 @@
-/* Circles of confusion of Potmesil & Chakravarty 1981: their intensity against the diffraction
- * integral, evaluated numerically, and against the series that the paper prints; their energy;
- * and what `scatter` makes of a point. */
+/* test_scatter.c: circles of confusion of Potmesil & Chakravarty 1981: their intensity against
+ * the diffraction integral, evaluated numerically, and against the series that the paper prints;
+ * their energy; and what `scatter` makes of a point. */
 #include <complex.h>
 
 #include "papers/lommel.h"
