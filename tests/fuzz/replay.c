@@ -1,5 +1,5 @@
-/* Runs a fuzz target on the files of folders: the seeds and what was ever found, in every
- * run of the tests and with any compiler. */
+/* replay.c: runs a fuzz target on the files of folders: the seeds and what was ever found, in
+ * every run of the tests and with any compiler. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>

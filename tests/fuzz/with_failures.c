@@ -1,3 +1,4 @@
+/* with_failures.c: runs inputs with every allocation failing once, as well. */
 #define _GNU_SOURCE /* memfd_create */
 #include "with_failures.h"
 

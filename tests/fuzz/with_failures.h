@@ -1,4 +1,4 @@
-/* Inputs run with every allocation failing once, as well. */
+/* with_failures.h: inputs run with every allocation failing once, as well. */
 #ifndef RF_FUZZ_WITH_FAILURES_H
 #define RF_FUZZ_WITH_FAILURES_H
 

@@ -1,4 +1,4 @@
-/* Patterns of file names: what is accepted makes names that differ, and fit. */
+/* fuzz_pattern.c: patterns of file names: what is accepted makes names that differ, and fit. */
 #include <stdlib.h>
 #include <string.h>
 #include "with_failures.h"

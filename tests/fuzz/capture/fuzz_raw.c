@@ -1,5 +1,5 @@
-/* The first line is what follows the comma behind the file's name; the rest is the
- * file. */
+/* fuzz_raw.c: any bytes as a raw stream. The first line is what follows the comma after the
+ * file's name; the rest is the file. */
 #include "source.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Scripts of the replay source: parsed, and played when they open no other file, are of
- * a bearable size, and do not wait. */
+/* fuzz_script.c: scripts of the replay source: parsed, and played when they open no other file,
+ * are of a bearable size, and do not wait. */
 #include "source.h"
 
 #include <stdio.h>

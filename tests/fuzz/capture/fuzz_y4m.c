@@ -1,3 +1,4 @@
+/* fuzz_y4m.c: any bytes as a Y4M stream. */
 #include "source.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* source.c: plays a file that a source reads, and converts its frames. */
 #include "source.h"
 
 #include <stdlib.h>
@@ -22,7 +23,7 @@ static void read_frame(const struct refocus_frame *frame)
     (void)sum;
 }
 
-/* As a picture or as samples, one of which it must be. */
+/* Converts the frame to a picture or to samples; one of the two must work. */
 static void convert(struct refocus_converter *converter, const struct refocus_frame *frame)
 {
     const size_t pixels = (size_t)frame->width * (size_t)frame->height;

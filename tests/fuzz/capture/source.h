@@ -1,4 +1,4 @@
-/* What the targets that read a source share. */
+/* source.h: plays a file that a source reads, for the targets that share it. */
 #ifndef RF_FUZZ_SOURCE_H
 #define RF_FUZZ_SOURCE_H
 

@@ -1,5 +1,6 @@
-/* Calibration files: what is accepted must be sound enough to register depth with. Allocations
- * fail in our code alone: Jansson 2.14 itself goes astray when some of its own do. */
+/* fuzz_calibration.c: calibration files: what is accepted must be sound enough to register depth
+ * with. Allocations fail in our code alone: Jansson 2.14 itself goes astray when some of its own
+ * do. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

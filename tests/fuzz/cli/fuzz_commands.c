@@ -1,4 +1,4 @@
-/* Bytes as a client of `refocus live` sends them, in pieces. */
+/* fuzz_commands.c: bytes as a client of `refocus live` sends them, in pieces. */
 #include <stdlib.h>
 #include <string.h>
 #include "with_failures.h"

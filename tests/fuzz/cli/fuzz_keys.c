@@ -1,4 +1,4 @@
-/* Key frames: what is taken gives values in their ranges at any time. */
+/* fuzz_keys.c: key frames: what is taken gives values in their ranges at any time. */
 #include <math.h>
 #include <stdlib.h>
 #include "commands/keys.h"

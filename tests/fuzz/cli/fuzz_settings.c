@@ -1,5 +1,5 @@
-/* Files of settings over a table with every kind of option: values that are taken are in their
- * ranges. */
+/* fuzz_settings.c: files of settings over a table with every kind of option: values that are
+ * taken are in their ranges. */
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

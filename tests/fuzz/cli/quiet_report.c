@@ -1,4 +1,5 @@
-/* line/report.h where nothing is printed, and outputs/outputs.h where nothing is saved. */
+/* quiet_report.c: line/report.h where nothing is printed, and outputs/outputs.h where nothing is
+ * saved. */
 #include "line/report.h"
 #include "outputs/outputs.h"
 

@@ -1,5 +1,5 @@
-/* Any parameters and any picture through the public API. Whatever comes in, the status
- * is a documented one, nothing outside the result is written, and rendering twice gives
+/* fuzz_core.c: any parameters and any picture through the public API. Whatever comes in, the
+ * status is a documented one, nothing outside the result is written, and rendering twice gives
  * the same bytes. */
 #include <stdint.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 
 enum { MAX_SIDE = 48, GUARD = 64 };
 
-/* What is left of the input; 0 for ever after its end. */
+/* Rest of the input; it reads as 0 for ever after its end. */
 struct input {
     const uint8_t *data;
     size_t size;
@@ -110,7 +110,7 @@ static struct refocus_aperture *take_aperture(struct input *in, int wild)
     return aperture;
 }
 
-/* What single methods look at. */
+/* Sets the parameters that single methods look at. */
 static void take_extras(struct input *in, int wild, struct refocus_render_params *p)
 {
     p->cell = take_in(in, wild, 1, 16);

@@ -1,4 +1,4 @@
-/* The shape of a network's input, from any bytes. */
+/* fuzz_onnx.c: the shape of a network's input, from any bytes. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>

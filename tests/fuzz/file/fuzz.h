@@ -1,4 +1,4 @@
-/* What the targets of this folder share. */
+/* fuzz.h: readings and checks that the targets of this folder share. */
 #ifndef RF_FUZZ_FILE_H
 #define RF_FUZZ_FILE_H
 
@@ -46,7 +46,7 @@ static inline void fuzz_end(struct fuzz_reading *reading)
     free(reading->read.icc.data);
 }
 
-/* What the caller may rely on; reads every byte, for the sanitizers. */
+/* Checks the promises that the caller may rely on; reads every byte, for the sanitizers. */
 static inline void fuzz_check_photo(const struct refocus_photo *photo)
 {
     volatile unsigned sum = 0;

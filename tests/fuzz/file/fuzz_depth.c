@@ -1,4 +1,4 @@
-/* The first byte chooses the unit. */
+/* fuzz_depth.c: any bytes as a depth map; the first byte chooses the unit. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

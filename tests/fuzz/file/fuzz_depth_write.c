@@ -1,4 +1,5 @@
-/* Depth into a JPEG photo: what is written can be read, and writing it again changes nothing. */
+/* fuzz_depth_write.c: depth into a JPEG photo: what is written can be read, and writing it again
+ * changes nothing. */
 #include "fuzz.h"
 
 #include <stdio.h>

@@ -1,4 +1,5 @@
-/* Parsing is idempotent: what was made upright stays as it is. */
+/* fuzz_exif.c: any bytes as EXIF. Parsing is idempotent: a block that was made upright stays as
+ * it is. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

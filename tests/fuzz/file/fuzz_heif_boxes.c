@@ -1,3 +1,4 @@
+/* fuzz_heif_boxes.c: any bytes as the boxes of a HEIF file that tell its orientation. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

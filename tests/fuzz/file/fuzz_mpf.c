@@ -1,3 +1,4 @@
+/* fuzz_mpf.c: any bytes as the MPF directory of a JPEG. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,4 +1,4 @@
-/* Numbers and base64, against the C library and against what base64 can hold. */
+/* fuzz_number.c: numbers and base64, against the C library and against what base64 can hold. */
 #include "fuzz.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* fuzz_pfm.c: any bytes as a PFM file. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,3 +1,4 @@
+/* fuzz_photo.c: any bytes as a photo of any format. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,3 +1,4 @@
+/* fuzz_pnm.c: any bytes as a PNM file. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,4 +1,4 @@
-/* A packet alone, and its depth. */
+/* fuzz_xmp.c: any bytes as a packet of XMP alone, and its depth. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,4 +1,5 @@
-/* The segments of a JPEG, with the GUID that the seeds use. */
+/* fuzz_xmp_extended.c: any bytes as the segments of a JPEG that hold extended XMP, with the GUID
+ * that the seeds use. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,5 +1,5 @@
-/* Writes the seeds: make_corpus tests/fuzz/file/corpus. Run after a change of make.c;
- * needs a build with all formats. */
+/* make_corpus.c: writes the seeds: make_corpus tests/fuzz/file/corpus. Run it after a change of
+ * make.c; it needs a build with all formats. */
 #include "samples.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* A file of strokes over a small photo: what is taken is written, read again and the
- * same. */
+/* fuzz_strokes.c: a file of strokes over a small photo: what is taken is written, read again and
+ * the same. */
 #include <stdlib.h>
 #include <string.h>
 #include <refocus/platform/strokes.h>
