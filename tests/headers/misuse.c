@@ -1,6 +1,6 @@
-/* Every public function with every kind of argument that it must not take: an error or, where
- * there is no status, nothing; never a crash. Headers are searched for functions that no call
- * names, so that a new one needs its lines here. Those of capture have their own test. */
+/* misuse.c: every public function with every kind of argument that it must not take: an error
+ * or, where there is no status, nothing; never a crash. Headers are searched for functions that
+ * no call names, so that a new one needs its lines here. Those of capture have their own test. */
 #include "misuse.h"
 
 #include <dirent.h>
@@ -9,7 +9,7 @@ static struct {
     const char *function, *arguments, *spoilt;
     const char *covered[256];
     size_t count;
-    int groups, done; /* of calls: begun, and come to their end */
+    int groups, done; /* groups of calls that have begun, and that have come to their end */
 } now;
 
 void misuse_calling(const char *function, const char *arguments)

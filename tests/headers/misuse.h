@@ -1,4 +1,4 @@
-/* Calls with arguments that no function may take: what each must answer. */
+/* misuse.h: calls with arguments that no function may take: what each must answer. */
 #ifndef MISUSE_H
 #define MISUSE_H
 
@@ -30,9 +30,9 @@ void misuse_pointer(const void *pointer, int expected); /* whether there is to b
     (misuse_calling(#function, #__VA_ARGS__), misuse_pointer(function(__VA_ARGS__), 0))
 #define GIVES_POINTER(function, ...)                                                               \
     (misuse_calling(#function, #__VA_ARGS__), misuse_pointer(function(__VA_ARGS__), 1))
-/* Of functions without a status: they come back; what comes out is the caller's to look at. */
+/* Functions without a status just come back; the caller looks at the results. */
 #define RETURNS(function, ...) (misuse_calling(#function, #__VA_ARGS__), function(__VA_ARGS__))
-/* Those that take nothing cannot be misused. */
+/* Functions that take nothing cannot be misused. */
 #define TAKES_NOTHING(function) (misuse_calling(#function, ""), function())
 
 /* A field of a struct and a value that it must not have. */

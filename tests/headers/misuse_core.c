@@ -1,4 +1,5 @@
-/* Pictures, lenses, apertures, focus and the rest that needs no renderer. */
+/* misuse_core.c: misuse of pictures, lenses, apertures, focus and the rest that needs no
+ * renderer. */
 #include "misuse.h"
 
 static void pictures(void)
@@ -102,14 +103,15 @@ static void apertures(void)
     static const int sides[] = {0, -1, INT32_MIN, INT32_MAX, REFOCUS_MAX_APERTURE_SIDE + 1};
     static const double bad[] = {(double)NAN, (double)INFINITY, -1, 0, 128};
     static const uint8_t mask[W * H] = {255}, shut[W * H];
-    const struct misuse spoiled[] = {BAD(refocus_aperture_params, struct_size, 0),
-                                     BAD(refocus_aperture_params, blades, -1),
-                                     BAD(refocus_aperture_params, blades, INT32_MAX),
-                                     BAD(refocus_aperture_params, rotation_deg, (double)NAN),
-                                     BAD(refocus_aperture_params, squeeze, 0),
-                                     BAD(refocus_aperture_params, hole, 1),
-                                     BAD(refocus_aperture_params, figure, UINT32_MAX),
-                                     BAD(refocus_aperture_params, mask, mask)}; /* of no size */
+    const struct misuse spoiled[] = {
+        BAD(refocus_aperture_params, struct_size, 0),
+        BAD(refocus_aperture_params, blades, -1),
+        BAD(refocus_aperture_params, blades, INT32_MAX),
+        BAD(refocus_aperture_params, rotation_deg, (double)NAN),
+        BAD(refocus_aperture_params, squeeze, 0),
+        BAD(refocus_aperture_params, hole, 1),
+        BAD(refocus_aperture_params, figure, UINT32_MAX),
+        BAD(refocus_aperture_params, mask, mask)}; /* a mask of no size */
     const struct refocus_aperture_params good = refocus_aperture_params_default();
     struct refocus_aperture *aperture = NULL;
     struct refocus_ray ray[1];

@@ -1,4 +1,4 @@
-/* Depth maps: reading, repair, upsampling, and the filter over video. */
+/* misuse_depth.c: misuse of depth maps: reading, repair, upsampling, and the filter over video. */
 #include "misuse.h"
 
 static uint16_t out[W * H];

@@ -1,4 +1,4 @@
-/* Files. Nothing that is refused leaves one behind. */
+/* misuse_files.c: misuse of files. Nothing that is refused leaves one behind. */
 #include "misuse.h"
 
 #include <unistd.h>

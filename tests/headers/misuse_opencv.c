@@ -1,4 +1,4 @@
-/* Depth by OpenCV. */
+/* misuse_opencv.c: misuse of depth by OpenCV. */
 #include "misuse.h"
 
 #include <refocus/platform/opencv.h>

@@ -1,4 +1,5 @@
-/* The renderer. tests/render/test_arguments.c has the ranges of all its parameters. */
+/* misuse_render.c: misuse of the renderer. tests/render/test_arguments.c has the ranges of all
+ * its parameters. */
 #include "misuse.h"
 
 static struct refocus_renderer *renderer;

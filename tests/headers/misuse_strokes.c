@@ -1,4 +1,4 @@
-/* Depth by strokes. */
+/* misuse_strokes.c: misuse of depth by strokes. */
 #include "misuse.h"
 
 #include <refocus/platform/strokes.h>
