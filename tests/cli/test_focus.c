@@ -1,5 +1,5 @@
-/* Focus pulls of `refocus live`, by the times of frames: smooth, and without a jump also when one
- * begins before the other has ended. */
+/* test_focus.c: focus pulls of `refocus live`, by the times of frames: smooth, and without a
+ * jump also when one begins before the other has ended. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

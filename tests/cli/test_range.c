@@ -1,5 +1,6 @@
-/* The distance range of `refocus live` over made-up depth: an empty room stays as it is, who walks
- * in gets a disparity of his own soon and without a jump, and what is in focus stays so. */
+/* test_range.c: the distance range of `refocus live` over made-up depth: an empty room stays as
+ * it is, who walks in gets a disparity of his own soon and without a jump, and what is in focus
+ * stays so. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
