@@ -1,8 +1,10 @@
-/* usage: vm-loopback test NODE JPEG
+/* vm_loopback.c: sources on v4l2loopback at /dev/videoNODE, for the formats that vivid lacks.
+ *
+ * usage: vm-loopback test NODE JPEG
  *        vm-loopback feed FPS NODE FORMAT WIDTHxHEIGHT FILE [NODE FORMAT WIDTHxHEIGHT
  * FILE]
  *        vm-loopback same Y4M YUYV WIDTH HEIGHT
- * What vivid has not, through v4l2loopback at /dev/videoNODE: MJPEG and Z16, as they
+ * The formats are MJPEG and Z16; frames come out as they
  * were fed in. "feed" writes files again and again, until it is ended. "same" compares
  * the first picture of 4:2:0 in one file with the one of YUYV in another. */
 #define _GNU_SOURCE /* memmem */
@@ -194,7 +196,7 @@ static void jpegs_become_pictures(void **state)
         refocus_source_release(source, frame);
     }
     printf("captured: MJPEG\n");
-    /* Its second half is missing: no picture, and the stream goes on. */
+    /* The second half of the picture is missing: no picture comes out, and the stream goes on. */
     memset(bytes + feeder.size / 2, 0, feeder.size - feeder.size / 2);
     for (int n = 0, damaged = 0; damaged < 2; n++) {
         const struct refocus_frame *frame = next(source);

@@ -1,6 +1,8 @@
-/* usage: vm-v4l2 NODE [CYCLES]
- * A vivid camera at /dev/videoNODE: every format, and every fault that the driver can be told
- * to have; or only so many times open, start, stop and close. Runs where the driver is, in the
+/* vm_v4l2.c: sources on a vivid camera at /dev/videoNODE, with every format and fault.
+ *
+ * usage: vm-v4l2 NODE [CYCLES]
+ * The faults are all that the driver can be told to have. With CYCLES it only opens, starts, stops
+ * and closes the camera so many times. It runs where the driver is, in the
  * virtual machine. */
 #include <pthread.h>
 #include <time.h>
@@ -77,7 +79,7 @@ static void take(struct refocus_source *source, int count)
         refocus_source_release(source, next(source));
 }
 
-/* By a descriptor of its own, as another program would. */
+/* Sets a control by another descriptor, as another program would. */
 static void inject(const char *control, double value)
 {
     struct refocus_source *second = opened();
@@ -165,7 +167,7 @@ static void check_refocus(const uint8_t *rgb, const char *name)
         fail_msg("%s: %d rows are blurred, of %d", name, changed, HEIGHT);
 }
 
-/* The same bars in every format, but for the loss of chroma beside edges. */
+/* Every format shows equal bars, but for the loss of chroma beside edges. */
 static void check_picture(const uint8_t *rgb, const char *name, int grey)
 {
     int off = 0;
@@ -383,7 +385,7 @@ static void an_unplugged_device_returns(void **state)
     held = next(source);
     inject("disconnect", 1);
     assert_gives(until_fault(source), REFOCUS_ERR_GONE);
-    assert_true(held->plane[0][0] > 0); /* its memory is still there */
+    assert_true(held->plane[0][0] > 0); /* the frame's memory is still there */
     refocus_source_release(source, held);
     ms = recover(source);
     printf("recovered from a disconnection in %d ms\n", (int)ms);
