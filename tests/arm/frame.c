@@ -1,9 +1,9 @@
-/* Renders a scene so that instructions can be counted:
+/* frame.c: renders a scene so that instructions can be counted:
  *
  *     frame SCENE WIDTH HEIGHT K RAYS PHOTOS RENDERS [CPU]
  *
  * One thread, RGB in and out. PHOTOS times it is prepared and rendered, then the last RENDERS times
- * more; lamps are drawn. SCENE is raw: two 32-bit numbers, width and height; RGB, three
+ * more; highlights are splatted. SCENE is raw: two 32-bit numbers, width and height; RGB, three
  * bytes a pixel; 16-bit disparities. It is brought to WIDTH x HEIGHT by repeating pixels. The
  * focus goes back and forth between renders, so that none can rest on the one before. */
 #include <stdbool.h>
@@ -85,7 +85,7 @@ int main(int argc, char **argv)
     params.threads = 1;
     params.cpu = cpu;
     lens.rays = number[3];
-    lens.highlight_gain = 4; /* as the command line has it */
+    lens.highlight_gain = 4; /* The command line renders with this gain. */
     status = refocus_renderer_create(&renderer, &params);
     for (int i = 0; i < number[4] + number[5] && status == REFOCUS_OK; i++) {
         if (i < number[4])

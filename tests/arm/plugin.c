@@ -1,4 +1,4 @@
-/* A plugin for Debian 12's qemu-user (7.2): how often each block of guest code ran.
+/* plugin.c: a plugin for Debian 12's qemu-user (7.2): how often each block of guest code ran.
  *
  *     qemu-aarch64 -plugin ./plugin.so,out=FILE PROGRAM
  *
