@@ -1,4 +1,4 @@
-/* cmocka with the headers it needs, and what the tests of this folder share. */
+/* check.h: cmocka with the headers it needs, and helpers that the tests of this folder share. */
 #ifndef CAPTURE_CHECK_H
 #define CAPTURE_CHECK_H
 

@@ -1,4 +1,4 @@
-/* Formats of cameras against the formulas of the standards in double precision. */
+/* test_convert.c: formats of cameras against the formulas of the standards in double precision. */
 #include "check.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Callers give what none should: NULL, strides that memory has no room for. Each function of the
- * capture headers answers with a status, or does nothing, and writes nowhere. */
+/* test_misuse.c: callers give what none should: NULL, strides that memory has no room for. Each
+ * function of the capture headers answers with a status, or does nothing, and writes nowhere. */
 #include "check.h"
 
 #include <math.h>

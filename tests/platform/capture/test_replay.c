@@ -1,4 +1,5 @@
-/* The scripted camera: every fault, and the promises that hold through all of them. */
+/* test_replay.c: the scripted camera: every fault, and the promises that hold through all of
+ * them. */
 #include "check.h"
 
 #include <pthread.h>

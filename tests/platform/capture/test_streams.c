@@ -1,4 +1,4 @@
-/* Sinks and the sources that read what they wrote; names that are refused. */
+/* test_streams.c: sinks and the sources that read what they wrote; names that are refused. */
 #include "check.h"
 
 #include <unistd.h>

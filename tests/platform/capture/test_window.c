@@ -1,4 +1,5 @@
-/* The window sink, on SDL's driver without a screen; tests/cli/test_window.py looks at pixels. */
+/* test_window.c: the window sink, on SDL's driver without a screen; tests/cli/test_window.py
+ * looks at pixels. */
 #include "check.h"
 
 #include <time.h>

@@ -1,4 +1,4 @@
-/* Short forms that the tests of this folder share. */
+/* check.h: short forms that the tests of this folder share. */
 #ifndef RF_TEST_CHECK_H
 #define RF_TEST_CHECK_H
 

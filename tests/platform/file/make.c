@@ -1,3 +1,4 @@
+/* make.c: puts together small PNG files, EXIF, HEIF boxes and XMP, byte by byte. */
 #include "make.h"
 
 #include <stdio.h>

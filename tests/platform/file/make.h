@@ -1,4 +1,4 @@
-/* Small files for tests and fuzz seeds, put together byte by byte and without the
+/* make.h: small files for tests and fuzz seeds, put together byte by byte and without the
  * library under test. */
 #ifndef RF_TEST_MAKE_H
 #define RF_TEST_MAKE_H

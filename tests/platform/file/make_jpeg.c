@@ -1,3 +1,4 @@
+/* make_jpeg.c: makes small JPEG files, and puts metadata and further pictures into them. */
 #include "make.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* The photos of the project's developers, which are not part of it: the environment
+/* photos.h: the photos of the project's developers, which are not part of it: the environment
  * variable REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
 #ifndef RF_TEST_PHOTOS_H
 #define RF_TEST_PHOTOS_H

@@ -1,3 +1,4 @@
+/* samples.c: makes one small file of every kind that the readers tell apart. */
 #include "samples.h"
 
 #include <string.h>

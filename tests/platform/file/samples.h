@@ -1,5 +1,5 @@
-/* One small file of every kind that the readers tell apart, for tests that damage them.
- */
+/* samples.h: one small file of every kind that the readers tell apart, for tests that damage
+ * them. */
 #ifndef RF_TEST_SAMPLES_H
 #define RF_TEST_SAMPLES_H
 
@@ -10,7 +10,7 @@ struct sample {
     struct bytes bytes;
     bool photo, depth; /* the one of the two readings that takes it whole */
     size_t whole_at;   /* cut here it is whole as well; 0: nowhere */
-    bool loose_end;    /* its last bytes may be cut and it still makes sense */
+    bool loose_end;    /* the last bytes of the file may be cut and it still makes sense */
 };
 
 enum { SAMPLES_MAX = 24 };

@@ -1,4 +1,4 @@
-/* Apple's depth behind the main picture, and XMP that means harm. */
+/* test_apple.c: Apple's depth after the main picture, and XMP that means harm. */
 #include "check.h"
 
 #include <unistd.h>

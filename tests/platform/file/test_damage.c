@@ -1,6 +1,5 @@
-/* Every sample cut at every byte and with every byte changed: an error or a whole
- * photo, never a crash. The copies end where the memory ends, for the sanitizers to
- * see. */
+/* test_damage.c: every sample cut at every byte and with every byte changed: an error or a whole
+ * photo, never a crash. The copies end where the memory ends, for the sanitizers to see. */
 #include "check.h"
 #include "samples.h"
 

@@ -1,6 +1,7 @@
-/* EXIF that means harm. Each block ends where a page begins that may not be touched, so that
- * a read or a write beyond it ends the test, whatever the compiler; and what a bound refuses
- * without any such read shows in the facts. Taking away any one bound of exif.c fails here. */
+/* test_exif.c: EXIF that means harm. Each block ends where a page begins that may not be
+ * touched, so that a read or a write beyond it ends the test, whatever the compiler; and what a
+ * bound refuses without any such read shows in the facts. Taking away any one bound of exif.c
+ * fails here. */
 #include "check.h"
 
 #include "../../kernels/guarded.h"

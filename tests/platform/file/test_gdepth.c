@@ -1,4 +1,4 @@
-/* Google's depth in XMP, standard and extended. */
+/* test_gdepth.c: Google's depth in XMP, standard and extended. */
 #include "check.h"
 
 #include <math.h>

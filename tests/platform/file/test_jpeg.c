@@ -1,4 +1,4 @@
-/* JPEG photos: orientation, EXIF, ICC. */
+/* test_jpeg.c: JPEG photos: orientation, EXIF, ICC. */
 #include "check.h"
 
 #ifdef RF_HAVE_PNG

@@ -1,6 +1,6 @@
-/* Every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no
- * crash, and nothing kept. The linker sends the library's calls here; libpng and expat
- * take theirs from the library. */
+/* test_memory.c: every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no
+ * crash, and nothing kept. The linker sends the library's calls here; libpng and expat take
+ * theirs from the library. */
 #include "failing.h"
 #include "photos.h"
 #include "samples.h"

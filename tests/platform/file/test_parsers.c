@@ -1,4 +1,5 @@
-/* The library's own small parsers, on what files hold and on what they should not. */
+/* test_parsers.c: the library's own small parsers, on what files hold and on what they should
+ * not. */
 #include "check.h"
 #include "base64.h"
 #include "depth_values.h"

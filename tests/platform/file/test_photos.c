@@ -1,5 +1,5 @@
-/* Photos that nobody of this project made. They are not part of it: the environment
- * variable REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
+/* test_photos.c: photos that nobody of this project made. They are not part of it: the
+ * environment variable REFOCUS_PHOTOS names their folder, else it is sought beside the source. */
 #include "photos.h"
 
 #include <math.h>

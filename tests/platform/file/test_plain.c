@@ -1,4 +1,4 @@
-/* Formats without metadata of depth: PNM, PFM, PNG; and the words for depth units. */
+/* test_plain.c: formats without metadata of depth: PNM, PFM, PNG; and the words for depth units. */
 #include "check.h"
 
 #include <locale.h>

@@ -1,5 +1,5 @@
-/* Saving is watched on its way to the disk, as is the file that is replaced: fsync() and rename()
- * are counted on their way to the system. */
+/* test_save.c: saving is watched on its way to the disk, as is the file that is replaced:
+ * fsync() and rename() are counted on their way to the system. */
 #include "check.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
-/* "Thread-safe" says the header: readers and writers in many threads at once, for the
- * thread sanitizer to watch, each with the result of one alone. */
+/* test_threads.c: "Thread-safe" says the header: readers and writers in many threads at once,
+ * for the thread sanitizer to watch, each with the result of one alone. */
 #include "check.h"
 #include "samples.h"
 

@@ -1,4 +1,4 @@
-/* Pictures into files: what is read back, and what an error leaves behind. */
+/* test_write.c: pictures into files: what is read back, and what an error leaves behind. */
 #include "check.h"
 
 #include <dirent.h>

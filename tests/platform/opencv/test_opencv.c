@@ -1,4 +1,4 @@
-/* Depth of pictures by OpenCV: pairs and networks that the test makes itself. */
+/* test_opencv.c: depth of pictures by OpenCV: pairs and networks that the test makes itself. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-/* A picture for tests: a disc of one colour before another, with noise. */
+/* picture.h: a picture for tests: a disc of one colour before another, with noise. */
 #ifndef RF_TEST_STROKES_PICTURE_H
 #define RF_TEST_STROKES_PICTURE_H
 

@@ -1,4 +1,4 @@
-/* The least cut against all cuts there are. */
+/* test_cut.c: the least cut against all cuts there are. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* The file of strokes: round trips, and every way to be refused, in its words. */
+/* test_json.c: the file of strokes: round trips, and every way to be refused, in its words. */
 #include "picture.h"
 
 #include <stdio.h>

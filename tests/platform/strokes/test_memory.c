@@ -1,5 +1,5 @@
-/* Every allocation fails once: REFOCUS_ERR_MEMORY, what was painted stays as it was,
- * and nothing is kept. The linker sends the library's calls here. */
+/* test_memory.c: every allocation fails once: REFOCUS_ERR_MEMORY, what was painted stays as it
+ * was, and nothing is kept. The linker sends the library's calls here. */
 #include "failing.h"
 #include "picture.h"
 

@@ -1,4 +1,5 @@
-/* Painting: what is selected, how it is filled, what undo leaves, what is refused. */
+/* test_strokes.c: painting: what is selected, how it is filled, what undo leaves, what is
+ * refused. */
 #include "picture.h"
 
 #include <math.h>
@@ -191,7 +192,7 @@ static void test_base_and_selection(void **unused)
     refocus_strokes_destroy(&strokes);
 }
 
-/* The same photo in all formats and with its rows upside down in memory. */
+/* A photo gives equal depth in all formats and with its rows upside down in memory. */
 static void test_formats(void **unused)
 {
     static uint8_t pixels[4 * W * H];

@@ -1,5 +1,5 @@
-/* time_strokes PHOTO [STROKES.json]: how long each segment of a stroke takes. Without a
- * file one object is painted over, along a spiral around the middle. */
+/* time_strokes.c: time_strokes PHOTO [STROKES.json]: how long each segment of a stroke takes.
+ * Without a file one object is painted over, along a spiral around the middle. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Every allocation of the session fails once: a status, and nothing is kept. */
+/* test_memory.c: every allocation of the session fails once: a status, and nothing is kept. */
 #define _POSIX_C_SOURCE 200809L
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* The viewer's session: first a quick picture, then the full one, and nobody waits. */
+/* test_session.c: the viewer's session: first a quick picture, then the full one, and nobody
+ * waits. */
 #define _POSIX_C_SOURCE 200809L
 #include <setjmp.h>
 #include <stdarg.h>

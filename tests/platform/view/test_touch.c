@@ -1,5 +1,5 @@
-/* The window without a screen (SDL's dummy driver), worked by events of a touch screen:
- * SDL makes a mouse of the first finger, and tells of two as gestures. */
+/* test_touch.c: the window without a screen (SDL's dummy driver), worked by events of a touch
+ * screen: SDL makes a mouse of the first finger, and tells of two as gestures. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
