@@ -55,9 +55,11 @@ static double power(double x, int n)
 {
     double result = 1;
 
-    for (; n > 0; n /= 2, x *= x)
+    for (; n > 0; n /= 2) {
         if (n % 2)
             result *= x;
+        x *= x;
+    }
     return result;
 }
 

@@ -53,8 +53,10 @@ double rf_lommel(double u, double v)
         const int n = bessel(v, j);
 
         V[0] = 0;
-        for (int k = 0; k <= n && power > 1e-16; k++, power *= v / u)
+        for (int k = 0; k <= n && power > 1e-16; k++) {
             V[k % 2] += (k / 2 % 2 ? -1 : 1) * power * j[k];
+            power *= v / u;
+        }
     }
     rf_sincos_turns((u + v * v / u) / 2 / two_pi, &sine, &cosine);
     return 4 / (u * u) * (1 + V[0] * V[0] + V[1] * V[1] - 2 * V[0] * cosine - 2 * V[1] * sine);
