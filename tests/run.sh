@@ -4,7 +4,7 @@
 # Builds with gcc on Debian 12, installing what is missing, and runs the tests of that build: five
 # minutes on two cores. The last line is 'N passed, N failed, N skipped', the sum over all
 # builds; the exit status is 1 when anything failed.
-#   --full  also clang, sanitizers, AArch64 and ARMv7 (emulated), builds with parts left out,
+#   --full  also clang, clang-tidy, sanitizers, AArch64 and ARMv7 (emulated), builds with parts left out,
 #           cameras in a virtual machine, the corpora of the fuzz targets, the quickstart
 #   --long  also runs all tests under the thread sanitizer, lets each fuzz target search for
 #           a minute, opens and closes a V4L2 camera 10,000 times, builds the module of
@@ -104,6 +104,18 @@ same_bytes() {
 gcc_stage() {
     say 'gcc, release: all tests'
     CC=gcc CXX=g++ build gcc --buildtype=release && run gcc
+}
+
+tidy_stage() {
+    local log=$builds/tidy.log
+    say 'clang-tidy: bugprone and cert, without findings'
+    need_packages clang-tidy || { skip clang-tidy 'it cannot be had'; return; }
+    python3 "$top/tests/scripts/test_tidy.py" "$builds/gcc" >"$log" 2>&1
+    case $? in
+        0) tail -n 1 "$log" | sed 's/^/    /'; passed=$((passed + 1)) ;;
+        77) skip clang-tidy 'it is not there' ;;
+        *) fail 'clang-tidy' "$log" ;;
+    esac
 }
 
 # As somebody meets it who has just cloned it.
@@ -267,6 +279,7 @@ need_packages clang-format || skip 'the layout of the source' 'no clang-format'
 
 gcc_stage
 if [ "$mode" != one ]; then
+    tidy_stage
     quickstart_stage
     clang_stage
     camera_stage
