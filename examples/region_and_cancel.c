@@ -99,7 +99,8 @@ int main(void)
         refocus_renderer_params_default(WIDTH, HEIGHT, 12);
     const struct refocus_image in =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, photo, WIDTH, HEIGHT, sizeof photo[0]);
-    const struct refocus_disparity depth = {8, WIDTH, HEIGHT, disparity, sizeof disparity[0]};
+    const struct refocus_disparity depth =
+        refocus_disparity8(disparity[0], WIDTH, HEIGHT, sizeof disparity[0]);
     pthread_t thread;
     void *failed = "failed";
     int status;

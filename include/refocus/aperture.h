@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <refocus/sized.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
@@ -90,6 +91,7 @@ struct refocus_aperture_params {
                                           apart */
     uint32_t figure;                 /**< enum refocus_figure */
     int32_t mask_width, mask_height; /**< as of refocus_aperture_create_mask() */
+    uint32_t reserved;               /**< 0 */
     const uint8_t *mask;             /**< NULL = none; in place of blades and figure */
     ptrdiff_t mask_stride;
 };

@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <refocus/image.h>
+#include <refocus/sized.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus

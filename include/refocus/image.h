@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <refocus/sized.h>
 #include <refocus/version.h>
 
 #ifdef __cplusplus
@@ -46,12 +47,14 @@ enum { REFOCUS_MAX_SIDE = 65535 };
  * Row y of plane i begins at plane[i] + y * stride[i]. A stride may be
  * negative (bottom-up pictures: plane points to the top row) and of any size of
  * at least one row and at most PTRDIFF_MAX / rows; of a single row of any size up to
- * that. So is every stride of this library. Packed formats use plane[0] only.
+ * that. So is every stride of this library. Packed formats use plane[0] only. Start from
+ * refocus_image_packed() or refocus_image_planar().
  */
 struct refocus_image {
-    uint32_t format; /**< enum refocus_format */
-    int32_t width;   /**< pixels, 1 to REFOCUS_MAX_SIDE */
-    int32_t height;  /**< pixels, 1 to REFOCUS_MAX_SIDE */
+    uint32_t struct_size; /**< sizeof(struct refocus_image); see sized.h */
+    uint32_t format;      /**< enum refocus_format */
+    int32_t width;        /**< pixels, 1 to REFOCUS_MAX_SIDE */
+    int32_t height;       /**< pixels, 1 to REFOCUS_MAX_SIDE */
     uint8_t *plane[3];
     ptrdiff_t stride[3]; /**< bytes from a row to the next one below */
     uint32_t matrix;     /**< enum refocus_matrix; of formats with Y */
@@ -65,12 +68,20 @@ refocus_image_packed(uint32_t format, void *pixels, int32_t width, int32_t heigh
     struct refocus_image image;
 
     memset(&image, 0, sizeof image);
+    image.struct_size = sizeof image;
     image.format = format;
     image.width = width;
     image.height = height;
     image.plane[0] = (uint8_t *)pixels;
     image.stride[0] = stride;
     return image;
+}
+
+/** refocus_struct_read() of a picture, for libraries that take one; its size alone is checked. */
+static inline int refocus_image_read(struct refocus_image *own, const struct refocus_image *given)
+{
+    return refocus_struct_read(own, sizeof *own, REFOCUS_SIZE_TO(struct refocus_image, range),
+                               given);
 }
 
 /** Bytes of one pixel of a packed format of R, G and B; 0 for any other.
@@ -129,14 +140,16 @@ static inline uint64_t refocus_image_bytes(uint32_t format, int32_t width, int32
  * A map of disparities in the caller's memory: 1 nearest, 0 farthest.
  *
  * 8-bit samples are read as v / 255, 16-bit ones as v / 65535. 16-bit samples
- * are in the machine's byte order and need an even address and stride.
+ * are in the machine's byte order and need an even address and stride. Start from
+ * refocus_disparity16() or refocus_disparity8().
  */
 struct refocus_disparity {
-    uint32_t bits;       /**< 8 or 16 */
-    int32_t width;       /**< samples, 1 to REFOCUS_MAX_SIDE */
-    int32_t height;      /**< samples, 1 to REFOCUS_MAX_SIDE */
-    const void *samples; /**< top row */
-    ptrdiff_t stride;    /**< bytes from a row to the next one below; may be negative */
+    uint32_t struct_size; /**< sizeof(struct refocus_disparity); see sized.h */
+    uint32_t bits;        /**< 8 or 16 */
+    int32_t width;        /**< samples, 1 to REFOCUS_MAX_SIDE */
+    int32_t height;       /**< samples, 1 to REFOCUS_MAX_SIDE */
+    const void *samples;  /**< top row */
+    ptrdiff_t stride;     /**< bytes from a row to the next one below; may be negative */
 };
 
 /** A map of 16-bit disparities; see struct refocus_disparity. */
@@ -145,12 +158,33 @@ static inline struct refocus_disparity refocus_disparity16(const uint16_t *sampl
 {
     struct refocus_disparity map;
 
+    memset(&map, 0, sizeof map);
+    map.struct_size = sizeof map;
     map.bits = 16;
     map.width = width;
     map.height = height;
     map.samples = samples;
     map.stride = stride;
     return map;
+}
+
+/** A map of 8-bit disparities; see struct refocus_disparity. */
+static inline struct refocus_disparity refocus_disparity8(const uint8_t *samples, int32_t width,
+                                                          int32_t height, ptrdiff_t stride)
+{
+    struct refocus_disparity map = refocus_disparity16(NULL, width, height, stride);
+
+    map.bits = 8;
+    map.samples = samples;
+    return map;
+}
+
+/** refocus_struct_read() of a map, for libraries that take one; its size alone is checked. */
+static inline int refocus_disparity_read(struct refocus_disparity *own,
+                                         const struct refocus_disparity *given)
+{
+    return refocus_struct_read(own, sizeof *own, REFOCUS_SIZE_TO(struct refocus_disparity, stride),
+                               given);
 }
 
 #ifdef __cplusplus

@@ -8,7 +8,11 @@
 #include <refocus/image.h>
 #include <refocus/lens.h>
 #include <refocus/measure.h>
+#include <refocus/methods.h>
+#include <refocus/params.h>
 #include <refocus/render.h>
+#include <refocus/settings.h>
+#include <refocus/sized.h>
 #include <refocus/status.h>
 #include <refocus/temporal.h>
 #include <refocus/version.h>

@@ -14,18 +14,17 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-#include <refocus/aperture.h>
 #include <refocus/focus.h>
 #include <refocus/image.h>
+#include <refocus/methods.h>
 #include <refocus/papers.h>
+#include <refocus/params.h>
+#include <refocus/sized.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/** Largest blur radius K in pixels. */
-enum { REFOCUS_MAX_BLUR_RADIUS = 127 };
 
 /** A renderer. Opaque. */
 struct refocus_renderer;
@@ -38,7 +37,13 @@ struct refocus_allocator {
     void *user;
 };
 
-/** Receives one line of text without a line end, from the thread that called in. */
+/**
+ * Receives one line of text without a line end, from the thread that called in, for each error
+ * that refocus_renderer_create(), refocus_prepare(), refocus_render() and refocus_get_view()
+ * return: which argument is wrong, its value, and what it may be.
+ *
+ *     refocus_render: focus_disparity is 1.5, may be 0 to 1
+ */
 struct refocus_log {
     void (*message)(void *user, const char *text);
     void *user;
@@ -98,8 +103,8 @@ struct refocus_renderer_params {
                             tilts and fields whose K is more than half of max_blur_radius
                             may change single pixels by a code. For sweep, search,
                             raytrace, jittered and blur */
-    uint32_t thin;     /**< 1: with memory for `thin` of struct refocus_render_params, which
-                            other renderers, and strip mode, take as 0 */
+    uint32_t thin;     /**< 1: with memory for struct refocus_thin_params, which other
+                            renderers, and strip mode, take as not enabled */
 };
 
 static inline struct refocus_renderer_params
@@ -175,267 +180,6 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
                                 const struct refocus_image *photo,
                                 const struct refocus_disparity *disparity);
 
-/** The methods; refocus_method_name() has their names on the command line. */
-enum refocus_method {
-    REFOCUS_METHOD_SWEEP = 0,        /**< two layers, front-most hit, by a sweep over disparities */
-    REFOCUS_METHOD_SEARCH = 1,       /**< Yang et al. 2016: randomized intersection search */
-    REFOCUS_METHOD_RAYTRACE = 2,     /**< Yang et al. 2016: every pixel along every ray; slow */
-    REFOCUS_METHOD_JITTERED = 3,     /**< Yang et al. 2016: the same for one ray of a cell */
-    REFOCUS_METHOD_LIGHTFIELD = 4,   /**< Yang et al. 2016, compared: views warped, summed */
-    REFOCUS_METHOD_BLUR = 5,         /**< Yang et al. 2016, compared: image-space filter */
-    REFOCUS_METHOD_SCATTER = 6,      /**< Potmesil & Chakravarty 1981: samples spread */
-    REFOCUS_METHOD_FOVEATED = 7,     /**< Mulder & van Liere 2000: exact where one looks */
-    REFOCUS_METHOD_INTERPOLATED = 8, /**< NVIDIA 2004: between blurred pictures */
-    REFOCUS_METHOD_DIFFUSION = 9,    /**< Kosloff & Barsky 2007: heat through a blur field */
-};
-enum { REFOCUS_METHOD_COUNT = 10 };
-
-/** A method in struct refocus_renderer_params, and all of them. */
-#define REFOCUS_METHOD_BIT(method) (UINT32_C(1) << (method))
-#define REFOCUS_METHODS_ALL        (REFOCUS_METHOD_BIT(REFOCUS_METHOD_COUNT) - 1)
-
-/** Name of a method, NULL for an unknown one. Thread-safe. */
-REFOCUS_API const char *refocus_method_name(uint32_t method);
-
-/** One line on what a method does, NULL for an unknown one. Thread-safe. */
-REFOCUS_API const char *refocus_method_summary(uint32_t method);
-
-/** The values that are averaged. */
-enum refocus_blend {
-    REFOCUS_BLEND_LINEAR = 0, /**< linear light by the sRGB curve */
-    REFOCUS_BLEND_STORED = 1, /**< the 8-bit values as they are, as in the paper */
-    REFOCUS_BLEND_GAMMA = 2,  /**< gamma 2.2 */
-};
-
-/** For rays: every pixel of the aperture mask. */
-enum { REFOCUS_RAYS_FULL = -1 };
-
-/** How `scatter` spreads a sample over its circle of confusion. */
-enum refocus_spread {
-    REFOCUS_SPREAD_UNIFORM = 0, /**< evenly */
-    REFOCUS_SPREAD_LOMMEL = 1,  /**< as light is bent at the aperture, eq. 13 */
-};
-
-/**
- * Where it is blurred, Kosloff & Barsky 2007. Distances are of (x, y, d) to the field's
- * centre: x and y in parts of the picture's width, d the disparity.
- *
- *     r = K clamp((distance - field_radius) / field_falloff, 0, 1)
- *
- * What is nearer than the centre (for a picture: than df) is blurred as what lies before the
- * focus of a lens is, over what is behind it; the rest as what lies behind. Both sides of a
- * plane are one side each.
- */
-enum refocus_field {
-    REFOCUS_FIELD_LENS = 0,     /**< r = K |d - df|, and what follows in the parameters */
-    REFOCUS_FIELD_CYLINDER = 1, /**< sharp in an upright cylinder: distance in x and d */
-    REFOCUS_FIELD_PLUS = 2,     /**< sharp in two upright slabs: the lesser of x and d */
-    REFOCUS_FIELD_PLANE = 3,    /**< sharp by an upright plane: x cos a + d sin a */
-    REFOCUS_FIELD_SPHERE = 4,   /**< sharp in a sphere: distance in x, y and d */
-    REFOCUS_FIELD_PICTURE = 5,  /**< r = K v of a map of values 0..1 */
-};
-
-/** Bands in focus at once, the one about focus_disparity among them; largest growth of
- *  the disparity in focus over the picture. */
-enum { REFOCUS_MAX_BANDS = 16, REFOCUS_MAX_TILT = 64 };
-
-/**
- * A band in focus: sharp within half_width of its disparity; from half_width + transition on
- * as blurred as by a lens focused at its middle; in between in proportion.
- */
-struct refocus_band {
-    float disparity;  /**< middle, 0 to 1 */
-    float half_width; /**< 0 to 1 */
-    float transition; /**< 0 to 1; 0 = none, at once the lens's blur */
-};
-
-/** How `diffusion` is computed. */
-enum refocus_solver {
-    REFOCUS_SOLVER_FAST = 0,     /**< Chebyshev series of the iteration */
-    REFOCUS_SOLVER_ITERATED = 1, /**< step by step as in the paper */
-};
-
-/** How to refocus. Start from refocus_render_params_default(). */
-struct refocus_render_params {
-    uint32_t struct_size;  /**< sizeof(struct refocus_render_params) */
-    uint32_t method;       /**< enum refocus_method */
-    float focus_disparity; /**< df: the disparity in focus, 0 to 1 */
-    float max_blur_radius; /**< K in pixels, 0 to the renderer's max_blur_radius */
-    int32_t rays;          /**< ray samples at the largest blur, 1 to REFOCUS_MAX_RAYS, or
-                                REFOCUS_RAYS_FULL */
-    uint32_t blend;        /**< enum refocus_blend */
-    float sigma;           /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
-                                eq. 5: >= 1; INFINITY = plain average */
-    float highlight_gain;  /**< sweep: light given back to small clipped lamps, 1 (none) to 16
-                                times white, 2^stops, where they are blurred by s; none where
-                                one channel of R, G, B alone is clipped. Of a disc or an
-                                iris, and with sigma from 1e6 on, drawn over the area of the
-                                opening times s^2; else rays meet it */
-    int32_t iterations;    /**< T of the randomized search, 1 to 64; the paper's is 1 */
-    uint8_t mirror;        /**< search: 1 = where the ray is hidden take the mirrored pixel */
-    uint8_t background;    /**< search: 1 = where the ray is hidden take the background layer */
-    uint8_t prefilter;     /**< sweep: 1 = smooth the input between rays that lie far apart,
-                                and the result where all that is seen is blurred */
-    uint8_t reserved;      /**< 0 */
-    const struct refocus_aperture *aperture; /**< NULL = a disc, the only one that scatter,
-                                 foveated, interpolated and diffusion know */
-    int32_t region_x, region_y;              /**< the part of the picture to render: its */
-    int32_t region_width, region_height;     /**< corner and size; all 0 = the whole */
-
-    /* What follows is of single methods; the others ignore it, but not its range. */
-
-    int32_t cell;  /**< jittered: a, the side of a cell in mask pixels, 1 to 16 */
-    uint32_t seed; /**< jittered: which pixel of each cell; grain: which grain; any
-                        number */
-
-    uint32_t spread;     /**< scatter: enum refocus_spread */
-    float airy_radius;   /**< scatter, Lommel: first dark ring of a point in focus, 0.25 to
-                              16 pixels; in eq. 13 v = 3.8317 rho / airy_radius at rho pixels
-                              from the middle and u = 3.8317 r / airy_radius */
-    float depth_ratio;   /**< scatter: z1 / z0, 1 to 1000, for the 1 / z^2 of eq. 20; 1 = all
-                              samples count the same */
-    int32_t star_spikes; /**< scatter, sweep: of a star filter, 0 = none, else 2 to 16; sweep
-                              gives them to small clipped lamps */
-    float star_length;   /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS */
-    float star_angle;    /**< degrees of the first spike, counter-clockwise from the right */
-    float star_strength; /**< share of the light that goes to the spikes, 0 to 1; sweep adds
-                              it */
-
-    float sharp_radius; /**< interpolated: c0, blur radius up to which blurriness is 0;
-                             0.5 to 16 pixels */
-    float middle_ratio; /**< interpolated: r1, blurriness is 1/2 at r1 c0; 0 = (1 + r2) / 2,
-                             else above 1 and below r2 */
-    float last_ratio;   /**< interpolated: r2, blurriness is 1 from r2 c0 on; 0 = at the
-                             largest blur of any disparity, else above 1, to 1000 */
-
-    float attention_x, attention_y; /**< foveated: centre of attention, 0 to 1 of width, height */
-    float attention_angle; /**< foveated: across the volume of attention, 0 to 170 degrees */
-    float picture_angle;   /**< foveated: that the picture's width is seen at, 1 to 170 degrees */
-    float attention_depth; /**< foveated: how far the volume reaches before and behind the
-                                focus, in disparity, 0 to 1 */
-
-    uint32_t field;         /**< sweep, search, blur, diffusion: enum refocus_field */
-    float field_x, field_y; /**< centre, 0 to 1 of width and height */
-    float field_disparity;  /**< centre, 0 to 1 */
-    float field_radius;     /**< distance up to which nothing is blurred, 0 to 4 */
-    float field_falloff;    /**< further distance at which r = K, 0.001 to 4 */
-    float field_angle;      /**< a of the plane's normal, degrees: 0 = sharp at one x, 90 = at
-                                 one d */
-    int32_t layers;         /**< diffusion: that the picture is split into by depth, 1 to 8 */
-    uint32_t solver;        /**< diffusion: enum refocus_solver */
-    float conductivity;     /**< diffusion: weight W where blur is strongest, 0.01 to 1 */
-    const struct refocus_disparity *field_map; /**< of REFOCUS_FIELD_PICTURE; any size, read
-                                 between its samples. This map and the next two are the caller's;
-                                 they are needed until the next render, or the last
-                                 refocus_get_view() of REFOCUS_VIEW_BLUR */
-
-    /*
-     * Focus beyond that of a plain lens: of sweep, search, blur and diffusion, the others
-     * refuse it. A pixel (x, y) of disparity d, clamped to least_disparity..most_disparity,
-     * is blurred by
-     *
-     *     s = K e,  e = depth_share (df - d) + across (x - tilt_x) + down (y - tilt_y)
-     *
-     * with x and y in parts of the width and the height, df from focus_disparity or
-     * focus_map; then e is shortened by the bands, |e| and |s| are limited to 1 and blur_limit,
-     * and |s| is multiplied by 1 - sharp_map. With a field other than that of the lens only the
-     * last two and the clamps of d apply. The defaults change nothing.
-     */
-    float tilt_x, tilt_y;         /**< place at which df is in focus, 0 to 1; default 0.5 */
-    float tilt_across, tilt_down; /**< growth of the disparity in focus from the left to the
-                                 right and from the top to the bottom, up to REFOCUS_MAX_TILT
-                                 either way: a tilted plane of focus, see focus.h */
-    float depth_share;            /**< 0 to 1: how much depth counts. Below 1 with a tilt: depth is
-                                   compressed along a line, Yang et al. 2016, fig. 13(a); 0 = only
-                                   the place counts, as in pictures of miniatures */
-    float focus_half_width;       /**< of the band about df: 0 to 1 */
-    float focus_transition;       /**< 0 to 1; see struct refocus_band */
-    int32_t bands;                /**< in focus beside it, 0 to REFOCUS_MAX_BANDS - 1 */
-    struct refocus_band band[REFOCUS_MAX_BANDS - 1];
-    const struct refocus_disparity *focus_map; /**< NULL, or df of each place in place of
-                                 focus_disparity: any size, read between its samples */
-    const struct refocus_disparity *sharp_map; /**< NULL, or what stays sharp whatever its depth:
-                                 1 wholly, 0 not at all; any size */
-    float least_disparity; /**< what is farther counts as this far, 0 to 1; default 0 */
-    float most_disparity;  /**< what is nearer counts as this near, from least_disparity to 1;
-                            default 1 */
-    float blur_limit;      /**< no blur is larger: 0 to REFOCUS_MAX_BLUR_RADIUS pixels, the
-                            default */
-
-    /* The look of the blur beyond the aperture's: of sweep, the others refuse it; also an
-     * aperture that differs before and behind the focus, which needs a number of rays. */
-    float cat_eye; /**< 0 to 0.9: how much of its width the opening has lost in the
-                    corners, where it is the part common to two circles, one pushed
-                    out and one pushed in; it grows with the square of the distance
-                    from the middle of the picture. Of blades and figures that part
-                    is taken, and a ring or an edge follows its rim; what is drawn
-                    on a mask is squeezed into it. 0 = nothing, the default */
-    float fringe;  /**< -0.5 to 0.5: longitudinal colour: by how much the blur of red
-                    and blue behind the focus, and of green before it, is smaller
-                    than the other; below 0 the other way round. Takes twice the
-                    time. 0 = none, the default */
-    float grain;   /**< 0 to 4, any method: how much of the noise that a blur
-                    averages away is put back. It is measured where this lens
-                    leaves the photo sharp (anywhere, when it does so nowhere), by
-                    brightness, and laid over the blurred parts as luma noise by
-                    `seed`. 0 = none, the default; 1 = as much as there was */
-
-    uint32_t thin; /**< sweep, by renderers with `thin`: 1 = things up to 7 pixels
-                        wide are drawn as the veil that they become, and so are their
-                        shares of the pixels at their edges, where they are blurred so
-                        much before the focus that rays lie 1.8 pixels apart (8.1
-                        pixels at 64 rays; the same of a full mask), 8 pixels at the
-                        least, first some of them and all from 5/4 of that on, with
-                        nothing thick as near around them. Rays, which meet them here
-                        and miss them there, would show streaks. Not with
-                        openings of fine structure (masks, figures, rings), cat's
-                        eyes, fringes. And where they are in focus, before what is
-                        blurred by some two pixels, their shares of the pixels at
-                        their edges stay sharp, else those would be blurred with what
-                        is behind and the edges be in steps. They are looked for in
-                        the first render of a photo, which takes some frames' time;
-                        not in photos of Y, U and V. 0 = no, the default */
-};
-
-/** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole
- *  picture. */
-static inline struct refocus_render_params refocus_render_params_default(float focus_disparity,
-                                                                         float max_blur_radius)
-{
-    struct refocus_render_params params;
-
-    memset(&params, 0, sizeof params);
-    params.struct_size = sizeof params;
-    params.focus_disparity = focus_disparity;
-    params.max_blur_radius = max_blur_radius;
-    params.rays = 64;
-    params.sigma = (float)1e30;
-    params.highlight_gain = 1;
-    params.iterations = 2;
-    params.prefilter = 1;
-    params.cell = 2;
-    params.airy_radius = 1;
-    params.depth_ratio = 1;
-    params.star_length = 24;
-    params.star_strength = (float)0.25;
-    params.sharp_radius = (float)0.5;
-    params.attention_x = params.attention_y = (float)0.5;
-    params.attention_angle = 10;
-    params.picture_angle = 50;
-    params.attention_depth = 1;
-    params.field_x = params.field_y = (float)0.5;
-    params.field_disparity = focus_disparity;
-    params.field_radius = (float)0.1;
-    params.field_falloff = (float)0.3;
-    params.layers = 4;
-    params.conductivity = (float)0.125;
-    params.tilt_x = params.tilt_y = (float)0.5;
-    params.depth_share = 1;
-    params.most_disparity = 1;
-    params.blur_limit = REFOCUS_MAX_BLUR_RADIUS;
-    return params;
-}
-
 /**
  * Refocus the prepared photo.
  *
@@ -469,7 +213,8 @@ static inline struct refocus_render_params refocus_render_params_default(float f
  *                R, G, B of a photo of R, G, B; any of 4:2:0 of one of 4:2:0; YUYV of YUYV. Its
  *                matrix and range are the photo's, whatever they say.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
- *         REFOCUS_ERR_UNSUPPORTED (another format than these; of a photo of Y, U and V another
+ *         REFOCUS_ERR_UNSUPPORTED (another format than these; a field that this library
+ *         does not know; of a photo of Y, U and V another
  *         method than the sweep, cat's eye, fringe, star filter,
  *         grain or an aperture that differs before and behind the focus),
  *         REFOCUS_ERR_CANCELLED. On REFOCUS_ERR_CANCELLED parts of @p out are written,
@@ -502,13 +247,26 @@ enum refocus_view {
 REFOCUS_API int refocus_get_view(struct refocus_renderer *renderer, uint32_t view, uint16_t *out,
                                  ptrdiff_t stride);
 
-/** Threads and instruction set that a renderer works with, all 0 for a NULL renderer. With a
- *  NULL @p info refocus_renderer_get_info() does nothing. */
+/** What a renderer works with. Start from refocus_renderer_info_default(). */
 struct refocus_renderer_info {
+    uint32_t struct_size; /**< sizeof(struct refocus_renderer_info), set by the caller */
     int32_t threads;
-    uint32_t cpu;    /**< enum refocus_cpu, never AUTO */
-    uint64_t memory; /**< bytes taken */
+    uint32_t cpu;      /**< enum refocus_cpu, never AUTO */
+    uint32_t reserved; /**< 0 */
+    uint64_t memory;   /**< bytes taken */
 };
+
+static inline struct refocus_renderer_info refocus_renderer_info_default(void)
+{
+    struct refocus_renderer_info info;
+
+    memset(&info, 0, sizeof info);
+    info.struct_size = sizeof info;
+    return info;
+}
+
+/** Threads, instruction set and memory of a renderer, all 0 for a NULL one. With a NULL @p info, or
+ *  one whose struct_size is out of its range, it does nothing. */
 REFOCUS_API void refocus_renderer_get_info(const struct refocus_renderer *renderer,
                                            struct refocus_renderer_info *info);
 

@@ -240,12 +240,16 @@ int refocus_convert_rgb8(struct refocus_converter *converter, const struct refoc
                          const struct refocus_image *out, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_image own;
     struct coefficients c;
     int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if (!converter || !frame || !out || !out->plane[0] || out->format != REFOCUS_FORMAT_RGB8 ||
+    if ((status = refocus_image_read(&own, out)))
+        return rf_capture_fail(reason, status, "the picture is not of a known size of struct");
+    out = &own;
+    if (!converter || !frame || !out->plane[0] || out->format != REFOCUS_FORMAT_RGB8 ||
         out->width != frame->width || out->height != frame->height ||
         !rf_stride_fits(out->stride[0], (int64_t)out->width * 3, out->height))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
@@ -290,8 +294,8 @@ uint32_t refocus_frame_image_format(uint32_t frame_format)
 /* Whether a picture can hold the frame. */
 static bool fits(const struct refocus_frame *frame, const struct refocus_image *out)
 {
-    if (!out || out->format != refocus_frame_image_format(frame->format) ||
-        out->width != frame->width || out->height != frame->height)
+    if (out->format != refocus_frame_image_format(frame->format) || out->width != frame->width ||
+        out->height != frame->height)
         return false;
     for (int i = 0; i < rf_format_planes(rf_frame_format_of(out->format)); i++) {
         const uint32_t format = rf_frame_format_of(out->format);
@@ -307,6 +311,7 @@ int refocus_convert_copy(struct refocus_converter *converter, const struct refoc
                          struct refocus_image *out, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_image own;
     int status;
 
     reason = reason ? reason : &unheard;
@@ -316,7 +321,9 @@ int refocus_convert_copy(struct refocus_converter *converter, const struct refoc
     if (!refocus_frame_image_format(frame->format))
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "frames of this format have to become RGB8");
-    if (!fits(frame, out))
+    if ((status = refocus_image_read(&own, out)))
+        return rf_capture_fail(reason, status, "the picture is not of a known size of struct");
+    if (!fits(frame, &own))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "the picture to copy into must be like the frame");
     status = check(frame, reason);

@@ -146,11 +146,15 @@ int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_ima
                              double fps, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_image own;
     int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if (!sink || !like || like->width < 1 || like->height < 1 || like->width > REFOCUS_MAX_SIDE ||
+    if ((status = refocus_image_read(&own, like)))
+        return status;
+    like = &own;
+    if (!sink || like->width < 1 || like->height < 1 || like->width > REFOCUS_MAX_SIDE ||
         like->height > REFOCUS_MAX_SIDE)
         return REFOCUS_ERR_ARGUMENT;
     sink->started = false;
@@ -171,8 +175,10 @@ int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_ima
 int refocus_sink_start(struct refocus_sink *sink, int width, int height, double fps,
                        struct refocus_reason *reason)
 {
-    const struct refocus_image like = {
-        .format = REFOCUS_FORMAT_RGB8, .width = width, .height = height};
+    const struct refocus_image like = {.struct_size = sizeof(struct refocus_image),
+                                       .format = REFOCUS_FORMAT_RGB8,
+                                       .width = width,
+                                       .height = height};
 
     return refocus_sink_start_image(sink, &like, fps, reason);
 }
@@ -196,12 +202,17 @@ int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *im
                        struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_image own;
+    int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
     if (!sink || !sink->started)
         return rf_capture_fail(reason, REFOCUS_ERR_STATE, "the sink is not started");
-    if (!image || image->format != sink->format || image->width != sink->width ||
+    if ((status = refocus_image_read(&own, image)))
+        return rf_capture_fail(reason, status, "the picture is not of a known size of struct");
+    image = &own;
+    if (image->format != sink->format || image->width != sink->width ||
         image->height != sink->height || !is_whole(image))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "give a picture of the size and format that were "

@@ -132,8 +132,8 @@ int refocus_source_get_mode(struct refocus_source *source, int index,
 
 static bool config_is_sound(const struct refocus_source_config *config)
 {
-    return config->struct_size == sizeof *config && config->format < REFOCUS_FRAME_FORMAT_COUNT &&
-           config->width >= 0 && config->width <= REFOCUS_MAX_SIDE && config->height >= 0 &&
+    return config->format < REFOCUS_FRAME_FORMAT_COUNT && config->width >= 0 &&
+           config->width <= REFOCUS_MAX_SIDE && config->height >= 0 &&
            config->height <= REFOCUS_MAX_SIDE && config->fps >= 0 && config->fps <= 10000 &&
            (config->buffers == 0 || (config->buffers >= 2 && config->buffers <= RF_MOST_BUFFERS)) &&
            config->flags < 16;
@@ -158,10 +158,17 @@ int refocus_source_start(struct refocus_source *source, const struct refocus_sou
                          struct refocus_source_mode *mode, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_source_config own;
     uint64_t ignored;
+    int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
+    if (config &&
+        (status = refocus_struct_read(
+             &own, sizeof own, REFOCUS_SIZE_TO(struct refocus_source_config, flags), config)))
+        return rf_capture_fail(reason, status, "config is not of a known size of struct");
+    config = config ? &own : NULL;
     if (!source || (config && !config_is_sound(config)))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "what is wanted of the source is out of its range");

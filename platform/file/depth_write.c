@@ -278,9 +278,8 @@ static int splice(struct rf_store *store, struct rf_bytes file, const struct tex
 
 static bool good(const struct refocus_depth_write *depth)
 {
-    return depth && depth->struct_size == sizeof *depth && depth->disparity && depth->width >= 1 &&
-           depth->width <= REFOCUS_MAX_SIDE && depth->height >= 1 &&
-           depth->height <= REFOCUS_MAX_SIDE && depth->stride % 2 == 0 &&
+    return depth->disparity && depth->width >= 1 && depth->width <= REFOCUS_MAX_SIDE &&
+           depth->height >= 1 && depth->height <= REFOCUS_MAX_SIDE && depth->stride % 2 == 0 &&
            rf_good_rows(depth->stride, 2 * (int64_t)depth->width, depth->height) &&
            depth->focus_x <= 1 && depth->focus_y <= 1 && isfinite(depth->near_m) &&
            !isnan(depth->far_m) && !isnan(depth->focus_distance) &&
@@ -334,10 +333,16 @@ int refocus_photo_write_depth(const char *path, const char *original,
     struct refocus_reason unused;
     struct refocus_photo *photo = NULL;
     struct refocus_blob file = {NULL, 0};
+    struct refocus_depth_write own;
     int status;
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
+    if ((status = refocus_struct_read(&own, sizeof own,
+                                      REFOCUS_SIZE_TO(struct refocus_depth_write, blur_at_infinity),
+                                      depth)))
+        return rf_fail(reason, status, "the depth is not of a known size of struct");
+    depth = &own;
     if (!path || !original || !good(depth)) {
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "the depth is out of its range");
     }

@@ -48,10 +48,15 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     struct refocus_reason unused;
     struct rf_rows rows;
     const struct rf_format *format;
+    struct refocus_image own;
+    int status;
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!path || !image || !image->plane[0] || rf_format_bytes(image->format) == 0 ||
+    if ((status = refocus_image_read(&own, image)))
+        return rf_fail(reason, status, "the picture is not of a known size of struct");
+    image = &own;
+    if (!path || !image->plane[0] || rf_format_bytes(image->format) == 0 ||
         !fits(image->width, image->height, image->stride[0], rf_format_bytes(image->format)) ||
         (options && (options->quality < 0 || options->quality > 100))) {
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT,

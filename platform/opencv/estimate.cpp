@@ -131,6 +131,12 @@ int refocus_cv_estimator_run(struct refocus_estimator *estimator, const struct r
     if (!estimate)
         return REFOCUS_ERR_ARGUMENT;
     *estimate = {nullptr, 0, 0};
+    struct refocus_image own;
+    const int status = refocus_image_read(&own, photo);
+
+    if (status != REFOCUS_OK)
+        return refocus_cv::fail(reason, status, "no picture of a known size of struct");
+    photo = &own;
     if (!estimator || !refocus_cv::good_photo(photo))
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no picture, or no network");
     return fail_format(
@@ -161,12 +167,15 @@ int refocus_cv_estimate(const struct refocus_image *photo, const char *model,
                         struct refocus_cv_reason *reason)
 {
     struct refocus_estimator *estimator;
+    struct refocus_image own;
     int status;
 
     if (!estimate)
         return REFOCUS_ERR_ARGUMENT;
     *estimate = {nullptr, 0, 0};
-    if (!refocus_cv::good_photo(photo))
+    if ((status = refocus_image_read(&own, photo)))
+        return refocus_cv::fail(reason, status, "no picture of a known size of struct");
+    if (!refocus_cv::good_photo(&own))
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no picture");
     status = refocus_cv_estimator_create(&estimator, model, network, reason);
     if (status == REFOCUS_OK)

@@ -250,8 +250,21 @@ int refocus_cv_stereo(const struct refocus_image *left, const struct refocus_ima
                       const struct refocus_stereo_params *params, float *disparity,
                       struct refocus_stereo_report *report, struct refocus_cv_reason *reason)
 {
-    if (!refocus_cv::good_photo(left) || !refocus_cv::good_photo(right) || !params ||
-        params->struct_size != sizeof *params || params->max_side < 64 ||
+    struct refocus_image own_left, own_right;
+    struct refocus_stereo_params own;
+    int status = refocus_image_read(&own_left, left);
+
+    if (status == REFOCUS_OK)
+        status = refocus_image_read(&own_right, right);
+    if (status == REFOCUS_OK)
+        status = refocus_struct_read(&own, sizeof own,
+                                     REFOCUS_SIZE_TO(struct refocus_stereo_params, method), params);
+    if (status != REFOCUS_OK)
+        return refocus_cv::fail(reason, status, "not two pictures of a known size of struct");
+    left = &own_left;
+    right = &own_right;
+    params = &own;
+    if (!refocus_cv::good_photo(left) || !refocus_cv::good_photo(right) || params->max_side < 64 ||
         params->method > REFOCUS_STEREO_WLS || !disparity)
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "not two pictures");
     if (left->width != right->width || left->height != right->height)

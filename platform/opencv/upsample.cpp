@@ -92,6 +92,17 @@ int upsample_by(uint32_t filter, const refocus_image *photo, const refocus_dispa
     return REFOCUS_OK;
 }
 
+/* Whether both are of known sizes of struct; then the pointers point at copies. */
+bool take(const refocus_image *&photo, const refocus_disparity *&map, refocus_image &own_photo,
+          refocus_disparity &own_map)
+{
+    if (refocus_image_read(&own_photo, photo) || refocus_disparity_read(&own_map, map))
+        return false;
+    photo = &own_photo;
+    map = &own_map;
+    return true;
+}
+
 bool good(const refocus_image *photo, const refocus_disparity *map, const uint16_t *out)
 {
     return refocus_cv::good_photo(photo) && map && map->samples && map->width >= 1 &&
@@ -117,7 +128,10 @@ int refocus_cv_upsample_by(uint32_t filter, const struct refocus_image *photo,
                            const struct refocus_disparity *map, uint16_t *out,
                            struct refocus_cv_reason *reason)
 {
-    if (filter >= FILTERS || !good(photo, map, out))
+    struct refocus_image own_photo;
+    struct refocus_disparity own_map;
+
+    if (filter >= FILTERS || !take(photo, map, own_photo, own_map) || !good(photo, map, out))
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no photo, no map, or no filter");
     if (filter == REFOCUS_CV_JOINT_BILATERAL)
         return refocus_cv_upsample(photo, map, 25.5f, out, reason);
@@ -128,7 +142,10 @@ int refocus_cv_upsample_by(uint32_t filter, const struct refocus_image *photo,
 int refocus_cv_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
                         float sigma_range, uint16_t *out, struct refocus_cv_reason *reason)
 {
-    if (!good(photo, map, out) || !(sigma_range > 0))
+    struct refocus_image own_photo;
+    struct refocus_disparity own_map;
+
+    if (!take(photo, map, own_photo, own_map) || !good(photo, map, out) || !(sigma_range > 0))
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no photo, or no map");
     return refocus_cv::guarded(reason, REFOCUS_ERR_UNSUPPORTED,
                                [&] { return upsample(photo, map, sigma_range, out); });

@@ -67,8 +67,7 @@ static bool selects(uint32_t kind)
 
 static bool stroke_is_valid(const struct refocus_stroke *stroke)
 {
-    return stroke && stroke->struct_size >= sizeof *stroke && stroke->kind <= REFOCUS_STROKE_FILL &&
-           fill_is_valid(&stroke->fill) &&
+    return stroke->kind <= REFOCUS_STROKE_FILL && fill_is_valid(&stroke->fill) &&
            (!has_points(stroke->kind) || in_range(stroke->radius, (float)0.5, 4096)) &&
            (!selects(stroke->kind) || in_range(stroke->reach, 1, 64)) &&
            (stroke->kind != REFOCUS_STROKE_FILL || stroke->fill.kind != REFOCUS_FILL_NONE);
@@ -257,11 +256,16 @@ int refocus_strokes_begin(struct refocus_strokes *strokes, const struct refocus_
                           struct refocus_changed *changed)
 {
     const struct layer *const last = strokes ? last_layer(strokes) : NULL;
+    struct refocus_stroke own;
     struct rf_stroke *added;
     int status;
 
     if (changed)
         memset(changed, 0, sizeof *changed);
+    if ((status = refocus_struct_read(&own, sizeof own,
+                                      REFOCUS_SIZE_TO(struct refocus_stroke, fill), stroke)))
+        return status;
+    stroke = &own;
     if (!strokes || !stroke_is_valid(stroke))
         return REFOCUS_ERR_ARGUMENT;
     if (!begins_layer(stroke->kind) &&
@@ -465,8 +469,8 @@ static bool is_stride(ptrdiff_t stride, ptrdiff_t bytes, int32_t rows)
 
 static bool is_photo(const struct refocus_image *photo)
 {
-    return photo && refocus_format_bytes(photo->format) > 0 && photo->plane[0] &&
-           photo->width >= 1 && photo->width <= REFOCUS_MAX_SIDE && photo->height >= 1 &&
+    return refocus_format_bytes(photo->format) > 0 && photo->plane[0] && photo->width >= 1 &&
+           photo->width <= REFOCUS_MAX_SIDE && photo->height >= 1 &&
            photo->height <= REFOCUS_MAX_SIDE &&
            is_stride(photo->stride[0], refocus_plane_row_bytes(photo->format, 0, photo->width),
                      photo->height);
@@ -482,12 +486,19 @@ static bool is_base(const struct refocus_disparity *base, const struct refocus_i
 int refocus_strokes_create(struct refocus_strokes **strokes, const struct refocus_image *photo,
                            const struct refocus_disparity *base)
 {
+    struct refocus_image own_photo;
+    struct refocus_disparity own_base;
     struct refocus_strokes *made;
     int status;
 
     if (!strokes)
         return REFOCUS_ERR_ARGUMENT;
     *strokes = NULL;
+    if ((status = refocus_image_read(&own_photo, photo)) ||
+        (base && (status = refocus_disparity_read(&own_base, base))))
+        return status;
+    photo = &own_photo;
+    base = base ? &own_base : NULL;
     if (!is_photo(photo) || (base && !is_base(base, photo)))
         return REFOCUS_ERR_ARGUMENT;
     if ((uint64_t)photo->width * (uint64_t)photo->height > SIZE_MAX / 16)

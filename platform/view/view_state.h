@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <refocus/render.h>
+#include <refocus/settings.h>
 #include <refocus/platform/strokes.h>
 
 enum rf_view_mode { RF_VIEW_RESULT, RF_VIEW_BEFORE, RF_VIEW_DEPTH, RF_VIEW_MODES };
@@ -39,7 +39,7 @@ enum rf_view_save { RF_SAVE_PICTURE = 1, RF_SAVE_SETTINGS = 2, RF_SAVE_DEPTH = 4
 struct rf_view_result {
     uint32_t what; /* enum rf_view_save, or-ed */
     const struct refocus_image *picture;
-    const struct refocus_render_params *params;
+    const struct refocus_settings *params;
     const uint16_t *disparity; /* the photo's disparities, packed */
     const struct refocus_strokes *strokes;
     const struct rf_view_state *state; /* the state, with the focus that was found */
@@ -48,15 +48,14 @@ struct rf_view_result {
 struct rf_session_setup {
     const struct refocus_image *photo; /* RGB8; the caller's, until the end */
     const uint16_t *disparity; /* disparities of its size, packed, which are copied; NULL: all 0 */
-    struct refocus_strokes *strokes;     /* the painting so far, over those disparities,
-                                            or NULL: none. The caller's, but the
-                                            session's to change until its end */
-    struct refocus_render_params params; /* the settings that the state does not hold */
+    struct refocus_strokes *strokes; /* the painting so far, over those disparities,
+                                        or NULL: none. The caller's, but the
+                                        session's to change until its end */
+    struct refocus_settings params;  /* the settings that the state does not hold */
     /* Set other parameters that follow from a focus that was found: it changes params, which have
      * it, the method and the blur already; lengths in pixels are the photo's. From the session's
      * thread; NULL: nothing. */
-    void (*aim)(void *user, const struct rf_view_state *state,
-                struct refocus_render_params *params);
+    void (*aim)(void *user, const struct rf_view_state *state, struct refocus_settings *params);
     void *aim_user;
     int threads;
     uint32_t cpu;

@@ -40,26 +40,26 @@ static float focus_at(const struct rf_session *s, double at_x, double at_y)
 }
 
 /* The lens of a state, for the full picture or for the reduced one. */
-static struct refocus_render_params lens_of(const struct rf_session *s,
-                                            const struct rf_view_state *state, bool full)
+static struct refocus_settings lens_of(const struct rf_session *s,
+                                       const struct rf_view_state *state, bool full)
 {
     const int reduction = full ? 1 : s->reduction;
-    struct refocus_render_params params = s->setup.params;
+    struct refocus_settings params = s->setup.params;
 
-    params.method = state->method;
-    params.focus_disparity = state->focus;
-    params.field_disparity = state->focus;
-    params.max_blur_radius = state->blur;
+    params.render.method = state->method;
+    params.render.focus_disparity = state->focus;
+    params.field.disparity = state->focus;
+    params.render.max_blur_radius = state->blur;
     if (s->setup.aim)
         s->setup.aim(s->setup.aim_user, state, &params);
-    params.max_blur_radius /= (float)reduction;
-    params.blur_limit /= (float)reduction;
-    params.star_length /= (float)reduction;
+    params.render.max_blur_radius /= (float)reduction;
+    params.focus.blur_limit /= (float)reduction;
+    params.look.star_length /= (float)reduction;
     if (!full) {
         /* The quickest; the full picture is by the method that was asked for. */
-        params.method = REFOCUS_METHOD_SWEEP;
-        if (params.rays > PREVIEW_RAYS || params.rays == REFOCUS_RAYS_FULL)
-            params.rays = PREVIEW_RAYS;
+        params.render.method = REFOCUS_METHOD_SWEEP;
+        if (params.render.rays > PREVIEW_RAYS || params.render.rays == REFOCUS_RAYS_FULL)
+            params.render.rays = PREVIEW_RAYS;
     }
     return params;
 }
@@ -69,14 +69,16 @@ static bool is_same(float a, float b)
     return memcmp(&a, &b, sizeof a) == 0;
 }
 
-static bool same_lens(const struct refocus_render_params *a, const struct refocus_render_params *b)
+static bool same_lens(const struct refocus_settings *a, const struct refocus_settings *b)
 {
     /* Numbers that come from the same places: equal when nothing has changed. */
-    return a->method == b->method && is_same(a->focus_disparity, b->focus_disparity) &&
-           is_same(a->max_blur_radius, b->max_blur_radius) &&
-           is_same(a->field_disparity, b->field_disparity) && is_same(a->tilt_x, b->tilt_x) &&
-           is_same(a->tilt_y, b->tilt_y) && is_same(a->tilt_across, b->tilt_across) &&
-           is_same(a->tilt_down, b->tilt_down);
+    return a->render.method == b->render.method &&
+           is_same(a->render.focus_disparity, b->render.focus_disparity) &&
+           is_same(a->render.max_blur_radius, b->render.max_blur_radius) &&
+           is_same(a->field.disparity, b->field.disparity) &&
+           is_same(a->focus.tilt_x, b->focus.tilt_x) && is_same(a->focus.tilt_y, b->focus.tilt_y) &&
+           is_same(a->focus.tilt_across, b->focus.tilt_across) &&
+           is_same(a->focus.tilt_down, b->focus.tilt_down);
 }
 
 /* Depth of the gradient's far end: what lies there before it is painted. */
@@ -230,19 +232,19 @@ static int prepare_small(struct rf_session *s)
 
 static int render_small(struct rf_session *s, const struct rf_view_state *state)
 {
-    const struct refocus_render_params params = lens_of(s, state, false);
+    const struct refocus_settings params = lens_of(s, state, false);
     const struct refocus_image out = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->small_out, s->width, s->height, 3 * (ptrdiff_t)s->width);
     const int status = prepare_small(s);
 
-    return status == REFOCUS_OK ? refocus_render(s->small, &params, &out) : status;
+    return status == REFOCUS_OK ? refocus_render_settings(s->small, &params, &out) : status;
 }
 
 /* REFOCUS_ERR_CANCELLED when something newer came. */
 static int render_full(struct rf_session *s, const struct rf_view_state *state)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_render_params params = lens_of(s, state, true);
+    const struct refocus_settings params = lens_of(s, state, true);
     const struct refocus_image out = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
     const struct refocus_disparity map = refocus_disparity16(
@@ -257,7 +259,7 @@ static int render_full(struct rf_session *s, const struct rf_view_state *state)
     if (status != REFOCUS_OK)
         return status;
     s->full_stale = false;
-    status = refocus_render(s->full, &params, &out);
+    status = refocus_render_settings(s->full, &params, &out);
     s->have_full = status == REFOCUS_OK;
     s->full_of = params;
     return status;
@@ -287,7 +289,7 @@ static void end_full(struct rf_session *s)
  * done, or cannot be. */
 static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t request)
 {
-    const struct refocus_render_params params = lens_of(s, state, true);
+    const struct refocus_settings params = lens_of(s, state, true);
     int status = REFOCUS_OK;
 
     if (state->mode != RF_VIEW_RESULT) {
@@ -323,7 +325,7 @@ static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t r
 static void save(struct rf_session *s, const struct rf_view_state *state, uint32_t what)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_render_params params = lens_of(s, state, true);
+    const struct refocus_settings params = lens_of(s, state, true);
     const struct refocus_image picture = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
     const struct rf_view_result result = {.what = what,

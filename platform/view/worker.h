@@ -46,7 +46,7 @@ struct rf_session {
     int scratch_room;
     bool small_stale, full_stale; /* the depth has changed since it was prepared */
     bool have_full;               /* full_out is what full_of says */
-    struct refocus_render_params full_of;
+    struct refocus_settings full_of;
     uint64_t tap; /* the last one that was looked up */
     float tap_focus;
 };

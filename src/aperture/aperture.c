@@ -194,7 +194,7 @@ static bool good_params(const struct refocus_aperture_params *p)
 {
     const bool iris = p->curvature != 0 || p->opening != 0;
 
-    return p->struct_size == sizeof *p && (p->blades == 0 || (p->blades >= 3 && p->blades <= 16)) &&
+    return p->reserved == 0 && (p->blades == 0 || (p->blades >= 3 && p->blades <= 16)) &&
            in(p->rotation_deg, -3600, 3600) && in(p->curvature, 0, 1) && in(p->opening, 0, 1) &&
            in(p->squeeze, 0.5, 2) && in(p->hole, 0, 0.9) && in(p->edge_behind, -1, 1) &&
            in(p->edge_before, -1, 1) && p->figure <= REFOCUS_FIGURE_STAR && !(p->figure && iris) &&
@@ -221,14 +221,20 @@ static void add_profiles(struct refocus_aperture *a, const struct refocus_apertu
 }
 
 int refocus_aperture_create(struct refocus_aperture **aperture,
-                            const struct refocus_aperture_params *p)
+                            const struct refocus_aperture_params *params)
 {
+    struct refocus_aperture_params own;
+    const struct refocus_aperture_params *const p = &own;
     int status;
 
     if (!aperture)
         return REFOCUS_ERR_ARGUMENT;
     *aperture = NULL;
-    if (!p || !good_params(p))
+    status = refocus_struct_read(
+        &own, sizeof own, REFOCUS_SIZE_TO(struct refocus_aperture_params, mask_stride), params);
+    if (status)
+        return status;
+    if (!good_params(p))
         return REFOCUS_ERR_ARGUMENT;
     if (p->mask) {
         status = refocus_aperture_create_mask(aperture, p->mask, p->mask_width, p->mask_height,

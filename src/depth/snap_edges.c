@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "image/format.h"
+#include "image/read.h"
 #include "support/pool.h"
 
 enum {
@@ -122,16 +123,29 @@ static void put_back(const struct snap *s, uint16_t *out, ptrdiff_t stride)
     }
 }
 
-int refocus_depth_snap(const struct refocus_image *photo, const struct refocus_disparity *map,
-                       const struct refocus_snap_params *params, uint16_t *out, ptrdiff_t stride)
+int refocus_depth_snap(const struct refocus_image *photo, const struct refocus_disparity *given,
+                       const struct refocus_snap_params *given_params, uint16_t *out,
+                       ptrdiff_t stride)
 {
     struct refocus_upsample_params upsample = refocus_upsample_params_default();
+    struct refocus_image own_photo;
+    struct refocus_disparity own_map;
+    struct refocus_snap_params own_params;
+    const struct refocus_disparity *const map = &own_map;
+    const struct refocus_snap_params *const params = &own_params;
     struct snap s = {.map = map};
-    int status = REFOCUS_ERR_MEMORY;
     uint64_t pixels, samples;
+    int status;
 
-    if (!rf_good_image(photo) || !rf_good_map(map) || !params ||
-        params->struct_size != sizeof *params || params->reach < 1 ||
+    if ((status = rf_read_image(NULL, "photo", &own_photo, photo)) ||
+        (status = rf_read_map(NULL, "map", &own_map, given)) ||
+        (status =
+             refocus_struct_read(&own_params, sizeof own_params,
+                                 REFOCUS_SIZE_TO(struct refocus_snap_params, cpu), given_params)))
+        return status;
+    photo = &own_photo;
+    status = REFOCUS_ERR_MEMORY;
+    if (!refocus_format_bytes(photo->format) || params->reach < 1 ||
         params->reach > REFOCUS_MAX_SNAP || params->threads < 0 ||
         params->threads > RF_MAX_THREADS || !refocus_cpu_name(params->cpu) ||
         map->width != photo->width || map->height != photo->height || !out ||

@@ -7,6 +7,7 @@
 
 #include "depth/temporal.h"
 #include "image/format.h"
+#include "image/read.h"
 #include "support/arena.h"
 
 enum {
@@ -30,9 +31,9 @@ struct refocus_temporal {
 
 static bool good(const struct refocus_temporal_params *p)
 {
-    return p && p->struct_size == sizeof *p && p->width >= 1 && p->width <= REFOCUS_MAX_SIDE &&
-           p->height >= 1 && p->height <= REFOCUS_MAX_SIDE && p->strength >= 0 &&
-           p->strength <= 0.95f && p->noise >= 0 && p->noise <= 0.25f;
+    return p->width >= 1 && p->width <= REFOCUS_MAX_SIDE && p->height >= 1 &&
+           p->height <= REFOCUS_MAX_SIDE && p->strength >= 0 && p->strength <= 0.95f &&
+           p->noise >= 0 && p->noise <= 0.25f;
 }
 
 static void lay_out(struct refocus_temporal *f, struct rf_arena *arena)
@@ -56,11 +57,18 @@ int refocus_temporal_create(struct refocus_temporal **filter,
                             const struct refocus_temporal_params *params)
 {
     struct rf_arena arena = {NULL, RF_ARENA_ALIGN};
+    struct refocus_temporal_params own;
     struct refocus_temporal *f;
+    int status;
 
     if (!filter)
         return REFOCUS_ERR_ARGUMENT;
     *filter = NULL;
+    status = refocus_struct_read(&own, sizeof own,
+                                 REFOCUS_SIZE_TO(struct refocus_temporal_params, noise), params);
+    if (status)
+        return status;
+    params = &own;
     if (!good(params))
         return REFOCUS_ERR_ARGUMENT;
     f = calloc(1, sizeof *f);
@@ -255,11 +263,20 @@ static void swap8(uint8_t **a, uint8_t **b)
 int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image *photo,
                          const struct refocus_disparity *map, uint16_t *out, ptrdiff_t stride)
 {
+    struct refocus_image own_photo;
+    struct refocus_disparity own_map;
     size_t samples;
+    int status;
 
-    if (!f || (photo && !rf_good_picture(photo)) || !rf_good_map(map) || map->width != f->width ||
-        map->height != f->height || !out || ((uintptr_t)out & 1) || (stride & 1) ||
-        !rf_good_stride(stride, 2 * (ptrdiff_t)f->width, f->height))
+    if (!f)
+        return REFOCUS_ERR_ARGUMENT;
+    if ((photo && (status = rf_read_image(NULL, "photo", &own_photo, photo))) ||
+        (status = rf_read_map(NULL, "map", &own_map, map)))
+        return status;
+    photo = photo ? &own_photo : NULL;
+    map = &own_map;
+    if (map->width != f->width || map->height != f->height || !out || ((uintptr_t)out & 1) ||
+        (stride & 1) || !rf_good_stride(stride, 2 * (ptrdiff_t)f->width, f->height))
         return REFOCUS_ERR_ARGUMENT;
     samples = (size_t)f->width * (size_t)f->height;
     if (f->guided != (photo != NULL))

@@ -325,22 +325,27 @@ static void write_confidence(const struct refocus_depth_map *map, const uint8_t 
 static bool good_repair(const struct refocus_repair_params *params,
                         const struct refocus_depth_map *map)
 {
-    return params && params->struct_size == sizeof *params && params->speckle >= 0 &&
-           params->speckle <= REFOCUS_MAX_SPECKLE &&
+    return params->speckle >= 0 && params->speckle <= REFOCUS_MAX_SPECKLE &&
            (!params->confidence ||
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
 int refocus_depth_repair(const struct refocus_depth_map *map,
-                         const struct refocus_repair_params *params, uint16_t *disparity,
+                         const struct refocus_repair_params *given, uint16_t *disparity,
                          ptrdiff_t stride, struct refocus_depth_report *report)
 {
+    struct refocus_repair_params own;
+    const struct refocus_repair_params *const params = &own;
     struct conversion conversion = {.map = map};
     uint8_t *state = NULL;
     uint32_t *work = NULL;
     int status;
 
     status = check(map, disparity, stride);
+    if (status == REFOCUS_OK)
+        status = refocus_struct_read(
+            &own, sizeof own, REFOCUS_SIZE_TO(struct refocus_repair_params, confidence_stride),
+            given);
     if (status == REFOCUS_OK && !good_repair(params, map))
         status = REFOCUS_ERR_ARGUMENT;
     if (status == REFOCUS_OK)

@@ -5,6 +5,7 @@
 
 #include "depth/upsample.h"
 #include "image/format.h"
+#include "image/read.h"
 #include "support/arena.h"
 
 /* Sets the pointers, or with arena->base == NULL only counts. */
@@ -54,25 +55,37 @@ static void copy_map(const struct refocus_disparity *map, uint16_t *out, ptrdiff
 static bool good_params(const struct refocus_upsample_params *params,
                         const struct refocus_disparity *map)
 {
-    return params->struct_size == sizeof *params && params->threads >= 0 &&
-           params->threads <= RF_MAX_THREADS && refocus_cpu_name(params->cpu) &&
+    return params->threads >= 0 && params->reserved == 0 && params->threads <= RF_MAX_THREADS &&
+           refocus_cpu_name(params->cpu) &&
            (!params->confidence ||
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
 int refocus_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
-                     const struct refocus_upsample_params *params, uint16_t *out, ptrdiff_t stride)
+                     const struct refocus_upsample_params *given, uint16_t *out, ptrdiff_t stride)
 {
     struct rf_arena arena = {NULL, RF_ARENA_ALIGN};
     struct rf_kernels kernels;
     struct rf_pool pool;
     struct rf_run run = {.looked_at = NULL};
     uint32_t cpu;
+    struct refocus_image own_photo;
+    struct refocus_disparity own_map;
+    struct refocus_upsample_params own_params;
+    const struct refocus_upsample_params *const params = &own_params;
     void *block;
     int status;
 
-    if (!rf_good_image(photo) || !rf_good_map(map) || !params || !good_params(params, map) ||
-        !out || ((uintptr_t)out & 1) || (stride & 1) ||
+    if ((status = rf_read_image(NULL, "photo", &own_photo, photo)) ||
+        (status = rf_read_map(NULL, "map", &own_map, map)) ||
+        (status = refocus_struct_read(
+             &own_params, sizeof own_params,
+             REFOCUS_SIZE_TO(struct refocus_upsample_params, confidence_stride), given)))
+        return status;
+    photo = &own_photo;
+    map = &own_map;
+    if (!refocus_format_bytes(photo->format) || !good_params(params, map) || !out ||
+        ((uintptr_t)out & 1) || (stride & 1) ||
         !rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
         return REFOCUS_ERR_ARGUMENT;
     cpu = params->cpu;

@@ -13,6 +13,7 @@
 #include <refocus/render.h>
 
 #include "kernels/kernels.h"
+#include "support/settings.h"
 
 enum { RF_ONE = 65535 }; /* disparity 1, or a picture's width, in what follows */
 
@@ -29,7 +30,7 @@ struct rf_field {
     int32_t normal_x, normal_d; /* Q30 */
 };
 
-/* The focus that refocus_render_params ask for, in fixed point. */
+/* The focus that struct rf_settings asks for, in fixed point. */
 struct rf_focus_plan {
     struct rf_focus focus;
     bool plain;                   /* s = K (df - d) and nothing else */
@@ -49,7 +50,7 @@ struct rf_focus_plan {
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 
 /* Makes the plan of parameters that are in their ranges. */
-void rf_focus_plan_make(struct rf_focus_plan *plan, const struct refocus_render_params *params,
+void rf_focus_plan_make(struct rf_focus_plan *plan, const struct rf_settings *params,
                         struct rf_focus focus, int width, int height);
 
 /* Signed blur of n pixels of disparities from (x, y) on, Q7.8. */

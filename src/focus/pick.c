@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "image/format.h"
+#include "image/read.h"
 #include "support/compare.h"
 
 enum {
@@ -109,13 +110,18 @@ static float pick(const struct part *part)
     return mean_of_bin(part, find_surface(count, sum));
 }
 
-int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y, int radius,
+int refocus_focus_at_point(const struct refocus_disparity *given, int x, int y, int radius,
                            float *focus)
 {
+    struct refocus_disparity own;
+    const struct refocus_disparity *const map = &own;
     struct part part = {.map = map, .cx = x, .cy = y};
+    const int status = rf_read_map(NULL, "map", &own, given);
 
-    if (!rf_good_map(map) || !focus || x < 0 || y < 0 || x >= map->width || y >= map->height ||
-        radius < 0 || radius > REFOCUS_MAX_TAP_RADIUS)
+    if (status)
+        return status;
+    if (!focus || x < 0 || y < 0 || x >= map->width || y >= map->height || radius < 0 ||
+        radius > REFOCUS_MAX_TAP_RADIUS)
         return REFOCUS_ERR_ARGUMENT;
     if (radius == 0)
         radius = rf_larger(3, rf_larger(map->width, map->height) / 256);
@@ -128,13 +134,18 @@ int refocus_focus_at_point(const struct refocus_disparity *map, int x, int y, in
     return REFOCUS_OK;
 }
 
-int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y, int width,
+int refocus_focus_in_rectangle(const struct refocus_disparity *given, int x, int y, int width,
                                int height, float *focus)
 {
+    struct refocus_disparity own;
+    const struct refocus_disparity *const map = &own;
     struct part part = {.map = map, .x0 = x, .y0 = y};
+    const int status = rf_read_map(NULL, "map", &own, given);
 
-    if (!rf_good_map(map) || !focus || x < 0 || y < 0 || width < 1 || height < 1 ||
-        width > map->width - x || height > map->height - y)
+    if (status)
+        return status;
+    if (!focus || x < 0 || y < 0 || width < 1 || height < 1 || width > map->width - x ||
+        height > map->height - y)
         return REFOCUS_ERR_ARGUMENT;
     part.x1 = x + width;
     part.y1 = y + height;

@@ -20,7 +20,7 @@ static int32_t to_fixed(double v, double one)
 }
 
 /* The tilt at the middle of pixel (x, y) is tilt + x tilt_x + y tilt_y. */
-static void plan_tilt(struct rf_focus_plan *plan, const struct refocus_render_params *p)
+static void plan_tilt(struct rf_focus_plan *plan, const struct rf_settings *p)
 {
     const double q24 = 16777216.0, one = RF_ONE;
     const double across = p->tilt_across * one * q24, down = p->tilt_down * one * q24;
@@ -43,7 +43,7 @@ static struct rf_band band_of(const struct rf_focus_plan *plan, int disparity, f
                             sharp + to_fixed(transition, RF_ONE)};
 }
 
-static void plan_bands(struct rf_focus_plan *plan, const struct refocus_render_params *p)
+static void plan_bands(struct rf_focus_plan *plan, const struct rf_settings *p)
 {
     if (p->bands == 0 && p->focus_half_width <= 0)
         return;
@@ -54,7 +54,7 @@ static void plan_bands(struct rf_focus_plan *plan, const struct refocus_render_p
                                             p->band[i].half_width, p->band[i].transition);
 }
 
-static void plan_field(struct rf_focus_plan *plan, const struct refocus_render_params *p)
+static void plan_field(struct rf_focus_plan *plan, const struct rf_settings *p)
 {
     double sine, cosine;
 
@@ -72,7 +72,7 @@ static void plan_field(struct rf_focus_plan *plan, const struct refocus_render_p
     };
 }
 
-void rf_focus_plan_make(struct rf_focus_plan *plan, const struct refocus_render_params *p,
+void rf_focus_plan_make(struct rf_focus_plan *plan, const struct rf_settings *p,
                         struct rf_focus focus, int width, int height)
 {
     memset(plan, 0, sizeof *plan);

@@ -60,7 +60,7 @@ struct rf_frame {
     void *owner; /* private to whoever made the frame */
 
     const struct rf_method *method;
-    const struct refocus_render_params *params;
+    const struct rf_settings *params;
     const struct refocus_image *out;
     const struct refocus_aperture *aperture;
     struct rf_focus focus;
@@ -85,7 +85,7 @@ struct rf_frame {
 };
 
 /* Beyond that sigma all weights of eq. 5 round to 1. */
-static inline bool rf_weighs(const struct refocus_render_params *params)
+static inline bool rf_weighs(const struct rf_settings *params)
 {
     return params->sigma < 1e6f;
 }

@@ -11,7 +11,7 @@ enum {
 
 int rf_row_gap(const struct rf_frame *f)
 {
-    const struct refocus_render_params *p = f->params;
+    const struct rf_settings *p = f->params;
     const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
     int gap, height = 1; /* half the opening's, Q15 */
 

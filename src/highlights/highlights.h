@@ -194,8 +194,7 @@ struct rf_splat {
 
 /* Whether discs through that aperture can be splatted with these parameters, and there is a gain.
  * Rays have to weigh all light alike, too: weights of eq. 5 differ from pixel to pixel. */
-bool rf_can_splat(const struct refocus_render_params *params,
-                  const struct refocus_aperture *aperture);
+bool rf_can_splat(const struct rf_settings *params, const struct refocus_aperture *aperture);
 
 /* Takes what marked highlights have beyond what is beside them out of the light that the pre-filter
  * starts from. Reads light and blur; writes light less that to `out`, in tiles whose bins it marks

@@ -17,8 +17,7 @@ enum {
     PAIRS = 8192,  /* Q7.8: rows that are hidden in part are drawn by twos from this blur on */
 };
 
-bool rf_can_splat(const struct refocus_render_params *params,
-                  const struct refocus_aperture *aperture)
+bool rf_can_splat(const struct rf_settings *params, const struct refocus_aperture *aperture)
 {
     return params->highlight_gain > 1 &&
            (aperture->shape == RF_SHAPE_DISC || aperture->chord_sets) && params->cat_eye == 0 &&

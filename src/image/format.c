@@ -63,28 +63,3 @@ int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height)
         return height / 2 + height % 2;
     return height;
 }
-
-bool rf_good_picture(const struct refocus_image *image)
-{
-    if (!image || !refocus_format_is_yuv(image->format))
-        return rf_good_image(image);
-    if (image->width < 1 || image->width > REFOCUS_MAX_SIDE || image->height < 1 ||
-        image->height > REFOCUS_MAX_SIDE || image->matrix > REFOCUS_MATRIX_BT709 ||
-        image->range > REFOCUS_RANGE_FULL)
-        return false;
-    for (int i = 0; i < refocus_format_planes(image->format); i++)
-        if (!image->plane[i] ||
-            !rf_good_stride(image->stride[i],
-                            refocus_plane_row_bytes(image->format, i, image->width),
-                            refocus_plane_rows(image->format, i, image->height)))
-            return false;
-    return true;
-}
-
-bool rf_good_map(const struct refocus_disparity *map)
-{
-    return map && map->samples && (map->bits == 8 || map->bits == 16) && map->width >= 1 &&
-           map->height >= 1 && map->width <= REFOCUS_MAX_SIDE && map->height <= REFOCUS_MAX_SIDE &&
-           rf_good_stride(map->stride, (ptrdiff_t)map->width * (map->bits / 8), map->height) &&
-           (map->bits == 8 || (((uintptr_t)map->samples | (uintptr_t)map->stride) & 1) == 0);
-}

@@ -35,23 +35,6 @@ static inline bool rf_good_stride(ptrdiff_t stride, ptrdiff_t bytes, int rows)
     return stride >= -most && stride <= most && (rows == 1 || stride >= bytes || stride <= -bytes);
 }
 
-/* Whether a picture is of a known format of R, G, B, a possible size and has pixels. */
-static inline bool rf_good_image(const struct refocus_image *image)
-{
-    return image && image->plane[0] && refocus_format_bytes(image->format) && image->width >= 1 &&
-           image->width <= REFOCUS_MAX_SIDE && image->height >= 1 &&
-           image->height <= REFOCUS_MAX_SIDE &&
-           rf_good_stride(image->stride[0],
-                          (ptrdiff_t)image->width * refocus_format_bytes(image->format),
-                          image->height);
-}
-
-/* Whether a picture of any format is so. */
-bool rf_good_picture(const struct refocus_image *image);
-
-/* Whether a map of disparities can be read. */
-bool rf_good_map(const struct refocus_disparity *map);
-
 /* Rows of pixels to a row of chroma: 1 << this. */
 static inline int rf_chroma_down(uint32_t format)
 {

@@ -205,7 +205,7 @@ void rf_add_grain(const struct rf_look *look, const struct rf_canvas *canvas, st
             if (lost == 0)
                 continue;
             rf_codes_at(canvas, x, y, code);
-            add = amount * lost * noise_at(view->x0 + x, view->y0 + y, look->params->seed) *
+            add = amount * lost * noise_at(view->x0 + x, view->y0 + y, look->params->grain_seed) *
                   sigma_at(look->grain, luma(*code[0], *code[1], *code[2]));
             change = (int)((llabs(add) + unit / 2) / unit);
             for (int c = 0; c < 3; c++)

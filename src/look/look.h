@@ -47,7 +47,7 @@ struct rf_grain {
 struct rf_look {
     bool has_stars, has_grain;
     const struct rf_executor *exec;
-    const struct refocus_render_params *params;
+    const struct rf_settings *params;
     struct rf_photo_source photo;
     const struct rf_focus_plan *plan;
     const struct rf_highlights *highlights; /* highlights of the photo, if it has stars */

@@ -101,7 +101,7 @@ struct spikes {
     int64_t share; /* part of the light that goes into one spike, Q16 */
 };
 
-static struct spikes spikes_of(const struct refocus_render_params *p)
+static struct spikes spikes_of(const struct rf_settings *p)
 {
     struct spikes spikes = {
         .count = p->star_spikes,

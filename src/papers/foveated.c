@@ -312,7 +312,7 @@ static void fast(const struct work *work, int x, int y, double light[3])
 /* 1 in the volume, 0 outside, and between them across its side. */
 static double attention(const struct work *work, int x, int y)
 {
-    const struct refocus_render_params *p = work->f->params;
+    const struct rf_settings *p = work->f->params;
     const double dx = x - work->centre_x, dy = y - work->centre_y;
     const double beyond = sqrt(dx * dx + dy * dy) - work->radius;
     const double d = work->f->disparity.at[y * work->f->view->stride + x] / 65535.0;
@@ -352,7 +352,7 @@ static void write_rows(void *context, int item, int worker)
 /* The cone's radius in the picture: tan(half its angle) to tan(half the picture's). */
 static void make_volume(struct work *work)
 {
-    const struct refocus_render_params *p = work->f->params;
+    const struct rf_settings *p = work->f->params;
     double s, c, picture;
 
     rf_sincos_turns(p->picture_angle / 720.0, &s, &c);

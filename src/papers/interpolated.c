@@ -187,7 +187,7 @@ static void make_shares(struct work *work)
 
 void rf_interpolated_frame(struct rf_frame *f)
 {
-    const struct refocus_render_params *p = f->params;
+    const struct rf_settings *p = f->params;
     const struct rf_limits limits = f->limits;
     struct rf_arena arena = {f->work->at, 0};
     struct work *work = lay_out(&limits, &arena, NULL);

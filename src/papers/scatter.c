@@ -86,7 +86,7 @@ static void fill_table(void *context, int item, int worker)
 /* Tables for this K, unless they are there already. */
 static bool make_tables(struct work *work, struct rf_frame *f)
 {
-    const struct refocus_render_params *p = f->params;
+    const struct rf_settings *p = f->params;
     uint32_t *share = work->shares;
 
     if (f->work->owner == REFOCUS_METHOD_SCATTER && work->tables &&
@@ -203,7 +203,7 @@ static void spread_band(void *context, int item, int worker)
 /* Spikes with a strength that falls linearly to their end. */
 static void make_star(struct work *work)
 {
-    const struct refocus_render_params *p = work->f->params;
+    const struct rf_settings *p = work->f->params;
 
     work->spike_count = p->star_spikes;
     work->spike_length = (int)p->star_length;

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "renderer/layout.h"
+#include "support/log.h"
+#include "support/rules.h"
 #include "renderer/methods.h"
 
 static void *default_allocate(void *user, size_t size)
@@ -19,45 +21,83 @@ static void default_release(void *user, void *memory)
     free(memory);
 }
 
-/* Whether the methods that are asked for are there, and do with the memory that there will be. */
-static bool good_methods(const struct refocus_renderer_params *params)
+#define RULE(type, field, least, most)                                                             \
+    RF_RULE(#field, offsetof(struct refocus_renderer_params, field), type, least, most)
+
+static const struct rf_rule rules[] = {
+    RULE(RF_SIGNED, max_width, 1, REFOCUS_MAX_SIDE),
+    RULE(RF_SIGNED, max_height, 1, REFOCUS_MAX_SIDE),
+    RULE(RF_REAL, max_blur_radius, 0, REFOCUS_MAX_BLUR_RADIUS),
+    RULE(RF_SIGNED, threads, 0, RF_MAX_THREADS),
+    RULE(RF_UNSIGNED, cpu, 0, REFOCUS_CPU_AVX512),
+    RULE(RF_UNSIGNED, methods, 0, REFOCUS_METHODS_ALL),
+    RULE(RF_UNSIGNED, reserved, 0, 0),
+    RULE(RF_UNSIGNED, in_place, 0, 1),
+    RULE(RF_UNSIGNED, thin, 0, 1),
+};
+
+/* The log that a caller's parameters name, as far as they reach: for words on what is wrong with
+ * them. */
+static struct rf_log log_of(const char *function, const struct refocus_renderer_params *params)
 {
-    if ((params->methods & ~REFOCUS_METHODS_ALL) ||
-        (params->papers && !rf_papers_fit(params->papers)))
-        return false;
-    for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++)
-        if ((params->methods & REFOCUS_METHOD_BIT(i)) &&
-            (!rf_method_of(params->papers, i) ||
-             (params->in_place && rf_method_info(i)->whole_photo)))
-            return false;
-    return true;
+    struct rf_log log = {.function = function};
+
+    if (params && params->struct_size >= REFOCUS_SIZE_TO(struct refocus_renderer_params, log) &&
+        params->struct_size <= REFOCUS_MAX_STRUCT_SIZE)
+        log.to = params->log;
+    return log;
+}
+
+/* The methods that are asked for have to be there, and to do with the memory that there will be. */
+static int check_methods(const struct rf_log *log, const struct refocus_renderer_params *params)
+{
+    if (params->papers && !rf_papers_fit(params->papers))
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "papers is of another build than librefocus " REFOCUS_VERSION_STRING);
+    for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
+        if (!(params->methods & REFOCUS_METHOD_BIT(i)))
+            continue;
+        if (!rf_method_of(params->papers, i))
+            return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "methods has %s, which needs papers",
+                             refocus_method_name(i));
+        if (params->in_place && rf_method_info(i)->whole_photo)
+            return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                             "in_place is 1, may be 0 with method %s, which needs the whole photo",
+                             refocus_method_name(i));
+    }
+    return REFOCUS_OK;
 }
 
 /* Parameters with defaults in place of what an older caller's struct does not have. */
-static bool read_params(struct refocus_renderer_params *own,
-                        const struct refocus_renderer_params *params)
+static int read_params(const struct rf_log *log, struct refocus_renderer_params *own,
+                       const struct refocus_renderer_params *params)
 {
-    if (!params || params->struct_size != sizeof *params)
-        return false;
-    *own = *params;
-    return own->max_width >= 1 && own->max_width <= REFOCUS_MAX_SIDE && own->max_height >= 1 &&
-           own->max_height <= REFOCUS_MAX_SIDE && own->max_blur_radius >= 0 &&
-           own->max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && own->threads >= 0 &&
-           own->threads <= RF_MAX_THREADS && refocus_cpu_name(own->cpu) && own->reserved == 0 &&
-           own->in_place <= 1 && own->thin <= 1 && good_methods(own) &&
-           !own->allocator.allocate == !own->allocator.release;
+    int status = rf_read_struct(log, "params", own, sizeof *own,
+                                REFOCUS_SIZE_TO(struct refocus_renderer_params, thin), params);
+
+    for (size_t i = 0; !status && i < sizeof rules / sizeof *rules; i++)
+        status = rf_check_rule(log, &rules[i], own);
+    if (status)
+        return status;
+    if ((status = check_methods(log, own)))
+        return status;
+    if (!own->allocator.allocate != !own->allocator.release)
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "allocator has one function of two, may have both or none");
+    return REFOCUS_OK;
 }
 
 uint64_t refocus_renderer_memory(const struct refocus_renderer_params *params)
 {
     struct refocus_renderer_params own;
 
-    return read_params(&own, params) ? rf_layout_size(&own) : 0;
+    return read_params(NULL, &own, params) ? 0 : rf_layout_size(&own);
 }
 
 int refocus_renderer_create(struct refocus_renderer **renderer,
                             const struct refocus_renderer_params *params)
 {
+    const struct rf_log log = log_of("refocus_renderer_create", params);
     struct refocus_renderer_params own;
     struct rf_kernels kernels;
     struct refocus_renderer *r;
@@ -66,20 +106,26 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     int status;
 
     if (!renderer)
-        return REFOCUS_ERR_ARGUMENT;
+        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT, "renderer is NULL");
     *renderer = NULL;
-    if (!read_params(&own, params))
-        return REFOCUS_ERR_ARGUMENT;
+    if ((status = read_params(&log, &own, params)))
+        return status;
     if (!rf_kernels_select(&kernels, &own.cpu))
-        return REFOCUS_ERR_UNSUPPORTED;
+        return rf_refuse(&log, REFOCUS_ERR_UNSUPPORTED,
+                         "cpu is %s, which this build or processor does not have",
+                         refocus_cpu_name(own.cpu));
     size = rf_layout_size(&own);
     if (size > PTRDIFF_MAX || (own.max_memory && size > own.max_memory))
-        return REFOCUS_ERR_SIZE;
+        return rf_refuse(&log, REFOCUS_ERR_SIZE, "%llu bytes are needed, may be up to %llu",
+                         (unsigned long long)size,
+                         own.max_memory ? (unsigned long long)own.max_memory
+                                        : (unsigned long long)PTRDIFF_MAX);
     if (!own.allocator.allocate)
         own.allocator = (struct refocus_allocator){default_allocate, default_release, NULL};
     block = own.allocator.allocate(own.allocator.user, (size_t)size);
     if (!block)
-        return REFOCUS_ERR_MEMORY;
+        return rf_refuse(&log, REFOCUS_ERR_MEMORY, "the allocator has no %llu bytes",
+                         (unsigned long long)size);
     r = rf_layout_place(&own, block);
     r->allocator = own.allocator;
     r->log = own.log;
@@ -104,7 +150,7 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     status = rf_pool_start(&r->pool, rf_thread_count(own.threads), &own.parallel, &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);
-        return status;
+        return rf_refuse(&log, status, "a thread could not be started");
     }
     *renderer = r;
     return REFOCUS_OK;
@@ -133,12 +179,13 @@ void refocus_cancel(struct refocus_renderer *renderer)
 void refocus_renderer_get_info(const struct refocus_renderer *renderer,
                                struct refocus_renderer_info *info)
 {
-    if (!info)
-        return;
-    memset(info, 0, sizeof *info);
-    if (!renderer)
-        return;
-    info->threads = renderer->pool.threads;
-    info->cpu = renderer->cpu;
-    info->memory = renderer->memory;
+    struct refocus_renderer_info own = refocus_renderer_info_default();
+
+    if (renderer) {
+        own.threads = renderer->pool.threads;
+        own.cpu = renderer->cpu;
+        own.memory = renderer->memory;
+    }
+    refocus_struct_write(info, REFOCUS_SIZE_TO(struct refocus_renderer_info, memory), &own,
+                         sizeof own);
 }

@@ -1,10 +1,13 @@
+/* params.h: whether a renderer can render settings whose fields are all in their ranges. */
 #ifndef RF_PARAMS_H
 #define RF_PARAMS_H
 
 #include "renderer/renderer.h"
+#include "support/log.h"
 
-/* Whether all fields are in the ranges that refocus/render.h gives them, and the method one
- * that the renderer has memory for. */
-bool rf_good_params(const struct refocus_renderer *r, const struct refocus_render_params *p);
+/* REFOCUS_OK, or REFOCUS_ERR_ARGUMENT: a method that the renderer has no memory for, more blur than
+ * it is made for, or settings that do not go together. */
+int rf_check_settings(const struct rf_log *log, const struct refocus_renderer *r,
+                      const struct rf_settings *settings);
 
 #endif

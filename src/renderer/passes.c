@@ -22,7 +22,7 @@
  * for highlights. */
 static bool may_premultiply(const struct rf_frame *f)
 {
-    const struct refocus_render_params *p = f->params;
+    const struct rf_settings *p = f->params;
 
     if (rf_renderer_of(f)->yuv.on && rf_renderer_of(f)->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
         return false;
@@ -141,7 +141,7 @@ static void prefilter(struct rf_frame *f)
 }
 
 /* How far apart rays are at a blur of 1. */
-static double ray_gap(const struct refocus_render_params *p)
+static double ray_gap(const struct rf_settings *p)
 {
     return sqrt(3.14159265358979 / (p->rays == REFOCUS_RAYS_FULL ? INT_MAX : p->rays));
 }

@@ -5,6 +5,7 @@
 #include "depth/dequantise.h"
 #include "depth/upsample.h"
 #include "image/format.h"
+#include "image/read.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
 #include "renderer/layout.h"
@@ -71,19 +72,29 @@ static void take_in(struct refocus_renderer *r, const struct refocus_image *phot
 int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
                     const struct refocus_disparity *disparity)
 {
+    struct rf_log log = {.function = "refocus_prepare"};
+    struct refocus_image own_photo;
+    struct refocus_disparity own_disparity;
     struct rf_photo *own;
+    int status;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
+    log.to = r->log;
     r->prepared = r->blurred = false;
     memset(&r->cache, 0, sizeof r->cache);
-    if (!rf_good_picture(photo) || !rf_good_map(disparity))
-        return REFOCUS_ERR_ARGUMENT;
+    if ((status = rf_read_image(&log, "photo", &own_photo, photo)) ||
+        (status = rf_read_map(&log, "disparity", &own_disparity, disparity)))
+        return status;
+    photo = &own_photo;
+    disparity = &own_disparity;
     if (photo->width > r->max_width || photo->height > r->max_height)
-        return REFOCUS_ERR_SIZE;
+        return rf_refuse(&log, REFOCUS_ERR_SIZE, "photo is %d x %d, may be up to %d x %d",
+                         (int)photo->width, (int)photo->height, r->max_width, r->max_height);
     if (r->in_place.on && (disparity->width != photo->width || disparity->height != photo->height ||
                            refocus_format_is_yuv(photo->format)))
-        return REFOCUS_ERR_UNSUPPORTED;
+        return rf_refuse(&log, REFOCUS_ERR_UNSUPPORTED,
+                         "with in_place the photo may be R, G, B, and disparity of its size");
     own = &r->photo;
     own->width = photo->width;
     own->height = photo->height;

@@ -4,19 +4,20 @@
 
 #include "highlights/highlights.h"
 #include "gather/tile_rows.h"
-#include "image/format.h"
+#include "image/read.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
 #include "renderer/methods.h"
 #include "renderer/params.h"
 #include "renderer/passes.h"
 #include "renderer/render_yuv.h"
+#include "renderer/settings.h"
 #include "support/compare.h"
 #include "thin/thin.h"
 
-/* The part of a photo to render; false if it is not inside. */
-static bool region_of(const struct refocus_renderer *r, const struct refocus_render_params *p,
-                      struct rf_rect *region)
+/* The part of a photo to render. */
+static int read_region(const struct rf_log *log, const struct refocus_renderer *r,
+                       const struct rf_settings *p, struct rf_rect *region)
 {
     const int width = r->photo.width, height = r->photo.height;
     const bool whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
@@ -26,10 +27,12 @@ static bool region_of(const struct refocus_renderer *r, const struct refocus_ren
     *region = (struct rf_rect){p->region_x, p->region_y, 0, 0};
     if (p->region_x < 0 || p->region_y < 0 || w < 1 || h < 1 || w > width - p->region_x ||
         h > height - p->region_y)
-        return false;
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "region is %d x %d at (%d, %d), may be within %d x %d", w, h,
+                         (int)p->region_x, (int)p->region_y, width, height);
     region->x1 = region->x0 + w;
     region->y1 = region->y0 + h;
-    return true;
+    return REFOCUS_OK;
 }
 
 static void lay_look(const struct rf_frame *f, struct rf_rect rect)
@@ -78,7 +81,7 @@ static void look_item(void *context, int item, int worker)
  * highlights keep more of their light where each step is there at once. */
 static void set_prefilter(struct rf_frame *f)
 {
-    const struct refocus_render_params *p = f->params;
+    const struct rf_settings *p = f->params;
 
     f->prefilter_fades = p->rays <= RF_LIVE_RAYS;
     for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
@@ -94,7 +97,7 @@ static void set_prefilter(struct rf_frame *f)
 /* Thin structures of a photo of R, G and B, where the renderer has memory for them. */
 static void set_up_thin(struct rf_frame *f)
 {
-    const struct refocus_render_params *p = f->params;
+    const struct rf_settings *p = f->params;
 
     rf_thin_set_up(&f->thin,
                    &(struct rf_thin_settings){
@@ -192,26 +195,53 @@ static void run(struct rf_frame *f, struct rf_rect region)
     rf_pool_run(&r->pool, look_item, f, f->count_tx * f->count_ty);
 }
 
-int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *params,
+/* Read and check what refocus_render() is given; the settings stay with the renderer. */
+static int read_arguments(struct rf_frame *f, const struct refocus_render_params *params,
+                          struct refocus_image *own_out, const struct refocus_image *out)
+{
+    struct refocus_renderer *const r = rf_renderer_of(f);
+    const struct rf_log log = {r->log, "refocus_render"};
+    struct rf_settings settings;
+    int status;
+
+    if (!r->prepared)
+        return rf_refuse(&log, REFOCUS_ERR_STATE, "nothing is prepared yet");
+    if ((status = rf_read_settings(&log, &settings, params)) ||
+        (status = rf_check_settings(&log, r, &settings)) ||
+        (status = read_region(&log, r, &settings, &f->region)) ||
+        (status = rf_read_image(&log, "out", own_out, out)))
+        return status;
+    if (own_out->width != f->region.x1 - f->region.x0 ||
+        own_out->height != f->region.y1 - f->region.y0)
+        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT,
+                         "out is %d x %d, may be %d x %d, as the region", (int)own_out->width,
+                         (int)own_out->height, f->region.x1 - f->region.x0,
+                         f->region.y1 - f->region.y0);
+    f->out = own_out;
+    f->params = &settings;
+    if ((status = rf_check_yuv(&log, f, f->region)))
+        return status;
+    rf_keep_settings(&r->settings, &settings);
+    f->params = &r->settings;
+    return REFOCUS_OK;
+}
+
+int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *given,
                    const struct refocus_image *out)
 {
-    struct rf_frame f = {.owner = r, .out = out};
+    struct rf_frame f = {.owner = r};
+    const struct rf_settings *params;
+    struct refocus_image own_out;
     struct rf_exact exact;
     struct rf_rect region;
     int status;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
-    if (!r->prepared)
-        return REFOCUS_ERR_STATE;
-    if (!rf_good_params(r, params))
-        return REFOCUS_ERR_ARGUMENT;
-    if (!region_of(r, params, &region) || !rf_good_picture(out) ||
-        out->width != region.x1 - region.x0 || out->height != region.y1 - region.y0)
-        return REFOCUS_ERR_ARGUMENT;
-    f.params = params;
-    if ((status = rf_check_yuv(&f, region)))
+    if ((status = read_arguments(&f, given, &own_out, out)))
         return status;
+    params = f.params;
+    region = f.region;
     f.aperture = params->aperture ? params->aperture : &rf_disc;
     f.fine = rf_aperture_is_fine(f.aperture);
     f.splats = rf_is_sweep(&f) && !rf_weighs(params) && rf_can_splat(params, f.aperture);

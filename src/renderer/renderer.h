@@ -27,6 +27,7 @@
 #include "passes/prefilter.h"
 #include "renderer/memory_plan.h"
 #include "support/executor.h"
+#include "support/settings.h"
 #include "thin/thin.h"
 #include "tiles/bins.h"
 #include "tiles/ranges.h"
@@ -101,6 +102,7 @@ struct rf_in_place {
 struct refocus_renderer {
     struct refocus_allocator allocator;
     struct refocus_log log;
+    struct rf_settings settings; /* of the last render, whose plan has its maps */
     void *block;
     uint64_t memory;
     uint32_t cpu;              /* enum refocus_cpu, never AUTO */

@@ -80,20 +80,20 @@ int main(int argc, char **argv)
         refocus_disparity16(scene.disparity, number[0], number[1], (ptrdiff_t)number[0] * 2);
     struct refocus_renderer_params params =
         refocus_renderer_params_default(number[0], number[1], (float)number[2]);
-    struct refocus_render_params lens = refocus_render_params_default(0, (float)number[2]);
+    struct refocus_settings lens = refocus_settings_default(0, (float)number[2]);
 
     params.threads = 1;
     params.cpu = cpu;
-    lens.rays = number[3];
-    lens.highlight_gain = 4; /* The command line renders with this gain. */
+    lens.render.rays = number[3];
+    lens.highlights.gain = 4; /* The command line renders with this gain. */
     status = refocus_renderer_create(&renderer, &params);
     for (int i = 0; i < number[4] + number[5] && status == REFOCUS_OK; i++) {
         if (i < number[4])
             status = refocus_prepare(renderer, &photo, &disparity);
         if (status != REFOCUS_OK)
             break;
-        lens.focus_disparity = i % 2 ? 0.689f : 0.689f - 1 / 512.0f;
-        status = refocus_render(renderer, &lens, &out);
+        lens.render.focus_disparity = i % 2 ? 0.689f : 0.689f - 1 / 512.0f;
+        status = refocus_render_settings(renderer, &lens, &out);
     }
     refocus_renderer_destroy(&renderer);
     if (status != REFOCUS_OK)

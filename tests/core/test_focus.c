@@ -12,7 +12,7 @@
 enum { W = 60, H = 40 };
 
 static uint16_t samples[W * H];
-static const struct refocus_disparity map = {16, W, H, samples, 2 * W};
+static const struct refocus_disparity map = {sizeof map, 16, W, H, samples, 2 * W};
 
 static void halves(uint16_t left, uint16_t right)
 {
@@ -57,7 +57,7 @@ static void taps(void **state)
 static void eight_bits(void **state)
 {
     static uint8_t bytes[W * H];
-    const struct refocus_disparity small = {8, W, H, bytes + (H - 1) * W, -W};
+    const struct refocus_disparity small = refocus_disparity8(bytes + (H - 1) * W, W, H, -W);
     float focus;
 
     (void)state;
@@ -83,10 +83,11 @@ static void rectangles(void **state)
 
 static void bad_picks(void **state)
 {
-    const struct refocus_disparity bad[] = {{16, W, H, NULL, 2 * W},
-                                            {12, W, H, samples, 2 * W},
-                                            {16, 0, H, samples, 2 * W},
-                                            {16, W, H, samples, 2 * W - 2}};
+    const struct refocus_disparity bad[] = {{0},
+                                            {sizeof map, 16, W, H, NULL, 2 * W},
+                                            {sizeof map, 12, W, H, samples, 2 * W},
+                                            {sizeof map, 16, 0, H, samples, 2 * W},
+                                            {sizeof map, 16, W, H, samples, 2 * W - 2}};
     static const int outside[][4] = {{-1, 0, 1, 1}, {0, -1, 1, 1}, {W, 0, 1, 1}, {0, H, 1, 1}};
     float focus = 0.25f;
 

@@ -174,7 +174,7 @@ static void any_layout(void **state)
         assert_int_equal(refocus_temporal_create(&a, &params), REFOCUS_OK);
         assert_int_equal(refocus_temporal_create(&b, &params), REFOCUS_OK);
         for (int t = 0; t < 5; t++) {
-            struct refocus_disparity map = {0};
+            struct refocus_disparity map = refocus_disparity8(bytes, w, h, w);
 
             for (int i = 0; i < w * h; i++) {
                 const int at = (h - 1 - i / w) * w + i % w;
@@ -182,11 +182,6 @@ static void any_layout(void **state)
                 bytes[i] = (uint8_t)(100 + noise(5));
                 other[at] = (uint16_t)(bytes[i] * 257);
             }
-            map.samples = bytes;
-            map.width = w;
-            map.height = h;
-            map.stride = w;
-            map.bits = 8;
             assert_int_equal(refocus_temporal_run(a, t % 2 ? &photo : NULL, &map, out, 2 * w),
                              REFOCUS_OK);
             map = refocus_disparity16(other + (h - 1) * w, w, h, -2 * w);

@@ -95,7 +95,10 @@ struct refocus_disparity misuse_map(void)
 
 void misuse_images(void (*use)(const struct refocus_image *image))
 {
-    const struct misuse bad[] = {BAD(refocus_image, format, REFOCUS_FORMAT_NONE),
+    const struct misuse bad[] = {BAD(refocus_image, struct_size, 0),
+                                 BAD(refocus_image, struct_size, sizeof(struct refocus_image) - 4),
+                                 BAD(refocus_image, struct_size, REFOCUS_MAX_STRUCT_SIZE + 1),
+                                 BAD(refocus_image, format, REFOCUS_FORMAT_NONE),
                                  BAD(refocus_image, format, 99),
                                  BAD(refocus_image, format, UINT32_MAX),
                                  SIDES(refocus_image, width),
@@ -119,10 +122,17 @@ void misuse_images(void (*use)(const struct refocus_image *image))
 void misuse_maps(void (*use)(const struct refocus_disparity *map))
 {
     const struct misuse bad[] = {
-        BAD(refocus_disparity, bits, 0),          BAD(refocus_disparity, bits, 32),
-        BAD(refocus_disparity, bits, UINT32_MAX), SIDES(refocus_disparity, width),
-        SIDES(refocus_disparity, height),         BAD(refocus_disparity, samples, NULL),
-        STRIDES(refocus_disparity, stride),       BAD(refocus_disparity, stride, 2 * W - 2),
+        BAD(refocus_disparity, struct_size, 0),
+        BAD(refocus_disparity, struct_size, sizeof(struct refocus_disparity) - 4),
+        BAD(refocus_disparity, struct_size, UINT32_MAX),
+        BAD(refocus_disparity, bits, 0),
+        BAD(refocus_disparity, bits, 32),
+        BAD(refocus_disparity, bits, UINT32_MAX),
+        SIDES(refocus_disparity, width),
+        SIDES(refocus_disparity, height),
+        BAD(refocus_disparity, samples, NULL),
+        STRIDES(refocus_disparity, stride),
+        BAD(refocus_disparity, stride, 2 * W - 2),
         BAD(refocus_disparity, stride, 2 - 2 * W)};
 
     use(NULL);

@@ -35,6 +35,30 @@ static void pictures(void)
     }
     assert_null(RETURNS(refocus_image_packed, 0, NULL, -1, -1, PTRDIFF_MIN).plane[0]);
     assert_null(RETURNS(refocus_disparity16, NULL, -1, -1, PTRDIFF_MIN).samples);
+    assert_null(RETURNS(refocus_disparity8, NULL, -1, -1, PTRDIFF_MIN).samples);
+}
+
+static void sizes(void)
+{
+    uint32_t own[2] = {7, 7}, given[3] = {sizeof given, 1, 0};
+
+    REFUSED(refocus_image_read, NULL, NULL);
+    REFUSED(refocus_disparity_read, NULL, NULL);
+    REFUSED(refocus_struct_read, NULL, sizeof own, sizeof own, given);
+    REFUSED(refocus_struct_read, own, sizeof own, sizeof own, NULL);
+    REFUSED(refocus_struct_read, own, 4, 8, given);
+    REFUSED(refocus_struct_read, own, sizeof own, 0, given);
+    REFUSED(refocus_struct_write, NULL, 4, own, sizeof own);
+    REFUSED(refocus_struct_write, given, 4, NULL, sizeof own);
+    REFUSED(refocus_struct_write, given, 8, own, 4);
+    given[2] = 1;
+    ANSWERS(REFOCUS_ERR_UNSUPPORTED, refocus_struct_read, own, sizeof own, sizeof own, given);
+    given[0] = 4;
+    REFUSED(refocus_struct_read, own, sizeof own, sizeof own, given);
+    REFUSED(refocus_struct_write, given, sizeof own, own, sizeof own);
+    given[0] = REFOCUS_MAX_STRUCT_SIZE + 1;
+    REFUSED(refocus_struct_read, own, sizeof own, sizeof own, given);
+    assert_true(own[0] == 7 && own[1] == 7);
 }
 
 static void words(void)
@@ -216,6 +240,7 @@ void misuse_core(void **state)
 {
     (void)state;
     pictures();
+    sizes();
     words();
     lenses();
     apertures();

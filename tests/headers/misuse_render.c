@@ -32,7 +32,12 @@ static void render_map(const struct refocus_disparity *map)
     for (int i = 0; map && i < 3; i++) {
         struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
 
-        *(i == 0 ? &params.field_map : i == 1 ? &params.focus_map : &params.sharp_map) = map;
+        struct refocus_focus_params focus = refocus_focus_params_default();
+        struct refocus_field_params field = refocus_field_params_default(0.5f);
+
+        *(i == 0 ? &field.map : i == 1 ? &focus.map : &focus.sharp_map) = map;
+        params.focus = &focus;
+        params.field = &field;
         REFUSED(refocus_render, renderer, &params, &out);
     }
 }
@@ -104,16 +109,34 @@ static void creating(void)
 static void without_renderer(void)
 {
     const struct refocus_render_params params = RETURNS(refocus_render_params_default, 0.5f, 5);
+    const struct refocus_settings settings = RETURNS(refocus_settings_default, 0.5f, 5);
     const struct refocus_image photo = misuse_photo();
     const struct refocus_disparity map = misuse_map();
-    struct refocus_renderer_info info;
+    struct refocus_renderer_info info = TAKES_NOTHING(refocus_renderer_info_default);
     uint16_t view[W * H];
 
     REFUSED(refocus_prepare, NULL, &photo, &map);
+    TAKES_NOTHING(refocus_highlight_params_default);
+    TAKES_NOTHING(refocus_thin_params_default);
+    TAKES_NOTHING(refocus_look_params_default);
+    TAKES_NOTHING(refocus_focus_params_default);
+    RETURNS(refocus_field_params_default, NAN);
+    TAKES_NOTHING(refocus_search_params_default);
+    TAKES_NOTHING(refocus_jittered_params_default);
+    TAKES_NOTHING(refocus_scatter_params_default);
+    TAKES_NOTHING(refocus_interpolated_params_default);
+    TAKES_NOTHING(refocus_foveated_params_default);
+    TAKES_NOTHING(refocus_diffusion_params_default);
     REFUSED(refocus_render, NULL, &params, &photo);
+    REFUSED(refocus_render_settings, NULL, &settings, &photo);
+    REFUSED(refocus_render_settings, NULL, NULL, &photo);
     REFUSED(refocus_get_view, NULL, REFOCUS_VIEW_DISPARITY, view, 2 * W);
     RETURNS(refocus_cancel, NULL);
-    memset(&info, 0x5a, sizeof info);
+    info.threads = 7;
+    info.struct_size = 0; /* out of its range: it is left alone */
+    RETURNS(refocus_renderer_get_info, NULL, &info);
+    assert_int_equal(info.threads, 7);
+    info.struct_size = sizeof info;
     RETURNS(refocus_renderer_get_info, NULL, &info);
     assert_int_equal(info.threads, 0);
     assert_int_equal(info.cpu, 0);

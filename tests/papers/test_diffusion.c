@@ -20,7 +20,7 @@ static void figure_2(void **state)
     enum { SIDE = 120, RADIUS = 40, RIM = 8 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, 200, 0}, 0);
     static uint8_t field[SIDE * SIDE], out[3 * SIDE * SIDE];
-    struct refocus_disparity map = {8, SIDE, SIDE, field, SIDE};
+    struct refocus_disparity map = refocus_disparity8(field, SIDE, SIDE, SIDE);
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, SIDE, SIDE, 3 * SIDE);
     struct refocus_renderer *renderer;
@@ -39,14 +39,14 @@ static void figure_2(void **state)
     }
     renderer = prepared(&p, 30, 2);
     for (uint32_t solver = 0; solver < 2; solver++) {
-        struct refocus_render_params params = refocus_render_params_default(0, 30);
+        struct refocus_settings params = refocus_settings_default(0, 30);
 
-        params.method = REFOCUS_METHOD_DIFFUSION;
-        params.solver = solver;
-        params.field = REFOCUS_FIELD_PICTURE;
-        params.field_map = &map;
-        params.layers = 2;
-        assert_int_equal(refocus_render(renderer, &params, &image), 0);
+        params.render.method = REFOCUS_METHOD_DIFFUSION;
+        params.diffusion.solver = solver;
+        params.field.shape = REFOCUS_FIELD_PICTURE;
+        params.field.map = &map;
+        params.diffusion.layers = 2;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
         for (int i = 0; i < SIDE * SIDE; i++) {
             const double r = hypot(i % SIDE - SIDE / 2, i / SIDE - SIDE / 2);
 
@@ -97,16 +97,16 @@ static void solvers(void **state)
         p = picture_make(w, h, 60u + i);
         renderer = prepared(&p, cases[i].blur, 1);
         for (uint32_t solver = 0; solver < 2; solver++) {
-            struct refocus_render_params params = refocus_render_params_default(0, cases[i].blur);
+            struct refocus_settings params = refocus_settings_default(0, cases[i].blur);
             const struct refocus_image image =
                 refocus_image_packed(REFOCUS_FORMAT_RGB8, out[solver], w, h, 3 * w);
 
-            params.method = REFOCUS_METHOD_DIFFUSION;
-            params.solver = solver;
-            params.field = cases[i].field;
-            params.field_disparity = 0.2f;
+            params.render.method = REFOCUS_METHOD_DIFFUSION;
+            params.diffusion.solver = solver;
+            params.field.shape = cases[i].field;
+            params.field.disparity = 0.2f;
             seconds[solver] = now();
-            assert_int_equal(refocus_render(renderer, &params, &image), 0);
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
             seconds[solver] = now() - seconds[solver];
         }
         for (int k = 0; k < 3 * w * h; k++)

@@ -6,15 +6,15 @@ enum { W = 40, H = 30 };
 static void render(struct refocus_renderer *renderer, uint32_t method, int cell, uint32_t seed,
                    uint8_t *out)
 {
-    struct refocus_render_params params = refocus_render_params_default(0.3f, 6);
+    struct refocus_settings params = refocus_settings_default(0.3f, 6);
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
-    params.method = method;
-    params.rays = REFOCUS_RAYS_FULL;
-    params.blend = REFOCUS_BLEND_STORED;
-    params.cell = cell;
-    params.seed = seed;
-    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+    params.render.method = method;
+    params.render.rays = REFOCUS_RAYS_FULL;
+    params.render.blend = REFOCUS_BLEND_STORED;
+    params.jittered.cell = cell;
+    params.jittered.seed = seed;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
 }
 
 static void seeds(void **state)

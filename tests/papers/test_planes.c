@@ -6,16 +6,16 @@ enum { W = 90, H = 60, K = 7 };
 
 static void render(struct refocus_renderer *renderer, uint32_t method, uint8_t *out)
 {
-    struct refocus_render_params params = refocus_render_params_default(0, K);
+    struct refocus_settings params = refocus_settings_default(0, K);
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
-    params.method = method;
-    params.rays = REFOCUS_RAYS_FULL;
-    params.cell = 1;
-    params.attention_angle = 170;
-    params.blend = REFOCUS_BLEND_STORED;
-    params.iterations = 1;
-    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+    params.render.method = method;
+    params.render.rays = REFOCUS_RAYS_FULL;
+    params.jittered.cell = 1;
+    params.foveated.angle = 170;
+    params.render.blend = REFOCUS_BLEND_STORED;
+    params.search.iterations = 1;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
 }
 
 /* Mean and largest difference to full tracing, away from the border. */

@@ -53,16 +53,16 @@ static void table(void **state)
 static void render(struct refocus_renderer *renderer, const struct picture *p, float angle,
                    float depth, uint8_t *out)
 {
-    struct refocus_render_params params = refocus_render_params_default(0.4f, 9);
+    struct refocus_settings params = refocus_settings_default(0.4f, 9);
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, p->width, p->height, 3 * p->width);
 
-    params.method = REFOCUS_METHOD_FOVEATED;
-    params.attention_x = 0.25f;
-    params.attention_angle = angle;
-    params.attention_depth = depth;
-    params.picture_angle = 60;
-    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+    params.render.method = REFOCUS_METHOD_FOVEATED;
+    params.foveated.x = 0.25f;
+    params.foveated.angle = angle;
+    params.foveated.depth = depth;
+    params.foveated.picture_angle = 60;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
 }
 
 /* Inside the cone the bytes are those of the exact technique, outside of its fading side those

@@ -146,7 +146,7 @@ static void point(void **state)
 {
     enum { SIDE = 61 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, 0, 0}, 0);
-    struct refocus_render_params params = refocus_render_params_default(1, 6);
+    struct refocus_settings params = refocus_settings_default(1, 6);
     struct refocus_renderer *renderer;
     uint8_t out[SIDE * SIDE * 3];
     const struct refocus_image image =
@@ -156,17 +156,17 @@ static void point(void **state)
     (void)state;
     memset(p.rgb + 3 * (30 * SIDE + 30), 255, 3);
     renderer = prepared(&p, 6, 2);
-    params.method = REFOCUS_METHOD_SCATTER;
-    params.blend = REFOCUS_BLEND_STORED;
-    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+    params.render.method = REFOCUS_METHOD_SCATTER;
+    params.render.blend = REFOCUS_BLEND_STORED;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
     for (int i = 0; i < SIDE * SIDE; i++)
         sum += out[3 * i];
     /* 113 pixels of 2.25 codes each, rounded: 2 for the inner ones */
     assert_true(sum > 113 * 1.8 && sum < 113 * 2.6);
-    params.star_spikes = 4; /* light beyond the circle now, on the axes alone */
-    params.star_strength = 1;
-    params.sigma = 20;
-    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+    params.look.star_spikes = 4; /* light beyond the circle now, on the axes alone */
+    params.look.star_strength = 1;
+    params.render.sigma = 20;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
     assert_true(out[3 * (30 * SIDE + 47)] > 100 && out[3 * (13 * SIDE + 30)] > 100);
     assert_true(out[3 * (42 * SIDE + 42)] < 20);
     refocus_renderer_destroy(&renderer);

@@ -43,8 +43,8 @@ static int refocused(const struct quality_scene *scene, uint16_t *d, double *psn
         goto done;
     for (int i = 0; i < scene->views; i++) {
         const struct quality_view *view = &scene->view[i];
-        struct refocus_render_params params =
-            refocus_render_params_default((float)view->focus, (float)view->blur);
+        struct refocus_settings params =
+            refocus_settings_default((float)view->focus, (float)view->blur);
         const struct refocus_image out =
             refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, w, h, 3 * w);
         struct quality_scores scores;
@@ -55,7 +55,7 @@ static int refocused(const struct quality_scene *scene, uint16_t *d, double *psn
             continue;
         if (!(reference = quality_scene_reference(scene, view)))
             goto done;
-        bad = refocus_render(renderer, &params, &out) ||
+        bad = refocus_render_settings(renderer, &params, &out) ||
               quality_edge_mask(scene->disparity, w, h, view->focus, view->blur, mask) ||
               quality_score(pixels, reference, w, h, (int)ceil(view->blur), mask, &scores);
         free(reference);

@@ -61,14 +61,14 @@ static int set_up(struct subject *s, uint32_t format, const struct refocus_image
 }
 
 static int time_once(struct subject *s, const struct refocus_disparity *map,
-                     const struct refocus_render_params *params)
+                     const struct refocus_settings *params)
 {
     const double begin = now_ms();
     int status = refocus_prepare(s->renderer, &s->photo, map);
     const double prepared = now_ms();
 
     if (status == REFOCUS_OK)
-        status = refocus_render(s->renderer, params, &s->out);
+        status = refocus_render_settings(s->renderer, params, &s->out);
     const double end = now_ms();
     s->prepare = fmin(s->prepare, prepared - begin);
     s->render = fmin(s->render, end - prepared);
@@ -79,7 +79,7 @@ static int time_once(struct subject *s, const struct refocus_disparity *map,
 int main(int argc, char **argv)
 {
     struct subject subject[FORMATS];
-    struct refocus_render_params params;
+    struct refocus_settings params;
     char path[1200];
     int width, height, w, h;
 
@@ -103,12 +103,12 @@ int main(int argc, char **argv)
         refocus_image_planar(REFOCUS_FORMAT_RGB8, rgb, width, height);
     const struct refocus_disparity map = refocus_disparity16(disparity, w, h, 2 * (ptrdiff_t)w);
 
-    params = refocus_render_params_default(0.689f, (float)atof(argv[2]));
-    params.rays = atoi(argv[3]);
+    params = refocus_settings_default(0.689f, (float)atof(argv[2]));
+    params.render.rays = atoi(argv[3]);
     if (argc > 5)
-        params.sigma = (float)atof(argv[5]);
+        params.render.sigma = (float)atof(argv[5]);
     for (int i = first; i < end; i++)
-        if (set_up(&subject[i], formats[i].format, &photo, params.max_blur_radius))
+        if (set_up(&subject[i], formats[i].format, &photo, params.render.max_blur_radius))
             return 1;
     for (int n = 0; n < atoi(argv[4]); n++)
         for (int i = first; i < end; i++)

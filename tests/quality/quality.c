@@ -51,7 +51,7 @@ static int render_image(const struct quality_scene *scene, const struct quality_
 {
     struct refocus_renderer_params limits =
         refocus_renderer_params_default(scene->width, scene->height, (float)view->blur);
-    struct refocus_render_params params = settings->render;
+    struct refocus_settings params = settings->render;
     const struct refocus_disparity disparity = refocus_disparity16(
         scene->disparity, scene->width, scene->height, 2 * (ptrdiff_t)scene->width);
     struct refocus_aperture *aperture = NULL;
@@ -60,18 +60,18 @@ static int render_image(const struct quality_scene *scene, const struct quality_
 
     limits.threads = settings->threads;
     limits.papers = refocus_papers();
-    limits.methods = REFOCUS_METHOD_BIT(settings->render.method);
+    limits.methods = REFOCUS_METHOD_BIT(settings->render.render.method);
     limits.cpu = (uint32_t)settings->cpu;
-    limits.thin = settings->render.thin;
+    limits.thin = settings->render.thin.enabled;
     if ((status = make_aperture(view, &aperture)) ||
         (status = refocus_renderer_create(&renderer, &limits)) ||
         (status = refocus_prepare(renderer, photo, &disparity)))
         goto done;
-    params.focus_disparity = (float)view->focus;
-    params.max_blur_radius = (float)view->blur;
-    params.aperture = aperture;
+    params.render.focus_disparity = (float)view->focus;
+    params.render.max_blur_radius = (float)view->blur;
+    params.render.aperture = aperture;
     const double start = seconds();
-    status = refocus_render(renderer, &params, out);
+    status = refocus_render_settings(renderer, &params, out);
     *ms = 1000 * (seconds() - start);
 done:
     refocus_renderer_destroy(&renderer);
@@ -284,7 +284,7 @@ static void help(void)
          "  --border N            leave out N pixels at each side (default K; pair: 0)\n"
          "  --out FOLDER          write each picture, and its error x 4 about grey\n"
          "  --json                one JSON array instead of a table\n\n"
-         "settings, as in struct refocus_render_params:");
+         "settings, as in struct refocus_settings:");
     quality_settings_help(stdout);
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum kind { INT32, BYTE, FLOAT, NAMED, METHOD, CPU, TEXT };
+enum kind { INT32, FLOAT, NAMED, METHOD, CPU, TEXT };
 
 struct name {
     const char *name;
@@ -34,23 +34,23 @@ static const struct key {
     size_t offset;
     const struct name *names;
 } keys[] = {
-    {"method", METHOD, RENDER(method), NULL},
-    {"rays", INT32, RENDER(rays), ray_names},
-    {"iterations", INT32, RENDER(iterations), NULL},
-    {"blend", NAMED, RENDER(blend), blend_names},
-    {"sigma", FLOAT, RENDER(sigma), sigma_names},
-    {"mirror", BYTE, RENDER(mirror), NULL},
-    {"background", BYTE, RENDER(background), NULL},
-    {"prefilter", BYTE, RENDER(prefilter), NULL},
-    {"thin", INT32, RENDER(thin), NULL},
-    {"highlight", FLOAT, RENDER(highlight_gain), NULL},
-    {"cell", INT32, RENDER(cell), NULL},
-    {"seed", INT32, RENDER(seed), NULL},
-    {"spread", INT32, RENDER(spread), NULL},
-    {"attention_angle", FLOAT, RENDER(attention_angle), NULL},
-    {"layers", INT32, RENDER(layers), NULL},
-    {"solver", INT32, RENDER(solver), NULL},
-    {"conductivity", FLOAT, RENDER(conductivity), NULL},
+    {"method", METHOD, RENDER(render.method), NULL},
+    {"rays", INT32, RENDER(render.rays), ray_names},
+    {"iterations", INT32, RENDER(search.iterations), NULL},
+    {"blend", NAMED, RENDER(render.blend), blend_names},
+    {"sigma", FLOAT, RENDER(render.sigma), sigma_names},
+    {"mirror", INT32, RENDER(search.mirror), NULL},
+    {"background", INT32, RENDER(search.background), NULL},
+    {"prefilter", INT32, RENDER(render.prefilter), NULL},
+    {"thin", INT32, RENDER(thin.enabled), NULL},
+    {"highlight", FLOAT, RENDER(highlights.gain), NULL},
+    {"cell", INT32, RENDER(jittered.cell), NULL},
+    {"seed", INT32, RENDER(jittered.seed), NULL},
+    {"spread", INT32, RENDER(scatter.spread), NULL},
+    {"attention_angle", FLOAT, RENDER(foveated.angle), NULL},
+    {"layers", INT32, RENDER(diffusion.layers), NULL},
+    {"solver", INT32, RENDER(diffusion.solver), NULL},
+    {"conductivity", FLOAT, RENDER(diffusion.conductivity), NULL},
     {"threads", INT32, offsetof(struct quality_settings, threads), NULL},
     {"cpu", CPU, offsetof(struct quality_settings, cpu), NULL},
     {"format", NAMED, offsetof(struct quality_settings, format), format_names},
@@ -103,8 +103,6 @@ static int set(struct quality_settings *settings, const struct key *key, const c
     }
     if (key->kind == METHOD && value < 0)
         settings->input = 1;
-    else if (key->kind == BYTE)
-        *(uint8_t *)field = (uint8_t)value;
     else if (key->kind == FLOAT)
         *(float *)field = (float)value;
     else
@@ -137,7 +135,7 @@ int quality_settings_parse(struct quality_settings *settings, const char *text)
     char *colon, *save, *pair;
 
     memset(settings, 0, sizeof *settings);
-    settings->render = refocus_render_params_default(0, 0);
+    settings->render = refocus_settings_default(0, 0);
     if (strlen(text) >= sizeof copy || !(colon = strchr(strcpy(copy, text), ':')) ||
         (size_t)(colon - copy) >= sizeof settings->label) {
         fprintf(stderr, "refocus-quality: '%s' is not LABEL:key=value,...\n", text);

@@ -16,7 +16,7 @@ struct quality_settings {
     int32_t cpu;
     int32_t format;  /* a format of Y, U, V to prepare and render in; 0: R, G, B */
     int32_t through; /* a format to convert to and from only, rendered in R, G, B */
-    struct refocus_render_params render;
+    struct refocus_settings render;
 };
 
 /* Returns 0, or -1 after a line on standard error. */

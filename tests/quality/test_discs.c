@@ -65,7 +65,7 @@ static void render(struct view *view, const struct refocus_aperture *aperture)
 {
     struct refocus_renderer_params limits =
         refocus_renderer_params_default(view->width, view->height, K);
-    struct refocus_render_params params = refocus_render_params_default((float)view->df, K);
+    struct refocus_settings params = refocus_settings_default((float)view->df, K);
     const struct refocus_image photo = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, view->photo, view->width, view->height, 3 * view->width);
     const struct refocus_image out = refocus_image_packed(
@@ -74,11 +74,12 @@ static void render(struct view *view, const struct refocus_aperture *aperture)
         refocus_disparity16(view->disparity, view->width, view->height, 2 * view->width);
     struct refocus_renderer *renderer;
 
-    params.rays = 128;
-    params.highlight_gain = 10;
-    params.aperture = aperture;
+    params.render.rays = 128;
+    params.highlights.gain = 10;
+    params.render.aperture = aperture;
     if (refocus_renderer_create(&renderer, &limits) ||
-        refocus_prepare(renderer, &photo, &disparity) || refocus_render(renderer, &params, &out))
+        refocus_prepare(renderer, &photo, &disparity) ||
+        refocus_render_settings(renderer, &params, &out))
         exit(1);
     refocus_renderer_destroy(&renderer);
 }

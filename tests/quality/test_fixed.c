@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <refocus/settings.h>
 
 #include "gather/frame.h"
 #include "metrics.h"
@@ -180,20 +181,20 @@ static struct scene with_silhouettes(const struct scene *s, const struct refocus
 static int compare(struct scene *s, struct refocus_renderer *r, uint32_t method, int tests,
                    uint8_t *fixed, uint8_t *exact)
 {
-    struct refocus_render_params params = refocus_render_params_default((float)s->df, (float)s->K);
+    struct refocus_settings params = refocus_settings_default((float)s->df, (float)s->K);
     const struct refocus_image out =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, fixed, s->width, s->height, 3 * s->width);
     double light[256], psnr;
 
     for (int c = 0; c < 256; c++)
         light[c] = to_light(c);
-    params.method = method;
-    params.iterations = tests;
-    params.prefilter = 0;
+    params.render.method = method;
+    params.search.iterations = tests;
+    params.render.prefilter = 0;
     if (method == REFOCUS_METHOD_SWEEP)
-        params.rays = 128; /* then all rows are computed: the others are the twin's part */
-    params.sigma = INFINITY;
-    if (refocus_render(r, &params, &out))
+        params.render.rays = 128; /* then all rows are computed: the others are the twin's part */
+    params.render.sigma = INFINITY;
+    if (refocus_render_settings(r, &params, &out))
         return 1;
     if (method == REFOCUS_METHOD_SWEEP) {
         struct scene patched = with_silhouettes(s, r);

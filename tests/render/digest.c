@@ -140,15 +140,15 @@ static bool hash_view(const struct view *view, const struct picture *p, uint32_t
         assert_int_equal(status, REFOCUS_OK);
         assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
         for (int i = 0; i < style_count; i++) {
-            struct refocus_render_params params = style_params(&styles[i], view->focus, view->blur);
+            struct refocus_settings params = style_params(&styles[i], view->focus, view->blur);
             struct refocus_aperture *aperture = style_aperture(&styles[i]);
 
-            params.aperture = aperture;
+            params.render.aperture = aperture;
             if (view->gain > 0)
-                params.highlight_gain = view->gain;
+                params.highlights.gain = view->gain;
             memset(out, 0xaa, sizeof out);
             if (takes(view, &styles[i]) && styles[i].method <= last_method) {
-                assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+                assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
                 hashes[i] = hash(out, (size_t)stride * (size_t)p->height);
             }
             refocus_aperture_destroy(&aperture);
@@ -257,13 +257,14 @@ static bool hash_yuv_view(const struct yuv_view *view, const struct picture *p, 
     if (status == REFOCUS_OK) {
         assert_int_equal(refocus_prepare(renderer, &photo.image, &map), REFOCUS_OK);
         for (int i = 0; i < style_count; i++) {
-            struct refocus_render_params params = style_params(&styles[i], view->focus, view->blur);
+            struct refocus_settings params = style_params(&styles[i], view->focus, view->blur);
             struct refocus_aperture *aperture = style_aperture(&styles[i]);
 
-            params.aperture = aperture;
-            params.highlight_gain = view->gain;
+            params.render.aperture = aperture;
+            params.highlights.gain = view->gain;
             if (styles[i].method == REFOCUS_METHOD_SWEEP) {
-                assert_int_equal(refocus_render(renderer, &params, &out.image), REFOCUS_OK);
+                assert_int_equal(refocus_render_settings(renderer, &params, &out.image),
+                                 REFOCUS_OK);
                 hashes[i] = hash_samples(&out.image);
             }
             refocus_aperture_destroy(&aperture);
@@ -343,7 +344,7 @@ static void effects(void **state)
     struct picture p = night(W, H);
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
-    struct refocus_render_params params;
+    struct refocus_settings params;
     uint64_t plain[64];
     const char *name;
 
@@ -364,8 +365,8 @@ static void effects(void **state)
             struct refocus_aperture *aperture = effect_aperture(i);
             uint64_t is;
 
-            params.aperture = aperture;
-            assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+            params.render.aperture = aperture;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
             refocus_aperture_destroy(&aperture);
             is = hash(out, sizeof out);
             if (cpu == REFOCUS_CPU_C) {
@@ -405,23 +406,22 @@ static void thin(void **state)
             refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * (ptrdiff_t)w);
         struct refocus_renderer_params limits =
             refocus_renderer_params_default(w, h, shots[i].blur);
-        struct refocus_render_params params =
-            refocus_render_params_default(shots[i].focus, shots[i].blur);
+        struct refocus_settings params = refocus_settings_default(shots[i].focus, shots[i].blur);
         struct refocus_aperture *aperture = NULL;
         struct refocus_renderer *renderer;
         char name[80];
 
-        limits.thin = params.thin = 1;
-        params.rays = shots[i].rays;
-        params.blend = shots[i].blend;
-        params.sigma = shots[i].sigma;
+        limits.thin = params.thin.enabled = 1;
+        params.render.rays = shots[i].rays;
+        params.render.blend = shots[i].blend;
+        params.render.sigma = shots[i].sigma;
         assert_non_null(out);
         if (shots[i].blades)
             assert_int_equal(refocus_aperture_create_polygon(&aperture, shots[i].blades, 20), 0);
-        params.aperture = aperture;
+        params.render.aperture = aperture;
         assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
         assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
         snprintf(name, sizeof name, "thin: %d x %d, K = %g", w, h, (double)shots[i].blur);
         check_golden(hash(out, 3 * (size_t)w * (size_t)h), name);
         refocus_renderer_destroy(&renderer);

@@ -30,7 +30,7 @@ struct call {
     struct refocus_renderer *renderer;
     const struct refocus_image *photo; /* prepare, or NULL: render */
     const struct refocus_disparity *disparity;
-    struct refocus_render_params params;
+    struct refocus_settings params;
     struct refocus_image out;
     int status;
     double end_ms;
@@ -39,7 +39,7 @@ struct call {
 static void run(struct call *call)
 {
     call->status = call->photo ? refocus_prepare(call->renderer, call->photo, call->disparity)
-                               : refocus_render(call->renderer, &call->params, &call->out);
+                               : refocus_render_settings(call->renderer, &call->params, &call->out);
     call->end_ms = now_ms(CLOCK_MONOTONIC);
 }
 
@@ -90,7 +90,7 @@ static struct refocus_image part(uint8_t *out, int w, int h)
 }
 
 /* The least time of some renders, each after `before`. */
-static double time_render(struct call call, const struct refocus_render_params *before)
+static double time_render(struct call call, const struct refocus_settings *before)
 {
     struct call first = call;
     double best = 1e30;
@@ -122,34 +122,36 @@ static void print_time(const char *name, double ms)
 
 static void measure_times(struct call call, uint8_t *out)
 {
-    struct refocus_render_params tap, half;
+    struct refocus_settings tap, half;
     double start = now_ms(CLOCK_MONOTONIC);
 
     assert_int_equal(refocus_prepare(call.renderer, call.photo, call.disparity), REFOCUS_OK);
     print_time("prepare", now_ms(CLOCK_MONOTONIC) - start);
     call.photo = NULL;
     tap = call.params;
-    tap.focus_disparity = 0.2f;
+    tap.render.focus_disparity = 0.2f;
     half = call.params;
-    half.max_blur_radius = blur / 2;
+    half.render.max_blur_radius = blur / 2;
     print_time("whole, after another focus", time_render(call, &tap));
     print_time("whole, after another f-number", time_render(call, &half));
     half = call.params;
-    half.sigma = 400;
+    half.render.sigma = 400;
     print_time("whole, after another sigma", time_render(call, &half));
     print_time("whole, after another region", time_render(call, NULL));
     call.out = part(out, width < 256 ? width : 256, height < 256 ? height : 256);
-    call.params.region_x = (width - call.out.width) / 2 / 16 * 16 + 5;
-    call.params.region_y = (height - call.out.height) / 3;
-    call.params.region_x = call.params.region_x > width - call.out.width ? 0 : call.params.region_x;
-    call.params.region_width = call.out.width;
-    call.params.region_height = call.out.height;
+    call.params.render.region_x = (width - call.out.width) / 2 / 16 * 16 + 5;
+    call.params.render.region_y = (height - call.out.height) / 3;
+    call.params.render.region_x =
+        call.params.render.region_x > width - call.out.width ? 0 : call.params.render.region_x;
+    call.params.render.region_width = call.out.width;
+    call.params.render.region_height = call.out.height;
     print_time("256x256, after another focus", time_render(call, &tap));
     half = call.params;
-    half.region_x = half.region_y = half.region_width = half.region_height = 0;
+    half.render.region_x = half.render.region_y = half.render.region_width =
+        half.render.region_height = 0;
     print_time("256x256, after the whole", time_render(call, &half));
-    call.params.region_x = call.params.region_y = 0;
-    call.params.region_width = call.params.region_height = 0;
+    call.params.render.region_x = call.params.render.region_y = 0;
+    call.params.render.region_width = call.params.render.region_height = 0;
 }
 
 static void parse(int argc, char **argv)
@@ -172,16 +174,12 @@ static void measure(void **state)
     uint8_t *out = malloc(3 * (size_t)width * (size_t)height), small[48];
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
-    const struct refocus_disparity coarse = {8, 8, 6, small, 8};
+    const struct refocus_disparity coarse = refocus_disparity8(small, 8, 6, 8);
     struct refocus_renderer_params limits = refocus_renderer_params_default(width, height, blur);
-    struct call call = {NULL,
-                        &photo,
-                        &disparity,
-                        refocus_render_params_default(0.5f, blur),
-                        part(out, width, height),
-                        0,
-                        0};
-    struct refocus_renderer_info info;
+    struct call call = {
+        NULL, &photo, &disparity, refocus_settings_default(0.5f, blur), part(out, width, height),
+        0,    0};
+    struct refocus_renderer_info info = refocus_renderer_info_default();
 
     (void)state;
     assert_non_null(out);
@@ -195,7 +193,8 @@ static void measure(void **state)
     printf("{\n  \"width\": %d, \"height\": %d, \"blur\": %g, \"threads\": %d, "
            "\"rays\": %d, "
            "\"cpu\": \"%s\",\n  \"times\": [\n",
-           width, height, (double)blur, info.threads, call.params.rays, refocus_cpu_name(info.cpu));
+           width, height, (double)blur, info.threads, call.params.render.rays,
+           refocus_cpu_name(info.cpu));
     measure_times(call, out);
     printf("    {}\n  ],\n  \"cancel\": [\n");
     measure_cancel(call, "prepare", 0);
@@ -210,14 +209,14 @@ static void measure(void **state)
 
             if (full && m > REFOCUS_METHOD_BLUR)
                 continue;
-            call.params = refocus_render_params_default(0.5f, blur);
-            call.params.method = m;
-            call.params.rays = full ? REFOCUS_RAYS_FULL : 128;
-            call.params.highlight_gain = full ? 4 : 9.5f; /* hit by rays; splatted */
-            call.params.star_spikes = 8;
-            call.params.star_length = 127;
-            call.params.attention_angle = 90;
-            call.params.spread = REFOCUS_SPREAD_LOMMEL;
+            call.params = refocus_settings_default(0.5f, blur);
+            call.params.render.method = m;
+            call.params.render.rays = full ? REFOCUS_RAYS_FULL : 128;
+            call.params.highlights.gain = full ? 4 : 9.5f; /* hit by rays; splatted */
+            call.params.look.star_spikes = 8;
+            call.params.look.star_length = 127;
+            call.params.foveated.angle = 90;
+            call.params.scatter.spread = REFOCUS_SPREAD_LOMMEL;
             snprintf(name, sizeof name, "%s%s", refocus_method_name(m), full ? ", every ray" : "");
             measure_cancel(call, name, m == REFOCUS_METHOD_COUNT - 1);
         }

@@ -232,39 +232,40 @@ struct refocus_disparity picture_disparity(const struct picture *p)
 }
 
 /* Settings that only one method looks at. */
-static void set_variant(struct refocus_render_params *params, int variant)
+static void set_variant(struct refocus_settings *params, int variant)
 {
-    params->highlight_gain = variant == 1 ? 4 : variant == 2 ? 2.5f : 1;
-    params->seed = 7;
-    params->cell = variant == 1 ? 4 : 2;
-    params->spread = variant == 1 ? REFOCUS_SPREAD_LOMMEL : REFOCUS_SPREAD_UNIFORM;
-    params->airy_radius = 1.5f;
-    params->depth_ratio = variant == 1 ? 3 : 1;
-    params->star_spikes = variant == 2 && params->method == REFOCUS_METHOD_SCATTER ? 6 : 0;
-    params->star_length = 9;
-    params->attention_angle = variant == 1 ? 160 : variant == 2 ? 0 : 20;
-    params->attention_depth = variant == 1 ? 1 : 0.3f;
-    params->middle_ratio = variant == 1 ? 2 : 0;
-    params->last_ratio = variant == 1 ? 4 : 0;
-    params->solver = variant == 1 ? REFOCUS_SOLVER_ITERATED : REFOCUS_SOLVER_FAST;
-    if (params->method == REFOCUS_METHOD_DIFFUSION)
-        params->field = variant == 2   ? REFOCUS_FIELD_SPHERE
-                        : variant == 3 ? REFOCUS_FIELD_PLUS
-                                       : REFOCUS_FIELD_LENS;
+    params->highlights.gain = variant == 1 ? 4 : variant == 2 ? 2.5f : 1;
+    params->jittered.seed = params->look.grain_seed = 7;
+    params->jittered.cell = variant == 1 ? 4 : 2;
+    params->scatter.spread = variant == 1 ? REFOCUS_SPREAD_LOMMEL : REFOCUS_SPREAD_UNIFORM;
+    params->scatter.airy_radius = 1.5f;
+    params->scatter.depth_ratio = variant == 1 ? 3 : 1;
+    params->look.star_spikes =
+        variant == 2 && params->render.method == REFOCUS_METHOD_SCATTER ? 6 : 0;
+    params->look.star_length = 9;
+    params->foveated.angle = variant == 1 ? 160 : variant == 2 ? 0 : 20;
+    params->foveated.depth = variant == 1 ? 1 : 0.3f;
+    params->interpolated.middle_ratio = variant == 1 ? 2 : 0;
+    params->interpolated.last_ratio = variant == 1 ? 4 : 0;
+    params->diffusion.solver = variant == 1 ? REFOCUS_SOLVER_ITERATED : REFOCUS_SOLVER_FAST;
+    if (params->render.method == REFOCUS_METHOD_DIFFUSION)
+        params->field.shape = variant == 2   ? REFOCUS_FIELD_SPHERE
+                              : variant == 3 ? REFOCUS_FIELD_PLUS
+                                             : REFOCUS_FIELD_LENS;
 }
 
-struct refocus_render_params style_params(const struct style *style, float focus, float blur)
+struct refocus_settings style_params(const struct style *style, float focus, float blur)
 {
-    struct refocus_render_params params = refocus_render_params_default(focus, blur);
+    struct refocus_settings params = refocus_settings_default(focus, blur);
 
-    params.method = style->method;
-    params.rays = style->rays;
-    params.iterations = style->iterations;
-    params.mirror = (uint8_t)style->mirror;
-    params.background = (uint8_t)style->background;
-    params.prefilter = (uint8_t)style->prefilter;
-    params.blend = style->blend;
-    params.sigma = style->sigma > 0 ? style->sigma : INFINITY;
+    params.render.method = style->method;
+    params.render.rays = style->rays;
+    params.search.iterations = style->iterations;
+    params.search.mirror = (uint8_t)style->mirror;
+    params.search.background = (uint8_t)style->background;
+    params.render.prefilter = (uint8_t)style->prefilter;
+    params.render.blend = style->blend;
+    params.render.sigma = style->sigma > 0 ? style->sigma : INFINITY;
     set_variant(&params, style->variant);
     return params;
 }
@@ -274,64 +275,64 @@ static const struct refocus_disparity *ramp_map(void)
 {
     static const uint8_t samples[3][5] = {
         {0, 30, 80, 160, 255}, {10, 255, 90, 0, 220}, {200, 120, 40, 60, 255}};
-    static const struct refocus_disparity map = {8, 5, 3, samples, 5};
+    static const struct refocus_disparity map = {sizeof map, 8, 5, 3, samples, 5};
 
     return &map;
 }
 
 enum { METHODS = 4 };
 
-static void set_field(struct refocus_render_params *params, uint32_t field)
+static void set_field(struct refocus_settings *params, uint32_t field)
 {
-    params->field = field;
-    params->field_map = ramp_map();
-    params->field_x = 0.4f;
-    params->field_y = 0.6f;
-    params->field_disparity = 0.45f;
-    params->field_angle = 30;
+    params->field.shape = field;
+    params->field.map = ramp_map();
+    params->field.x = 0.4f;
+    params->field.y = 0.6f;
+    params->field.disparity = 0.45f;
+    params->field.angle = 30;
 }
 
-static void set_tilt(struct refocus_render_params *params)
+static void set_tilt(struct refocus_settings *params)
 {
-    params->tilt_across = -0.5f;
-    params->tilt_down = 1.2f;
-    params->tilt_y = 0.35f;
+    params->focus.tilt_across = -0.5f;
+    params->focus.tilt_down = 1.2f;
+    params->focus.tilt_y = 0.35f;
 }
 
-static void set_bands(struct refocus_render_params *params)
+static void set_bands(struct refocus_settings *params)
 {
-    params->focus_half_width = 0.03f;
-    params->focus_transition = 0.05f;
-    params->bands = 2;
-    params->band[0] = (struct refocus_band){0.95f, 0.04f, 0};
-    params->band[1] = (struct refocus_band){0.1f, 0, 0};
+    params->focus.half_width = 0.03f;
+    params->focus.transition = 0.05f;
+    params->focus.bands = 2;
+    params->focus.band[0] = (struct refocus_band){0.95f, 0.04f, 0};
+    params->focus.band[1] = (struct refocus_band){0.1f, 0, 0};
 }
 
 /* Effects from here on are of the look of the blur. */
 enum { FIRST_LOOK = 15, IRIS = FIRST_LOOK };
 
-static void set_look(struct refocus_render_params *params, int i)
+static void set_look(struct refocus_settings *params, int i)
 {
     const bool all = i == IRIS + 14;
     const bool cut_off = i == IRIS + 15 || i == IRIS + 16;
 
-    params->cat_eye = i == IRIS + 1 || all ? 0.6f : cut_off ? 0.85f : 0;
-    params->rays = i == IRIS + 3 || i == IRIS + 7 || i == IRIS + 16 ? REFOCUS_RAYS_FULL : 64;
-    params->sigma = i == IRIS + 5 || i == IRIS + 12 || all ? 200 : INFINITY;
-    params->fringe = i == IRIS + 6 || all ? 0.2f : i == IRIS + 7 ? -0.3f : 0;
-    params->star_spikes = i == IRIS + 8 || all ? 5 : 0;
-    params->star_length = 15;
-    params->star_angle = 10;
-    params->star_strength = 0.5f;
-    params->grain = i == IRIS + 9 || all ? 1.5f : 0;
-    params->seed = 99;
-    params->highlight_gain = i == IRIS + 8 || all                                 ? 4
-                             : i == IRIS + 10 || i == IRIS + 17 || i == IRIS + 18 ? 8
-                             : i == IRIS + 11 || i == IRIS + 12                   ? 16
-                                                                                  : 1;
+    params->look.cat_eye = i == IRIS + 1 || all ? 0.6f : cut_off ? 0.85f : 0;
+    params->render.rays = i == IRIS + 3 || i == IRIS + 7 || i == IRIS + 16 ? REFOCUS_RAYS_FULL : 64;
+    params->render.sigma = i == IRIS + 5 || i == IRIS + 12 || all ? 200 : INFINITY;
+    params->look.fringe = i == IRIS + 6 || all ? 0.2f : i == IRIS + 7 ? -0.3f : 0;
+    params->look.star_spikes = i == IRIS + 8 || all ? 5 : 0;
+    params->look.star_length = 15;
+    params->look.star_angle = 10;
+    params->look.star_strength = 0.5f;
+    params->look.grain = i == IRIS + 9 || all ? 1.5f : 0;
+    params->look.grain_seed = 99;
+    params->highlights.gain = i == IRIS + 8 || all                                 ? 4
+                              : i == IRIS + 10 || i == IRIS + 17 || i == IRIS + 18 ? 8
+                              : i == IRIS + 11 || i == IRIS + 12                   ? 16
+                                                                                   : 1;
 }
 
-bool effect_params(int i, float focus, float blur, struct refocus_render_params *params,
+bool effect_params(int i, float focus, float blur, struct refocus_settings *params,
                    const char **name)
 {
     static const uint32_t method[METHODS] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
@@ -348,24 +349,24 @@ bool effect_params(int i, float focus, float blur, struct refocus_render_params 
         "hearts of lamps", "stars of lamps"};
     const int count = sizeof names / sizeof *names;
 
-    *params = refocus_render_params_default(focus, blur);
+    *params = refocus_settings_default(focus, blur);
     if (i >= count)
         return false;
     *name = names[i];
-    params->method = i < METHODS ? method[i] : REFOCUS_METHOD_SWEEP;
+    params->render.method = i < METHODS ? method[i] : REFOCUS_METHOD_SWEEP;
     if (i < METHODS || i == 4 || i == 14)
         set_tilt(params);
-    params->depth_share = i == 4 ? 0 : i == 14 ? 0.75f : 1;
+    params->focus.depth_share = i == 4 ? 0 : i == 14 ? 0.75f : 1;
     if (i == 5 || i == 14)
         set_bands(params);
     if (i == 6 || i == 14)
-        params->focus_map = ramp_map();
+        params->focus.map = ramp_map();
     if (i == 7 || i == 14)
-        params->sharp_map = ramp_map();
+        params->focus.sharp_map = ramp_map();
     if (i == 8 || i == 14) {
-        params->least_disparity = 0.2f;
-        params->most_disparity = 0.8f;
-        params->blur_limit = 0.6f * blur;
+        params->focus.least_disparity = 0.2f;
+        params->focus.most_disparity = 0.8f;
+        params->focus.blur_limit = 0.6f * blur;
     }
     if (i >= 9 && i < 14)
         set_field(params, (uint32_t)(i - 8));
@@ -436,14 +437,14 @@ struct refocus_renderer *prepared(const struct picture *picture, float blur, int
 void render_style(struct refocus_renderer *renderer, const struct picture *picture,
                   const struct style *style, float focus, float blur, uint8_t *out)
 {
-    struct refocus_render_params params = style_params(style, focus, blur);
+    struct refocus_settings params = style_params(style, focus, blur);
     struct refocus_aperture *aperture = style_aperture(style);
     const struct refocus_image image = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, out, picture->width, picture->height, 3 * (ptrdiff_t)picture->width);
     int status;
 
-    params.aperture = aperture;
-    status = refocus_render(renderer, &params, &image);
+    params.render.aperture = aperture;
+    status = refocus_render_settings(renderer, &params, &image);
     refocus_aperture_destroy(&aperture);
     if (status)
         fail_msg("%s, %d x %d, focus %g, blur %g: %s", style->name, picture->width, picture->height,

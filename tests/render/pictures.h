@@ -61,10 +61,10 @@ struct style {
 extern const struct style styles[];
 extern const int style_count;
 
-struct refocus_render_params style_params(const struct style *style, float focus, float blur);
+struct refocus_settings style_params(const struct style *style, float focus, float blur);
 /* Settings that no style has, with a name each; false: there is none of that number. All of
  * `sweep`, but for the first 4: one of each method that takes any focus. */
-bool effect_params(int i, float focus, float blur, struct refocus_render_params *params,
+bool effect_params(int i, float focus, float blur, struct refocus_settings *params,
                    const char **name);
 /* To be destroyed by the caller; NULL for a disc. */
 struct refocus_aperture *effect_aperture(int i);

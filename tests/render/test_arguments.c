@@ -93,164 +93,205 @@ static void bad_limits(void **state)
     refocus_cancel(NULL);
 }
 
+/* The last line of the log. */
+static char said[256];
+
+static void hear(void *user, const char *text)
+{
+    (void)user;
+    assert_true(strlen(text) < sizeof said && !strchr(text, '\n'));
+    strcpy(said, text);
+}
+
+/* Whether the log names the function and the last part of a member such as "look.grain = 5". */
+static bool is_named(const char *function, const char *what)
+{
+    char member[64] = "";
+    const char *const dot = strchr(what, '.'), *const value = strstr(what, " = ");
+
+    what = dot && dot < value ? dot + 1 : what;
+    strncat(member, what, (size_t)(value - what));
+    if (strncmp(member, "region", 6) == 0)
+        member[6] = 0; /* four numbers that are one thing */
+    return strncmp(said, function, strlen(function)) == 0 && strstr(said, member);
+}
+
+/* A renderer whose log is heard, with a picture prepared. */
+static struct refocus_renderer *heard(const struct picture *p)
+{
+    struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 5);
+    const struct refocus_image photo = picture_image(p);
+    const struct refocus_disparity disparity = picture_disparity(p);
+    struct refocus_renderer *renderer;
+
+    limits.threads = 1;
+    limits.log.message = hear;
+    limits.papers = refocus_papers();
+    limits.methods = REFOCUS_METHODS_ALL;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+    return renderer;
+}
+
 static void bad_settings(void **state)
 {
     const struct bad bad[] = {
-        BAD(refocus_render_params, struct_size, 0),
-        BAD(refocus_render_params, struct_size, 8),
-        BAD(refocus_render_params, method, 10),
-        BAD(refocus_render_params, method, UINT32_MAX),
-        BAD(refocus_render_params, focus_disparity, -0.01f),
-        BAD(refocus_render_params, focus_disparity, 1.01f),
-        BAD(refocus_render_params, focus_disparity, NAN),
-        BAD(refocus_render_params, max_blur_radius, -1),
-        BAD(refocus_render_params, max_blur_radius, 5.01f),
-        BAD(refocus_render_params, max_blur_radius, NAN),
-        BAD(refocus_render_params, rays, 0),
-        BAD(refocus_render_params, rays, -2),
-        BAD(refocus_render_params, rays, 1025),
-        BAD(refocus_render_params, rays, INT32_MAX),
-        BAD(refocus_render_params, blend, 3),
-        BAD(refocus_render_params, sigma, 0.99f),
-        BAD(refocus_render_params, sigma, -1),
-        BAD(refocus_render_params, sigma, NAN),
-        BAD(refocus_render_params, highlight_gain, 0.99f),
-        BAD(refocus_render_params, highlight_gain, 16.01f),
-        BAD(refocus_render_params, highlight_gain, NAN),
-        BAD(refocus_render_params, iterations, 0),
-        BAD(refocus_render_params, iterations, 65),
-        BAD(refocus_render_params, iterations, -1),
-        BAD(refocus_render_params, mirror, 2),
-        BAD(refocus_render_params, background, 2),
-        BAD(refocus_render_params, prefilter, 2),
-        BAD(refocus_render_params, reserved, 1),
-        BAD(refocus_render_params, region_x, -1),
-        BAD(refocus_render_params, region_x, 1),
-        BAD(refocus_render_params, region_y, 1),
-        BAD(refocus_render_params, region_width, W),
-        BAD(refocus_render_params, region_height, H),
-        BAD(refocus_render_params, region_width, -1),
-        BAD(refocus_render_params, cell, 0),
-        BAD(refocus_render_params, cell, 17),
-        BAD(refocus_render_params, spread, 2),
-        BAD(refocus_render_params, airy_radius, 0.2f),
-        BAD(refocus_render_params, airy_radius, 17),
-        BAD(refocus_render_params, airy_radius, NAN),
-        BAD(refocus_render_params, depth_ratio, 0.9f),
-        BAD(refocus_render_params, depth_ratio, INFINITY),
-        BAD(refocus_render_params, star_spikes, 1),
-        BAD(refocus_render_params, star_spikes, 17),
-        BAD(refocus_render_params, star_spikes, -2),
-        BAD(refocus_render_params, star_length, -1),
-        BAD(refocus_render_params, star_length, 128),
-        BAD(refocus_render_params, star_angle, NAN),
-        BAD(refocus_render_params, star_strength, 1.1f),
-        BAD(refocus_render_params, star_strength, NAN),
-        BAD(refocus_render_params, sharp_radius, 0.4f),
-        BAD(refocus_render_params, sharp_radius, NAN),
-        BAD(refocus_render_params, middle_ratio, 1),
-        BAD(refocus_render_params, middle_ratio, -2),
-        BAD(refocus_render_params, last_ratio, 0.5f),
-        BAD(refocus_render_params, last_ratio, NAN),
-        BAD(refocus_render_params, attention_x, -0.1f),
-        BAD(refocus_render_params, attention_y, 1.1f),
-        BAD(refocus_render_params, attention_angle, -1),
-        BAD(refocus_render_params, attention_angle, 171),
-        BAD(refocus_render_params, picture_angle, 0),
-        BAD(refocus_render_params, picture_angle, NAN),
-        BAD(refocus_render_params, attention_depth, 1.5f),
-        BAD(refocus_render_params, field, 6),
-        BAD(refocus_render_params, field_x, -1),
-        BAD(refocus_render_params, field_y, NAN),
-        BAD(refocus_render_params, field_disparity, 2),
-        BAD(refocus_render_params, field_radius, -1),
-        BAD(refocus_render_params, field_falloff, 0),
-        BAD(refocus_render_params, field_falloff, 5),
-        BAD(refocus_render_params, field_angle, INFINITY),
-        BAD(refocus_render_params, layers, 0),
-        BAD(refocus_render_params, layers, 9),
-        BAD(refocus_render_params, solver, 2),
-        BAD(refocus_render_params, conductivity, 0),
-        BAD(refocus_render_params, conductivity, 1.1f),
-        BAD(refocus_render_params, field_map, &(struct refocus_disparity){0}),
-        BAD(refocus_render_params, field, REFOCUS_FIELD_PICTURE), /* the picture is missing */
-        BAD(refocus_render_params, tilt_x, -0.1f),
-        BAD(refocus_render_params, tilt_y, 1.1f),
-        BAD(refocus_render_params, tilt_across, 64.1f),
-        BAD(refocus_render_params, tilt_across, NAN),
-        BAD(refocus_render_params, tilt_down, -64.1f),
-        BAD(refocus_render_params, depth_share, 1.01f),
-        BAD(refocus_render_params, depth_share, -0.1f),
-        BAD(refocus_render_params, depth_share, NAN),
-        BAD(refocus_render_params, focus_half_width, -0.1f),
-        BAD(refocus_render_params, focus_half_width, 1.1f),
-        BAD(refocus_render_params, focus_transition, NAN),
-        BAD(refocus_render_params, focus_transition, 2),
-        BAD(refocus_render_params, bands, -1),
-        BAD(refocus_render_params, bands, 16),
-        BAD(refocus_render_params, bands, INT32_MAX),
-        BAD(refocus_render_params, focus_map, &(struct refocus_disparity){0}),
-        BAD(refocus_render_params, sharp_map, &(struct refocus_disparity){0}),
-        BAD(refocus_render_params, least_disparity, -0.1f),
-        BAD(refocus_render_params, least_disparity, 1.1f),
-        BAD(refocus_render_params, most_disparity, -0.1f),
-        BAD(refocus_render_params, most_disparity, NAN),
-        BAD(refocus_render_params, cat_eye, -0.1f),
-        BAD(refocus_render_params, cat_eye, 0.91f),
-        BAD(refocus_render_params, cat_eye, NAN),
-        BAD(refocus_render_params, fringe, 0.51f),
-        BAD(refocus_render_params, fringe, -0.51f),
-        BAD(refocus_render_params, fringe, NAN),
-        BAD(refocus_render_params, grain, -0.1f),
-        BAD(refocus_render_params, grain, 4.1f),
-        BAD(refocus_render_params, grain, NAN),
-        BAD(refocus_render_params, thin, 2),
-        BAD(refocus_render_params, blur_limit, -1),
-        BAD(refocus_render_params, blur_limit, 127.1f)};
+        BAD(refocus_settings, render.struct_size, 0),
+        BAD(refocus_settings, render.struct_size, 8),
+        BAD(refocus_settings, render.method, 10),
+        BAD(refocus_settings, render.method, UINT32_MAX),
+        BAD(refocus_settings, render.focus_disparity, -0.01f),
+        BAD(refocus_settings, render.focus_disparity, 1.01f),
+        BAD(refocus_settings, render.focus_disparity, NAN),
+        BAD(refocus_settings, render.max_blur_radius, -1),
+        BAD(refocus_settings, render.max_blur_radius, 5.01f),
+        BAD(refocus_settings, render.max_blur_radius, NAN),
+        BAD(refocus_settings, render.rays, 0),
+        BAD(refocus_settings, render.rays, -2),
+        BAD(refocus_settings, render.rays, 1025),
+        BAD(refocus_settings, render.rays, INT32_MAX),
+        BAD(refocus_settings, render.blend, 3),
+        BAD(refocus_settings, render.sigma, 0.99f),
+        BAD(refocus_settings, render.sigma, -1),
+        BAD(refocus_settings, render.sigma, NAN),
+        BAD(refocus_settings, highlights.gain, 0.99f),
+        BAD(refocus_settings, highlights.gain, 16.01f),
+        BAD(refocus_settings, highlights.gain, NAN),
+        BAD(refocus_settings, search.iterations, 0),
+        BAD(refocus_settings, search.iterations, 65),
+        BAD(refocus_settings, search.iterations, -1),
+        BAD(refocus_settings, search.mirror, 2),
+        BAD(refocus_settings, search.background, 2),
+        BAD(refocus_settings, render.prefilter, 2),
+        BAD(refocus_settings, focus.reserved, 1),
+        BAD(refocus_settings, render.region_x, -1),
+        BAD(refocus_settings, render.region_x, 1),
+        BAD(refocus_settings, render.region_y, 1),
+        BAD(refocus_settings, render.region_width, W),
+        BAD(refocus_settings, render.region_height, H),
+        BAD(refocus_settings, render.region_width, -1),
+        BAD(refocus_settings, jittered.cell, 0),
+        BAD(refocus_settings, jittered.cell, 17),
+        BAD(refocus_settings, scatter.spread, 2),
+        BAD(refocus_settings, scatter.airy_radius, 0.2f),
+        BAD(refocus_settings, scatter.airy_radius, 17),
+        BAD(refocus_settings, scatter.airy_radius, NAN),
+        BAD(refocus_settings, scatter.depth_ratio, 0.9f),
+        BAD(refocus_settings, scatter.depth_ratio, INFINITY),
+        BAD(refocus_settings, look.star_spikes, 1),
+        BAD(refocus_settings, look.star_spikes, 17),
+        BAD(refocus_settings, look.star_spikes, -2),
+        BAD(refocus_settings, look.star_length, -1),
+        BAD(refocus_settings, look.star_length, 128),
+        BAD(refocus_settings, look.star_angle, NAN),
+        BAD(refocus_settings, look.star_strength, 1.1f),
+        BAD(refocus_settings, look.star_strength, NAN),
+        BAD(refocus_settings, interpolated.sharp_radius, 0.4f),
+        BAD(refocus_settings, interpolated.sharp_radius, NAN),
+        BAD(refocus_settings, interpolated.middle_ratio, 1),
+        BAD(refocus_settings, interpolated.middle_ratio, -2),
+        BAD(refocus_settings, interpolated.last_ratio, 0.5f),
+        BAD(refocus_settings, interpolated.last_ratio, NAN),
+        BAD(refocus_settings, foveated.x, -0.1f),
+        BAD(refocus_settings, foveated.y, 1.1f),
+        BAD(refocus_settings, foveated.angle, -1),
+        BAD(refocus_settings, foveated.angle, 171),
+        BAD(refocus_settings, foveated.picture_angle, 0),
+        BAD(refocus_settings, foveated.picture_angle, NAN),
+        BAD(refocus_settings, foveated.depth, 1.5f),
+        BAD(refocus_settings, field.shape, 6),
+        BAD(refocus_settings, field.x, -1),
+        BAD(refocus_settings, field.y, NAN),
+        BAD(refocus_settings, field.disparity, 2),
+        BAD(refocus_settings, field.radius, -1),
+        BAD(refocus_settings, field.falloff, 0),
+        BAD(refocus_settings, field.falloff, 5),
+        BAD(refocus_settings, field.angle, INFINITY),
+        BAD(refocus_settings, diffusion.layers, 0),
+        BAD(refocus_settings, diffusion.layers, 9),
+        BAD(refocus_settings, diffusion.solver, 2),
+        BAD(refocus_settings, diffusion.conductivity, 0),
+        BAD(refocus_settings, diffusion.conductivity, 1.1f),
+        BAD(refocus_settings, field.map, &(struct refocus_disparity){0}),
+        BAD(refocus_settings, field.shape, REFOCUS_FIELD_PICTURE), /* the picture is missing */
+        BAD(refocus_settings, focus.tilt_x, -0.1f),
+        BAD(refocus_settings, focus.tilt_y, 1.1f),
+        BAD(refocus_settings, focus.tilt_across, 64.1f),
+        BAD(refocus_settings, focus.tilt_across, NAN),
+        BAD(refocus_settings, focus.tilt_down, -64.1f),
+        BAD(refocus_settings, focus.depth_share, 1.01f),
+        BAD(refocus_settings, focus.depth_share, -0.1f),
+        BAD(refocus_settings, focus.depth_share, NAN),
+        BAD(refocus_settings, focus.half_width, -0.1f),
+        BAD(refocus_settings, focus.half_width, 1.1f),
+        BAD(refocus_settings, focus.transition, NAN),
+        BAD(refocus_settings, focus.transition, 2),
+        BAD(refocus_settings, focus.bands, -1),
+        BAD(refocus_settings, focus.bands, 16),
+        BAD(refocus_settings, focus.bands, INT32_MAX),
+        BAD(refocus_settings, focus.map, &(struct refocus_disparity){0}),
+        BAD(refocus_settings, focus.sharp_map, &(struct refocus_disparity){0}),
+        BAD(refocus_settings, focus.least_disparity, -0.1f),
+        BAD(refocus_settings, focus.least_disparity, 1.1f),
+        BAD(refocus_settings, focus.most_disparity, -0.1f),
+        BAD(refocus_settings, focus.most_disparity, NAN),
+        BAD(refocus_settings, look.cat_eye, -0.1f),
+        BAD(refocus_settings, look.cat_eye, 0.91f),
+        BAD(refocus_settings, look.cat_eye, NAN),
+        BAD(refocus_settings, look.fringe, 0.51f),
+        BAD(refocus_settings, look.fringe, -0.51f),
+        BAD(refocus_settings, look.fringe, NAN),
+        BAD(refocus_settings, look.grain, -0.1f),
+        BAD(refocus_settings, look.grain, 4.1f),
+        BAD(refocus_settings, look.grain, NAN),
+        BAD(refocus_settings, thin.enabled, 2),
+        BAD(refocus_settings, focus.blur_limit, -1),
+        BAD(refocus_settings, focus.blur_limit, 127.1f)};
     struct picture p = picture_make(W, H, 1);
-    struct refocus_renderer *renderer = prepared(&p, 5, 1);
+    struct refocus_renderer *renderer = heard(&p);
     uint8_t out[3 * W * H];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     (void)state;
     memset(out, 0x5a, sizeof out);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+        struct refocus_settings params = refocus_settings_default(0.5f, 5);
         int status;
 
         spoil(&params, &bad[i]);
-        status = refocus_render(renderer, &params, &image);
-        if (status != REFOCUS_ERR_ARGUMENT)
-            fail_msg("%s: %d", bad[i].what, status);
+        said[0] = 0;
+        status = refocus_render_settings(renderer, &params, &image);
+        if (status != REFOCUS_ERR_ARGUMENT || !is_named("refocus_render: ", bad[i].what))
+            fail_msg("%s: %d, %s", bad[i].what, status, said);
     }
     /* Both ratios, wrong way round; a picture that is missing; an aperture that is not round;
      * a method that the renderer was not made for. */
     struct refocus_aperture *aperture;
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    struct refocus_settings params = refocus_settings_default(0.5f, 5);
 
-    params.middle_ratio = params.last_ratio = 3;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
-    params = refocus_render_params_default(0.5f, 5);
-    params.method = REFOCUS_METHOD_DIFFUSION;
-    params.field = REFOCUS_FIELD_PICTURE;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
-    params = refocus_render_params_default(0.5f, 5);
-    params.least_disparity = 0.5f;
-    params.most_disparity = 0.49f;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    params.interpolated.middle_ratio = params.interpolated.last_ratio = 3;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    params = refocus_settings_default(0.5f, 5);
+    params.render.method = REFOCUS_METHOD_DIFFUSION;
+    params.field.shape = REFOCUS_FIELD_PICTURE;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    params = refocus_settings_default(0.5f, 5);
+    params.focus.least_disparity = 0.5f;
+    params.focus.most_disparity = 0.49f;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     for (int i = 0; i < 3; i++) {
-        params = refocus_render_params_default(0.5f, 5);
-        params.bands = 4;
-        params.band[3] =
+        params = refocus_settings_default(0.5f, 5);
+        params.focus.bands = 4;
+        params.focus.band[3] =
             (struct refocus_band){i == 0 ? 1.1f : 0.5f, i == 1 ? -1 : 0, i == 2 ? NAN : 0};
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     }
     assert_int_equal(refocus_aperture_create_polygon(&aperture, 6, 0), REFOCUS_OK);
     for (uint32_t m = REFOCUS_METHOD_SCATTER; m < REFOCUS_METHOD_COUNT; m++) {
-        params = refocus_render_params_default(0.5f, 5);
-        params.method = m;
-        params.aperture = aperture;
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+        params = refocus_settings_default(0.5f, 5);
+        params.render.method = m;
+        params.render.aperture = aperture;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     }
     refocus_aperture_destroy(&aperture);
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 5);
@@ -261,12 +302,12 @@ static void bad_settings(void **state)
     limits.threads = 1;
     assert_int_equal(refocus_renderer_create(&plain, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(plain, &photo, &disparity), REFOCUS_OK);
-    params = refocus_render_params_default(0.5f, 5);
-    params.method = REFOCUS_METHOD_LIGHTFIELD;
-    assert_int_equal(refocus_render(plain, &params, &image), REFOCUS_ERR_ARGUMENT);
+    params = refocus_settings_default(0.5f, 5);
+    params.render.method = REFOCUS_METHOD_LIGHTFIELD;
+    assert_int_equal(refocus_render_settings(plain, &params, &image), REFOCUS_ERR_ARGUMENT);
     for (uint32_t m = REFOCUS_METHOD_RAYTRACE; m < REFOCUS_METHOD_COUNT; m++) {
-        params.method = m; /* methods of the papers, which this renderer was not given */
-        assert_int_equal(refocus_render(plain, &params, &image), REFOCUS_ERR_ARGUMENT);
+        params.render.method = m; /* methods of the papers, which this renderer was not given */
+        assert_int_equal(refocus_render_settings(plain, &params, &image), REFOCUS_ERR_ARGUMENT);
     }
     refocus_renderer_destroy(&plain);
     limits.methods = REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD);
@@ -281,17 +322,17 @@ static void bad_settings(void **state)
                                     {0, 0, 0, H},     {INT32_MAX, 0, W, H},
                                     {-1, 0, W, H},    {5, 5, INT32_MAX, INT32_MAX}};
     for (size_t i = 0; i < sizeof region / sizeof region[0]; i++) {
-        params = refocus_render_params_default(0.5f, 5);
-        params.region_x = region[i][0], params.region_y = region[i][1];
-        params.region_width = region[i][2], params.region_height = region[i][3];
-        if (refocus_render(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT)
+        params = refocus_settings_default(0.5f, 5);
+        params.render.region_x = region[i][0], params.render.region_y = region[i][1];
+        params.render.region_width = region[i][2], params.render.region_height = region[i][3];
+        if (refocus_render_settings(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT)
             fail_msg("region %d %d %d %d is not refused", region[i][0], region[i][1], region[i][2],
                      region[i][3]);
     }
-    const struct refocus_render_params good = refocus_render_params_default(0.5f, 5);
-    assert_int_equal(refocus_render(renderer, NULL, &image), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_render(renderer, &good, NULL), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_render(NULL, &good, &image), REFOCUS_ERR_ARGUMENT);
+    const struct refocus_settings good = refocus_settings_default(0.5f, 5);
+    assert_int_equal(refocus_render_settings(renderer, NULL, &image), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_render_settings(renderer, &good, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_render_settings(NULL, &good, &image), REFOCUS_ERR_ARGUMENT);
     for (size_t i = 0; i < sizeof out; i++)
         assert_int_equal(out[i], 0x5a);
     refocus_renderer_destroy(&renderer);
@@ -312,8 +353,8 @@ static void bad_pictures(void **state)
                               BAD(refocus_image, stride[0], -(3 * W - 1)),
                               BAD(refocus_image, stride[0], 0)};
     struct picture p = picture_make(W, H, 1);
-    struct refocus_renderer *renderer = prepared(&p, 5, 1);
-    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    struct refocus_renderer *renderer = heard(&p);
+    const struct refocus_settings params = refocus_settings_default(0.5f, 5);
     const struct refocus_disparity disparity = picture_disparity(&p);
 
     (void)state;
@@ -321,22 +362,24 @@ static void bad_pictures(void **state)
         struct refocus_image image = picture_image(&p);
 
         spoil(&image, &bad[i]);
-        if (refocus_render(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT)
-            fail_msg("out: %s is not refused", bad[i].what);
+        if (refocus_render_settings(renderer, &params, &image) != REFOCUS_ERR_ARGUMENT ||
+            !is_named("refocus_render: out->", bad[i].what))
+            fail_msg("out: %s is not refused: %s", bad[i].what, said);
     }
     struct refocus_image other = picture_image(&p);
     other.width--;
-    assert_int_equal(refocus_render(renderer, &params, &other), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_render_settings(renderer, &params, &other), REFOCUS_ERR_ARGUMENT);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct refocus_image image = picture_image(&p);
 
         assert_int_equal(refocus_prepare(renderer, &(struct refocus_image){0}, &disparity),
                          REFOCUS_ERR_ARGUMENT);
         spoil(&image, &bad[i]);
-        if (refocus_prepare(renderer, &image, &disparity) != REFOCUS_ERR_ARGUMENT)
-            fail_msg("photo: %s is not refused", bad[i].what);
+        if (refocus_prepare(renderer, &image, &disparity) != REFOCUS_ERR_ARGUMENT ||
+            !is_named("refocus_prepare: photo->", bad[i].what))
+            fail_msg("photo: %s is not refused: %s", bad[i].what, said);
         other = picture_image(&p);
-        assert_int_equal(refocus_render(renderer, &params, &other), REFOCUS_ERR_STATE);
+        assert_int_equal(refocus_render_settings(renderer, &params, &other), REFOCUS_ERR_STATE);
     }
     assert_int_equal(refocus_prepare(NULL, &other, &disparity), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_prepare(renderer, NULL, &disparity), REFOCUS_ERR_ARGUMENT);
@@ -376,17 +419,17 @@ static void order_and_size(void **state)
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
     struct refocus_renderer_params limits = refocus_renderer_params_default(W - 1, H, 5);
-    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    const struct refocus_settings params = refocus_settings_default(0.5f, 5);
     struct refocus_renderer *renderer;
     uint16_t view[W * H];
 
     (void)state;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &photo), REFOCUS_ERR_STATE);
+    assert_int_equal(refocus_render_settings(renderer, &params, &photo), REFOCUS_ERR_STATE);
     assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view, 2 * W),
                      REFOCUS_ERR_STATE);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_ERR_SIZE);
-    assert_int_equal(refocus_render(renderer, &params, &photo), REFOCUS_ERR_STATE);
+    assert_int_equal(refocus_render_settings(renderer, &params, &photo), REFOCUS_ERR_STATE);
     refocus_renderer_destroy(&renderer);
 
     renderer = prepared(&p, 5, 1);

@@ -5,8 +5,12 @@
 enum { W = 144, H = 112 };
 
 static uint8_t out[3 * W * H];
-static const struct refocus_image image = {
-    .format = REFOCUS_FORMAT_RGB8, .width = W, .height = H, .plane = {out}, .stride = {3 * W}};
+static const struct refocus_image image = {.struct_size = sizeof(struct refocus_image),
+                                           .format = REFOCUS_FORMAT_RGB8,
+                                           .width = W,
+                                           .height = H,
+                                           .plane = {out},
+                                           .stride = {3 * W}};
 
 /* A light of 5 x 5 pixels in the dark, in front of nothing, at disparity d. */
 static struct refocus_renderer *lamp_at(int x, int y, uint16_t d)
@@ -24,12 +28,12 @@ static struct refocus_renderer *lamp_at(int x, int y, uint16_t d)
 /* Behind the focus at 0.5, or as far before it: 12 pixels of blur. */
 enum { BEHIND = 6554, BEFORE = 58982 };
 
-static struct refocus_render_params twelve(void)
+static struct refocus_settings twelve(void)
 {
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+    struct refocus_settings params = refocus_settings_default(0.5f, 30);
 
-    params.rays = 512;
-    params.prefilter = 0;
+    params.render.rays = 512;
+    params.render.prefilter = 0;
     return params;
 }
 
@@ -62,24 +66,24 @@ static struct disc disc_at(int x, int y, int channel)
     return d;
 }
 
-static struct disc render_lamp(int x, int y, uint16_t depth,
-                               const struct refocus_render_params *params, int channel)
+static struct disc render_lamp(int x, int y, uint16_t depth, const struct refocus_settings *params,
+                               int channel)
 {
     struct refocus_renderer *renderer = lamp_at(x, y, depth);
 
-    assert_int_equal(refocus_render(renderer, params, &image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, params, &image), REFOCUS_OK);
     refocus_renderer_destroy(&renderer);
     return disc_at(x, y, channel);
 }
 
 static struct disc lamp_through(const struct refocus_aperture_params *aperture, uint16_t depth)
 {
-    struct refocus_render_params params = twelve();
+    struct refocus_settings params = twelve();
     struct refocus_aperture *a;
     struct disc disc;
 
     assert_int_equal(refocus_aperture_create(&a, aperture), REFOCUS_OK);
-    params.aperture = a;
+    params.render.aperture = a;
     disc = render_lamp(W / 2, H / 2, depth, &params, 1);
     refocus_aperture_destroy(&a);
     return disc;
@@ -136,13 +140,13 @@ static void squeezed(void **state)
  * middle, and no light is lost. */
 static void cat_eye(void **state)
 {
-    struct refocus_render_params params = twelve();
+    struct refocus_settings params = twelve();
     const int x = W - 18, y = H / 2;
     double sum = 0, xx = 0, yy = 0;
     struct disc disc;
 
     (void)state;
-    params.cat_eye = 0.8f;
+    params.look.cat_eye = 0.8f;
     disc = render_lamp(W / 2, H / 2, BEHIND, &params, 1);
     about("the middle's disc", sqrt((disc.xx - 2) / (disc.yy - 2)), 1, 0.03);
     disc = render_lamp(x, y, BEHIND, &params, 1);
@@ -163,11 +167,11 @@ static void cat_eye(void **state)
 
 static void fringes(void **state)
 {
-    struct refocus_render_params params = twelve();
+    struct refocus_settings params = twelve();
 
     (void)state;
     for (int sign = -1; sign <= 1; sign += 2) {
-        params.fringe = 0.25f * (float)sign;
+        params.look.fringe = 0.25f * (float)sign;
         for (int before = 0; before < 2; before++) {
             const uint16_t depth = before ? BEFORE : BEHIND;
             const struct disc red = render_lamp(W / 2, H / 2, depth, &params, 0);
@@ -185,13 +189,13 @@ static void fringes(void **state)
 /* Discs of highlights are as bright as the gain says. */
 static void stops(void **state)
 {
-    struct refocus_render_params params = twelve();
+    struct refocus_settings params = twelve();
 
     (void)state;
     for (int gain = 1; gain <= 16; gain *= 2) {
         for (int weighted = 0; weighted < 2; weighted++) {
-            params.highlight_gain = (float)gain;
-            params.sigma = weighted ? 1e5f : INFINITY; /* all weights nearly the same */
+            params.highlights.gain = (float)gain;
+            params.render.sigma = weighted ? 1e5f : INFINITY; /* all weights nearly the same */
             about("light of a lamp", render_lamp(W / 2, H / 2, BEHIND, &params, 1).all, 25 * gain,
                   0.03);
         }
@@ -200,19 +204,19 @@ static void stops(void **state)
 
 static void star(void **state)
 {
-    struct refocus_render_params params = refocus_render_params_default(0.1f, 30);
+    struct refocus_settings params = refocus_settings_default(0.1f, 30);
     const int x = W / 2, y = H / 2;
     static uint8_t plain[3 * W * H];
     struct refocus_renderer *renderer = lamp_at(x, y, BEHIND);
     double added = 0;
 
     (void)state;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     memcpy(plain, out, sizeof out);
-    params.star_spikes = 4;
-    params.star_length = 30;
-    params.star_strength = 0.5f;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.look.star_spikes = 4;
+    params.look.star_length = 30;
+    params.look.star_strength = 0.5f;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     refocus_renderer_destroy(&renderer);
     for (int l = 5; l < 25; l++) {
         const int at[4] = {y * W + x + l, y * W + x - l, (y + l) * W + x, (y - l) * W + x};
@@ -249,7 +253,7 @@ static void grain(void **state)
 {
     static uint8_t first[3 * W * H];
     struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
-    struct refocus_render_params params = refocus_render_params_default(60000 / 65535.0f, 20);
+    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
     struct refocus_renderer *renderer;
     uint32_t seed = 5;
 
@@ -263,21 +267,21 @@ static void grain(void **state)
         p.disparity[i] = i % W < W / 2 ? 60000 : 10000;
     }
     renderer = prepared(&p, 20, 2);
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     assert_true(noise_of(W / 2 + 20, W) < 1.5);
-    params.seed = 1;
+    params.look.grain_seed = 1;
     for (int amount = 1; amount <= 2; amount++) {
-        params.grain = (float)amount;
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        params.look.grain = (float)amount;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
         about("grain", noise_of(W / 2 + 20, W), 4.9 * amount, 0.12);
         for (int y = 0; y < H; y++) /* a sharp pixel has its own grain */
             assert_memory_equal(out + 3 * y * W, p.rgb + 3 * y * W, 3 * (W / 2 - 16));
     }
     memcpy(first, out, sizeof out);
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     assert_memory_equal(first, out, sizeof out);
-    params.seed = 2;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.look.grain_seed = 2;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     assert_true(memcmp(first, out, sizeof out) != 0);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
@@ -292,7 +296,7 @@ static void regions(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, part, PW, PH, 3 * PW);
     struct picture p = picture_make(W, H, 9);
     struct refocus_renderer *renderer;
-    struct refocus_render_params params;
+    struct refocus_settings params;
     const char *name;
 
     (void)state;
@@ -302,11 +306,11 @@ static void regions(void **state)
     for (int i = 0; effect_params(i, 0.5f, 10, &params, &name); i++) {
         struct refocus_aperture *aperture = effect_aperture(i);
 
-        params.aperture = aperture;
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
-        params.region_x = X, params.region_y = Y;
-        params.region_width = PW, params.region_height = PH;
-        assert_int_equal(refocus_render(renderer, &params, &small), REFOCUS_OK);
+        params.render.aperture = aperture;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        params.render.region_x = X, params.render.region_y = Y;
+        params.render.region_width = PW, params.render.region_height = PH;
+        assert_int_equal(refocus_render_settings(renderer, &params, &small), REFOCUS_OK);
         for (int y = 0; y < PH; y++)
             if (memcmp(part + 3 * y * PW, out + 3 * ((y + Y) * W + X), 3 * PW))
                 fail_msg("%s: row %d of the region differs", name, y);
@@ -351,12 +355,12 @@ static void render_effect(struct refocus_renderer *renderer, int i, uint8_t *to)
     const struct refocus_image whole =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, to, NIGHT_W, NIGHT_H, 3 * NIGHT_W);
     struct refocus_aperture *aperture = effect_aperture(i);
-    struct refocus_render_params params;
+    struct refocus_settings params;
     const char *name;
 
     assert_true(effect_params(i, 0.5f, 9, &params, &name));
-    params.aperture = aperture;
-    assert_int_equal(refocus_render(renderer, &params, &whole), REFOCUS_OK);
+    params.render.aperture = aperture;
+    assert_int_equal(refocus_render_settings(renderer, &params, &whole), REFOCUS_OK);
     refocus_aperture_destroy(&aperture);
 }
 
@@ -366,7 +370,7 @@ static void strips_and_sequences(void **state)
     static uint8_t is[3 * NIGHT_W * NIGHT_H], wanted[3 * NIGHT_W * NIGHT_H];
     struct picture p = night();
     struct refocus_renderer *used = of_night(&p, 0), *strips = of_night(&p, 1);
-    struct refocus_render_params params;
+    struct refocus_settings params;
     const char *name;
 
     (void)state;
@@ -384,7 +388,7 @@ static void strips_and_sequences(void **state)
         assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, name);
         render_effect(used, i, is);
         assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, name);
-        if (params.method != REFOCUS_METHOD_DIFFUSION) {
+        if (params.render.method != REFOCUS_METHOD_DIFFUSION) {
             render_effect(strips, i, is);
             assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, name);
         }
@@ -403,17 +407,17 @@ static void changed_map(void **state)
     struct refocus_renderer *used = of_night(&p, 0), *fresh = of_night(&p, 0);
     struct refocus_image whole =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, is, NIGHT_W, NIGHT_H, 3 * NIGHT_W);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 9);
+    struct refocus_settings params = refocus_settings_default(0.5f, 9);
     uint8_t level = 200;
-    const struct refocus_disparity map = {8, 1, 1, &level, 1};
+    const struct refocus_disparity map = refocus_disparity8(&level, 1, 1, 1);
 
     (void)state;
-    params.focus_map = &map;
-    assert_int_equal(refocus_render(used, &params, &whole), REFOCUS_OK);
+    params.focus.map = &map;
+    assert_int_equal(refocus_render_settings(used, &params, &whole), REFOCUS_OK);
     level = 20;
-    assert_int_equal(refocus_render(used, &params, &whole), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(used, &params, &whole), REFOCUS_OK);
     whole.plane[0] = wanted;
-    assert_int_equal(refocus_render(fresh, &params, &whole), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(fresh, &params, &whole), REFOCUS_OK);
     assert_same_pixels(is, wanted, NIGHT_W, NIGHT_H, "a changed map");
     refocus_renderer_destroy(&used);
     refocus_renderer_destroy(&fresh);
@@ -432,18 +436,19 @@ static void refused(void **state)
     assert_int_equal(refocus_aperture_create(&a, &p), REFOCUS_OK);
     for (uint32_t method = REFOCUS_METHOD_SWEEP; method < REFOCUS_METHOD_COUNT; method++) {
         for (int i = 0; i < 3; i++) {
-            struct refocus_render_params params = refocus_render_params_default(0.5f, 2);
+            struct refocus_settings params = refocus_settings_default(0.5f, 2);
 
-            params.method = method;
-            params.rays = 8;
-            params.cat_eye = i == 0 ? 0.1f : 0;
-            params.fringe = i == 1 ? -0.1f : 0;
-            params.aperture = i == 2 ? a : NULL;
-            assert_int_equal(refocus_render(renderer, &params, &image),
+            params.render.method = method;
+            params.render.rays = 8;
+            params.look.cat_eye = i == 0 ? 0.1f : 0;
+            params.look.fringe = i == 1 ? -0.1f : 0;
+            params.render.aperture = i == 2 ? a : NULL;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image),
                              method == REFOCUS_METHOD_SWEEP ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
-            params.rays = REFOCUS_RAYS_FULL;
+            params.render.rays = REFOCUS_RAYS_FULL;
             if (i == 2)
-                assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+                assert_int_equal(refocus_render_settings(renderer, &params, &image),
+                                 REFOCUS_ERR_ARGUMENT);
         }
     }
     refocus_aperture_destroy(&a);

@@ -7,7 +7,7 @@ static struct refocus_renderer *with_cpu(const struct picture *p, float blur, ui
         refocus_renderer_params_default(p->width, p->height, blur);
     const struct refocus_image photo = picture_image(p);
     const struct refocus_disparity disparity = picture_disparity(p);
-    struct refocus_renderer_info info;
+    struct refocus_renderer_info info = refocus_renderer_info_default();
     struct refocus_renderer *renderer;
     int status;
 

@@ -9,7 +9,7 @@ static uint16_t deep[W * H];
 
 static struct refocus_disparity grey_map(void)
 {
-    return (struct refocus_disparity){8, 31, 17, grey, 31};
+    return refocus_disparity8(grey, 31, 17, 31);
 }
 
 /* A map's value at a pixel by bilinear interpolation. */
@@ -40,73 +40,74 @@ static double shortened(double e, double width, double transition)
     return a >= width + transition ? a : (a - width) * (width + transition) / transition;
 }
 
-static double lens(const struct refocus_render_params *p, int x, int y, double d)
+static double lens(const struct refocus_settings *p, int x, int y, double d)
 {
-    const double df = p->focus_map ? map_at(p->focus_map, x, y) : p->focus_disparity;
-    const double tilt =
-        p->tilt_across * ((x + 0.5) / W - p->tilt_x) + p->tilt_down * ((y + 0.5) / H - p->tilt_y);
+    const double df = p->focus.map ? map_at(p->focus.map, x, y) : p->render.focus_disparity;
+    const double tilt = p->focus.tilt_across * ((x + 0.5) / W - p->focus.tilt_x) +
+                        p->focus.tilt_down * ((y + 0.5) / H - p->focus.tilt_y);
     double least =
-        shortened(p->depth_share * (df - d) + tilt, p->focus_half_width, p->focus_transition);
+        shortened(p->focus.depth_share * (df - d) + tilt, p->focus.half_width, p->focus.transition);
 
-    for (int i = 0; i < p->bands; i++)
-        least = fmin(least, shortened(p->depth_share * (p->band[i].disparity - d) + tilt,
-                                      p->band[i].half_width, p->band[i].transition));
+    for (int i = 0; i < p->focus.bands; i++)
+        least =
+            fmin(least, shortened(p->focus.depth_share * (p->focus.band[i].disparity - d) + tilt,
+                                  p->focus.band[i].half_width, p->focus.band[i].transition));
     return least;
 }
 
-static double field(const struct refocus_render_params *p, int x, int y, double d)
+static double field(const struct refocus_settings *p, int x, int y, double d)
 {
-    const double fx = (x + 0.5) / W - p->field_x;
-    const double fy = (y + 0.5 - (double)p->field_y * H) / W, fd = d - p->field_disparity;
-    const double angle = p->field_angle * 3.14159265358979 / 180;
+    const double fx = (x + 0.5) / W - p->field.x;
+    const double fy = (y + 0.5 - (double)p->field.y * H) / W, fd = d - p->field.disparity;
+    const double angle = p->field.angle * 3.14159265358979 / 180;
     double distance = sqrt(fx * fx + fy * fy + fd * fd);
 
-    if (p->field == REFOCUS_FIELD_PICTURE)
-        return map_at(p->field_map, x, y);
-    if (p->field == REFOCUS_FIELD_CYLINDER)
+    if (p->field.shape == REFOCUS_FIELD_PICTURE)
+        return map_at(p->field.map, x, y);
+    if (p->field.shape == REFOCUS_FIELD_CYLINDER)
         distance = hypot(fx, fd);
-    if (p->field == REFOCUS_FIELD_PLUS)
+    if (p->field.shape == REFOCUS_FIELD_PLUS)
         distance = fmin(fabs(fx), fabs(fd));
-    if (p->field == REFOCUS_FIELD_PLANE)
+    if (p->field.shape == REFOCUS_FIELD_PLANE)
         distance = fabs(fx * cos(angle) + fd * sin(angle));
-    return fmin(1, fmax(0, (distance - p->field_radius) / p->field_falloff));
+    return fmin(1, fmax(0, (distance - p->field.radius) / p->field.falloff));
 }
 
-static double expected(const struct refocus_render_params *p, int x, int y, double d)
+static double expected(const struct refocus_settings *p, int x, int y, double d)
 {
     double r;
 
-    d = fmin(fmax(d, p->least_disparity), p->most_disparity);
-    r = p->field == REFOCUS_FIELD_LENS ? lens(p, x, y, d) : field(p, x, y, d);
-    r = fmin(p->max_blur_radius * fmin(r, 1), p->blur_limit);
-    return p->sharp_map ? r * (1 - map_at(p->sharp_map, x, y)) : r;
+    d = fmin(fmax(d, p->focus.least_disparity), p->focus.most_disparity);
+    r = p->field.shape == REFOCUS_FIELD_LENS ? lens(p, x, y, d) : field(p, x, y, d);
+    r = fmin(p->render.max_blur_radius * fmin(r, 1), p->focus.blur_limit);
+    return p->focus.sharp_map ? r * (1 - map_at(p->focus.sharp_map, x, y)) : r;
 }
 
 /* One of many ways to focus; false after the last. */
-static bool make_way(int i, struct refocus_render_params *p, const struct refocus_disparity *small,
+static bool make_way(int i, struct refocus_settings *p, const struct refocus_disparity *small,
                      const struct refocus_disparity *full)
 {
-    p->tilt_across = i % 3 ? 0.7f : 0;
-    p->tilt_down = i % 2 ? -1.4f : 0;
-    p->tilt_y = 0.3f;
-    p->depth_share = i == 3 ? 0.35f : i == 4 ? 0 : 1;
-    p->focus_half_width = i > 4 && i % 2 ? 0.06f : 0;
-    p->focus_transition = i == 5 ? 0.1f : 0;
-    p->bands = i == 6 ? 3 : i == 7 ? REFOCUS_MAX_BANDS - 1 : 0;
-    for (int k = 0; k < p->bands; k++)
-        p->band[k] =
+    p->focus.tilt_across = i % 3 ? 0.7f : 0;
+    p->focus.tilt_down = i % 2 ? -1.4f : 0;
+    p->focus.tilt_y = 0.3f;
+    p->focus.depth_share = i == 3 ? 0.35f : i == 4 ? 0 : 1;
+    p->focus.half_width = i > 4 && i % 2 ? 0.06f : 0;
+    p->focus.transition = i == 5 ? 0.1f : 0;
+    p->focus.bands = i == 6 ? 3 : i == 7 ? REFOCUS_MAX_BANDS - 1 : 0;
+    for (int k = 0; k < p->focus.bands; k++)
+        p->focus.band[k] =
             (struct refocus_band){(float)(k % 8) / 8, 0.01f * (float)(k + 1), k % 2 ? 0 : 0.05f};
-    p->focus_map = i == 8 ? small : i == 9 ? full : NULL;
-    p->sharp_map = i == 10 ? small : i == 11 ? full : NULL;
-    p->least_disparity = i == 12 ? 0.25f : 0;
-    p->most_disparity = i == 12 ? 0.5f : 1;
-    p->blur_limit = i == 13 ? 3.3f : 127;
-    p->field = i > 13 ? (uint32_t)(i - 13) : 0;
-    p->field_map = p->field == REFOCUS_FIELD_PICTURE ? small : NULL;
-    p->field_x = 0.6f;
-    p->field_y = 0.45f;
-    p->field_disparity = 0.4f;
-    p->field_angle = 37;
+    p->focus.map = i == 8 ? small : i == 9 ? full : NULL;
+    p->focus.sharp_map = i == 10 ? small : i == 11 ? full : NULL;
+    p->focus.least_disparity = i == 12 ? 0.25f : 0;
+    p->focus.most_disparity = i == 12 ? 0.5f : 1;
+    p->focus.blur_limit = i == 13 ? 3.3f : 127;
+    p->field.shape = i > 13 ? (uint32_t)(i - 13) : 0;
+    p->field.map = p->field.shape == REFOCUS_FIELD_PICTURE ? small : NULL;
+    p->field.x = 0.6f;
+    p->field.y = 0.45f;
+    p->field.disparity = 0.4f;
+    p->field.angle = 37;
     return i <= 13 + REFOCUS_FIELD_PICTURE;
 }
 
@@ -116,18 +117,18 @@ static void formulas(void **state)
     struct refocus_renderer *renderer = prepared(&p, 18.5f, 2);
     const struct refocus_disparity small = grey_map();
     const struct refocus_disparity full = refocus_disparity16(deep, W, H, 2 * W);
-    struct refocus_render_params params = refocus_render_params_default(0.37f, 18.5f);
+    struct refocus_settings params = refocus_settings_default(0.37f, 18.5f);
     static uint8_t out[3 * W * H];
     static uint16_t blur[W * H];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     (void)state;
-    params.method = REFOCUS_METHOD_SEARCH; /* sweep moves single edges */
-    params.rays = 1;
+    params.render.method = REFOCUS_METHOD_SEARCH; /* sweep moves single edges */
+    params.render.rays = 1;
     for (int i = 0; make_way(i, &params, &small, &full); i++) {
         double worst = 0;
 
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
         assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, blur, 2 * W), 0);
         for (int k = 0; k < W * H; k++) {
             const double d = p.disparity[k] / 65535.0;
@@ -146,18 +147,18 @@ static void formulas(void **state)
     picture_free(&p);
 }
 
-static void check_same(struct refocus_renderer *renderer,
-                       const struct refocus_render_params *params, const char *what)
+static void check_same(struct refocus_renderer *renderer, const struct refocus_settings *params,
+                       const char *what)
 {
     static uint8_t is[3 * W * H], wanted[3 * W * H];
-    struct refocus_render_params plain =
-        refocus_render_params_default(params->focus_disparity, params->max_blur_radius);
+    struct refocus_settings plain =
+        refocus_settings_default(params->render.focus_disparity, params->render.max_blur_radius);
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, is, W, H, 3 * W);
 
-    plain.method = params->method;
-    assert_int_equal(refocus_render(renderer, params, &image), REFOCUS_OK);
+    plain.render.method = params->render.method;
+    assert_int_equal(refocus_render_settings(renderer, params, &image), REFOCUS_OK);
     image.plane[0] = wanted;
-    assert_int_equal(refocus_render(renderer, &plain, &image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &plain, &image), REFOCUS_OK);
     assert_same_pixels(is, wanted, W, H, what);
 }
 
@@ -172,57 +173,58 @@ static void plain_lens(void **state)
 
     (void)state;
     for (size_t m = 0; m < sizeof method / sizeof *method; m++) {
-        const struct refocus_render_params plain = refocus_render_params_default(0.45f, 12);
-        const int df = (int)floor((double)plain.focus_disparity * 65535 + 0.5);
-        struct refocus_render_params params = plain;
+        const struct refocus_settings plain = refocus_settings_default(0.45f, 12);
+        const int df = (int)floor((double)plain.render.focus_disparity * 65535 + 0.5);
+        struct refocus_settings params = plain;
         struct refocus_focus_plane plane;
 
-        params.method = method[m];
-        params.field = REFOCUS_FIELD_PLANE;
-        params.field_angle = 90;
-        params.field_radius = 0;
-        params.field_falloff = 1;
+        params.render.method = method[m];
+        params.field.shape = REFOCUS_FIELD_PLANE;
+        params.field.angle = 90;
+        params.field.radius = 0;
+        params.field.falloff = 1;
         check_same(renderer, &params, "a plane that faces the lens");
 
-        params.field = REFOCUS_FIELD_PICTURE;
-        params.field_map = &picture;
+        params.field.shape = REFOCUS_FIELD_PICTURE;
+        params.field.map = &picture;
         for (int i = 0; i < W * H; i++)
             map[i] = (uint16_t)abs(p.disparity[i] - df);
         check_same(renderer, &params, "a picture of the lens's blur");
 
         params = plain;
-        params.method = method[m];
-        params.focus_map = &picture;
+        params.render.method = method[m];
+        params.focus.map = &picture;
         for (int i = 0; i < W * H; i++)
             map[i] = (uint16_t)df;
         check_same(renderer, &params, "a level surface in focus");
 
-        params.focus_map = NULL;
-        params.sharp_map = &picture;
+        params.focus.map = NULL;
+        params.focus.sharp_map = &picture;
         memset(map, 0, sizeof map);
         check_same(renderer, &params, "an empty mask");
 
         params = plain;
-        params.method = method[m];
-        params.focus_transition = 0.3f;
-        params.bands = 1;
-        params.band[0] = (struct refocus_band){params.focus_disparity, 0, 0.2f};
+        params.render.method = method[m];
+        params.focus.transition = 0.3f;
+        params.focus.bands = 1;
+        params.focus.band[0] = (struct refocus_band){params.render.focus_disparity, 0, 0.2f};
         check_same(renderer, &params, "bands without a width");
 
         params = plain;
-        params.method = method[m];
+        params.render.method = method[m];
         assert_int_equal(
             refocus_focus_plane_of_points(
-                &plane, (struct refocus_focus_point[3]){{0.1f, 0.2f, params.focus_disparity},
-                                                        {0.9f, 0.3f, params.focus_disparity},
-                                                        {0.4f, 0.8f, params.focus_disparity}}),
+                &plane,
+                (struct refocus_focus_point[3]){{0.1f, 0.2f, params.render.focus_disparity},
+                                                {0.9f, 0.3f, params.render.focus_disparity},
+                                                {0.4f, 0.8f, params.render.focus_disparity}}),
             REFOCUS_OK);
         assert_true(plane.across == 0 && plane.down == 0);
-        params.tilt_x = plane.x;
-        params.tilt_y = plane.y;
-        params.tilt_across = plane.across;
-        params.tilt_down = plane.down;
-        params.focus_disparity = plane.focus_disparity;
+        params.focus.tilt_x = plane.x;
+        params.focus.tilt_y = plane.y;
+        params.focus.tilt_across = plane.across;
+        params.focus.tilt_down = plane.down;
+        params.render.focus_disparity = plane.focus_disparity;
         check_same(renderer, &params, "a plane that is not tilted");
     }
     refocus_renderer_destroy(&renderer);
@@ -234,15 +236,15 @@ static void masked(void **state)
 {
     static const uint8_t white = 255;
     static uint8_t out[3 * W * H];
-    const struct refocus_disparity all = {8, 1, 1, &white, 1};
+    const struct refocus_disparity all = refocus_disparity8(&white, 1, 1, 1);
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
     struct picture p = picture_make(W, H, 7);
     struct refocus_renderer *renderer = prepared(&p, 20, 1);
-    struct refocus_render_params params = refocus_render_params_default(0, 20);
+    struct refocus_settings params = refocus_settings_default(0, 20);
 
     (void)state;
-    params.sharp_map = &all;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.focus.sharp_map = &all;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     assert_same_pixels(out, p.rgb, W, H, "under a mask");
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
@@ -253,7 +255,7 @@ static void near_band_is_clean(void **state)
 {
     enum { SIDE = 96 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){200, 30, 30}, 0);
-    struct refocus_render_params params = refocus_render_params_default(0.9f, 20);
+    struct refocus_settings params = refocus_settings_default(0.9f, 20);
     static uint8_t out[3 * SIDE * SIDE];
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, SIDE, SIDE, 3 * SIDE);
@@ -268,9 +270,9 @@ static void near_band_is_clean(void **state)
             memcpy(p.rgb + 3 * i, (uint8_t[3]){10, 10, 250}, 3);
     }
     renderer = prepared(&p, 20, 1);
-    params.bands = 1;
-    params.band[0] = (struct refocus_band){0.1f, 0, 0};
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.focus.bands = 1;
+    params.focus.band[0] = (struct refocus_band){0.1f, 0, 0};
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     for (int i = 0; i < SIDE * SIDE; i++)
         if (i % SIDE >= 64 && memcmp(out + 3 * i, p.rgb + 3 * i, 3))
             fail_msg("(%d, %d) is in focus and changed", i % SIDE, i / SIDE);
@@ -292,12 +294,12 @@ static void refused(void **state)
     for (uint32_t method = 0; method < REFOCUS_METHOD_COUNT; method++) {
         const bool takes = method == REFOCUS_METHOD_SWEEP || method == REFOCUS_METHOD_SEARCH ||
                            method == REFOCUS_METHOD_BLUR || method == REFOCUS_METHOD_DIFFUSION;
-        struct refocus_render_params params = refocus_render_params_default(0.5f, 6);
+        struct refocus_settings params = refocus_settings_default(0.5f, 6);
 
-        params.method = method;
-        params.rays = 4;
+        params.render.method = method;
+        params.render.rays = 4;
         for (int i = 1; make_way(i, &params, &small, &full); i++)
-            assert_int_equal(refocus_render(renderer, &params, &image),
+            assert_int_equal(refocus_render_settings(renderer, &params, &image),
                              takes ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
     }
     refocus_renderer_destroy(&renderer);

@@ -47,14 +47,14 @@ static void render_light(struct refocus_renderer *renderer, int w, int h, float 
 {
     uint8_t *out = malloc(3 * (size_t)w * (size_t)h);
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+    struct refocus_settings params = refocus_settings_default(0.5f, 30);
 
     assert_non_null(out);
 
-    params.rays = 512;
-    params.prefilter = 0;
-    params.highlight_gain = gain;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.render.rays = 512;
+    params.render.prefilter = 0;
+    params.highlights.gain = gain;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     for (int c = 0; c < 3; c++) {
         light[c] = 0;
         for (int i = c; i < 3 * w * h; i += 3)
@@ -265,7 +265,7 @@ static int brightest_dot(double light)
     const struct thing highlight = {ELLIPSE, 9, 9, {light, light, light}};
     uint8_t out[3 * W * H];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 30);
+    struct refocus_settings params = refocus_settings_default(0.5f, 30);
     struct refocus_renderer *renderer;
     int most = 0;
 
@@ -274,8 +274,8 @@ static int brightest_dot(double light)
         if (share_of_thing(&highlight, i % W - CX - 0.3, (double)(i / W) - CY + 0.2) >= 0.5)
             p.disparity[i] = 59000;
     renderer = prepared(&p, 30, 2);
-    params.highlight_gain = 1;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.highlights.gain = 1;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     for (int y = CY - 20; y <= CY + 20; y++)
         for (int x = CX - 20; x <= CX + 20; x++) {
             int around = 0;
@@ -412,16 +412,16 @@ static void render_night(const struct picture *p, float blur, float most, uint32
     const struct refocus_disparity disparity = picture_disparity(p);
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, p->width, p->height, 3 * p->width);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, blur);
+    struct refocus_settings params = refocus_settings_default(0.5f, blur);
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
     limits.in_place = in_place;
-    params.highlight_gain = 8;
-    params.rays = 24;
+    params.highlights.gain = 8;
+    params.render.rays = 24;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     refocus_renderer_destroy(&renderer);
 }
 

@@ -104,12 +104,12 @@ static void few_codes(void **state)
     for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
         struct picture p = picture_make(views[v].width, views[v].height, 5);
         const size_t size = 3 * (size_t)p.width * (size_t)p.height;
-        struct refocus_render_params params = refocus_render_params_default(0.4f, views[v].blur);
+        struct refocus_settings params = refocus_settings_default(0.4f, views[v].blur);
         uint8_t *out[2] = {malloc(size), malloc(size)};
         uint16_t *slopes[2] = {malloc(size), malloc(size)};
 
         assert_true(out[0] && out[1] && slopes[0] && slopes[1]);
-        params.grain = 1;
+        params.look.grain = 1;
         for (int i = 0; i < p.width * p.height; i++) {
             const int x = i % p.width, y = i / p.width;
             const int slope = 60 * x + 37 * y + (x / 19 % 3 == 2) * 30000;
@@ -121,7 +121,7 @@ static void few_codes(void **state)
                                                                  p.width, p.height, 3 * p.width);
             struct refocus_renderer *renderer = create(&p, views[v].blur, in_place);
 
-            assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
+            assert_int_equal(refocus_render_settings(renderer, &params, &to), REFOCUS_OK);
             assert_int_equal(
                 refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, slopes[in_place], 2 * p.width),
                 REFOCUS_OK);
@@ -147,11 +147,11 @@ static void formats(void **state)
     uint8_t *out[2] = {calloc(1, 5 * W * H), calloc(1, 5 * W * H)};
     uint16_t *view[2] = {calloc(4, W * H), calloc(4, W * H)};
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 9);
-    const struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
+    const struct refocus_settings params = refocus_settings_default(0.3f, 9);
     /* bottom up */
     struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_BGRA8, photo + 5 * W * (H - 1), W, H, -5 * W);
-    const struct refocus_disparity disparity = {8, W, H, map, W};
+    const struct refocus_disparity disparity = refocus_disparity8(map, W, H, W);
 
     (void)state;
     assert_true(photo && map && out[0] && out[1] && view[0] && view[1]);
@@ -169,7 +169,7 @@ static void formats(void **state)
         limits.papers = refocus_papers();
         assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
         assert_int_equal(refocus_prepare(renderer, &image, &disparity), REFOCUS_OK);
-        assert_int_equal(refocus_render(renderer, &params, &to), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(renderer, &params, &to), REFOCUS_OK);
         for (uint32_t i = 0; i < 2; i++)
             assert_int_equal(refocus_get_view(renderer, i, view[in_place] + i * W * H, 2 * W),
                              REFOCUS_OK);
@@ -191,9 +191,10 @@ static void refused(void **state)
     struct picture p = picture_make(40, 30, 8);
     const struct refocus_image photo = picture_image(&p);
     uint8_t small[6] = {0};
-    const struct refocus_disparity coarse = {8, 3, 2, small, 3};
+    const struct refocus_disparity coarse = refocus_disparity8(small, 3, 2, 3);
+    const struct refocus_disparity full = refocus_disparity8(p.rgb, 40, 30, 40);
     struct refocus_renderer_params limits = refocus_renderer_params_default(40, 30, 9);
-    struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
+    struct refocus_settings params = refocus_settings_default(0.3f, 9);
     struct refocus_renderer *renderer;
     uint8_t out[3 * 40 * 30];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 40, 30, 120);
@@ -208,12 +209,10 @@ static void refused(void **state)
     limits.methods = 0;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &coarse), REFOCUS_ERR_UNSUPPORTED);
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
-    params.method = REFOCUS_METHOD_SCATTER;
-    assert_int_equal(
-        refocus_prepare(renderer, &photo, &(struct refocus_disparity){8, 40, 30, p.rgb, 40}),
-        REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_STATE);
+    params.render.method = REFOCUS_METHOD_SCATTER;
+    assert_int_equal(refocus_prepare(renderer, &photo, &full), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
 }

@@ -65,11 +65,11 @@ static void expect_none(const struct picture *p, const struct refocus_disparity 
         assert_int_equal(refocus_prepare(renderer, &photo, map), REFOCUS_OK);
         for (int f = 0; f < 10; f++) {
             const float focus = 0.68f + 0.03f * (float)f;
-            struct refocus_render_params lens = refocus_render_params_default(focus, blurs[i]);
+            struct refocus_settings lens = refocus_settings_default(focus, blurs[i]);
             int found;
 
-            lens.highlight_gain = 1;
-            assert_int_equal(refocus_render(renderer, &lens, &out), REFOCUS_OK);
+            lens.highlights.gain = 1;
+            assert_int_equal(refocus_render_settings(renderer, &lens, &out), REFOCUS_OK);
             found = leaks(p, rgb, focus, blurs[i]);
             if (found)
                 fail_msg("%s, K = %g, focus %g: %d pixels", what, (double)blurs[i], (double)focus,
@@ -146,10 +146,10 @@ static void of_luma(void **state)
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &in.image, &map), REFOCUS_OK);
     for (float focus = 0.69f; focus < 0.96f; focus += 0.05f) {
-        struct refocus_render_params lens = refocus_render_params_default(focus, 127);
+        struct refocus_settings lens = refocus_settings_default(focus, 127);
 
-        lens.highlight_gain = 1;
-        assert_int_equal(refocus_render(renderer, &lens, &out.image), REFOCUS_OK);
+        lens.highlights.gain = 1;
+        assert_int_equal(refocus_render_settings(renderer, &lens, &out.image), REFOCUS_OK);
         for (int i = 0; i < WIDTH * HEIGHT; i++)
             rgb[3 * i] = *yuv_sample(&out.image, 0, i % WIDTH, i / WIDTH);
         assert_int_equal(leaks(&p, rgb, focus, 127), 0);

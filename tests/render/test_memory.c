@@ -247,7 +247,7 @@ static void says_what_it_takes(void **state)
             struct refocus_renderer_params params =
                 counted(&counter, sides[s][0], sides[s][1], blurs[k], 2);
             const uint64_t bytes = refocus_renderer_memory(&params);
-            struct refocus_renderer_info info;
+            struct refocus_renderer_info info = refocus_renderer_info_default();
             struct refocus_renderer *renderer;
 
             assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_OK);
@@ -293,7 +293,7 @@ static void nothing_while_rendering(void **state)
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
     uint8_t small[6] = {0, 50, 100, 150, 200, 250};
-    const struct refocus_disparity coarse = {8, 3, 2, small, 3};
+    const struct refocus_disparity coarse = refocus_disparity8(small, 3, 2, 3);
     struct counter counter;
     struct refocus_renderer_params limits = counted(&counter, 120, 90, 10, 2);
     struct refocus_renderer *renderer;
@@ -308,25 +308,25 @@ static void nothing_while_rendering(void **state)
     const int calls = counter.calls;
     for (int i = 0; i < style_count; i++) {
         struct refocus_aperture *aperture = style_aperture(&styles[i]);
-        struct refocus_render_params params = style_params(&styles[i], 0.3f, 10);
+        struct refocus_settings params = style_params(&styles[i], 0.3f, 10);
         const int before = wrapped_calls;
 
-        params.aperture = aperture;
+        params.render.aperture = aperture;
         assert_int_equal(refocus_prepare(renderer, &photo, i % 2 ? &coarse : &disparity), 0);
-        assert_int_equal(refocus_render(renderer, &params, &image), 0);
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
         if (wrapped_calls != before || counter.calls != calls)
             fail_msg("%s: %d calls of malloc, %d of the allocator", styles[i].name,
                      wrapped_calls - before, counter.calls - calls);
         refocus_aperture_destroy(&aperture);
     }
-    struct refocus_render_params params;
+    struct refocus_settings params;
     const char *name;
     for (int i = 0; effect_params(i, 0.3f, 10, &params, &name); i++) {
         struct refocus_aperture *aperture = effect_aperture(i);
         const int before = wrapped_calls;
 
-        params.aperture = aperture;
-        assert_int_equal(refocus_render(renderer, &params, &image), 0);
+        params.render.aperture = aperture;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
         if (wrapped_calls != before || counter.calls != calls)
             fail_msg("%s allocates", name);
         refocus_aperture_destroy(&aperture);

@@ -24,7 +24,7 @@ static void render_point(const struct view *view, float sigma, double share[SIDE
     const int side = 2 * radius + 1 < SIDE ? 2 * radius + 1 : SIDE, corner = MIDDLE - side / 2;
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, 0, 0},
                                     (uint16_t)lround((double)view->disparity * 65535));
-    struct refocus_render_params params = refocus_render_params_default(view->focus, view->blur);
+    struct refocus_settings params = refocus_settings_default(view->focus, view->blur);
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out[corner][corner], side, side, sizeof out[0]);
     const double w = exp(-255.0 * 255 / (2 * (double)sigma * (double)sigma));
@@ -32,16 +32,16 @@ static void render_point(const struct view *view, float sigma, double share[SIDE
 
     memset(p.rgb + 3 * (MIDDLE * SIDE + MIDDLE), 255, 3);
     renderer = prepared(&p, view->blur, 2);
-    params.method = view->method;
-    params.rays = REFOCUS_RAYS_FULL;
-    params.blend = REFOCUS_BLEND_STORED;
-    params.sigma = sigma;
-    params.iterations = 1;
-    params.aperture = view->aperture;
-    params.region_x = params.region_y = corner; /* the rest takes long and is black */
-    params.region_width = params.region_height = side;
+    params.render.method = view->method;
+    params.render.rays = REFOCUS_RAYS_FULL;
+    params.render.blend = REFOCUS_BLEND_STORED;
+    params.render.sigma = sigma;
+    params.search.iterations = 1;
+    params.render.aperture = view->aperture;
+    params.render.region_x = params.render.region_y = corner; /* the rest takes long and is black */
+    params.render.region_width = params.render.region_height = side;
     memset(out, 0, sizeof out);
-    assert_int_equal(refocus_render(renderer, &params, &image), 0);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
     for (int y = 0; y < SIDE; y++) {
         for (int x = 0; x < SIDE; x++) {
             const double odds = out[y][x][1] / (255.0 - fmin(out[y][x][1], 254)) * w;

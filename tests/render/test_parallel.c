@@ -84,7 +84,7 @@ static void same_bytes(void **state)
     struct picture p = picture_make(WIDTH, HEIGHT, 11);
     const struct refocus_image photo = picture_image(&p);
     uint8_t small[6] = {0, 50, 100, 150, 200, 250};
-    const struct refocus_disparity coarse = {8, 3, 2, small, 3};
+    const struct refocus_disparity coarse = refocus_disparity8(small, 3, 2, 3);
     const size_t size = 3 * WIDTH * HEIGHT;
     uint8_t *expected = malloc(size * (size_t)style_count), *out = malloc(size);
     struct refocus_renderer *renderer = prepared(&p, 8, 1);
@@ -99,7 +99,7 @@ static void same_bytes(void **state)
     for (size_t c = 0; c < sizeof callers / sizeof callers[0]; c++) {
         struct caller caller = {0, 0, 0};
         struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 8);
-        struct refocus_renderer_info info;
+        struct refocus_renderer_info info = refocus_renderer_info_default();
         int rendered = 0;
 
         limits.threads = callers[c].threads;
@@ -151,7 +151,7 @@ static void cancel_within(void **state)
     struct picture p = picture_make(WIDTH, HEIGHT, 12);
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
-    const struct refocus_render_params params = refocus_render_params_default(0.4f, 8);
+    const struct refocus_settings params = refocus_settings_default(0.4f, 8);
     struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 8);
     struct breaker breaker = {NULL, -1};
     uint8_t *expected = malloc(3 * WIDTH * HEIGHT), *out = malloc(3 * WIDTH * HEIGHT);
@@ -166,15 +166,15 @@ static void cancel_within(void **state)
     limits.parallel.user = &breaker;
     assert_int_equal(refocus_renderer_create(&breaker.renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(breaker.renderer, &photo, &disparity), REFOCUS_OK);
-    assert_int_equal(refocus_render(breaker.renderer, &params, &image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(breaker.renderer, &params, &image), REFOCUS_OK);
     memcpy(expected, out, 3 * WIDTH * HEIGHT);
     for (int loop = 0; status != REFOCUS_OK; loop++) {
         assert_int_equal(refocus_prepare(breaker.renderer, &photo, &disparity), REFOCUS_OK);
         breaker.left = loop;
-        status = refocus_render(breaker.renderer, &params, &image);
+        status = refocus_render_settings(breaker.renderer, &params, &image);
         cancelled += status == REFOCUS_ERR_CANCELLED;
         breaker.left = -1;
-        assert_int_equal(refocus_render(breaker.renderer, &params, &image), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(breaker.renderer, &params, &image), REFOCUS_OK);
         assert_same_pixels(out, expected, WIDTH, HEIGHT, "after a cancelled loop");
     }
     assert_true(cancelled > 3);

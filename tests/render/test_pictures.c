@@ -93,7 +93,7 @@ static void every_format(void **state)
     (void)state;
     assert_non_null(expected);
     for (int s = 0; s < style_count; s += 5) {
-        struct refocus_render_params params = style_params(&styles[s], 0.2f, 7);
+        struct refocus_settings params = style_params(&styles[s], 0.2f, 7);
         const struct refocus_image photo = picture_image(&p);
 
         assert_int_equal(refocus_prepare(renderer, &photo, &disparity), 0);
@@ -103,12 +103,12 @@ static void every_format(void **state)
             struct refocus_aperture *aperture = style_aperture(&styles[s]);
 
             fill_copy(&in, from, &p);
-            params.aperture = aperture;
+            params.render.aperture = aperture;
             assert_int_equal(refocus_prepare(renderer, &in.image, &disparity), 0);
             for (int to = 0; to < 4; to++) {
                 struct copy out = make_copy(to, 53, 37, 3 + to, !(to & 1));
 
-                assert_int_equal(refocus_render(renderer, &params, &out.image), 0);
+                assert_int_equal(refocus_render_settings(renderer, &params, &out.image), 0);
                 check_copy(&out, to, 3 + to, expected, from >= 2, styles[s].name);
                 free(out.memory);
             }
@@ -148,7 +148,7 @@ static void disparity_layouts(void **state)
     assert_int_equal(refocus_prepare(renderer, &photo, &map), 0);
     render_style(renderer, &p, &styles[0], 0.5f, 9, out);
     assert_same_pixels(out, expected, W, H, "negative stride of depth");
-    map = (struct refocus_disparity){8, W, H, bytes + (H - 1) * STRIDE, -STRIDE};
+    map = refocus_disparity8(bytes + (H - 1) * STRIDE, W, H, -STRIDE);
     assert_int_equal(refocus_prepare(renderer, &photo, &map), 0);
     render_style(renderer, &p, &styles[0], 0.5f, 9, out);
     assert_same_pixels(out, expected, W, H, "8-bit depth");
@@ -169,10 +169,10 @@ static void regions(void **state)
 
     (void)state;
     for (int s = 0; s < style_count; s++) {
-        struct refocus_render_params params = style_params(&styles[s], 0.6f, 8);
+        struct refocus_settings params = style_params(&styles[s], 0.6f, 8);
         struct refocus_aperture *aperture = style_aperture(&styles[s]);
 
-        params.aperture = aperture;
+        params.render.aperture = aperture;
         render_style(renderer, &p, &styles[s], 0.6f, 8, whole);
         for (int i = 0; i < 8; i++) {
             const int x = region[i][0], y = region[i][1], w = region[i][2], h = region[i][3];
@@ -181,11 +181,11 @@ static void regions(void **state)
 
             if (left_out(s + i, 3))
                 continue;
-            params.region_x = x, params.region_y = y;
-            params.region_width = w, params.region_height = h;
+            params.render.region_x = x, params.render.region_y = y;
+            params.render.region_width = w, params.render.region_height = h;
             for (int row = 0; row < h; row++)
                 memcpy(crop + 3 * row * w, whole + 3 * ((y + row) * W + x), 3 * (size_t)w);
-            assert_int_equal(refocus_render(i % 2 ? fresh : renderer, &params, &image), 0);
+            assert_int_equal(refocus_render_settings(i % 2 ? fresh : renderer, &params, &image), 0);
             assert_same_pixels(part, crop, w, h, styles[s].name);
         }
         refocus_aperture_destroy(&aperture);

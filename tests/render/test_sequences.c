@@ -67,7 +67,7 @@ static void change(struct setting *s, uint32_t *state, enum mode mode)
 
 static int render(struct refocus_renderer *renderer, const struct setting *s, uint8_t *out)
 {
-    struct refocus_render_params params = style_params(s->style, s->focus, s->blur);
+    struct refocus_settings params = style_params(s->style, s->focus, s->blur);
     struct refocus_aperture *aperture = style_aperture(s->style);
     const int w = s->width ? s->width : WIDTH;
     const int h = s->height ? s->height : HEIGHT;
@@ -75,14 +75,14 @@ static int render(struct refocus_renderer *renderer, const struct setting *s, ui
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * (ptrdiff_t)w);
     int status;
 
-    params.aperture = aperture;
-    params.highlight_gain = s->gain;
-    params.region_x = s->x;
-    params.region_y = s->y;
-    params.region_width = s->width;
-    params.region_height = s->height;
+    params.render.aperture = aperture;
+    params.highlights.gain = s->gain;
+    params.render.region_x = s->x;
+    params.render.region_y = s->y;
+    params.render.region_width = s->width;
+    params.render.region_height = s->height;
     memset(out, 0x5a, MOST);
-    status = refocus_render(renderer, &params, &image);
+    status = refocus_render_settings(renderer, &params, &image);
     refocus_aperture_destroy(&aperture);
     return status;
 }
@@ -294,7 +294,7 @@ static struct picture make_highlights(uint32_t seed)
 
 /* Cancelled at each of the moments at which it looks, a render with these settings leaves nothing
  * half made. */
-static void cancel_at_every_moment(struct refocus_render_params params)
+static void cancel_at_every_moment(struct refocus_settings params)
 {
     struct picture p[2] = {make_highlights(31), make_highlights(32)};
     const struct refocus_image photo[2] = {picture_image(&p[0]), picture_image(&p[1])};
@@ -308,31 +308,31 @@ static void cancel_at_every_moment(struct refocus_render_params params)
     int status = REFOCUS_ERR_CANCELLED, cancelled = 0;
     const int each = left_out(1, 2) ? 3 : 1;
 
-    params.blend = REFOCUS_BLEND_GAMMA;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.render.blend = REFOCUS_BLEND_GAMMA;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     memcpy(expected, out, sizeof out);
     assert_true(renderer->photo.highlights.part[0].count > 40); /* rows of highlights */
     renderer->run.user = &canceller;
     for (int n = 1; status != REFOCUS_OK; n += each) {
         /* another photo and another lens before */
-        params.focus_disparity = 0.8f;
-        params.blend = REFOCUS_BLEND_LINEAR;
+        params.render.focus_disparity = 0.8f;
+        params.render.blend = REFOCUS_BLEND_LINEAR;
         assert_int_equal(refocus_prepare(renderer, &photo[1], &disparity[1]), REFOCUS_OK);
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
-        params.focus_disparity = 0.3f;
-        params.blend = REFOCUS_BLEND_GAMMA;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        params.render.focus_disparity = 0.3f;
+        params.render.blend = REFOCUS_BLEND_GAMMA;
         atomic_store(&canceller.left, n);
         renderer->run.looked_at = cancel_later;
         status = refocus_prepare(renderer, &photo[0], &disparity[0]);
         if (status == REFOCUS_OK)
-            status = refocus_render(renderer, &params, &image);
+            status = refocus_render_settings(renderer, &params, &image);
         else
-            assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_ERR_STATE);
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_STATE);
         renderer->run.looked_at = NULL;
         cancelled += status == REFOCUS_ERR_CANCELLED;
         if (!renderer->prepared)
             assert_int_equal(refocus_prepare(renderer, &photo[0], &disparity[0]), REFOCUS_OK);
-        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
         assert_same_pixels(out, expected, 97, 83, "after a cancelled one");
     }
     assert_true(cancelled > 50 / each);
@@ -344,19 +344,19 @@ static void cancel_at_every_moment(struct refocus_render_params params)
 /* Highlights splatted; highlights gathered, grain and stars. */
 static void every_moment(void **state)
 {
-    struct refocus_render_params params = refocus_render_params_default(0.3f, 12);
+    struct refocus_settings params = refocus_settings_default(0.3f, 12);
 
     (void)state;
-    params.rays = 16;
-    params.highlight_gain = 3;
+    params.render.rays = 16;
+    params.highlights.gain = 3;
     cancel_at_every_moment(params);
-    params.rays = REFOCUS_RAYS_FULL;
-    params.max_blur_radius = 5;
-    params.highlight_gain = 4;
-    params.grain = 1;
-    params.star_spikes = 6;
-    params.star_length = 20;
-    params.star_strength = 0.5f;
+    params.render.rays = REFOCUS_RAYS_FULL;
+    params.render.max_blur_radius = 5;
+    params.highlights.gain = 4;
+    params.look.grain = 1;
+    params.look.star_spikes = 6;
+    params.look.star_length = 20;
+    params.look.star_strength = 0.5f;
     cancel_at_every_moment(params);
 }
 

@@ -30,13 +30,13 @@ static void render(struct refocus_renderer *renderer, int blur, int rays, float 
                    bool prefilter, const struct refocus_aperture *aperture, uint8_t out[3 * W * H])
 {
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, (float)blur);
+    struct refocus_settings params = refocus_settings_default(0.5f, (float)blur);
 
-    params.rays = rays;
-    params.prefilter = prefilter;
-    params.highlight_gain = gain;
-    params.aperture = aperture;
-    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    params.render.rays = rays;
+    params.render.prefilter = prefilter;
+    params.highlights.gain = gain;
+    params.render.aperture = aperture;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
 }
 
 /* Codes of green alone. */

@@ -37,7 +37,7 @@ static const struct setting plain = {
 
 static int render(struct refocus_renderer *renderer, const struct setting *s, uint8_t *out)
 {
-    struct refocus_render_params params = refocus_render_params_default(s->focus, s->blur);
+    struct refocus_settings params = refocus_settings_default(s->focus, s->blur);
     const int w = s->width ? s->width : WIDTH;
     const int h = s->height ? s->height : HEIGHT;
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, w, h, 3 * w);
@@ -46,19 +46,19 @@ static int render(struct refocus_renderer *renderer, const struct setting *s, ui
 
     if (s->blades)
         assert_int_equal(refocus_aperture_create_polygon(&aperture, s->blades, 10), REFOCUS_OK);
-    params.aperture = aperture;
-    params.rays = s->rays;
-    params.thin = s->thin;
-    params.highlight_gain = s->gain;
-    params.sigma = s->sigma;
-    params.blend = s->blend;
-    params.method = s->method;
-    params.region_x = s->x;
-    params.region_y = s->y;
-    params.region_width = s->width;
-    params.region_height = s->height;
+    params.render.aperture = aperture;
+    params.render.rays = s->rays;
+    params.thin.enabled = s->thin;
+    params.highlights.gain = s->gain;
+    params.render.sigma = s->sigma;
+    params.render.blend = s->blend;
+    params.render.method = s->method;
+    params.render.region_x = s->x;
+    params.render.region_y = s->y;
+    params.render.region_width = s->width;
+    params.render.region_height = s->height;
     memset(out, 0x5a, MOST);
-    status = refocus_render(renderer, &params, &image);
+    status = refocus_render_settings(renderer, &params, &image);
     refocus_aperture_destroy(&aperture);
     return status;
 }

@@ -22,7 +22,7 @@ static void same_bytes(void **state)
             render_style(renderer, &p, &styles[i], 0.4f, 8, one + size * (size_t)i);
         refocus_renderer_destroy(&renderer);
         for (int t = 0; t < 3; t++) {
-            struct refocus_renderer_info info;
+            struct refocus_renderer_info info = refocus_renderer_info_default();
 
             if (left_out(s + t + 2, 3))
                 continue;
@@ -89,7 +89,7 @@ static void cancel_render(void **state)
                                0,
                                0,
                                0};
-    struct refocus_render_params params = style_params(&slow, 0.5f, 60);
+    struct refocus_settings params = style_params(&slow, 0.5f, 60);
     struct canceller canceller = {prepared(&p, 60, 3), 0};
     uint8_t *out = malloc(3 * 900 * 700), *before = malloc(3 * 900 * 700);
     const struct refocus_image image =
@@ -102,7 +102,8 @@ static void cancel_render(void **state)
 
     assert_int_equal(pthread_create(&thread, NULL, cancel_all, &canceller), 0);
     const double start = seconds();
-    assert_int_equal(refocus_render(canceller.renderer, &params, &image), REFOCUS_ERR_CANCELLED);
+    assert_int_equal(refocus_render_settings(canceller.renderer, &params, &image),
+                     REFOCUS_ERR_CANCELLED);
     const double taken = seconds() - start;
     atomic_store(&canceller.stop, 1);
     pthread_join(thread, NULL);
@@ -137,8 +138,8 @@ static void cancel_prepare(void **state)
     assert_int_equal(pthread_create(&thread, NULL, cancel_all, &canceller), 0);
     for (int i = 0; i < 50; i++) {
         const int status = refocus_prepare(canceller.renderer, &photo, &disparity);
-        const struct refocus_render_params params = refocus_render_params_default(0.5f, 0);
-        const int after = refocus_render(canceller.renderer, &params, &image);
+        const struct refocus_settings params = refocus_settings_default(0.5f, 0);
+        const int after = refocus_render_settings(canceller.renderer, &params, &image);
 
         assert_true(status == REFOCUS_OK || status == REFOCUS_ERR_CANCELLED);
         if (status == REFOCUS_OK)

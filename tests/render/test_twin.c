@@ -27,7 +27,7 @@ static double compare(const struct picture *p, const char *name, const struct st
                       float focus, float K)
 {
     const size_t size = 3 * (size_t)p->width * (size_t)p->height;
-    struct refocus_render_params params = style_params(style, focus, K);
+    struct refocus_settings params = style_params(style, focus, K);
     struct refocus_aperture *aperture = style_aperture(style);
     struct refocus_renderer *renderer = prepared(p, K, 2);
     uint8_t *fixed = malloc(size), *exact = malloc(size);
@@ -40,7 +40,7 @@ static double compare(const struct picture *p, const char *name, const struct st
     for (uint32_t i = 0; i < list->count; i++)
         silhouette[i] =
             (struct twin_silhouette){list->pixel[i].x, list->pixel[i].y, list->pixel[i].disparity};
-    params.aperture = aperture;
+    params.render.aperture = aperture;
     render_style(renderer, p, style, focus, K, fixed);
     twin_create(&twin, p, &params, silhouette, (int)list->count);
     if (style->method == REFOCUS_METHOD_SWEEP)

@@ -20,10 +20,10 @@ static void prepare(struct refocus_renderer *renderer, const struct yuv_picture 
     assert_int_equal(refocus_prepare(renderer, &photo->image, &map), REFOCUS_OK);
 }
 
-static void render(struct refocus_renderer *renderer, const struct refocus_render_params *params,
+static void render(struct refocus_renderer *renderer, const struct refocus_settings *params,
                    const struct yuv_picture *out)
 {
-    assert_int_equal(refocus_render(renderer, params, &out->image), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, params, &out->image), REFOCUS_OK);
 }
 
 /* Every style of the sweep, one after another. */
@@ -38,11 +38,11 @@ static const struct style *sweep_style(int *at)
 static void render_style_yuv(struct refocus_renderer *renderer, const struct style *style,
                              float focus, float blur, float gain, const struct yuv_picture *out)
 {
-    struct refocus_render_params params = style_params(style, focus, blur);
+    struct refocus_settings params = style_params(style, focus, blur);
     struct refocus_aperture *aperture = style_aperture(style);
 
-    params.aperture = aperture;
-    params.highlight_gain = gain;
+    params.render.aperture = aperture;
+    params.highlights.gain = gain;
     render(renderer, &params, out);
     refocus_aperture_destroy(&aperture);
 }
@@ -212,7 +212,7 @@ static void grey(void **state)
     enum { W = 90, H = 70 };
     struct picture p = picture_make(W, H, 8);
     struct refocus_renderer *renderer = renderer_for(W, H, 10, 1);
-    struct refocus_render_params params = refocus_render_params_default(0.45f, 10);
+    struct refocus_settings params = refocus_settings_default(0.45f, 10);
     static uint8_t rgb[3 * W * H];
     const struct refocus_image out_rgb =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, W, H, 3 * W);
@@ -220,12 +220,12 @@ static void grey(void **state)
     struct refocus_image photo_rgb;
 
     (void)state;
-    params.rays = 96;
+    params.render.rays = 96;
     for (int i = 0; i < W * H; i++)
         p.rgb[3 * i] = p.rgb[3 * i + 2] = p.rgb[3 * i + 1];
     photo_rgb = picture_image(&p);
     assert_int_equal(refocus_prepare(renderer, &photo_rgb, &map), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &out_rgb), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &out_rgb), REFOCUS_OK);
     for (int i = 0; i < 4; i++) {
         struct yuv_picture photo = yuv_make(yuv_formats[i], W, H, 0);
         struct yuv_picture out = yuv_make(yuv_formats[i], W, H, 0);
@@ -263,7 +263,7 @@ static void regions(void **state)
 
     (void)state;
     for (int i = 0; i < 4; i++) {
-        struct refocus_render_params params = refocus_render_params_default(0.3f, 9);
+        struct refocus_settings params = refocus_settings_default(0.3f, 9);
         struct yuv_picture photo = yuv_make(yuv_formats[i], W, H, 0);
         struct yuv_picture whole = yuv_make(yuv_formats[i], W, H, 0);
 
@@ -274,8 +274,9 @@ static void regions(void **state)
             const int *at = k < 5 ? good[k] : bad[k - 5];
             struct yuv_picture out = yuv_make(yuv_formats[i], at[2], at[3], 7);
             const int status =
-                (params.region_x = at[0], params.region_y = at[1], params.region_width = at[2],
-                 params.region_height = at[3], refocus_render(renderer, &params, &out.image));
+                (params.render.region_x = at[0], params.render.region_y = at[1],
+                 params.render.region_width = at[2], params.render.region_height = at[3],
+                 refocus_render_settings(renderer, &params, &out.image));
 
             assert_int_equal(status, k < 5 ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
             assert_margins(&out, "region");
@@ -287,11 +288,11 @@ static void regions(void **state)
             }
             yuv_free(&out);
         }
-        params = refocus_render_params_default(0.3f, 9);
-        params.region_y = 1;
-        params.region_width = params.region_height = 2;
+        params = refocus_settings_default(0.3f, 9);
+        params.render.region_y = 1;
+        params.render.region_width = params.render.region_height = 2;
         struct yuv_picture out = yuv_make(yuv_formats[i], 2, 2, 0);
-        assert_int_equal(refocus_render(renderer, &params, &out.image),
+        assert_int_equal(refocus_render_settings(renderer, &params, &out.image),
                          yuv_formats[i] == REFOCUS_FORMAT_YUYV ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
         yuv_free(&out);
         yuv_free(&photo);
@@ -315,34 +316,34 @@ static void by_turns(void **state)
 
     (void)state;
     for (int i = 0; i < 16; i++) {
-        struct refocus_render_params params = refocus_render_params_default(0.6f, 9);
+        struct refocus_settings params = refocus_settings_default(0.6f, 9);
         struct yuv_picture photo = yuv_make(yuv_formats[i % 4], W, H, 0);
         struct yuv_picture out = yuv_make(yuv_formats[i % 4], W, H, 0);
         struct yuv_picture expected = yuv_make(yuv_formats[i % 4], W, H, 0);
         struct refocus_renderer *fresh = renderer_for(W, H, 9, 1);
 
-        params.highlight_gain = i % 2 ? 4 : 1;
-        params.sigma = i % 3 ? 1e30f : 60;
+        params.highlights.gain = i % 2 ? 4 : 1;
+        params.render.sigma = i % 3 ? 1e30f : 60;
         yuv_from_picture(&photo, &p);
         photo.image.range = (uint32_t)i / 2 % 2;
         photo.image.matrix = (uint32_t)i % 2;
         prepare(used, &photo, &p);
         for (int blend = 2; blend >= 0; blend--) {
-            params.blend = (uint32_t)(blend + i) % 3;
+            params.render.blend = (uint32_t)(blend + i) % 3;
             render(used, &params, &out);
         }
         prepare(fresh, &photo, &p);
         render(fresh, &params, &expected);
         assert_same_yuv(&out.image, &expected.image, "by turns");
         assert_int_equal(refocus_prepare(used, &rgb, &map), REFOCUS_OK);
-        assert_int_equal(refocus_render(used, &params, &to_rgb), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(used, &params, &to_rgb), REFOCUS_OK);
         assert_int_equal(refocus_prepare(fresh, &rgb, &map), REFOCUS_OK);
         refocus_renderer_destroy(&fresh);
         fresh = renderer_for(W, H, 9, 1);
         assert_int_equal(refocus_prepare(fresh, &rgb, &map), REFOCUS_OK);
         const struct refocus_image to_expected =
             refocus_image_packed(REFOCUS_FORMAT_RGB8, expected_rgb, W, H, 3 * W);
-        assert_int_equal(refocus_render(fresh, &params, &to_expected), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(fresh, &params, &to_expected), REFOCUS_OK);
         assert_same_pixels(out_rgb, expected_rgb, W, H, "R, G, B after Y, U, V");
         refocus_renderer_destroy(&fresh);
         yuv_free(&photo);
@@ -359,7 +360,7 @@ static void refused(void **state)
     struct picture p = picture_make(W, H, 3);
     const struct refocus_disparity map = picture_disparity(&p);
     struct refocus_renderer *renderer = renderer_for(W, H, 5, 1);
-    struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    struct refocus_settings params = refocus_settings_default(0.5f, 5);
     const struct refocus_image rgb = picture_image(&p);
     struct yuv_picture nv12 = yuv_make(REFOCUS_FORMAT_NV12, W, H, 0);
     struct yuv_picture yuyv = yuv_make(REFOCUS_FORMAT_YUYV, W, H, 0);
@@ -368,16 +369,20 @@ static void refused(void **state)
 
     (void)state;
     assert_int_equal(refocus_prepare(renderer, &nv12.image, &map), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &rgb), REFOCUS_ERR_UNSUPPORTED);
-    assert_int_equal(refocus_render(renderer, &params, &yuyv.image), REFOCUS_ERR_UNSUPPORTED);
-    assert_int_equal(refocus_render(renderer, &params, &i420.image), REFOCUS_OK);
-    params.method = REFOCUS_METHOD_SEARCH;
-    assert_int_equal(refocus_render(renderer, &params, &i420.image), REFOCUS_ERR_UNSUPPORTED);
-    params.method = REFOCUS_METHOD_SWEEP;
+    assert_int_equal(refocus_render_settings(renderer, &params, &rgb), REFOCUS_ERR_UNSUPPORTED);
+    assert_int_equal(refocus_render_settings(renderer, &params, &yuyv.image),
+                     REFOCUS_ERR_UNSUPPORTED);
+    assert_int_equal(refocus_render_settings(renderer, &params, &i420.image), REFOCUS_OK);
+    params.render.method = REFOCUS_METHOD_SEARCH;
+    assert_int_equal(refocus_render_settings(renderer, &params, &i420.image),
+                     REFOCUS_ERR_UNSUPPORTED);
+    params.render.method = REFOCUS_METHOD_SWEEP;
     assert_int_equal(refocus_prepare(renderer, &yuyv.image, &map), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &nv12.image), REFOCUS_ERR_UNSUPPORTED);
+    assert_int_equal(refocus_render_settings(renderer, &params, &nv12.image),
+                     REFOCUS_ERR_UNSUPPORTED);
     assert_int_equal(refocus_prepare(renderer, &rgb, &map), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &nv12.image), REFOCUS_ERR_UNSUPPORTED);
+    assert_int_equal(refocus_render_settings(renderer, &params, &nv12.image),
+                     REFOCUS_ERR_UNSUPPORTED);
     for (int i = 0; i < 6; i++) {
         wrong = i420.image;
         if (i < 3)
@@ -389,7 +394,7 @@ static void refused(void **state)
         if (i == 5)
             wrong.range = 2;
         assert_int_equal(refocus_prepare(renderer, &wrong, &map), REFOCUS_ERR_ARGUMENT);
-        assert_int_equal(refocus_render(renderer, &params, &rgb), REFOCUS_ERR_STATE);
+        assert_int_equal(refocus_render_settings(renderer, &params, &rgb), REFOCUS_ERR_STATE);
     }
     yuv_free(&nv12);
     yuv_free(&yuyv);
@@ -409,7 +414,7 @@ static void like_rgb(void **state)
     enum { W = 160, H = 120 };
     struct picture p = picture_make(W, H, 44);
     struct refocus_renderer *renderer = renderer_for(W, H, 10, 2);
-    const struct refocus_render_params params = refocus_render_params_default(0.2f, 10);
+    const struct refocus_settings params = refocus_settings_default(0.2f, 10);
     const struct refocus_disparity map = picture_disparity(&p);
     static uint8_t rgb[3 * W * H];
     const struct refocus_image out_rgb =
@@ -420,7 +425,7 @@ static void like_rgb(void **state)
     for (int i = 0; i < W * H; i++)
         memcpy(p.rgb + 3 * i, p.rgb + 3 * (i / W / 2 * 2 * W + i % W / 2 * 2), 3);
     assert_int_equal(refocus_prepare(renderer, &photo_rgb, &map), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &params, &out_rgb), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &out_rgb), REFOCUS_OK);
     for (int i = 0; i < 4; i++) {
         struct yuv_picture photo = yuv_make(yuv_formats[i], W, H, 0);
         struct yuv_picture out = yuv_make(yuv_formats[i], W, H, 0);

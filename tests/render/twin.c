@@ -35,15 +35,14 @@ static double blur_of(const struct twin *t, int disparity)
     return t->K * (t->df - disparity / 65535.0);
 }
 
-void twin_create(struct twin *t, const struct picture *p,
-                 const struct refocus_render_params *params,
+void twin_create(struct twin *t, const struct picture *p, const struct refocus_settings *params,
                  const struct twin_silhouette *silhouette, int silhouettes)
 {
     *t = (struct twin){p->width,
                        p->height,
                        params,
-                       (double)params->max_blur_radius,
-                       (double)params->focus_disparity,
+                       (double)params->render.max_blur_radius,
+                       (double)params->render.focus_disparity,
                        p->disparity,
                        silhouette,
                        silhouettes,
@@ -61,7 +60,8 @@ void twin_create(struct twin *t, const struct picture *p,
         t->smooth[c] = plane(t);
         t->behind[c] = plane(t);
         for (int i = 0; i < t->width * t->height; i++)
-            t->light[c][i] = t->smooth[c][i] = twin_to_light(params->blend, p->rgb[3 * i + c]);
+            t->light[c][i] = t->smooth[c][i] =
+                twin_to_light(params->render.blend, p->rgb[3 * i + c]);
     }
     for (int i = 0; i < t->width * t->height; i++)
         t->map_blur[i] = t->blur[i] = blur_of(t, p->disparity[i]);
@@ -101,7 +101,7 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
                 if (fabs(t->blur[q] - t->blur[p]) <= fmin(fmax(size / 8, 1), 2))
                     way += in[q] - in[p];
             }
-            out[p] = in[p] + way / 3 * (t->params->rays > 64 ? size > above : part);
+            out[p] = in[p] + way / 3 * (t->params->render.rays > 64 ? size > above : part);
         }
     }
 }
@@ -110,10 +110,10 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
  * that can be at all. */
 void twin_prefilter(struct twin *t)
 {
-    const double apart = sqrt(t->params->rays / 3.14159265358979);
+    const double apart = sqrt(t->params->render.rays / 3.14159265358979);
     double *between;
 
-    if (!t->params->prefilter || t->params->rays == REFOCUS_RAYS_FULL)
+    if (!t->params->render.prefilter || t->params->render.rays == REFOCUS_RAYS_FULL)
         return;
     between = plane(t);
     for (int step = 1; step <= (t->K > 3 * apart ? 4 : 1); step *= 2) {
@@ -129,7 +129,8 @@ void twin_add(const struct twin *t, struct twin_sum *sum, double *const light[3]
               double share)
 {
     const double most = fmax(light[0][at], fmax(light[1][at], light[2][at]));
-    const double below = (255 - twin_to_code(t->params->blend, most)) / (double)t->params->sigma;
+    const double below =
+        (255 - twin_to_code(t->params->render.blend, most)) / (double)t->params->render.sigma;
     const double w = share * exp(-below * below / 2);
 
     sum->weight += w;
@@ -140,7 +141,8 @@ void twin_add(const struct twin *t, struct twin_sum *sum, double *const light[3]
 void twin_encode(const struct twin *t, const struct twin_sum *sum, uint8_t rgb[3])
 {
     for (int c = 0; c < 3; c++)
-        rgb[c] = (uint8_t)floor(twin_to_code(t->params->blend, sum->light[c] / sum->weight) + 0.5);
+        rgb[c] = (uint8_t)floor(twin_to_code(t->params->render.blend, sum->light[c] / sum->weight) +
+                                0.5);
 }
 
 struct refocus_ray *twin_rays(const struct refocus_aperture *aperture, int rays, double K,

@@ -16,7 +16,7 @@ struct twin_silhouette {
 
 struct twin {
     int width, height;
-    const struct refocus_render_params *params;
+    const struct refocus_settings *params;
     double K, df;
     const uint16_t *disparity;
     const struct twin_silhouette *silhouette;
@@ -29,8 +29,8 @@ struct twin {
 
 /* The planes of a photo; all NaN or of the photo itself where a method has no use for them. */
 void twin_create(struct twin *twin, const struct picture *picture,
-                 const struct refocus_render_params *params,
-                 const struct twin_silhouette *silhouette, int silhouettes);
+                 const struct refocus_settings *params, const struct twin_silhouette *silhouette,
+                 int silhouettes);
 void twin_destroy(struct twin *twin);
 
 /* The passes before the rays. */

@@ -12,7 +12,7 @@ static void trace(const struct twin *t, int x, int y, struct refocus_ray ray, co
     int q = p;
     bool valid = false;
 
-    for (int i = 0; i < t->params->iterations && !valid; i++) {
+    for (int i = 0; i < t->params->search.iterations && !valid; i++) {
         s = found;
         q = twin_meets(t, x, y, ray, s);
         found = blur[q];
@@ -20,9 +20,9 @@ static void trace(const struct twin *t, int x, int y, struct refocus_ray ray, co
     }
     if (valid || found <= blur[p]) {
         twin_add(t, sum, t->light, q, ray.weight);
-    } else if (t->params->background) {
+    } else if (t->params->search.background) {
         twin_add(t, sum, t->behind, twin_meets(t, x, y, ray, t->behind_blur[p]), ray.weight);
-    } else if (t->params->mirror) {
+    } else if (t->params->search.mirror) {
         ray.u = (int16_t)-ray.u;
         ray.v = (int16_t)-ray.v;
         twin_add(t, sum, t->light, twin_meets(t, x, y, ray, s), ray.weight);
@@ -33,11 +33,12 @@ static void trace(const struct twin *t, int x, int y, struct refocus_ray ray, co
 
 void twin_search(struct twin *t, uint8_t *rgb)
 {
-    const double *blur = t->params->background ? t->blur : t->map_blur;
+    const double *blur = t->params->search.background ? t->blur : t->map_blur;
     int count;
-    struct refocus_ray *ray = twin_rays(t->params->aperture, t->params->rays, t->K, &count);
+    struct refocus_ray *ray =
+        twin_rays(t->params->render.aperture, t->params->render.rays, t->K, &count);
 
-    if (t->params->background) {
+    if (t->params->search.background) {
         twin_prefilter(t);
         twin_background(t);
     }

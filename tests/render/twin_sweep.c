@@ -173,10 +173,11 @@ static struct sets make_sets(const struct twin *t)
     static const int sizes[SETS] = {24, 32, 48, 64, 96, 128};
     struct sets sets = {{0}, {0}, 0};
 
-    for (int i = 0; i < SETS && sizes[i] < t->params->rays; i++)
-        sets.ray[sets.sets++] = twin_rays(t->params->aperture, sizes[i], t->K, &sets.count[i]);
+    for (int i = 0; i < SETS && sizes[i] < t->params->render.rays; i++)
+        sets.ray[sets.sets++] =
+            twin_rays(t->params->render.aperture, sizes[i], t->K, &sets.count[i]);
     sets.ray[sets.sets] =
-        twin_rays(t->params->aperture, t->params->rays, t->K, &sets.count[sets.sets]);
+        twin_rays(t->params->render.aperture, t->params->render.rays, t->K, &sets.count[sets.sets]);
     sets.sets++;
     return sets;
 }
@@ -200,7 +201,7 @@ static int deepest_of(const struct twin *t, const struct twin_cells *cells, cons
         const int dx = (int)floor(ray.u / 32768.0 * slab->centre + 0.5);
         const int dy = (int)floor(ray.v / 32768.0 * slab->centre + 0.5);
 
-        if (t->params->rays != REFOCUS_RAYS_FULL && t->params->rays <= 64 &&
+        if (t->params->render.rays != REFOCUS_RAYS_FULL && t->params->render.rays <= 64 &&
             twin_is_deepest(cells, strip, dx, dy, slab->low, slab->high))
             break;
         i++;
@@ -249,13 +250,13 @@ static struct rows rows_of(const struct twin *t, const struct sets *sets, double
     static const struct rows sparse[] = {
         {4, {0, 5, 10, 15}}, {6, {0, 3, 6, 9, 12, 15}}, {8, {0, 2, 4, 6, 9, 11, 13, 15}}};
     static const int step[] = {5, 3, 2};
-    const int gap = (int)fmax(40 * sqrt(t->params->rays), 256);
+    const int gap = (int)fmax(40 * sqrt(t->params->render.rays), 256);
     struct rows all = {TWIN_TILE, {0}};
     int tallest = 1; /* Q15 */
 
     for (int y = 0; y < TWIN_TILE; y++)
         all.at[y] = y;
-    if (t->params->rays == REFOCUS_RAYS_FULL || t->params->rays > 64)
+    if (t->params->render.rays == REFOCUS_RAYS_FULL || t->params->render.rays > 64)
         return all;
     for (int n = 0; n < sets->count[sets->sets - 1]; n++)
         if (abs(sets->ray[sets->sets - 1][n].v) > tallest)
@@ -270,10 +271,11 @@ static struct rows rows_of(const struct twin *t, const struct sets *sets, double
 /* 1 from where rays lie 5/4 of 1.5 pixels apart on, if nothing is as fine; 0 from 1.5 down. */
 static double softness(const struct twin *t, const struct plan *plan, double least)
 {
-    const double gap = sqrt(3.14159265358979 / t->params->rays);
+    const double gap = sqrt(3.14159265358979 / t->params->render.rays);
     const double far_apart = 4 * (plan->reach * gap / 1.5 - 1), blurred = 4 * (least / 2.5 - 1);
 
-    if (!t->params->prefilter || t->params->rays == REFOCUS_RAYS_FULL || t->K * gap <= 1.5)
+    if (!t->params->render.prefilter || t->params->render.rays == REFOCUS_RAYS_FULL ||
+        t->K * gap <= 1.5)
         return 0;
     return fmin(fmax(fmin(far_apart, blurred), 0), 1);
 }

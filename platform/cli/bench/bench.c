@@ -68,7 +68,7 @@ static int print_report(const struct settings *settings, const struct engine *en
                         const struct scene *scene, const char *photo)
 {
     const struct spread *times = &engine->render_ms;
-    const struct refocus_render_params *params = &engine->params;
+    const struct refocus_settings *params = &engine->params;
     char rays[16] = "full";
 
     if (settings->engine.json) {
@@ -86,11 +86,11 @@ static int print_report(const struct settings *settings, const struct engine *en
         json_decref(run);
         return report_print_json(json);
     }
-    if (params->rays != REFOCUS_RAYS_FULL)
-        snprintf(rays, sizeof rays, "%d", (int)params->rays);
+    if (params->render.rays != REFOCUS_RAYS_FULL)
+        snprintf(rays, sizeof rays, "%d", (int)params->render.rays);
     printf("%dx%d, %s, blur %.4g, focus %.3f, %s rays, %d threads, %s\n", (int)scene->photo.width,
-           (int)scene->photo.height, refocus_method_name(params->method),
-           (double)params->max_blur_radius, (double)params->focus_disparity, rays,
+           (int)scene->photo.height, refocus_method_name(params->render.method),
+           (double)params->render.max_blur_radius, (double)params->render.focus_disparity, rays,
            (int)engine->info.threads, refocus_cpu_name(engine->info.cpu));
     printf("create   %9.2f ms   %.1f MiB\n", engine->create_ms,
            (double)engine->info.memory / (1 << 20));
@@ -143,8 +143,8 @@ static int count_rays(const struct engine *engine, const struct settings *settin
 {
     struct ray_statistics statistics;
 
-    if (ray_statistics(&statistics, disparity, width, height, engine->params.focus_disparity,
-                       engine->params.max_blur_radius, engine->aperture) != 0)
+    if (ray_statistics(&statistics, disparity, width, height, engine->params.render.focus_disparity,
+                       engine->params.render.max_blur_radius, engine->aperture) != 0)
         return report_failure(EXIT_FAILED, "--rays", "not enough memory");
     if (settings->engine.json)
         return report_print_json(ray_statistics_json(&statistics));
@@ -176,7 +176,7 @@ static int measure(struct engine *engine, const struct settings *settings, struc
     if (status == EXIT_DONE) {
         refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared, (ptrdiff_t)width * 2);
         status = input_focus(input, &settings->lens, prepared, &focus);
-        engine->params.focus_disparity = (float)focus;
+        engine->params.render.focus_disparity = (float)focus;
     }
     if (status == EXIT_DONE && settings->statistics)
         status = count_rays(engine, settings, prepared, width, height);

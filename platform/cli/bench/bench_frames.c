@@ -121,7 +121,7 @@ static json_t *row_json(const struct place *place, const struct engine *engine,
     return json_pack("{s:i, s:i, s:f, s:s, s:i, s:i, s:s, s:f, s:f, s:f, s:f}", "width",
                      place->width, "height", place->height, "blur", place->blur, "quality",
                      engine_quality_name((uint32_t)place->quality), "rays",
-                     (int)engine->params.rays, "threads", (int)engine->info.threads, "cpu",
+                     (int)engine->params.render.rays, "threads", (int)engine->info.threads, "cpu",
                      refocus_cpu_name(engine->info.cpu), "memcpy_ms", t->copy, "box_ms", t->box,
                      "prepare_ms", t->prepare, "render_ms", t->render);
 }
@@ -149,7 +149,7 @@ static int one(const struct engine_settings *common, const struct place *place,
     engine.name = name;
     if (status == EXIT_DONE)
         status = engine_create(&engine, &settings, place->width, place->height, place->blur);
-    engine.params.focus_disparity = 0.3f;
+    engine.params.render.focus_disparity = 0.3f;
     if (status == EXIT_DONE)
         status = measure(&engine, scene, place, buffers, (int)settings.repeat, &times);
     if (status == EXIT_DONE && rows)

@@ -20,18 +20,18 @@ static const struct parameter {
     size_t offset;
     double least, greatest;
 } parameters[] = {
-    {"focus", offsetof(struct refocus_render_params, focus_disparity), 0, 1},
-    {"blur", offsetof(struct refocus_render_params, max_blur_radius), 0, REFOCUS_MAX_BLUR_RADIUS},
-    {"highlights", offsetof(struct refocus_render_params, highlight_gain), 1, 16},
-    {"focus-width", offsetof(struct refocus_render_params, focus_half_width), 0, 1},
-    {"focus-transition", offsetof(struct refocus_render_params, focus_transition), 0, 1},
-    {"cat-eye", offsetof(struct refocus_render_params, cat_eye), 0, 0.9f},
-    {"field-x", offsetof(struct refocus_render_params, field_x), 0, 1},
-    {"field-y", offsetof(struct refocus_render_params, field_y), 0, 1},
-    {"field-disparity", offsetof(struct refocus_render_params, field_disparity), 0, 1},
-    {"field-radius", offsetof(struct refocus_render_params, field_radius), 0, 4},
-    {"field-falloff", offsetof(struct refocus_render_params, field_falloff), 0.001, 4},
-    {"field-angle", offsetof(struct refocus_render_params, field_angle), -360, 360},
+    {"focus", offsetof(struct refocus_settings, render.focus_disparity), 0, 1},
+    {"blur", offsetof(struct refocus_settings, render.max_blur_radius), 0, REFOCUS_MAX_BLUR_RADIUS},
+    {"highlights", offsetof(struct refocus_settings, highlights.gain), 1, 16},
+    {"focus-width", offsetof(struct refocus_settings, focus.half_width), 0, 1},
+    {"focus-transition", offsetof(struct refocus_settings, focus.transition), 0, 1},
+    {"cat-eye", offsetof(struct refocus_settings, look.cat_eye), 0, 0.9f},
+    {"field-x", offsetof(struct refocus_settings, field.x), 0, 1},
+    {"field-y", offsetof(struct refocus_settings, field.y), 0, 1},
+    {"field-disparity", offsetof(struct refocus_settings, field.disparity), 0, 1},
+    {"field-radius", offsetof(struct refocus_settings, field.radius), 0, 4},
+    {"field-falloff", offsetof(struct refocus_settings, field.falloff), 0.001, 4},
+    {"field-angle", offsetof(struct refocus_settings, field.angle), -360, 360},
 };
 enum { PARAMETERS = sizeof parameters / sizeof *parameters };
 
@@ -300,7 +300,7 @@ static double value_at(const struct keys *keys, int p, double time)
     return before ? before->value[p] : NAN;
 }
 
-void keys_apply(const struct keys *keys, double time, struct refocus_render_params *params)
+void keys_apply(const struct keys *keys, double time, struct refocus_settings *params)
 {
     for (int p = 0; p < PARAMETERS; p++) {
         const double value = value_at(keys, p, time);

@@ -19,7 +19,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
-#include <refocus/render.h>
+#include <refocus/settings.h>
 
 enum ease { EASE_SMOOTH, EASE_LINEAR, EASE_IN, EASE_OUT };
 const char *ease_name(uint32_t index);
@@ -44,6 +44,6 @@ double keys_seconds(const struct keys *keys);
 double keys_most(const struct keys *keys, const char *name, double otherwise);
 
 /* Set what keys name to its values at a time. */
-void keys_apply(const struct keys *keys, double time, struct refocus_render_params *params);
+void keys_apply(const struct keys *keys, double time, struct refocus_settings *params);
 
 #endif

@@ -225,7 +225,7 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys, const 
     if (status == EXIT_DONE && !isnan(s->wiggle))
         return wiggle(shot, s, frames);
     if (status == EXIT_DONE && !*keys)
-        status = make_keys(keys, s, (double)shot->engine.params.max_blur_radius);
+        status = make_keys(keys, s, (double)shot->engine.params.render.max_blur_radius);
     if (status == EXIT_DONE)
         status = write_frames(shot, *keys, NULL, s, frames);
     return status;
@@ -238,11 +238,11 @@ static int print_report(const struct settings *s, const struct shot *shot, int f
 
     if (!s->shot.engine.json)
         return EXIT_DONE;
-    json =
-        json_pack("{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo",
-                  report_text_json(shot->input.photo_name), "output", report_text_json(s->output),
-                  "width", (int)photo->width, "height", (int)photo->height, "frames", frames, "fps",
-                  given(s->fps, 25), "method", refocus_method_name(shot->engine.params.method));
+    json = json_pack("{s:o, s:o, s:i, s:i, s:i, s:f, s:s}", "photo",
+                     report_text_json(shot->input.photo_name), "output",
+                     report_text_json(s->output), "width", (int)photo->width, "height",
+                     (int)photo->height, "frames", frames, "fps", given(s->fps, 25), "method",
+                     refocus_method_name(shot->engine.params.render.method));
     blur = input_blur_json(&shot->input, &s->shot.lens);
     if (json && json_object_update(json, blur) != 0) {
         json_decref(json);

@@ -124,19 +124,20 @@ static int check(struct settings *settings, const char *photo, int argc, char **
 }
 
 /* The part of the photo that a cell shows, untouched. */
-static void take_photo(const struct refocus_image *photo,
-                       const struct refocus_render_params *params, const struct refocus_image *out)
+static void take_photo(const struct refocus_image *photo, const struct refocus_settings *params,
+                       const struct refocus_image *out)
 {
     for (int y = 0; y < out->height; y++)
         memcpy(out->plane[0] + y * out->stride[0],
-               photo->plane[0] + (params->region_y + y) * photo->stride[0] + 3 * params->region_x,
+               photo->plane[0] + (params->render.region_y + y) * photo->stride[0] +
+                   3 * params->render.region_x,
                (size_t)out->width * 3);
 }
 
-static int render_cell(struct shot *shot, const struct refocus_render_params *usual,
+static int render_cell(struct shot *shot, const struct refocus_settings *usual,
                        const struct sheet_cell *cell, const struct refocus_image *out)
 {
-    struct refocus_render_params *params = &shot->engine.params;
+    struct refocus_settings *params = &shot->engine.params;
 
     *params = *usual;
     if (cell->untouched) {
@@ -144,18 +145,18 @@ static int render_cell(struct shot *shot, const struct refocus_render_params *us
         return EXIT_DONE;
     }
     if (!isnan(cell->focus))
-        params->focus_disparity = (float)cell->focus;
+        params->render.focus_disparity = (float)cell->focus;
     if (!isnan(cell->blur))
-        params->max_blur_radius = (float)cell->blur;
+        params->render.max_blur_radius = (float)cell->blur;
     if (!isnan(cell->sigma))
-        params->sigma = isinf(cell->sigma) ? 1e30f : (float)cell->sigma;
+        params->render.sigma = isinf(cell->sigma) ? 1e30f : (float)cell->sigma;
     if (cell->blend >= 0)
-        params->blend = (uint32_t)cell->blend;
+        params->render.blend = (uint32_t)cell->blend;
     if (cell->look) {
-        params->aperture = cell->look->params.aperture;
-        params->cat_eye = cell->look->params.cat_eye;
-        params->fringe = cell->look->params.fringe;
-        params->star_spikes = cell->look->params.star_spikes;
+        params->render.aperture = cell->look->params.render.aperture;
+        params->look.cat_eye = cell->look->params.look.cat_eye;
+        params->look.fringe = cell->look->params.look.fringe;
+        params->look.star_spikes = cell->look->params.look.star_spikes;
         shot->engine.has_sides = cell->look->has_sides;
     }
     return engine_render(&shot->engine, out, 1);
@@ -174,19 +175,19 @@ static void cell_size(const struct refocus_image *full, double wanted, int *widt
 static int make_cells(struct shot *shot, const struct sheet *sheet, const struct settings *settings,
                       struct refocus_image *picture)
 {
-    const struct refocus_render_params usual = shot->engine.params;
+    const struct refocus_settings usual = shot->engine.params;
     struct refocus_image full = {0};
-    struct refocus_render_params placed;
+    struct refocus_settings placed;
     const char *why = NULL;
     int width, height, status = shot_output(shot, settings->region, &full);
 
     if (status != EXIT_DONE)
         return status;
     placed = usual;
-    placed.region_x = shot->engine.params.region_x;
-    placed.region_y = shot->engine.params.region_y;
-    placed.region_width = shot->engine.params.region_width;
-    placed.region_height = shot->engine.params.region_height;
+    placed.render.region_x = shot->engine.params.render.region_x;
+    placed.render.region_y = shot->engine.params.render.region_y;
+    placed.render.region_width = shot->engine.params.render.region_width;
+    placed.render.region_height = shot->engine.params.render.region_height;
     cell_size(&full, settings->sheet.cell_width, &width, &height);
     *picture = sheet_picture(sheet, width, height, &why);
     if (!picture->plane[0])
@@ -214,7 +215,7 @@ static int make(struct shot *shot, struct sheet *sheet, const char *photo,
     status = shot_open(shot, photo, &wanted, isnan(sheet->most_blur) ? 0 : sheet->most_blur);
     if (status == EXIT_DONE)
         status = sheet_fill(sheet, &settings->sheet, &wanted.lens, &shot->input,
-                            (double)shot->engine.params.max_blur_radius);
+                            (double)shot->engine.params.render.max_blur_radius);
     if (status == EXIT_DONE)
         status = make_cells(shot, sheet, settings, picture);
     if (status == EXIT_DONE) {
@@ -242,7 +243,7 @@ static int print_report(const struct settings *settings, const struct shot *shot
         report_text_json(shot->input.photo_name), "output", report_text_json(settings->output),
         "width", (int)picture->width, "height", (int)picture->height, "kind",
         sheet_kind_name((uint32_t)settings->sheet.kind), "columns", sheet->columns, "cells", cells,
-        "method", refocus_method_name(shot->engine.params.method)));
+        "method", refocus_method_name(shot->engine.params.render.method)));
 }
 
 static int run(int argc, char **argv)

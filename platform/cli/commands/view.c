@@ -121,7 +121,7 @@ static void take_tap(struct controls *controls, const struct refocus_image *phot
                         fmin(fmax(floor(state->tap_y + 0.5), 0), photo->height - 1));
 }
 
-static void aim(void *of, const struct rf_view_state *state, struct refocus_render_params *params)
+static void aim(void *of, const struct rf_view_state *state, struct refocus_settings *params)
 {
     const struct viewing *v = of;
     const struct refocus_image *photo = &v->input.photo->image;
@@ -129,12 +129,12 @@ static void aim(void *of, const struct rf_view_state *state, struct refocus_rend
     struct controls controls = v->engine.controls;
 
     if (!isnan(v->engine.field_disparity))
-        params->field_disparity = (float)v->engine.field_disparity;
+        params->field.disparity = (float)v->engine.field_disparity;
     if (state->focus_tap == 0)
         return;
     take_tap(&controls, photo, state);
-    params->tilt_x = params->tilt_y = 0.5f;
-    params->tilt_across = params->tilt_down = 0;
+    params->focus.tilt_x = params->focus.tilt_y = 0.5f;
+    params->focus.tilt_across = params->focus.tilt_down = 0;
     controls_aim(&controls, params, &size); /* a line within the photo needs no depth */
 }
 
@@ -142,7 +142,7 @@ static void aim(void *of, const struct rf_view_state *state, struct refocus_rend
 static int save_settings(void *of, const struct rf_view_result *result, const char *file)
 {
     const struct viewing *v = of;
-    const struct refocus_render_params *lens = result->params;
+    const struct refocus_settings *lens = result->params;
     struct settings settings = v->settings;
     struct control_settings *controls = &settings.shot.engine.controls;
     struct controls aimed = v->engine.controls;
@@ -156,9 +156,9 @@ static int save_settings(void *of, const struct rf_view_result *result, const ch
     settings.shot.lens = (struct lens_settings)LENS_SETTINGS_NONE;
     if (isnan(controls->focus_plane[0]))
         settings.shot.lens.focus = (double)result->state->focus;
-    settings.shot.lens.blur = (double)lens->max_blur_radius;
-    settings.shot.engine.method = (int)lens->method;
-    settings.shot.engine.sigma = lens->sigma < 1e30f ? (double)lens->sigma : INFINITY;
+    settings.shot.lens.blur = (double)lens->render.max_blur_radius;
+    settings.shot.engine.method = (int)lens->render.method;
+    settings.shot.engine.sigma = lens->render.sigma < 1e30f ? (double)lens->render.sigma : INFINITY;
     return settings_save(&view_command, file, &settings);
 }
 
@@ -166,14 +166,14 @@ static int save_settings(void *of, const struct rf_view_result *result, const ch
 static int choose_state(struct viewing *v, struct rf_view_state *state)
 {
     const struct shot_settings *shot = &v->settings.shot;
-    struct refocus_render_params *params = &v->engine.params;
+    struct refocus_settings *params = &v->engine.params;
     const uint16_t *disparity =
         v->strokes ? refocus_strokes_disparity(v->strokes) : v->input.disparity;
     const struct refocus_image *photo = &v->input.photo->image;
     double blur = 0;
     int status = input_blur(&v->input, &shot->lens, &blur);
 
-    params->max_blur_radius = (float)blur;
+    params->render.max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
         status = papers_place(&shot->engine.papers, params, photo->width, photo->height);
     if (status == EXIT_DONE)
@@ -183,20 +183,21 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
     if (status == EXIT_DONE)
         status = bokeh_check_method(params, v->engine.has_sides);
     state->blur = (float)blur;
-    state->focus = params->focus_disparity;
-    state->method = params->method;
+    state->focus = params->render.focus_disparity;
+    state->method = params->render.method;
     return status;
 }
 
 /* The methods that can do what the settings ask for. */
 static uint32_t suitable_methods(const struct engine *engine)
 {
-    struct refocus_render_params params = engine->params;
+    struct refocus_settings params = engine->params;
     uint32_t methods = 0;
 
-    for (params.method = 0; params.method < REFOCUS_METHOD_COUNT; params.method++)
+    for (params.render.method = 0; params.render.method < REFOCUS_METHOD_COUNT;
+         params.render.method++)
         if (controls_suit_method(&params) && bokeh_suits_method(&params, engine->has_sides))
-            methods |= REFOCUS_METHOD_BIT(params.method);
+            methods |= REFOCUS_METHOD_BIT(params.render.method);
     return methods;
 }
 

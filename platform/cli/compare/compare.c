@@ -108,12 +108,12 @@ static uint64_t memory_of(const struct engine *engine, const struct refocus_imag
                           uint32_t method)
 {
     struct refocus_renderer_params params = refocus_renderer_params_default(
-        photo->width, photo->height, engine->params.max_blur_radius);
+        photo->width, photo->height, engine->params.render.max_blur_radius);
 
     params.threads = engine->info.threads;
     params.papers = refocus_papers();
     params.methods = REFOCUS_METHOD_BIT(method);
-    params.thin = engine->params.thin;
+    params.thin = engine->params.thin.enabled;
     return refocus_renderer_memory(&params);
 }
 
@@ -147,17 +147,17 @@ static int score(struct comparison *c, const uint8_t *mask, int border)
 static int render_all(struct engine *engine, struct comparison *c, const struct variants *variants,
                       const struct refocus_image *photo, int repeat)
 {
-    const struct refocus_render_params lens = engine->params;
+    const struct refocus_settings lens = engine->params;
 
     for (int i = 0; i < variants->count; i++) {
         const struct variant *variant = &variants->variant[i];
-        struct refocus_render_params *params = &engine->params;
+        struct refocus_settings *params = &engine->params;
         struct refocus_image out = *photo;
         int status = add(c, variant->label, photo, false);
 
         *params = variant->engine.params;
-        params->focus_disparity = lens.focus_disparity;
-        params->max_blur_radius = lens.max_blur_radius;
+        params->render.focus_disparity = lens.render.focus_disparity;
+        params->render.max_blur_radius = lens.render.max_blur_radius;
         engine->field_disparity = variant->engine.field_disparity;
         if (status == EXIT_DONE)
             status = papers_place(&variant->settings.papers, params, photo->width, photo->height);
@@ -165,13 +165,13 @@ static int render_all(struct engine *engine, struct comparison *c, const struct 
             return status;
         out.plane[0] = c->item[c->count - 1].rgb;
         out.stride[0] = (ptrdiff_t)photo->width * 3;
-        report_progress(refocus_method_name(params->method), (i + 0.5) / variants->count);
+        report_progress(refocus_method_name(params->render.method), (i + 0.5) / variants->count);
         status = engine_render(engine, &out, repeat);
         if (status != EXIT_DONE)
             return status;
         c->item[c->count - 1].ms = engine->render_ms;
         c->item[c->count - 1].cpu_ms = engine->cpu_ms;
-        c->item[c->count - 1].memory = memory_of(engine, photo, params->method);
+        c->item[c->count - 1].memory = memory_of(engine, photo, params->render.method);
     }
     return EXIT_DONE;
 }
@@ -264,7 +264,7 @@ static int compare(struct engine *engine, struct input *input, struct comparison
         refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared,
                          (ptrdiff_t)photo->width * 2);
         status = input_focus(input, &settings->lens, prepared, &focus);
-        engine->params.focus_disparity = (float)focus;
+        engine->params.render.focus_disparity = (float)focus;
         border = isnan(settings->border) ? (int)ceil(blur) : (int)settings->border;
     }
     if (status == EXIT_DONE)

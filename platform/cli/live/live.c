@@ -105,7 +105,7 @@ static uint32_t find_yuv_formats(struct live *live)
 {
     uint32_t formats = 0;
 
-    if (live->engine->params.method != REFOCUS_METHOD_SWEEP)
+    if (live->engine->params.render.method != REFOCUS_METHOD_SWEEP)
         return 0;
     for (uint32_t format = 0; format < 32; format++)
         if (refocus_format_is_yuv(format) && refocus_sink_takes(live->sink, format))

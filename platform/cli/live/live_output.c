@@ -74,7 +74,8 @@ void *live_output_thread(void *argument)
 {
     struct live *live = argument;
     const double most = live->settings->frames;
-    struct refocus_image last = {.format = REFOCUS_FORMAT_NONE};
+    struct refocus_image last = {.struct_size = sizeof(struct refocus_image),
+                                 .format = REFOCUS_FORMAT_NONE};
     bool ended = false;
 
     while (!ended) {

@@ -69,7 +69,7 @@ static void advance(struct live *live, const struct live_picture *picture)
 static int refocus(struct live *live, const struct live_picture *picture,
                    const struct live_depth_map *map, const struct refocus_image *out)
 {
-    struct refocus_render_params params = live->engine->params;
+    struct refocus_settings params = live->engine->params;
     struct refocus_disparity disparity;
     int64_t begin = live_now_ns();
     int status;
@@ -89,9 +89,9 @@ static int refocus(struct live *live, const struct live_picture *picture,
     find_points(live, picture->image.width, picture->image.height);
     live_focus_get(&live->focus, &live->focus_disparity, &live->blur);
     begin = live_now_ns();
-    params.focus_disparity = (float)live->focus_disparity;
-    params.max_blur_radius = (float)live->blur;
-    status = refocus_render(live->engine->renderer, &params, out);
+    params.render.focus_disparity = (float)live->focus_disparity;
+    params.render.max_blur_radius = (float)live->blur;
+    status = refocus_render_settings(live->engine->renderer, &params, out);
     live_times_add(&live->render.times, (double)(live_now_ns() - begin) / 1e6);
     return status;
 }

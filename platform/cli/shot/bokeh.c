@@ -222,7 +222,7 @@ bool bokeh_is_plain_disc(const struct bokeh_settings *s, const char *shape)
 }
 
 int bokeh_apply(const struct bokeh_settings *s, bool highlights_given,
-                struct refocus_render_params *params)
+                struct refocus_settings *params)
 {
     const struct preset *preset = &presets[s->preset];
 
@@ -230,41 +230,41 @@ int bokeh_apply(const struct bokeh_settings *s, bool highlights_given,
         return report_failure(EXIT_WRONG, "--highlight-stops",
                               "the light of highlights is given twice; give --highlights or "
                               "--highlight-stops");
-    params->cat_eye = (float)or_else(s->cat_eye, preset->cat_eye);
-    params->fringe = (float)or_else(s->fringe, preset->fringe);
-    params->grain = (float)or_else(s->grain, 0);
+    params->look.cat_eye = (float)or_else(s->cat_eye, preset->cat_eye);
+    params->look.fringe = (float)or_else(s->fringe, preset->fringe);
+    params->look.grain = (float)or_else(s->grain, 0);
     if (!isnan(s->highlight_stops))
-        params->highlight_gain = (float)exp2(s->highlight_stops);
-    if (preset->star && params->star_spikes == 0)
-        params->star_spikes = preset->star;
+        params->highlights.gain = (float)exp2(s->highlight_stops);
+    if (preset->star && params->look.star_spikes == 0)
+        params->look.star_spikes = preset->star;
     return EXIT_DONE;
 }
 
 /* The option of something that only sweep can do, or NULL. */
-static const char *of_sweep(const struct refocus_render_params *p, bool has_sides)
+static const char *of_sweep(const struct refocus_settings *p, bool has_sides)
 {
-    if (p->cat_eye > 0)
+    if (p->look.cat_eye > 0)
         return "--cat-eye";
-    if (p->fringe != 0)
+    if (p->look.fringe != 0)
         return "--fringe";
     if (has_sides)
         return "--edge";
-    return p->star_spikes > 0 && p->method != REFOCUS_METHOD_SCATTER ? "--star" : NULL;
+    return p->look.star_spikes > 0 && p->render.method != REFOCUS_METHOD_SCATTER ? "--star" : NULL;
 }
 
-bool bokeh_suits_method(const struct refocus_render_params *p, bool has_sides)
+bool bokeh_suits_method(const struct refocus_settings *p, bool has_sides)
 {
-    return p->method == REFOCUS_METHOD_SWEEP || !of_sweep(p, has_sides);
+    return p->render.method == REFOCUS_METHOD_SWEEP || !of_sweep(p, has_sides);
 }
 
-int bokeh_check_method(const struct refocus_render_params *p, bool has_sides)
+int bokeh_check_method(const struct refocus_settings *p, bool has_sides)
 {
     if (!bokeh_suits_method(p, has_sides))
         return report_failure(EXIT_WRONG, of_sweep(p, has_sides),
                               "it does not go with --method %s; give sweep, or leave "
                               "it out",
-                              refocus_method_name(p->method));
-    if (has_sides && p->rays == REFOCUS_RAYS_FULL)
+                              refocus_method_name(p->render.method));
+    if (has_sides && p->render.rays == REFOCUS_RAYS_FULL)
         return report_failure(EXIT_WRONG, "--rays",
                               "'full' does not go with discs that differ before and "
                               "behind the focus; give a whole number from 1 to %d",

@@ -92,12 +92,12 @@ bool bokeh_is_plain_disc(const struct bokeh_settings *settings, const char *shap
 
 /* Rows of all options but the aperture. */
 int bokeh_apply(const struct bokeh_settings *settings, bool highlights_given,
-                struct refocus_render_params *params);
+                struct refocus_settings *params);
 
 /* Whether the method of params can do what they ask for; the check says so when it
  * cannot. */
-bool bokeh_suits_method(const struct refocus_render_params *params, bool has_sides);
-int bokeh_check_method(const struct refocus_render_params *params, bool has_sides);
+bool bokeh_suits_method(const struct refocus_settings *params, bool has_sides);
+int bokeh_check_method(const struct refocus_settings *params, bool has_sides);
 
 /* Whether light differs before and behind the focus. */
 bool bokeh_has_sides(const struct bokeh_settings *settings);

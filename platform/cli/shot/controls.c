@@ -28,14 +28,14 @@ static int wrong_bands(const char *text)
 }
 
 /* "0.2,0.7:0.05,0.9:0.02:0.1" */
-static int parse_bands(const char *text, struct refocus_render_params *params)
+static int parse_bands(const char *text, struct refocus_settings *params)
 {
     const char *at = text;
 
     for (;;) {
-        float value[3] = {0, params->focus_half_width, params->focus_transition};
+        float value[3] = {0, params->focus.half_width, params->focus.transition};
 
-        if (params->bands == REFOCUS_MAX_BANDS - 1)
+        if (params->focus.bands == REFOCUS_MAX_BANDS - 1)
             return wrong_bands(text);
         for (int i = 0; i < 3; i++) {
             char *end;
@@ -54,7 +54,8 @@ static int parse_bands(const char *text, struct refocus_render_params *params)
             if (i == 2)
                 return wrong_bands(text);
         }
-        params->band[params->bands++] = (struct refocus_band){value[0], value[1], value[2]};
+        params->focus.band[params->focus.bands++] =
+            (struct refocus_band){value[0], value[1], value[2]};
         if (*at == '\0')
             return EXIT_DONE;
         if (*at++ != ',')
@@ -73,7 +74,7 @@ static int read_map(const char *file, struct refocus_disparity *map,
     grey = papers_read_grey(file, &width, &height);
     if (!grey)
         return EXIT_FAILED;
-    *map = (struct refocus_disparity){8, width, height, grey, width};
+    *map = refocus_disparity8(grey, width, height, width);
     *to = map;
     return EXIT_DONE;
 }
@@ -99,7 +100,7 @@ int controls_check(const struct control_settings *s, bool focus_given)
     return EXIT_DONE;
 }
 
-int controls_apply(const struct control_settings *s, struct refocus_render_params *params,
+int controls_apply(const struct control_settings *s, struct refocus_settings *params,
                    struct controls *controls)
 {
     int status = EXIT_DONE;
@@ -107,20 +108,20 @@ int controls_apply(const struct control_settings *s, struct refocus_render_param
     memcpy(controls->focus_plane, s->focus_plane, sizeof controls->focus_plane);
     memcpy(controls->tilt_line, s->tilt_line, sizeof controls->tilt_line);
     controls->tilt_angle = s->tilt_angle;
-    take(&params->focus_half_width, s->focus_width);
-    take(&params->focus_transition,
+    take(&params->focus.half_width, s->focus_width);
+    take(&params->focus.transition,
          given(s->focus_transition) ? s->focus_transition : s->focus_width);
     if (given(s->tilt_compress))
-        params->depth_share = (float)(1 - s->tilt_compress);
-    take(&params->least_disparity, s->far_clamp);
-    take(&params->most_disparity, s->near_clamp);
-    take(&params->blur_limit, s->blur_limit);
+        params->focus.depth_share = (float)(1 - s->tilt_compress);
+    take(&params->focus.least_disparity, s->far_clamp);
+    take(&params->focus.most_disparity, s->near_clamp);
+    take(&params->focus.blur_limit, s->blur_limit);
     if (s->also_focus)
         status = parse_bands(s->also_focus, params);
     if (status == EXIT_DONE)
-        status = read_map(s->focus_map, &controls->focus_map, &params->focus_map);
+        status = read_map(s->focus_map, &controls->focus_map, &params->focus.map);
     if (status == EXIT_DONE)
-        status = read_map(s->sharp_mask, &controls->sharp_mask, &params->sharp_map);
+        status = read_map(s->sharp_mask, &controls->sharp_mask, &params->focus.sharp_map);
     return status;
 }
 
@@ -143,16 +144,16 @@ static struct refocus_focus_point point_at(const double at[2], float disparity,
                                         (float)((at[1] + 0.5) / prepared->height), disparity};
 }
 
-static void tilt(struct refocus_render_params *params, const struct refocus_focus_plane *plane)
+static void tilt(struct refocus_settings *params, const struct refocus_focus_plane *plane)
 {
-    params->tilt_x = plane->x;
-    params->tilt_y = plane->y;
-    params->tilt_across = plane->across;
-    params->tilt_down = plane->down;
-    params->focus_disparity = plane->focus_disparity;
+    params->focus.tilt_x = plane->x;
+    params->focus.tilt_y = plane->y;
+    params->focus.tilt_across = plane->across;
+    params->focus.tilt_down = plane->down;
+    params->render.focus_disparity = plane->focus_disparity;
 }
 
-static int aim_by_points(const struct controls *controls, struct refocus_render_params *params,
+static int aim_by_points(const struct controls *controls, struct refocus_settings *params,
                          const struct refocus_disparity *prepared)
 {
     struct refocus_focus_point point[3];
@@ -176,14 +177,16 @@ static int aim_by_points(const struct controls *controls, struct refocus_render_
     return EXIT_DONE;
 }
 
-static int aim_by_line(const struct controls *controls, struct refocus_render_params *params,
+static int aim_by_line(const struct controls *controls, struct refocus_settings *params,
                        const struct refocus_disparity *prepared)
 {
     const double y = (prepared->height - 1) / 2.0;
     const double level[4] = {0, y, prepared->width - 1.0, y};
     const double *line = given(controls->tilt_line[0]) ? controls->tilt_line : level;
-    const struct refocus_focus_point from = point_at(line, params->focus_disparity, prepared);
-    const struct refocus_focus_point to = point_at(line + 2, params->focus_disparity, prepared);
+    const struct refocus_focus_point from =
+        point_at(line, params->render.focus_disparity, prepared);
+    const struct refocus_focus_point to =
+        point_at(line + 2, params->render.focus_disparity, prepared);
     struct refocus_focus_plane plane;
 
     for (int i = 0; i < 4; i += 2)
@@ -205,7 +208,7 @@ void controls_turn_about(struct controls *controls, const struct refocus_image *
         memcpy(controls->tilt_line, line, sizeof line);
 }
 
-int controls_aim(const struct controls *controls, struct refocus_render_params *params,
+int controls_aim(const struct controls *controls, struct refocus_settings *params,
                  const struct refocus_disparity *prepared)
 {
     if (given(controls->focus_plane[0]))
@@ -215,25 +218,27 @@ int controls_aim(const struct controls *controls, struct refocus_render_params *
     return EXIT_DONE;
 }
 
-bool controls_suit_method(const struct refocus_render_params *p)
+bool controls_suit_method(const struct refocus_settings *p)
 {
-    const bool any = p->field != REFOCUS_FIELD_LENS || p->focus_half_width > 0 || p->bands > 0 ||
-                     p->tilt_across != 0 || p->tilt_down != 0 || p->depth_share != 1 ||
-                     p->focus_map || p->sharp_map || p->least_disparity > 0 ||
-                     p->most_disparity < 1 || p->blur_limit < p->max_blur_radius;
+    const bool any = p->field.shape != REFOCUS_FIELD_LENS || p->focus.half_width > 0 ||
+                     p->focus.bands > 0 || p->focus.tilt_across != 0 || p->focus.tilt_down != 0 ||
+                     p->focus.depth_share != 1 || p->focus.map || p->focus.sharp_map ||
+                     p->focus.least_disparity > 0 || p->focus.most_disparity < 1 ||
+                     p->focus.blur_limit < p->render.max_blur_radius;
 
-    return !any || p->method == REFOCUS_METHOD_SWEEP || p->method == REFOCUS_METHOD_SEARCH ||
-           p->method == REFOCUS_METHOD_BLUR || p->method == REFOCUS_METHOD_DIFFUSION;
+    return !any || p->render.method == REFOCUS_METHOD_SWEEP ||
+           p->render.method == REFOCUS_METHOD_SEARCH || p->render.method == REFOCUS_METHOD_BLUR ||
+           p->render.method == REFOCUS_METHOD_DIFFUSION;
 }
 
-int controls_check_method(const struct refocus_render_params *p)
+int controls_check_method(const struct refocus_settings *p)
 {
     if (controls_suit_method(p))
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--method",
                           "%s knows the focus of a plain lens only; give sweep, "
                           "search, blur or diffusion",
-                          refocus_method_name(p->method));
+                          refocus_method_name(p->render.method));
 }
 
 void controls_free(struct controls *controls)

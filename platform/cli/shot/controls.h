@@ -90,7 +90,7 @@ struct controls {
 
 /* Called before a photo is read: the options go into params and controls, whose memory is freed by
  * controls_free(), also after an error. */
-int controls_apply(const struct control_settings *settings, struct refocus_render_params *params,
+int controls_apply(const struct control_settings *settings, struct refocus_settings *params,
                    struct controls *controls);
 
 /* Whether the plane of focus is given and a focus too. */
@@ -100,14 +100,14 @@ int controls_check(const struct control_settings *settings, bool focus_given);
  * --tilt-line says about which. */
 void controls_turn_about(struct controls *controls, const struct refocus_image *photo, double y);
 
-/* The parts that need the prepared photo and params->focus_disparity. */
-int controls_aim(const struct controls *controls, struct refocus_render_params *params,
+/* The parts that need the prepared photo and params->render.focus_disparity. */
+int controls_aim(const struct controls *controls, struct refocus_settings *params,
                  const struct refocus_disparity *prepared);
 
 /* Whether the method of params can do what they ask for; the check says so when it
  * cannot. */
-bool controls_suit_method(const struct refocus_render_params *params);
-int controls_check_method(const struct refocus_render_params *params);
+bool controls_suit_method(const struct refocus_settings *params);
+int controls_check_method(const struct refocus_settings *params);
 
 void controls_free(struct controls *controls);
 

@@ -64,31 +64,31 @@ static int check_aperture(uint32_t method, const struct engine_settings *setting
 
 int engine_begin(struct engine *engine, const struct engine_settings *settings)
 {
-    struct refocus_render_params *params = &engine->params;
+    struct refocus_settings *params = &engine->params;
     int status;
 
     memset(engine, 0, sizeof *engine);
-    *params = refocus_render_params_default(0, 0);
-    params->method = (uint32_t)settings->method;
-    params->blend = (uint32_t)settings->blend;
-    params->rays =
+    *params = refocus_settings_default(0, 0);
+    params->render.method = (uint32_t)settings->method;
+    params->render.blend = (uint32_t)settings->blend;
+    params->render.rays =
         isnan(settings->rays) ? qualities[settings->quality].rays : (int32_t)settings->rays;
     if (!isnan(settings->iterations))
-        params->iterations = (int32_t)settings->iterations;
+        params->search.iterations = (int32_t)settings->iterations;
     if (!isnan(settings->sigma))
-        params->sigma = (float)settings->sigma;
-    params->highlight_gain =
+        params->render.sigma = (float)settings->sigma;
+    params->highlights.gain =
         isnan(settings->highlights) ? highlight_gain : (float)settings->highlights;
-    params->thin = qualities[settings->quality].thin && !settings->no_thin;
-    params->mirror = settings->mirror;
-    params->background = settings->background;
-    engine->methods = REFOCUS_METHOD_BIT(params->method);
+    params->thin.enabled = qualities[settings->quality].thin && !settings->no_thin;
+    params->search.mirror = settings->mirror;
+    params->search.background = settings->background;
+    engine->methods = REFOCUS_METHOD_BIT(params->render.method);
     engine->field_disparity = settings->papers.field_disparity;
     engine->has_sides = bokeh_has_sides(&settings->bokeh);
     status = bokeh_aperture(&settings->bokeh, settings->aperture, &engine->aperture);
-    params->aperture = engine->aperture;
+    params->render.aperture = engine->aperture;
     if (status == EXIT_DONE)
-        status = check_aperture(params->method, settings);
+        status = check_aperture(params->render.method, settings);
     if (status == EXIT_DONE)
         status = papers_apply(&settings->papers, params, &engine->field_map);
     if (status == EXIT_DONE)
@@ -117,8 +117,8 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.cpu = (uint32_t)settings->cpu;
     params.papers = refocus_papers();
     params.methods = engine->methods;
-    params.thin = engine->params.thin;
-    engine->params.max_blur_radius = (float)blur;
+    params.thin = engine->params.thin.enabled;
+    engine->params.render.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;
     if (status == REFOCUS_ERR_UNSUPPORTED)
@@ -160,31 +160,31 @@ static int render_once(struct engine *engine, const struct refocus_image *out, d
 {
     enum { STRIPS = 20 };
     const bool strips = report_is_watched() && out->height >= STRIPS &&
-                        engine->params.method == REFOCUS_METHOD_RAYTRACE;
+                        engine->params.render.method == REFOCUS_METHOD_RAYTRACE;
     const int count = strips ? STRIPS : 1;
     int status = REFOCUS_OK;
 
     for (int i = 0; i < count && status == REFOCUS_OK; i++) {
         const int y0 = (int)((int64_t)out->height * i / count);
         const int y1 = (int)((int64_t)out->height * (i + 1) / count);
-        struct refocus_render_params params = engine->params;
+        struct refocus_settings params = engine->params;
         struct refocus_image strip = *out;
 
         report_progress("rendering", begin + share * i / count);
         if (interrupt_came())
             return REFOCUS_ERR_CANCELLED;
-        params.region_y += y0;
-        params.region_width = strip.width;
-        params.region_height = strip.height = y1 - y0;
+        params.render.region_y += y0;
+        params.render.region_width = strip.width;
+        params.render.region_height = strip.height = y1 - y0;
         strip.plane[0] += y0 * strip.stride[0];
-        status = refocus_render(engine->renderer, &params, &strip);
+        status = refocus_render_settings(engine->renderer, &params, &strip);
     }
     return status;
 }
 
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat)
 {
-    const float focus = engine->params.focus_disparity;
+    const float focus = engine->params.render.focus_disparity;
     const float beside = focus + (focus > 0.5f ? -2.0f : 2.0f) / 65535.0f;
     double *times, *cpu_times;
     int status = controls_check_method(&engine->params);
@@ -197,19 +197,19 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
     if (!times)
         return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
     cpu_times = times + repeat;
-    engine->params.field_disparity = isnan(engine->field_disparity)
-                                         ? engine->params.focus_disparity
+    engine->params.field.disparity = isnan(engine->field_disparity)
+                                         ? engine->params.render.focus_disparity
                                          : (float)engine->field_disparity;
     for (int i = 0; i < repeat && status == REFOCUS_OK; i++) {
         const double start = report_clock_ms(), cpu_start = report_cpu_ms();
 
         /* every other one is a step of disparity off, or all but rays would be kept */
-        engine->params.focus_disparity = (repeat - i) % 2 ? focus : beside;
+        engine->params.render.focus_disparity = (repeat - i) % 2 ? focus : beside;
         status = render_once(engine, out, 0.3 + 0.6 * i / repeat, 0.6 / repeat);
         cpu_times[i] = report_cpu_ms() - cpu_start;
         times[i] = report_clock_ms() - start;
     }
-    engine->params.focus_disparity = focus;
+    engine->params.render.focus_disparity = focus;
     if (status == REFOCUS_OK) {
         engine->render_ms = report_spread(times, repeat);
         engine->cpu_ms = report_spread(cpu_times, repeat);
@@ -234,21 +234,21 @@ void engine_end(struct engine *engine)
 
 json_t *engine_json(const struct engine *engine)
 {
-    const struct refocus_render_params *params = &engine->params;
-    json_t *rays =
-        params->rays == REFOCUS_RAYS_FULL ? json_string("full") : json_integer(params->rays);
+    const struct refocus_settings *params = &engine->params;
+    json_t *rays = params->render.rays == REFOCUS_RAYS_FULL ? json_string("full")
+                                                            : json_integer(params->render.rays);
 
     return json_pack(
         "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
         "s:I}",
-        "method", refocus_method_name(params->method), "rays", rays, "blend",
-        engine_blend_name(params->blend), "sigma",
-        params->sigma < 1e30f ? json_real(params->sigma) : json_string("off"), "highlights",
-        (double)params->highlight_gain, "iterations", (int)params->iterations, "blur",
-        (double)params->max_blur_radius, "focus", (double)params->focus_disparity, "threads",
-        (int)engine->info.threads, "cpu", refocus_cpu_name(engine->info.cpu), "create_ms",
-        engine->create_ms, "prepare_ms", engine->prepare_ms, "render_ms",
-        report_spread_json(engine->render_ms), "cpu_ms", report_spread_json(engine->cpu_ms),
-        "renderer_bytes", (json_int_t)engine->info.memory, "peak_rss_kib",
-        (json_int_t)report_peak_rss_kib());
+        "method", refocus_method_name(params->render.method), "rays", rays, "blend",
+        engine_blend_name(params->render.blend), "sigma",
+        params->render.sigma < 1e30f ? json_real(params->render.sigma) : json_string("off"),
+        "highlights", (double)params->highlights.gain, "iterations", (int)params->search.iterations,
+        "blur", (double)params->render.max_blur_radius, "focus",
+        (double)params->render.focus_disparity, "threads", (int)engine->info.threads, "cpu",
+        refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms, "prepare_ms",
+        engine->prepare_ms, "render_ms", report_spread_json(engine->render_ms), "cpu_ms",
+        report_spread_json(engine->cpu_ms), "renderer_bytes", (json_int_t)engine->info.memory,
+        "peak_rss_kib", (json_int_t)report_peak_rss_kib());
 }

@@ -158,7 +158,7 @@ struct engine {
     bool has_sides;         /* the aperture's light differs before and behind the focus */
     double field_disparity; /* NAN: that in focus */
     uint32_t methods;       /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
-    struct refocus_render_params params;
+    struct refocus_settings params;
     double create_ms, prepare_ms;
     struct spread render_ms, cpu_ms; /* cpu_ms: of all threads, of a render */
 };

@@ -64,7 +64,7 @@ static void take(float *to, double from)
         *to = (float)from;
 }
 
-static int read_map(const struct paper_settings *settings, struct refocus_render_params *params,
+static int read_map(const struct paper_settings *settings, struct refocus_settings *params,
                     struct refocus_disparity *map)
 {
     int width, height;
@@ -88,12 +88,12 @@ static int read_map(const struct paper_settings *settings, struct refocus_render
                               "%dx%d pixels are too many; give at most %d a side", width, height,
                               (int)REFOCUS_MAX_SIDE);
     }
-    *map = (struct refocus_disparity){8, width, height, grey, width};
-    params->field_map = map;
+    *map = refocus_disparity8(grey, width, height, width);
+    params->field.map = map;
     return EXIT_DONE;
 }
 
-int papers_apply(const struct paper_settings *settings, struct refocus_render_params *params,
+int papers_apply(const struct paper_settings *settings, struct refocus_settings *params,
                  struct refocus_disparity *map)
 {
     const struct paper_settings *s = settings;
@@ -109,28 +109,29 @@ int papers_apply(const struct paper_settings *settings, struct refocus_render_pa
                               "%g is not below --last-ratio %g; give the smaller "
                               "number to --middle-ratio",
                               s->middle_ratio, s->last_ratio);
-    params->cell = isnan(s->cell) ? params->cell : (int32_t)s->cell;
-    params->seed = isnan(s->seed) ? params->seed : (uint32_t)s->seed;
-    params->spread = (uint32_t)s->spread;
-    take(&params->airy_radius, s->airy_radius);
-    take(&params->depth_ratio, s->depth_ratio);
-    params->star_spikes = isnan(s->star) ? 0 : (int32_t)s->star;
-    take(&params->star_length, s->star_length);
-    take(&params->star_angle, s->star_angle);
-    take(&params->star_strength, s->star_strength);
-    take(&params->sharp_radius, s->sharp_radius);
-    take(&params->middle_ratio, s->middle_ratio);
-    take(&params->last_ratio, s->last_ratio);
-    take(&params->attention_angle, s->attention_angle);
-    take(&params->picture_angle, s->picture_angle);
-    take(&params->attention_depth, s->attention_depth);
-    params->field = (uint32_t)s->field;
-    take(&params->field_radius, s->field_radius);
-    take(&params->field_falloff, s->field_falloff);
-    take(&params->field_angle, s->field_angle);
-    params->layers = isnan(s->layers) ? params->layers : (int32_t)s->layers;
-    params->solver = (uint32_t)s->solver;
-    take(&params->conductivity, s->conductivity);
+    params->jittered.cell = isnan(s->cell) ? params->jittered.cell : (int32_t)s->cell;
+    if (!isnan(s->seed))
+        params->jittered.seed = params->look.grain_seed = (uint32_t)s->seed;
+    params->scatter.spread = (uint32_t)s->spread;
+    take(&params->scatter.airy_radius, s->airy_radius);
+    take(&params->scatter.depth_ratio, s->depth_ratio);
+    params->look.star_spikes = isnan(s->star) ? 0 : (int32_t)s->star;
+    take(&params->look.star_length, s->star_length);
+    take(&params->look.star_angle, s->star_angle);
+    take(&params->look.star_strength, s->star_strength);
+    take(&params->interpolated.sharp_radius, s->sharp_radius);
+    take(&params->interpolated.middle_ratio, s->middle_ratio);
+    take(&params->interpolated.last_ratio, s->last_ratio);
+    take(&params->foveated.angle, s->attention_angle);
+    take(&params->foveated.picture_angle, s->picture_angle);
+    take(&params->foveated.depth, s->attention_depth);
+    params->field.shape = (uint32_t)s->field;
+    take(&params->field.radius, s->field_radius);
+    take(&params->field.falloff, s->field_falloff);
+    take(&params->field.angle, s->field_angle);
+    params->diffusion.layers = isnan(s->layers) ? params->diffusion.layers : (int32_t)s->layers;
+    params->diffusion.solver = (uint32_t)s->solver;
+    take(&params->diffusion.conductivity, s->conductivity);
     return read_map(settings, params, map);
 }
 
@@ -147,14 +148,14 @@ static int place(const char *name, const double at[2], int width, int height, fl
     return EXIT_DONE;
 }
 
-int papers_place(const struct paper_settings *settings, struct refocus_render_params *params,
-                 int width, int height)
+int papers_place(const struct paper_settings *settings, struct refocus_settings *params, int width,
+                 int height)
 {
-    const int status = place("--attention", settings->attention, width, height,
-                             &params->attention_x, &params->attention_y);
+    const int status = place("--attention", settings->attention, width, height, &params->foveated.x,
+                             &params->foveated.y);
 
     if (status != EXIT_DONE)
         return status;
-    return place("--field-at", settings->field_at, width, height, &params->field_x,
-                 &params->field_y);
+    return place("--field-at", settings->field_at, width, height, &params->field.x,
+                 &params->field.y);
 }

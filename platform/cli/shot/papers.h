@@ -134,12 +134,12 @@ const char *papers_solver_name(uint32_t index);
 
 /* Into params, for a photo of this size. Returns an exit code and prints why it is not
  * EXIT_DONE; *map, of *field_map, is to be freed by the caller. */
-int papers_apply(const struct paper_settings *settings, struct refocus_render_params *params,
+int papers_apply(const struct paper_settings *settings, struct refocus_settings *params,
                  struct refocus_disparity *map);
 
 /* The parts that need the photo's size. */
-int papers_place(const struct paper_settings *settings, struct refocus_render_params *params,
-                 int width, int height);
+int papers_place(const struct paper_settings *settings, struct refocus_settings *params, int width,
+                 int height);
 
 /* A grey picture from a file, one byte a pixel and no padding, to be freed. */
 uint8_t *papers_read_grey(const char *file, int *width, int *height);

@@ -6,7 +6,7 @@
 
 int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,
-             struct refocus_render_params *params)
+             struct refocus_settings *params)
 {
     const struct refocus_image *photo = &input->photo->image;
     const struct refocus_disparity map =
@@ -17,7 +17,7 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
 
     if (status != EXIT_DONE)
         return status;
-    params->focus_disparity = (float)focus;
+    params->render.focus_disparity = (float)focus;
     if (!isnan(lens->focus_at[0]))
         controls_turn_about(&aimed, photo, lens->focus_at[1]);
     return controls_aim(&aimed, params, &map);
@@ -95,7 +95,7 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     report_progress("preparing", 0.15);
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
-    shot->engine.params.max_blur_radius = (float)blur;
+    shot->engine.params.render.max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
         status = engine_prepare(&shot->engine, image, &disparity);
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
@@ -110,7 +110,7 @@ void shot_close(struct shot *shot)
 int shot_output(struct shot *shot, const double region[4], struct refocus_image *out)
 {
     const struct refocus_image *photo = &shot->input.photo->image;
-    struct refocus_render_params *params = &shot->engine.params;
+    struct refocus_settings *params = &shot->engine.params;
     int width = photo->width, height = photo->height;
 
     if (!isnan(region[0])) {
@@ -121,10 +121,10 @@ int shot_output(struct shot *shot, const double region[4], struct refocus_image 
                                   "%s",
                                   region[0], region[1], region[2], region[3], width, height,
                                   shot->input.photo_name);
-        params->region_x = (int32_t)region[0];
-        params->region_y = (int32_t)region[1];
-        params->region_width = width = (int32_t)region[2];
-        params->region_height = height = (int32_t)region[3];
+        params->render.region_x = (int32_t)region[0];
+        params->render.region_y = (int32_t)region[1];
+        params->render.region_width = width = (int32_t)region[2];
+        params->render.region_height = height = (int32_t)region[3];
     }
     *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
     if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)

@@ -57,7 +57,7 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
  * focus through it. */
 int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,
-             struct refocus_render_params *params);
+             struct refocus_settings *params);
 
 /* most_blur: what the renderer is made for, where that is more than the settings' blur;
  * 0: that. Ended by shot_close(), whatever it returned. */

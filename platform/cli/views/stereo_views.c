@@ -171,8 +171,8 @@ int stereo_render(const struct stereo *stereo, struct shot *shot, double paralla
         refocus_disparity16(stereo->seen, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
     int status;
 
-    stereo_warp(photo, stereo->disparity, (double)shot->engine.params.focus_disparity, parallax,
-                &stereo->view, stereo->seen, stereo->nearest);
+    stereo_warp(photo, stereo->disparity, (double)shot->engine.params.render.focus_disparity,
+                parallax, &stereo->view, stereo->seen, stereo->nearest);
     status = engine_prepare(&shot->engine, &stereo->view, &seen);
     return status == EXIT_DONE ? engine_render(&shot->engine, out, 1) : status;
 }

@@ -37,8 +37,8 @@ static bool find_limits(const struct shot *shot, const uint16_t *blur, const uin
                         struct blur_limits *limits)
 {
     const struct refocus_image *photo = &shot->input.photo->image;
-    const double most = (double)shot->engine.params.max_blur_radius;
-    const double focus = (double)shot->engine.params.focus_disparity;
+    const double most = (double)shot->engine.params.render.max_blur_radius;
+    const double focus = (double)shot->engine.params.render.focus_disparity;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     size_t others = 0;
 
@@ -76,7 +76,7 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
     } else if (status == REFOCUS_OK) {
         if (view == VIEW_BLUR)
             made = falsecolour_blur(blur, disparity, width, height,
-                                    (double)shot->engine.params.max_blur_radius, range,
+                                    (double)shot->engine.params.render.max_blur_radius, range,
                                     find_limits(shot, blur, disparity, &limits) ? &limits : NULL);
         else
             made = falsecolour_depth(disparity, width, height, range,

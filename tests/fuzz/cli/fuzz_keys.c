@@ -19,14 +19,15 @@ static void check(const struct keys *keys)
     if (!(seconds > 0 && seconds <= 3600))
         abort();
     for (int i = -1; i <= 9; i++) {
-        struct refocus_render_params p = refocus_render_params_default(0.5f, 10);
+        struct refocus_settings p = refocus_settings_default(0.5f, 10);
 
         keys_apply(keys, seconds * i / 8, &p);
-        if (!(p.focus_disparity >= 0 && p.focus_disparity <= 1 && p.max_blur_radius >= 0 &&
-              p.max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && p.highlight_gain >= 1 &&
-              p.field_falloff >= 0.0009f))
+        if (!(p.render.focus_disparity >= 0 && p.render.focus_disparity <= 1 &&
+              p.render.max_blur_radius >= 0 &&
+              p.render.max_blur_radius <= REFOCUS_MAX_BLUR_RADIUS && p.highlights.gain >= 1 &&
+              p.field.falloff >= 0.0009f))
             abort();
-        if ((double)p.max_blur_radius > fmax(keys_most(keys, "blur", 10), 10) + 1e-4)
+        if ((double)p.render.max_blur_radius > fmax(keys_most(keys, "blur", 10), 10) + 1e-4)
             abort();
     }
 }

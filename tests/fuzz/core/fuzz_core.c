@@ -111,91 +111,93 @@ static struct refocus_aperture *take_aperture(struct input *in, int wild)
 }
 
 /* Sets the parameters that single methods look at. */
-static void take_extras(struct input *in, int wild, struct refocus_render_params *p)
+static void take_extras(struct input *in, int wild, struct refocus_settings *p)
 {
-    p->cell = take_in(in, wild, 1, 16);
-    p->seed = take(in, 4);
-    p->spread = (uint32_t)take_in(in, wild, 0, 1);
-    p->airy_radius = 0.25f + take_fraction(in, wild, 15.75f);
-    p->depth_ratio = 1 + take_fraction(in, wild, 999);
-    p->star_spikes = take_in(in, wild, 2, 16) & ~1;
-    p->star_length = take_fraction(in, wild, 127);
-    p->star_angle = take_fraction(in, wild, 360);
-    p->star_strength = take_fraction(in, wild, 1);
-    p->sharp_radius = 0.5f + take_fraction(in, wild, 15.5f);
-    p->last_ratio = wild ? take_float(in) : 0;
-    p->attention_x = take_fraction(in, wild, 1);
-    p->attention_y = take_fraction(in, wild, 1);
-    p->attention_angle = take_fraction(in, wild, 170);
-    p->attention_depth = take_fraction(in, wild, 1);
-    p->field = (uint32_t)take_in(in, wild, 0, REFOCUS_FIELD_SPHERE);
-    p->field_x = take_fraction(in, wild, 1);
-    p->field_radius = take_fraction(in, wild, 4);
-    p->field_falloff = 0.001f + take_fraction(in, wild, 3.9f);
-    p->layers = take_in(in, wild, 1, 8);
-    p->conductivity = 0.01f + take_fraction(in, wild, 0.99f);
+    p->jittered.cell = take_in(in, wild, 1, 16);
+    p->jittered.seed = p->look.grain_seed = take(in, 4);
+    p->scatter.spread = (uint32_t)take_in(in, wild, 0, 1);
+    p->scatter.airy_radius = 0.25f + take_fraction(in, wild, 15.75f);
+    p->scatter.depth_ratio = 1 + take_fraction(in, wild, 999);
+    p->look.star_spikes = take_in(in, wild, 2, 16) & ~1;
+    p->look.star_length = take_fraction(in, wild, 127);
+    p->look.star_angle = take_fraction(in, wild, 360);
+    p->look.star_strength = take_fraction(in, wild, 1);
+    p->interpolated.sharp_radius = 0.5f + take_fraction(in, wild, 15.5f);
+    p->interpolated.last_ratio = wild ? take_float(in) : 0;
+    p->foveated.x = take_fraction(in, wild, 1);
+    p->foveated.y = take_fraction(in, wild, 1);
+    p->foveated.angle = take_fraction(in, wild, 170);
+    p->foveated.depth = take_fraction(in, wild, 1);
+    p->field.shape = (uint32_t)take_in(in, wild, 0, REFOCUS_FIELD_SPHERE);
+    p->field.x = take_fraction(in, wild, 1);
+    p->field.radius = take_fraction(in, wild, 4);
+    p->field.falloff = 0.001f + take_fraction(in, wild, 3.9f);
+    p->diffusion.layers = take_in(in, wild, 1, 8);
+    p->diffusion.conductivity = 0.01f + take_fraction(in, wild, 0.99f);
 }
 
 /* Focus beyond a lens, and the look of the blur; `map` serves for all of its pictures. */
 static void take_controls(struct input *in, int wild, const struct refocus_disparity *map,
-                          struct refocus_render_params *p)
+                          struct refocus_settings *p)
 {
     const uint32_t maps = take(in, 1);
 
-    p->tilt_across = take_fraction(in, wild, 128) - (wild ? 0 : 64);
-    p->tilt_down = take_fraction(in, wild, 3);
-    p->tilt_x = take_fraction(in, wild, 1);
-    p->depth_share = 1 - take_fraction(in, wild, 1);
-    p->focus_half_width = take_fraction(in, wild, 0.3f);
-    p->focus_transition = take_fraction(in, wild, 1);
-    p->bands = take_in(in, wild, 0, REFOCUS_MAX_BANDS - 1);
-    for (int i = 0; i < p->bands && i < REFOCUS_MAX_BANDS - 1; i++)
-        p->band[i] = (struct refocus_band){
+    p->focus.tilt_across = take_fraction(in, wild, 128) - (wild ? 0 : 64);
+    p->focus.tilt_down = take_fraction(in, wild, 3);
+    p->focus.tilt_x = take_fraction(in, wild, 1);
+    p->focus.depth_share = 1 - take_fraction(in, wild, 1);
+    p->focus.half_width = take_fraction(in, wild, 0.3f);
+    p->focus.transition = take_fraction(in, wild, 1);
+    p->focus.bands = take_in(in, wild, 0, REFOCUS_MAX_BANDS - 1);
+    for (int i = 0; i < p->focus.bands && i < REFOCUS_MAX_BANDS - 1; i++)
+        p->focus.band[i] = (struct refocus_band){
             take_fraction(in, wild, 1), take_fraction(in, wild, 0.2f), take_fraction(in, wild, 1)};
-    p->focus_map = maps & 1 ? map : NULL;
-    p->sharp_map = maps & 2 ? map : NULL;
-    p->field_map = maps & 4 ? map : NULL;
+    p->focus.map = maps & 1 ? map : NULL;
+    p->focus.sharp_map = maps & 2 ? map : NULL;
+    p->field.map = maps & 4 ? map : NULL;
     if (maps & 4)
-        p->field = REFOCUS_FIELD_PICTURE;
-    p->least_disparity = take_fraction(in, wild, 0.5f);
-    p->most_disparity = 1 - take_fraction(in, wild, 0.5f);
-    p->blur_limit = 127 - take_fraction(in, wild, 127);
-    p->cat_eye = take_fraction(in, wild, 0.9f);
-    p->fringe = take_fraction(in, wild, 1) - (wild ? 0 : 0.5f);
-    p->grain = take_fraction(in, wild, 4);
-    if (p->method != REFOCUS_METHOD_SWEEP && !wild)
-        p->cat_eye = p->fringe = 0;
+        p->field.shape = REFOCUS_FIELD_PICTURE;
+    p->focus.least_disparity = take_fraction(in, wild, 0.5f);
+    p->focus.most_disparity = 1 - take_fraction(in, wild, 0.5f);
+    p->focus.blur_limit = 127 - take_fraction(in, wild, 127);
+    p->look.cat_eye = take_fraction(in, wild, 0.9f);
+    p->look.fringe = take_fraction(in, wild, 1) - (wild ? 0 : 0.5f);
+    p->look.grain = take_fraction(in, wild, 4);
+    if (p->render.method != REFOCUS_METHOD_SWEEP && !wild)
+        p->look.cat_eye = p->look.fringe = 0;
 }
 
-static struct refocus_render_params take_lens(struct input *in, int wild, float most)
+static struct refocus_settings take_lens(struct input *in, int wild, float most)
 {
-    struct refocus_render_params p =
-        refocus_render_params_default(take_fraction(in, wild, 1), take_fraction(in, wild, most));
+    struct refocus_settings p =
+        refocus_settings_default(take_fraction(in, wild, 1), take_fraction(in, wild, most));
 
-    p.method = (uint32_t)take_in(in, wild, 0, REFOCUS_METHOD_COUNT - 1);
-    p.rays = take_in(in, wild, 0, 65);
-    if (p.rays == 65)
-        p.rays = REFOCUS_RAYS_FULL;
-    p.blend = (uint32_t)take_in(in, wild, 0, 2);
-    p.sigma = 1 + take_fraction(in, wild, 300);
-    p.highlight_gain = 1 + take_fraction(in, wild, 15);
-    p.iterations = take_in(in, wild, 1, 8);
-    p.mirror = (uint8_t)take_in(in, wild, 0, 1);
-    p.background = (uint8_t)take_in(in, wild, 0, 1);
-    p.prefilter = (uint8_t)take_in(in, wild, 0, 1);
-    p.region_x = take_in(in, wild, 0, 20);
-    p.region_y = take_in(in, wild, 0, 20);
-    p.region_width = take_in(in, wild, 0, MAX_SIDE);
-    p.region_height = take_in(in, wild, 0, MAX_SIDE);
+    p.render.method = (uint32_t)take_in(in, wild, 0, REFOCUS_METHOD_COUNT - 1);
+    p.render.rays = take_in(in, wild, 0, 65);
+    if (p.render.rays == 65)
+        p.render.rays = REFOCUS_RAYS_FULL;
+    p.render.blend = (uint32_t)take_in(in, wild, 0, 2);
+    p.render.sigma = 1 + take_fraction(in, wild, 300);
+    p.highlights.gain = 1 + take_fraction(in, wild, 15);
+    p.search.iterations = take_in(in, wild, 1, 8);
+    p.search.mirror = (uint8_t)take_in(in, wild, 0, 1);
+    p.search.background = (uint8_t)take_in(in, wild, 0, 1);
+    p.render.prefilter = (uint8_t)take_in(in, wild, 0, 1);
+    p.render.region_x = take_in(in, wild, 0, 20);
+    p.render.region_y = take_in(in, wild, 0, 20);
+    p.render.region_width = take_in(in, wild, 0, MAX_SIDE);
+    p.render.region_height = take_in(in, wild, 0, MAX_SIDE);
     return p;
 }
 
 /* Renders into a guarded picture of the region's size; the bytes go to @out. */
-static int render(struct refocus_renderer *renderer, struct refocus_render_params *p, int width,
+static int render(struct refocus_renderer *renderer, struct refocus_settings *p, int width,
                   int height, uint32_t format, uint8_t *out, size_t capacity)
 {
-    const int whole = !p->region_x && !p->region_y && !p->region_width && !p->region_height;
-    const int w = whole ? width : p->region_width, h = whole ? height : p->region_height;
+    const int whole = !p->render.region_x && !p->render.region_y && !p->render.region_width &&
+                      !p->render.region_height;
+    const int w = whole ? width : p->render.region_width,
+              h = whole ? height : p->render.region_height;
     const int possible = w > 0 && w <= MAX_SIDE && h > 0 && h <= MAX_SIDE;
     struct refocus_image image =
         refocus_image_planar(format, out + GUARD, possible ? w : 1, possible ? h : 1);
@@ -205,7 +207,7 @@ static int render(struct refocus_renderer *renderer, struct refocus_render_param
     image.height = h;
 
     memset(out, 0xa5, capacity);
-    status = refocus_render(renderer, p, &image);
+    status = refocus_render_settings(renderer, p, &image);
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_STATE ||
           status == REFOCUS_ERR_UNSUPPORTED);
     const size_t written = status == REFOCUS_OK ? refocus_image_bytes(format, w, h) : 0;
@@ -226,9 +228,10 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
     const int same = (int)take(in, 1) & 1;
     struct refocus_image image = refocus_image_planar(format, photo, width, height);
-    const struct refocus_disparity map = {(uint32_t)bits, same ? width : dw, same ? height : dh,
-                                          disparity, (ptrdiff_t)(same ? width : dw) * bits / 8};
-    struct refocus_render_params lens = take_lens(in, wild, most);
+    const struct refocus_disparity map = {
+        sizeof map,         (uint32_t)bits, same ? width : dw,
+        same ? height : dh, disparity,      (ptrdiff_t)(same ? width : dw) * bits / 8};
+    struct refocus_settings lens = take_lens(in, wild, most);
     struct refocus_aperture *aperture = take_aperture(in, wild);
     int status;
 
@@ -241,13 +244,13 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     take_extras(in, wild, &lens);
     if (in->size > 0 && take(in, 1) & 1)
         take_controls(in, wild, &map, &lens);
-    else if (!wild && lens.method != REFOCUS_METHOD_DIFFUSION)
-        lens.field = REFOCUS_FIELD_LENS;
+    else if (!wild && lens.render.method != REFOCUS_METHOD_DIFFUSION)
+        lens.field.shape = REFOCUS_FIELD_LENS;
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);
     status = refocus_prepare(renderer, &image, &map);
     check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE);
-    lens.aperture = aperture;
+    lens.render.aperture = aperture;
     status = render(renderer, &lens, width, height, out_format, out[0], CAPACITY);
     if (status == REFOCUS_OK) {
         check(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, view, 2 * width) == 0);

@@ -115,7 +115,10 @@ static void check_copy(struct refocus_converter *converter, uint32_t format, int
 {
     static uint8_t copy[MOST * MOST * 4 + PAD * MOST * 3];
     const uint32_t kept = refocus_frame_image_format(format);
-    struct refocus_image image = {.format = kept, .width = width, .height = height};
+    struct refocus_image image = {.struct_size = sizeof(struct refocus_image),
+                                  .format = kept,
+                                  .width = width,
+                                  .height = height};
     struct refocus_frame frame, seen;
     size_t at = 0;
 

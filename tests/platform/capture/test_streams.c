@@ -193,7 +193,11 @@ static void check_y4m_of(uint32_t format, int planes, uint32_t range)
 {
     enum { W = 7, H = 5, HALF = 4 };
     static uint8_t memory[3][16 * H], bytes[1000], expected[1000];
-    struct refocus_image image = {.format = format, .width = W, .height = H, .range = range};
+    struct refocus_image image = {.struct_size = sizeof(struct refocus_image),
+                                  .format = format,
+                                  .width = W,
+                                  .height = H,
+                                  .range = range};
     const bool tall = format == REFOCUS_FORMAT_YUYV;
     struct refocus_sink *sink = NULL;
     size_t n, length;
@@ -233,7 +237,10 @@ static void y4m_keeps_codes(void **state)
                                        REFOCUS_FORMAT_I420, REFOCUS_FORMAT_YUYV};
     static const int planes[] = {2, 2, 3, 1};
     struct refocus_sink *sink = NULL;
-    struct refocus_image image = {.format = REFOCUS_FORMAT_NV12, .width = 4, .height = 4};
+    struct refocus_image image = {.struct_size = sizeof(struct refocus_image),
+                                  .format = REFOCUS_FORMAT_NV12,
+                                  .width = 4,
+                                  .height = 4};
 
     (void)state;
     for (int i = 0; i < 4; i++)
@@ -251,8 +258,11 @@ enum { RAW_W = 7, RAW_H = 5 };
 /* A picture of any format, rows with gaps. */
 static struct refocus_image noisy(uint32_t format, uint8_t memory[3][32 * RAW_H], uint32_t range)
 {
-    struct refocus_image image = {
-        .format = format, .width = RAW_W, .height = RAW_H, .range = range};
+    struct refocus_image image = {.struct_size = sizeof(struct refocus_image),
+                                  .format = format,
+                                  .width = RAW_W,
+                                  .height = RAW_H,
+                                  .range = range};
 
     for (int i = 0; i < 3; i++) {
         image.plane[i] = memory[i];
@@ -294,8 +304,10 @@ static void check_raw_of(uint32_t format, const char *name, uint32_t frame_forma
     for (int n = 0; n < 2; n++) {
         assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
         assert_int_equal(frame->format, frame_format);
-        back =
-            (struct refocus_image){.format = REFOCUS_FORMAT_YUYV, .width = RAW_W, .height = RAW_H};
+        back = (struct refocus_image){.struct_size = sizeof(struct refocus_image),
+                                      .format = REFOCUS_FORMAT_YUYV,
+                                      .width = RAW_W,
+                                      .height = RAW_H};
         if (frame_format == REFOCUS_FRAME_UYVY) {
             for (size_t i = 0; i < 2 * (RAW_W + 1) * RAW_H; i++)
                 swapped[i] = frame->plane[0][i ^ 1];
@@ -352,7 +364,10 @@ static void raw_formats(void **state)
     static const char *const wrong[] = {"raw:x,NV99", "raw:x,",    "raw:x,GREY", "raw:x,MJPEG",
                                         "raw:,NV12",  "raw:x,Z16", "raw:x,any"};
     struct refocus_sink *sink = NULL;
-    struct refocus_image yuv = {.format = REFOCUS_FORMAT_YUYV, .width = 4, .height = 4};
+    struct refocus_image yuv = {.struct_size = sizeof(struct refocus_image),
+                                .format = REFOCUS_FORMAT_YUYV,
+                                .width = 4,
+                                .height = 4};
 
     (void)state;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
@@ -458,7 +473,8 @@ static void y4m_422_comes_back(void **state)
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
     source = started("y4m:tall.y4m", REFOCUS_SOURCE_FAST);
     for (int n = 0; n < 2; n++) {
-        struct refocus_image back = {.format = REFOCUS_FORMAT_YUYV};
+        struct refocus_image back = {.struct_size = sizeof(struct refocus_image),
+                                     .format = REFOCUS_FORMAT_YUYV};
 
         assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
         assert_int_equal(frame->format, REFOCUS_FRAME_YUYV);

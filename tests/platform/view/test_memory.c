@@ -55,7 +55,7 @@ static void test_every_allocation(void **unused)
     stroke.fill.d0 = 1;
     memset(&setup, 0, sizeof setup);
     setup.photo = &photo;
-    setup.params = refocus_render_params_default(0, 0);
+    setup.params = refocus_settings_default(0, 0);
     setup.threads = 1;
     setup.notify = nothing;
     setup.save = nothing_saved;

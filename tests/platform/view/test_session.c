@@ -78,7 +78,7 @@ static void make_scene(void)
     photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
     setup.photo = &photo;
     setup.disparity = depth;
-    setup.params = refocus_render_params_default(0, 0);
+    setup.params = refocus_settings_default(0, 0);
     setup.threads = 2;
     setup.notify = on_frame;
     setup.save = on_save;
@@ -129,18 +129,18 @@ static void expect_render(const struct rf_view_frame *frame, uint32_t method, fl
                           float blur)
 {
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 127);
-    struct refocus_render_params lens = refocus_render_params_default(focus, blur);
+    struct refocus_settings lens = refocus_settings_default(focus, blur);
     struct refocus_disparity map = refocus_disparity16(depth, W, H, 2 * W);
     struct refocus_image out = photo;
     struct refocus_renderer *renderer;
     int wrong = 0;
 
-    lens.method = method;
+    lens.render.method = method;
     out.plane[0] = malloc(3 * (size_t)PIXELS);
     assert_non_null(out.plane[0]);
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &map), REFOCUS_OK);
-    assert_int_equal(refocus_render(renderer, &lens, &out), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &lens, &out), REFOCUS_OK);
     for (int i = 0; i < PIXELS; i++) {
         const uint8_t *const p = out.plane[0] + 3 * i;
 
@@ -188,7 +188,7 @@ static void test_nobody_waits(void **unused)
     (void)unused;
     frame = wait_for(session, rf_session_show(session, &state), true);
     state.method = REFOCUS_METHOD_RAYTRACE;
-    setup.params.rays = 64;
+    setup.params.render.rays = 64;
     for (int i = 0; i < 20; i++) {
         const struct timespec pause = {0, 20000000};
 

@@ -141,7 +141,7 @@ static void test_two_fingers(void **unused)
     memset(&setup, 0, sizeof setup);
     setup.session.photo = &photo;
     setup.session.disparity = depth;
-    setup.session.params = refocus_render_params_default(0, 0);
+    setup.session.params = refocus_settings_default(0, 0);
     setup.session.save = no_save;
     setup.state.blur = 6;
     setup.title = "test";

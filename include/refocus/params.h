@@ -1,0 +1,300 @@
+/** @file params.h  How to refocus: what every render needs, and one small struct a feature.
+ *
+ *     struct refocus_render_params params = refocus_render_params_default(0.8f, 20);
+ *     struct refocus_look_params look = refocus_look_params_default();
+ *
+ *     look.cat_eye = 0.5f;
+ *     params.look = &look;
+ *
+ * A NULL feature has its defaults, which its refocus_*_params_default() fills in. Structs that
+ * are pointed at are read during the call and not kept. Each begins as sized.h says.
+ */
+#ifndef REFOCUS_PARAMS_H
+#define REFOCUS_PARAMS_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <refocus/aperture.h>
+#include <refocus/image.h>
+#include <refocus/methods.h>
+#include <refocus/sized.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Largest blur radius K in pixels. */
+enum { REFOCUS_MAX_BLUR_RADIUS = 127 };
+
+/** The values that are averaged. */
+enum refocus_blend {
+    REFOCUS_BLEND_LINEAR = 0, /**< linear light by the sRGB curve */
+    REFOCUS_BLEND_STORED = 1, /**< the 8-bit values as they are, as in the paper */
+    REFOCUS_BLEND_GAMMA = 2,  /**< gamma 2.2 */
+};
+
+/** For rays: every pixel of the aperture mask. */
+enum { REFOCUS_RAYS_FULL = -1 };
+
+/** Highlights: the light that clipping took. Of `sweep`. Start from
+ *  refocus_highlight_params_default(). */
+struct refocus_highlight_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_highlight_params) */
+    float gain;           /**< light given back to small clipped highlights, 1 (none, the default)
+                               to 16 times white, 2^stops, where they are blurred by s; none
+                               where one channel of R, G, B alone is clipped. Of a disc or an
+                               iris, and with sigma from 1e6 on, drawn over the area of the
+                               aperture times s^2; else rays meet it */
+};
+
+static inline struct refocus_highlight_params refocus_highlight_params_default(void)
+{
+    struct refocus_highlight_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.gain = 1;
+    return params;
+}
+
+/** Thin structures: wires, hair, stems. Of `sweep`, by renderers with `thin`; not of photos of Y, U
+ *  and V. Start from refocus_thin_params_default(). */
+struct refocus_thin_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_thin_params) */
+    uint32_t enabled;     /**< 1 = structures up to 7 pixels wide are drawn as the matte that they
+                               become, and so is their coverage of the pixels at their edges, where
+                               they are blurred so much before the focus that rays lie 1.8 pixels
+                               apart (8.1 pixels at 64 rays; the same of a full mask), 8 pixels at
+                               the least, first some of them and all from 5/4 of that on, with
+                               nothing thick as near around them. Rays, which meet them here and
+                               miss them there, would show streaks. Not with apertures of fine
+                               structure (masks, figures, rings), cat's eyes, fringes. And where
+                               they are in focus, before what is blurred by some two pixels,
+                               their coverage of the pixels at their edges stays sharp, else those
+                               would be blurred with what is behind and the edges be in steps.
+                               They are looked for in the first render of a photo, which takes
+                               some frames' time. 0 = no, the default */
+};
+
+static inline struct refocus_thin_params refocus_thin_params_default(void)
+{
+    struct refocus_thin_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    return params;
+}
+
+/** The look of the blur beyond the aperture's. Start from refocus_look_params_default(). */
+struct refocus_look_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_look_params) */
+    float cat_eye;        /**< sweep, the others refuse it; 0 to 0.9: how much of its width the
+                               aperture has lost in the corners, where it is the part common to
+                               two circles, one pushed out and one pushed in; it grows with the
+                               square of the distance from the middle of the picture. Of blades
+                               and figures that part is taken, and a ring or an edge follows its
+                               edge; what is drawn on a mask is squeezed into it. 0 = nothing, the
+                               default */
+    float fringe;         /**< sweep, the others refuse it; -0.5 to 0.5: longitudinal colour: by
+                               how much the blur of red and blue behind the focus, and of green
+                               before it, is smaller than the other; below 0 the other way round.
+                               Takes twice the time. 0 = none, the default */
+    float grain;          /**< any method; 0 to 4: how much of the noise that a blur averages away
+                               is put back. It is measured where this lens leaves the photo sharp
+                               (anywhere, when it does so nowhere), by brightness, and laid over
+                               the blurred parts as luma noise. 0 = none, the default; 1 = as much
+                               as there was */
+    uint32_t grain_seed;  /**< which grain; any number; default 0 */
+    int32_t star_spikes;  /**< scatter, sweep: of a star filter, 0 = none, the default, else 2 to
+                               16; sweep gives them to small clipped highlights */
+    float star_length;    /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS; default 24 */
+    float star_angle;     /**< degrees of the first spike, counter-clockwise from the right, -3600
+                               to 3600; default 0 */
+    float star_strength;  /**< share of the light that goes to the spikes, 0 to 1; sweep adds it;
+                               default 0.25 */
+};
+
+static inline struct refocus_look_params refocus_look_params_default(void)
+{
+    struct refocus_look_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.star_length = 24;
+    params.star_strength = (float)0.25;
+    return params;
+}
+
+/** Bands in focus at once, the one about focus_disparity among them; largest growth of
+ *  the disparity in focus over the picture. */
+enum { REFOCUS_MAX_BANDS = 16, REFOCUS_MAX_TILT = 64 };
+
+/**
+ * A band in focus: sharp within half_width of its disparity; from half_width + transition on
+ * as blurred as by a lens focused at its middle; in between in proportion.
+ */
+struct refocus_band {
+    float disparity;  /**< middle, 0 to 1 */
+    float half_width; /**< 0 to 1 */
+    float transition; /**< 0 to 1; 0 = none, at once the lens's blur */
+};
+
+/**
+ * Focus beyond that of a plain lens: of sweep, search, blur and diffusion, the others
+ * refuse it. A pixel (x, y) of disparity d, clamped to least_disparity..most_disparity,
+ * is blurred by
+ *
+ *     s = K e,  e = depth_share (df - d) + across (x - tilt_x) + down (y - tilt_y)
+ *
+ * with x and y in parts of the width and the height, df from the render's focus_disparity or
+ * from map; then e is shortened by the bands, |e| and |s| are limited to 1 and blur_limit,
+ * and |s| is multiplied by 1 - sharp_map. With a field other than that of the lens only the
+ * last two and the clamps of d apply. The defaults change nothing. Start from
+ * refocus_focus_params_default().
+ */
+struct refocus_focus_params {
+    uint32_t struct_size;         /**< sizeof(struct refocus_focus_params) */
+    float tilt_x, tilt_y;         /**< place at which df is in focus, 0 to 1; default 0.5 */
+    float tilt_across, tilt_down; /**< growth of the disparity in focus from the left to the
+                                 right and from the top to the bottom, up to REFOCUS_MAX_TILT
+                                 either way: a tilted plane of focus, see focus.h; default 0 */
+    float depth_share;            /**< 0 to 1, the default: how much depth counts. Below 1 with a
+                                 tilt: depth is compressed along a line, Yang et al. 2016, fig.
+                                 13(a); 0 = only the place counts, as in pictures of miniatures */
+    float half_width;             /**< of the band about df: 0, the default, to 1 */
+    float transition;             /**< 0, the default, to 1; see struct refocus_band */
+    float least_disparity;        /**< what is farther counts as this far, 0 to 1; default 0 */
+    float most_disparity;         /**< what is nearer counts as this near, from least_disparity to
+                                 1; default 1 */
+    float blur_limit;             /**< no blur is larger: 0 to REFOCUS_MAX_BLUR_RADIUS pixels, the
+                                 default */
+    int32_t bands;                /**< in focus beside it, 0, the default, to
+                                 REFOCUS_MAX_BANDS - 1 */
+    const struct refocus_disparity *map;       /**< NULL, or df of each place in place of
+                                 focus_disparity: any size, read between its samples. The
+                                 samples of this map, of sharp_map and of that of a field are the
+                                 caller's; they are needed until the next render, or the last
+                                 refocus_get_view() of REFOCUS_VIEW_BLUR */
+    const struct refocus_disparity *sharp_map; /**< NULL, or what stays sharp whatever its depth:
+                                 1 wholly, 0 not at all; any size */
+    struct refocus_band band[REFOCUS_MAX_BANDS - 1];
+    uint32_t reserved; /**< 0 */
+};
+
+static inline struct refocus_focus_params refocus_focus_params_default(void)
+{
+    struct refocus_focus_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.tilt_x = params.tilt_y = (float)0.5;
+    params.depth_share = params.most_disparity = 1;
+    params.blur_limit = REFOCUS_MAX_BLUR_RADIUS;
+    return params;
+}
+
+/**
+ * Where it is blurred, Kosloff & Barsky 2007. Distances are of (x, y, d) to the field's
+ * centre: x and y in parts of the picture's width, d the disparity.
+ *
+ *     r = K clamp((distance - radius) / falloff, 0, 1)
+ *
+ * What is nearer than the centre (for a picture: than df) is blurred as what lies before the
+ * focus of a lens is, over what is behind it; the rest as what lies behind. Both sides of a
+ * plane are one side each.
+ */
+enum refocus_field {
+    REFOCUS_FIELD_LENS = 0,     /**< r = K |d - df|, and struct refocus_focus_params */
+    REFOCUS_FIELD_CYLINDER = 1, /**< sharp in an upright cylinder: distance in x and d */
+    REFOCUS_FIELD_PLUS = 2,     /**< sharp in two upright slabs: the lesser of x and d */
+    REFOCUS_FIELD_PLANE = 3,    /**< sharp by an upright plane: x cos a + d sin a */
+    REFOCUS_FIELD_SPHERE = 4,   /**< sharp in a sphere: distance in x, y and d */
+    REFOCUS_FIELD_PICTURE = 5,  /**< r = K v of a map of values 0..1 */
+};
+
+/** A field of blur in place of the lens's: of sweep, search, blur and diffusion, the others refuse
+ *  it. Start from refocus_field_params_default(). */
+struct refocus_field_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_field_params) */
+    uint32_t shape;       /**< enum refocus_field; default that of the lens */
+    float x, y;           /**< centre, 0 to 1 of width and height; default 0.5 */
+    float disparity;      /**< centre, 0 to 1 */
+    float radius;         /**< distance up to which nothing is blurred, 0 to 4; default 0.1 */
+    float falloff;        /**< further distance at which r = K, 0.001 to 4; default 0.3 */
+    float angle;          /**< a of the plane's normal, degrees, -3600 to 3600: 0 = sharp at one x,
+                               the default, 90 = at one d */
+    const struct refocus_disparity *map; /**< of REFOCUS_FIELD_PICTURE; any size, read between its
+                               samples, which stay as those of struct refocus_focus_params do */
+};
+
+/** @param disparity  of the centre: the disparity in focus, mostly */
+static inline struct refocus_field_params refocus_field_params_default(float disparity)
+{
+    struct refocus_field_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.x = params.y = (float)0.5;
+    params.disparity = disparity;
+    params.radius = (float)0.1;
+    params.falloff = (float)0.3;
+    return params;
+}
+
+/** How to refocus. Start from refocus_render_params_default(). */
+struct refocus_render_params {
+    uint32_t struct_size;       /**< sizeof(struct refocus_render_params) */
+    uint32_t method;            /**< enum refocus_method; default sweep */
+    float focus_disparity;      /**< df: the disparity in focus, 0 to 1 */
+    float max_blur_radius;      /**< K in pixels, 0 to the renderer's max_blur_radius */
+    int32_t rays;               /**< ray samples at the largest blur, 1 to REFOCUS_MAX_RAYS, or
+                                     REFOCUS_RAYS_FULL; default 64 */
+    uint32_t blend;             /**< enum refocus_blend; default linear */
+    float sigma;                /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
+                                     Yang et al. 2016, eq. 5: >= 1; INFINITY = plain average; default
+                                     1e30 */
+    uint32_t prefilter;         /**< sweep: 1 = smooth the input between rays that lie far apart,
+                                     and the result where all that is seen is blurred; default 1 */
+    int32_t region_x, region_y; /**< the part of the picture to render: its */
+    int32_t region_width, region_height;     /**< corner and size; all 0 = the whole */
+    const struct refocus_aperture *aperture; /**< NULL = a disc, the only one that scatter,
+                                 foveated, interpolated and diffusion know */
+
+    /* Features: NULL = the defaults. */
+    const struct refocus_highlight_params *highlights;
+    const struct refocus_thin_params *thin;
+    const struct refocus_look_params *look;
+    const struct refocus_focus_params *focus;
+    const struct refocus_field_params *field;
+
+    /* Methods: NULL = the defaults. */
+    const struct refocus_search_params *search;
+    const struct refocus_jittered_params *jittered;
+    const struct refocus_scatter_params *scatter;
+    const struct refocus_interpolated_params *interpolated;
+    const struct refocus_foveated_params *foveated;
+    const struct refocus_diffusion_params *diffusion;
+};
+
+/** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole
+ *  picture. */
+static inline struct refocus_render_params refocus_render_params_default(float focus_disparity,
+                                                                         float max_blur_radius)
+{
+    struct refocus_render_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.focus_disparity = focus_disparity;
+    params.max_blur_radius = max_blur_radius;
+    params.rays = 64;
+    params.sigma = (float)1e30;
+    params.prefilter = 1;
+    return params;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

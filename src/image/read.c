@@ -1,0 +1,83 @@
+/* read.c: reads the caller's pictures and maps of disparities, and says what is wrong with them. */
+#include "image/read.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "image/format.h"
+
+/* Say that a member is out of its range. */
+static int wrong(const struct rf_log *log, const char *name, const char *member, long long value,
+                 const char *may_be)
+{
+    return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "%s->%s is %lld, may be %s", name, member, value,
+                     may_be);
+}
+
+/* 1 to REFOCUS_MAX_SIDE. */
+static int check_sides(const struct rf_log *log, const char *name, int32_t width, int32_t height)
+{
+    const bool wide = width >= 1 && width <= REFOCUS_MAX_SIDE;
+
+    if (wide && height >= 1 && height <= REFOCUS_MAX_SIDE)
+        return REFOCUS_OK;
+    return wrong(log, name, wide ? "height" : "width", wide ? height : width, "1 to 65535");
+}
+
+static int check_plane(const struct rf_log *log, const char *name,
+                       const struct refocus_image *image, int plane)
+{
+    const ptrdiff_t bytes = refocus_plane_row_bytes(image->format, plane, image->width);
+
+    if (!image->plane[plane])
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "%s->plane[%d] is NULL", name, plane);
+    if (!rf_good_stride(image->stride[plane], bytes,
+                        refocus_plane_rows(image->format, plane, image->height)))
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "%s->stride[%d] is %lld, may be %lld or more either way", name, plane,
+                         (long long)image->stride[plane], (long long)bytes);
+    return REFOCUS_OK;
+}
+
+int rf_read_image(const struct rf_log *log, const char *name, struct refocus_image *own,
+                  const struct refocus_image *given)
+{
+    int status = rf_read_struct(log, name, own, sizeof *own,
+                                REFOCUS_SIZE_TO(struct refocus_image, range), given);
+
+    if (status)
+        return status;
+    if (!refocus_format_planes(own->format))
+        return wrong(log, name, "format", own->format, "1 to 8");
+    if ((status = check_sides(log, name, own->width, own->height)))
+        return status;
+    if (refocus_format_is_yuv(own->format) && own->matrix > REFOCUS_MATRIX_BT709)
+        return wrong(log, name, "matrix", own->matrix, "0 to 1");
+    if (refocus_format_is_yuv(own->format) && own->range > REFOCUS_RANGE_FULL)
+        return wrong(log, name, "range", own->range, "0 to 1");
+    for (int i = 0; !status && i < refocus_format_planes(own->format); i++)
+        status = check_plane(log, name, own, i);
+    return status;
+}
+
+int rf_read_map(const struct rf_log *log, const char *name, struct refocus_disparity *own,
+                const struct refocus_disparity *given)
+{
+    int status = rf_read_struct(log, name, own, sizeof *own,
+                                REFOCUS_SIZE_TO(struct refocus_disparity, stride), given);
+
+    if (status)
+        return status;
+    if (own->bits != 8 && own->bits != 16)
+        return wrong(log, name, "bits", own->bits, "8 or 16");
+    if ((status = check_sides(log, name, own->width, own->height)))
+        return status;
+    if (!own->samples)
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "%s->samples is NULL", name);
+    if (!rf_good_stride(own->stride, (ptrdiff_t)own->width * (own->bits / 8), own->height))
+        return wrong(log, name, "stride", own->stride, "a row or more either way");
+    if (own->bits == 16 && (((uintptr_t)own->samples | (uintptr_t)own->stride) & 1))
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "%s->samples or its stride is odd, may be even where bits is 16", name);
+    return REFOCUS_OK;
+}
