@@ -1,3 +1,4 @@
+/* encode.c: writes the means of a tile to the output picture as 8-bit codes of R, G and B. */
 #include "gather/frame.h"
 #include "image/format.h"
 
@@ -7,7 +8,7 @@ static uint8_t *pixel(const struct rf_frame *f, int bytes, int x, int y)
            (ptrdiff_t)(x - f->region.x0) * bytes;
 }
 
-/* Means above white come from highlights. */
+/* The code of a Q14 mean. A mean above white, which highlights cause, is written as white. */
 static uint8_t code_of(const uint8_t *to_code, uint64_t mean)
 {
     return to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
@@ -47,7 +48,8 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
     }
 }
 
-/* One channel of a row of n pixels, each a constant number of bytes. */
+/* Writes one channel of a row of n pixels. `bytes`, from pixel to pixel, is a constant where this
+ * is inlined, and so is the length of whole rows, which lets the compiler unroll them. */
 static inline void encode_channel(uint8_t *restrict out, const int bytes,
                                   const uint16_t *restrict mean, const uint8_t *restrict to_code,
                                   int n)
@@ -94,7 +96,7 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
 {
     const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
-    if (f->bright) /* means above white come from highlights */
+    if (f->bright) /* highlights make means above white */
         f->exec->kernels->at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
     encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at}, RF_TILE);
 }

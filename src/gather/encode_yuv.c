@@ -1,17 +1,18 @@
+/* encode_yuv.c: writes the means of a tile to an output picture of Y, U and V. */
 #include "gather/frame.h"
 #include "image/format.h"
 #include "passes/weights.h"
 
 #include <string.h>
 
-/* Where samples of the result are. */
+/* Where the samples of one channel of the result lie. */
 struct row {
     uint8_t *first;
-    int step;         /* bytes, */
-    ptrdiff_t stride; /* also those of rows */
+    int step;         /* bytes from sample to sample */
+    ptrdiff_t stride; /* bytes from row to row */
 };
 
-/* Of Y (i = 0), U or V from pixel (x, y) on. */
+/* Finds the samples of Y (i = 0), U (1) or V (2) from pixel (x, y) on. */
 static struct row samples(const struct rf_frame *f, int i, int x, int y)
 {
     const bool chroma = i > 0, nv21 = f->out->format == REFOCUS_FORMAT_NV21;
@@ -32,7 +33,8 @@ static struct row samples(const struct rf_frame *f, int i, int x, int y)
                         f->out->stride[plane]};
 }
 
-/* n pixels; that beside an odd row repeats its last. */
+/* Writes n pixels. Where n is odd, the pixel beside the last one repeats its Y: YUYV holds pairs.
+ */
 static void put_yuyv(uint8_t *restrict out, const uint8_t *restrict y, const uint8_t *restrict uv,
                      int n)
 {
@@ -57,7 +59,7 @@ static void put_luma(uint8_t *out, const uint8_t *code, int n)
         memcpy(out, code, (size_t)n);
 }
 
-/* n pairs of U and V. */
+/* Writes n pairs of U and V. */
 static void put_chroma(struct row u, struct row v, const uint8_t *restrict uv, int n)
 {
     if (u.step == 2 && v.first == u.first + 1) { /* NV12 */
@@ -70,9 +72,9 @@ static void put_chroma(struct row u, struct row v, const uint8_t *restrict uv, i
     }
 }
 
-/* Codes of a part of the picture. */
+/* The codes of a part of the picture. */
 struct codes {
-    const uint8_t *y, *uv; /* of its first pixel */
+    const uint8_t *y, *uv; /* from its first pixel on */
     ptrdiff_t y_stride, uv_stride;
 };
 
@@ -114,7 +116,8 @@ void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect)
     put(f, rect, &codes);
 }
 
-/* Repeat what is there over the pixel beside an odd edge, which shares its sample. */
+/* Repeats the last luma over the pixel beside an odd edge: both share one sample of chroma, which
+ * is the mean of its pixels. */
 static void repeat_edge(struct rf_decode_job *job, int w, int h)
 {
     if (w % 2)
@@ -125,8 +128,8 @@ static void repeat_edge(struct rf_decode_job *job, int w, int h)
                RF_TILE * sizeof job->luma[0]);
 }
 
-/* Rows of codes, w long; whole ones by copies of a fixed size. */
-static void take(uint8_t *to, const uint8_t *from, ptrdiff_t stride, int w, int rows)
+/* Copies rows of w codes into a tile. Whole rows have a constant size, which is faster. */
+static void copy_codes(uint8_t *to, const uint8_t *from, ptrdiff_t stride, int w, int rows)
 {
     for (int y = 0; y < rows; y++, to += RF_TILE, from += stride) {
         if (w == RF_TILE)
@@ -155,8 +158,8 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
     for (int p = 0; p < 2; p++)
         job->within[p] = f->premultiplied ? rf_yuv_within(f->light_weight, p) : 0;
     job->stride = f->view->stride;
-    take(job->y, codes->y + y0 * codes->y_stride + x0, codes->y_stride, w, h);
-    take(job->uv, codes->uv + c0 * codes->uv_stride + x0, codes->uv_stride, w + w % 2, rows);
+    copy_codes(job->y, codes->y + y0 * codes->y_stride + x0, codes->y_stride, w, h);
+    copy_codes(job->uv, codes->uv + c0 * codes->uv_stride + x0, codes->uv_stride, w + w % 2, rows);
     repeat_edge(job, w, h);
     f->exec->kernels->decode(job);
     put(f, rect,

@@ -1,4 +1,4 @@
-/* method.h: what a renderer calls for each tile. */
+/* frame.h: all that one frame is rendered from, and the functions that render a tile of it. */
 #ifndef RF_FRAME_H
 #define RF_FRAME_H
 
@@ -20,14 +20,15 @@
 #include "tiles/bins.h"
 #include "tiles/tiles.h"
 
-/* Curve and weights of eq. 5 in double precision, of 8-bit codes. */
+/* The curve and the weights of eq. 5 in double precision, for each 8-bit code. */
 struct rf_exact {
     double light[256];
     double boundary[256]; /* light in the middle between code c and c + 1 */
     double weight[256];
 };
 
-enum { RF_LIVE_RAYS = 64 }; /* more are for stills that are to be as good as can be */
+/* Up to so many rays speed counts most; more are for stills that are to be as good as can be. */
+enum { RF_LIVE_RAYS = 64 };
 
 struct rf_method;
 
@@ -38,20 +39,20 @@ struct rf_frame {
 
     /* The window and its planes, set by rf_set_planes(). */
     const struct rf_viewport *view;
-    struct rf_light_q12 light;       /* of the photo */
-    struct rf_light_q12 smooth;      /* pre-filtered where rays lie far apart */
+    struct rf_light_q12 light;       /* the photo's own */
+    struct rf_light_q12 smooth;      /* `light`, pre-filtered where rays lie far apart */
     struct rf_blur_q8 blur;          /* circle of confusion of each pixel */
-    struct rf_background background; /* hidden background */
-    struct rf_weight_q15 weight;     /* eq. 5, of `smooth` */
+    struct rf_background background; /* the inpainted hidden background */
+    struct rf_weight_q15 weight;     /* eq. 5 for each pixel of `smooth` */
     struct rf_weight_q15 background_weight;
     struct rf_disparity_q16 disparity;
     struct rf_alpha_u8 alpha;
     struct rf_range_plane range;
-    const struct rf_bins *bins;         /* of each tile, row by row */
-    const struct rf_yuv *yuv;           /* yuv->on: it is a photo of Y, U and V, */
-    struct rf_chroma_planes chroma;     /* of which these are */
-    const struct rf_transfer *transfer; /* curve of the blend */
-    const uint16_t *light_weight;       /* eq. 5 by Q12 light, Q15 */
+    const struct rf_bins *bins;         /* one for each tile, row by row */
+    const struct rf_yuv *yuv;           /* yuv->on: the photo is one of Y, U and V */
+    struct rf_chroma_planes chroma;     /* valid if yuv->on */
+    const struct rf_transfer *transfer; /* the curve of the blend */
+    const uint16_t *light_weight;       /* eq. 5 for each Q12 light, Q15 */
     const struct rf_ray_sets *ray_sets;
     const struct rf_cat_eye *cat_eye;
     const struct rf_cat_shape *cat_shape;
@@ -66,25 +67,25 @@ struct rf_frame {
     struct rf_focus focus;
     struct rf_focus_plan plan;
     struct rf_bin_scale scale;
-    struct rf_rect region; /* of the window (renderer.h); out covers just this */
+    struct rf_rect region; /* pixels of the window to render; `out` covers just these */
     struct rf_reach reach;
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS];    /* |s| that each step begins at, Q7.8 */
-    bool prefilter_fades;                       /* they come in gradually: rf_prefilter_rows() */
-    struct rf_thin_pass thin;     /* thin structures that are composited over what rays see */
-    bool weighted;                /* eq. 5 weights differ from 1, */
-    bool premultiplied;           /* and little enough for light times weight in 16 bits */
-    bool fine;                    /* the opening is: rf_aperture_is_fine() */
-    int row_gap;                  /* see methods/tile_rows.h */
-    struct rf_look look;          /* spikes of stars, and grain, */
-    bool look_ready;              /* once they are found out */
-    bool splats;                  /* highlights are splatted, as this says, */
-    struct rf_splat splat;        /* of the planes that rf_set_planes() set; or else */
-    enum rf_bright bright;        /* rays gather their light, which exceeds RF_LIGHT_MAX */
-    const struct rf_exact *exact; /* of methods in double precision, else NULL */
+    bool prefilter_fades;                       /* steps set in gradually: rf_prefilter_rows() */
+    struct rf_thin_pass thin;     /* thin structures, composited over the means of rays */
+    bool weighted;                /* eq. 5 weights differ from 1 */
+    bool premultiplied;           /* weighted, and light times weight fits 16 bits */
+    bool fine;                    /* the aperture is: rf_aperture_is_fine() */
+    int row_gap;                  /* rf_row_gap() of gather/tile_rows.h */
+    struct rf_look look;          /* spikes of stars, and grain */
+    bool look_ready;              /* `look` is computed */
+    bool splats;                  /* highlights are splatted, not gathered by rays */
+    struct rf_splat splat;        /* valid if `splats`; its planes are rf_set_planes()'s */
+    enum rf_bright bright;        /* how far light that rays gather exceeds RF_LIGHT_MAX */
+    const struct rf_exact *exact; /* for methods in double precision, else NULL */
 };
 
-/* Beyond that sigma all weights of eq. 5 round to 1. */
+/* Whether eq. 5 weighs pixels: from sigma 10^6 on all of its weights round to 1. */
 static inline bool rf_weighs(const struct rf_settings *params)
 {
     return params->sigma < 1e6f;
@@ -95,15 +96,16 @@ static inline bool rf_is_sweep(const struct rf_frame *f)
     return f->params->method == REFOCUS_METHOD_SWEEP;
 }
 
-/* Whether rays take the background for what is deepest in sight: kernels->sort_rays. */
+/* Whether a ray that meets only the deepest surface of a tile sees the hidden background there
+ * without a test: kernels->sort_rays. */
 static inline bool rf_looks_beneath(const struct rf_frame *f)
 {
     return f->params->rays != REFOCUS_RAYS_FULL && f->params->rays <= RF_LIVE_RAYS;
 }
 
 /*
- * Sums over the rays of the pixels of a tile. Exact: Q12 light, four times white at the
- * most, times Q15 weight (or 1) times a ray weight, 65,025 rays at the most, stays
+ * Sums over the rays for each pixel of a tile. They are exact: Q12 light, four times white at
+ * the most, times a Q15 weight (or 1) times a ray weight, over 65,025 rays at the most, stays
  * below 2^14 2^15 2^8 2^16 = 2^53.
  */
 struct rf_sums {
@@ -111,7 +113,7 @@ struct rf_sums {
     uint64_t weight[RF_TILE * RF_TILE];
 };
 
-/* Weight of the pixel at `at` of light planes: eq. 5, or 1. */
+/* The weight of the pixel at `at` of planes of light: eq. 5 of its brightest channel, or 1. */
 static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const light[3],
                                     ptrdiff_t at)
 {
@@ -125,13 +127,14 @@ static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const li
     return f->light_weight[most];
 }
 
-/* Offset of a ray in whole pixels: round half up of u s, Q15 times Q7.8. */
+/* The offset of a ray in whole pixels: u s, Q15 times Q7.8, rounded half up. For u = 16384 (0.5)
+ * and s = 768 (3 pixels) it is 1.5 pixels, which rounds to 2. */
 static inline int rf_offset(int u, int s)
 {
     return (u * s + (1 << 22)) >> 23;
 }
 
-/* Signed blur of the nearest and the farthest plane, Q7.8. */
+/* The signed blur of the nearest plane, d = 1, and of the farthest, d = 0, Q7.8. */
 static inline int rf_nearest_blur(const struct rf_frame *f)
 {
     return -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >> 16);
@@ -142,30 +145,30 @@ static inline int rf_farthest_blur(const struct rf_frame *f)
     return (int)(((uint32_t)f->focus.disparity * f->focus.radius + (1 << 15)) >> 16);
 }
 
-/* A tile of the output picture will be written soon. */
+/* Prefetches the output pixels of a tile that will be written soon. */
 void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect);
 
-/* Means of a tile into the output picture. */
+/* Write the means of a tile to the output picture: from sums, or from Q14 means. */
 void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums);
 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
                      uint16_t mean[3][RF_TILE * RF_TILE]);
 
-/* n Q14 means of row y from column x0 on, at most RF_MEAN_MAX. */
+/* Writes n Q14 means, at most RF_MEAN_MAX, to row y from column x0 on. */
 void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3]);
 
-/* Pixels that come out as they went in. */
+/* Copies the pixels of a tile that is sharp: they come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 
-/* The same for a photo of Y, U and V, from job->luma and job->chroma. */
+/* Do so for a photo of Y, U and V, whose means are in job->luma and job->chroma. */
 void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                          struct rf_decode_job *job);
 void rf_copy_yuv_tile(const struct rf_frame *f, struct rf_rect rect);
 
-/* One pixel given as codes; alpha is the photo's. */
+/* Writes one pixel given as codes; its alpha is the photo's. */
 void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]);
 
-/* rect: at most RF_TILE x RF_TILE, inside one tile. */
+/* Renders the pixels `rect` of tile (tx, ty), which lie inside that tile. */
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker);
 rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile;
 

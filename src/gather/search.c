@@ -5,19 +5,20 @@
  * nearest plane, d = 1: at p + (u, v) K (df - 1), the same offset for every pixel. A
  * guess d leads to the pixel q = p + (u, v) K (df - d) (eq. 4). If the disparity at q
  * confirms the guess to half a pixel, |u| K |d_q - d| <= 1/2, q is an intersection. If
- * not, d_q is the next guess. After T tests the last pixel looked at is taken, unless
- * it is no intersection and farther than p: then p itself is (or, by option, the
- * mirrored pixel, or the background layer).
+ * not, d_q is the next guess. After T tests the last pixel looked at is used, unless
+ * it is no intersection and farther than p: then p itself is used (or, by option, the
+ * mirrored pixel, or the hidden background).
  */
 #include "gather/frame.h"
 #include "image/viewport.h"
 
 #include <string.h>
 
+/* The pixel that a ray ends at. */
 struct hit {
     ptrdiff_t at;
-    int blur; /* that led there */
-    bool valid;
+    int blur;   /* the guess that led there, Q7.8 */
+    bool valid; /* the pixel confirms the guess */
 };
 
 static struct hit search(const struct rf_frame *f, ptrdiff_t p, const struct refocus_ray *ray,
@@ -39,11 +40,10 @@ static struct hit search(const struct rf_frame *f, ptrdiff_t p, const struct ref
     return hit;
 }
 
-/* Where the light of a ray comes from: a pixel of *light. */
+/* Chooses the pixel of *light that the light of a ray comes from. */
 static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p, const struct refocus_ray *ray,
                          struct hit hit, uint16_t *const **light)
 {
-
     *light = f->light.channel;
     if (hit.valid || f->blur.at[hit.at] <= f->blur.at[p])
         return hit.at;
@@ -58,7 +58,7 @@ static ptrdiff_t resolve(const struct rf_frame *f, ptrdiff_t p, const struct ref
     return p;
 }
 
-/* Some rays of equal weight, and the cells of their first guesses. */
+/* At most RF_RAY_CHUNK rays of equal weight, and the cells of their first guesses. */
 struct chunk {
     struct rf_search_rays rays;
     int32_t cell[RF_RAY_CHUNK];
@@ -79,8 +79,8 @@ static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struc
     f->exec->kernels->tolerances(rays->within, rays->u, rays->v, n);
 }
 
-/* The paper's own rule, by kernels: rays that are settled for the strip as a whole are
- * added as those of the sweep that need no test, the others are searched. */
+/* Follows the paper's own rule, by kernels. Rays that are settled for the strip as a whole are
+ * added as the sweep adds rays that need no test; the others are searched. */
 static void search_strip(const struct rf_frame *f, const struct chunk *chunk, int tx, int y,
                          uint32_t *const sum[3])
 {
@@ -157,7 +157,7 @@ static void search_runs(const struct rf_frame *f, int tx, int ty, const struct r
         sums->weight[i] = set->total_weight;
 }
 
-/* With weights, the mirrored pixel or the background layer: pixel by pixel. */
+/* Searches pixel by pixel, as weights, the mirrored pixel and the hidden background require. */
 static void search_pixels(const struct rf_frame *f, struct rf_rect rect,
                           const struct rf_ray_set *set, struct rf_sums *sums)
 {
@@ -200,6 +200,6 @@ void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rec
         search_pixels(f, rect, set, &sums);
     else
         search_runs(f, tx, ty, set, &sums);
-    if (!rf_cancelled(f->exec)) /* else no weights */
+    if (!rf_cancelled(f->exec)) /* a cancelled run has no weights to divide by */
         rf_encode_tile(f, rect, &sums);
 }

@@ -1,11 +1,19 @@
 /* sweep.c: two layers, front-most hit, by a sweep over the disparities in reach.
  *
  * Yang et al. 2016 ask for the front-most q on the ray of p with q = p + u s(q) (eq. 4),
- * relaxed to half a pixel. Over a tile, few signed blurs s can be met at all. They are
+ * relaxed to half a pixel. Over a tile, few signed blurs s can be hit at all. They are
  * covered, nearest first, by slabs one pixel wide. For one ray and one slab the offset
  * u s_slab is the same for the whole tile; each pixel that is still without a hit looks
- * there, and has one if the blur found lies in the slab. What is still free at the end
- * looks past everything, into the background layer.
+ * there, and has one if the blur found lies in the slab. A pixel without any hit at the end
+ * sees past every surface, into the hidden background.
+ *
+ * An example: a tile has blurs from 1.0 to 3.0, so its slabs are [1, 2] and [2, 3], with
+ * centres 1.5 and 2.5. The ray (u, v) = (0.8, 0) looks 0.8 x 1.5 = 1.2, so 1 pixel to the right for
+ * the first slab, and 0.8 x 2.5 = 2 pixels for the second, at every pixel of the tile. Where
+ * the blur 1 pixel to the right is 1.7, the ray hits in the first slab: eq. 4 asks for 0.8 x 1.7
+ * = 1.36 pixels, 0.36 from the pixel found, and so within half a pixel. Where it is 2.4,
+ * the second slab is tested: a blur of 2.4 found 2 pixels away is a hit there, as eq. 4 asks for
+ * 1.92. Where that blur is 1.2, the ray passes behind it and sees the hidden background.
  *
  * This is plain C that states the arithmetic; sums are whole numbers, so their order does
  * not matter.
@@ -21,15 +29,17 @@
 
 enum { LANES = RF_TILE * RF_TILE };
 
-/* Where some rays see the slabs of a tile, and the background. */
-struct sight {
+/* Where at most RF_RAY_CHUNK rays look for the slabs of a tile and, last, for the hidden
+ * background. */
+struct lookups {
     int rays;
     int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
 };
 
-/* Of one side of the focus, coordinates of rays apart: those of the set, or made for the tile. */
+/* Rays of one side of the focus, u and v apart: they are those of the set, or were made for the
+ * tile. */
 struct aims {
     const int16_t *u, *v;
     int16_t memory[2][RF_RAY_CHUNK];
@@ -51,41 +61,42 @@ static void set_aims(struct aims *aims, const struct rf_ray_set *set, int first,
     aims->v = aims->memory[1];
 }
 
-static void set_sight(struct sight *sight, const struct rf_frame *f,
-                      const struct rf_tile_plan *plan, const struct rf_tile_rays *rays, int first,
-                      int behind)
+static void set_lookups(struct lookups *lookups, const struct rf_frame *f,
+                        const struct rf_tile_plan *plan, const struct rf_tile_rays *rays, int first,
+                        int background_blur)
 {
     struct rf_ray_sides sides;
     struct aims own[2];
 
-    rf_tile_rays_get(rays, first, sight->rays, &sides);
-    set_aims(&own[0], rays->set, first, sides.behind, sight->rays);
+    rf_tile_rays_get(rays, first, lookups->rays, &sides);
+    set_aims(&own[0], rays->set, first, sides.behind, lookups->rays);
     if (sides.before != sides.behind)
-        set_aims(&own[1], rays->set, first, sides.before, sight->rays);
+        set_aims(&own[1], rays->set, first, sides.before, lookups->rays);
     for (int k = 0; k <= plan->slabs; k++) {
-        const int blur = k < plan->slabs ? plan->slab[k].centre : behind;
-        const int seen = rf_scaled_blur(rays, blur);
+        const int blur = k < plan->slabs ? plan->slab[k].centre : background_blur;
+        const int scaled = rf_scaled_blur(rays, blur);
         const struct aims *aims = &own[blur < 0 && sides.before != sides.behind];
 
         if (f->weighted && k < plan->slabs)
-            f->exec->kernels->aim(sight->weight_offset[k], sight->cell[k], aims->u, aims->v, seen,
-                                  (int32_t)f->weight.stride, (int32_t)f->range.stride, sight->rays);
-        f->exec->kernels->aim(sight->offset[k], sight->cell[k], aims->u, aims->v, seen,
-                              (int32_t)f->view->stride, (int32_t)f->range.stride, sight->rays);
+            f->exec->kernels->aim(lookups->weight_offset[k], lookups->cell[k], aims->u, aims->v,
+                                  scaled, (int32_t)f->weight.stride, (int32_t)f->range.stride,
+                                  lookups->rays);
+        f->exec->kernels->aim(lookups->offset[k], lookups->cell[k], aims->u, aims->v, scaled,
+                              (int32_t)f->view->stride, (int32_t)f->range.stride, lookups->rays);
     }
 }
 
-/* One blur of the background for the tile, that of its middle, keeps the offsets of a ray
- * constant; looking it up for each pixel measured no better. */
-static int behind_of(const struct rf_frame *f, int tx, int ty)
+/* The blur of the hidden background of a tile: one for all, that of the tile's middle, which keeps
+ * the offsets of a ray constant. Looking it up for each pixel measured no better. */
+static int background_blur_of(const struct rf_frame *f, int tx, int ty)
 {
     return f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
 }
 
-/* What is summed of a tile: light, plain or times weight, and weights. */
+/* The sums of a tile: of light, plain or times weight, and of weights. */
 union tally {
     uint32_t sum[4][LANES];
-    uint64_t weighted[4][LANES]; /* where weights differ too much for 16 bits */
+    uint64_t weighted[4][LANES]; /* for weights that differ too much for 16 bits */
 };
 
 static bool has_wide_sums(const struct rf_frame *f)
@@ -100,7 +111,7 @@ struct strip {
 };
 
 static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct sight *sight, int tx, int ty, struct strip strip,
+                        const struct lookups *lookups, int tx, int ty, struct strip strip,
                         union tally *run)
 {
     enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
@@ -108,7 +119,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     const ptrdiff_t at = y * f->view->stride + x, weight_at = y * f->weight.stride + x;
     const uint32_t *range =
         f->range.at + (ty * CELLS + strip.y / RF_CELL) * f->range.stride + tx * CELLS;
-    /* the vectors of sweep_weighted hold 8 times white at the most */
+    /* The vectors of sweep_weighted hold 8 times white at the most. */
     rf_sweep_weighted_fn *const weighted =
         f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : f->exec->kernels->sweep_weighted;
     struct rf_sorted_rays sorted;
@@ -119,14 +130,14 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .behind = f->background.light.channel[0] + at,
         .weight = f->weighted ? f->weight.at + weight_at : NULL,
         .behind_weight = f->background_weight.at + at,
-        .rays = sight->rays,
+        .rays = lookups->rays,
         .slabs = plan->slabs,
         .beneath = rf_looks_beneath(f),
         .slab = plan->slab,
         .joined = plan->joined,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
-        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
-        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->weight_offset,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])lookups->cell,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->weight_offset,
     };
     const struct rf_sweep_job job = {
         .blur = f->blur.at + at,
@@ -152,15 +163,15 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
                                 &job);
 }
 
-/* All computed rows of a tile. */
+/* Sweeps the rows of a tile that are computed. */
 static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                         const struct sight *sight, int tx, int ty, struct rf_tile_rows rows,
+                         const struct lookups *lookups, int tx, int ty, struct rf_tile_rows rows,
                          union tally *run)
 {
     const int count = rows.step <= 2 ? rows.count / 2 : rows.count;
 
     for (int i = 0; i < rows.count; i += count)
-        sweep_strip(f, plan, sight, tx, ty,
+        sweep_strip(f, plan, lookups, tx, ty,
                     (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE}, run);
 }
 
@@ -173,7 +184,7 @@ static void clear_run(const struct rf_frame *f, union tally *run, int lanes)
             memset(run->sum[c], 0, (size_t)lanes * sizeof run->sum[c][0]);
 }
 
-/* A run of rays of equal weight is at its end: it counts that often. */
+/* Adds a run of rays of equal weight, which is at its end, as often as its rays weigh. */
 static void add_run(const struct rf_frame *f, const union tally *run, uint64_t ray_weight,
                     uint64_t rays, struct rf_sums *sums)
 {
@@ -196,23 +207,23 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
                        struct rf_tile_rows rows, union tally *run, struct rf_sums *sums)
 {
     const struct rf_ray_set *set = tile_rays->set;
-    const int behind = behind_of(f, tx, ty);
-    struct sight sight;
+    const int background_blur = background_blur_of(f, tx, ty);
+    struct lookups lookups;
     const int lanes = rows.count * RF_TILE;
     int rays = 0; /* in this run */
 
     clear_run(f, run, lanes);
-    for (int n = 0; n < set->count; n += sight.rays) {
+    for (int n = 0; n < set->count; n += lookups.rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
         if (rf_cancelled(f->exec))
             return;
-        sight.rays = rf_rays_alike(set, n);
-        rays += sight.rays;
-        set_sight(&sight, f, plan, tile_rays, n, behind);
-        sweep_strips(f, plan, &sight, tx, ty, rows, run);
+        lookups.rays = rf_rays_alike(set, n);
+        rays += lookups.rays;
+        set_lookups(&lookups, f, plan, tile_rays, n, background_blur);
+        sweep_strips(f, plan, &lookups, tx, ty, rows, run);
         if (!set->equal &&
-            (n + sight.rays == set->count || ray[sight.rays].weight != ray->weight)) {
+            (n + lookups.rays == set->count || ray[lookups.rays].weight != ray->weight)) {
             add_run(f, run, ray->weight, (uint64_t)rays, sums);
             clear_run(f, run, lanes);
             rays = 0;
@@ -220,12 +231,12 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
     }
 }
 
-/* Sums of rays that weigh the same to what means can be. */
-static void limit(union tally *run, int lanes, bool wide, uint32_t rays)
+/* Clamps the sums of rays of equal weight to those of the largest mean. */
+static void clamp_run(union tally *run, int lanes, bool wide, uint32_t rays)
 {
     for (int c = 0; c < 3; c++) {
         if (!wide)
-            rf_limit_sums(run->sum[c], rays, lanes);
+            rf_clamp_sums(run->sum[c], rays, lanes);
         for (int i = 0; wide && i < lanes; i++) {
             const uint64_t most = RF_MOST_MEAN * run->weighted[3][i];
 
@@ -234,15 +245,15 @@ static void limit(union tally *run, int lanes, bool wide, uint32_t rays)
     }
 }
 
-/* Means of channels `from` to `to` - 1 of a tile through an opening. */
+/* Computes the means of channels `from` to `to` - 1 of a tile from rays of equal weight. */
 static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
                         const struct rf_tile_rays *tile_rays, int tx, int ty,
                         uint16_t mean[3][LANES], int from, int to)
 {
     const uint32_t count = (uint32_t)tile_rays->set->count;
-    const int behind = behind_of(f, tx, ty);
-    const struct rf_tile_rows rows = rf_tile_rows(f, plan, behind);
-    const uint16_t softness = rf_softness(f, plan, behind);
+    const int background_blur = background_blur_of(f, tx, ty);
+    const struct rf_tile_rows rows = rf_tile_rows(f, plan, background_blur);
+    const uint16_t softness = rf_softness(f, plan, background_blur);
     const int lanes = rows.count * RF_TILE;
     uint16_t computed[LANES];
     union tally run;
@@ -251,7 +262,7 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
     if (rf_cancelled(f->exec))
         return;
     if (!f->premultiplied && rf_exceeds_means(plan))
-        limit(&run, lanes, f->weighted, count);
+        clamp_run(&run, lanes, f->weighted, count);
     for (int c = from; c < to; c++) {
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
@@ -268,20 +279,21 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
     }
 }
 
-/* The same from rays that do not weigh the same. */
+/* Computes these means from rays that do not weigh the same. */
 static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct rf_tile_rays *rays, int tx, int ty, uint16_t mean[3][LANES],
                        int from, int to)
 {
     const uint64_t most = 4 * RF_MOST_MEAN;
-    const uint64_t unit = f->premultiplied ? 8192 : 4; /* of Q13 times Q12, or Q12 */
-    const uint16_t softness = rf_softness(f, plan, behind_of(f, tx, ty));
+    const uint64_t unit =
+        f->premultiplied ? 8192 : 4; /* light is Q13 times weight Q12, or plain Q12 */
+    const uint16_t softness = rf_softness(f, plan, background_blur_of(f, tx, ty));
     struct rf_sums sums;
     union tally run;
 
     memset(&sums, 0, sizeof sums);
     sweep_rays(f, plan, rays, tx, ty, (struct rf_tile_rows){1, RF_TILE}, &run, &sums);
-    if (rf_cancelled(f->exec)) /* else no weights */
+    if (rf_cancelled(f->exec)) /* a cancelled run has no weights to divide by */
         return;
     for (int c = from; c < to; c++) {
         for (int i = 0; i < LANES; i++) {
@@ -315,7 +327,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     rf_expect_tile(f, rect);
     rf_tile_rays_make(&rays, f, rf_rays_for(f->ray_sets, plan.reach, plan.dots), tx, ty);
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
-        const int from = pass, to = pass ? 2 : 3; /* all of them, and green again */
+        const int from = pass, to = pass ? 2 : 3; /* all channels, and green again */
 
         if (pass)
             rf_use_green_rays(&rays, f->params->fringe);

@@ -2,8 +2,8 @@
  *
  * What sweep.c does for three planes is done here for luma and, with the same slabs,
  * for chroma, whose samples lie two pixels apart: rays are half as long there across,
- * and in 4:2:0 down, and some of them lie as densely among its samples as all do among
- * pixels.
+ * and in 4:2:0 down, and a part of them lies as densely among its samples as all rays do
+ * among pixels.
  */
 #include "gather/frame.h"
 #include "gather/sums.h"
@@ -16,56 +16,57 @@ enum { LANES = RF_TILE * RF_TILE };
 /* Luma or chroma, from a tile's first element on. */
 struct plane {
     const int16_t *blur;
-    const uint16_t *light, *behind;
+    const uint16_t *light, *background;
     int rows, steps;
     struct rf_tile_rows computed;
-    int down; /* shift from rows of pixels */
+    int down; /* rows of pixels to one of the plane: 1 << down */
 };
 
+/* A tile, and the planes that its rays look into. */
 struct tile {
     const struct rf_frame *f;
     struct rf_tile_plan plan;
     const struct rf_ray_set *set;
-    int behind;                             /* blur of the background */
-    const uint32_t *range;                  /* of the tile's first pixel, */
-    const uint16_t *weight, *weight_behind; /* and weights of eq. 5, or NULL */
+    int background_blur;                        /* at the tile's middle, Q7.8 */
+    const uint32_t *range;                      /* from the tile's first cell on */
+    const uint16_t *weight, *background_weight; /* eq. 5 from its first pixel on, or NULL */
     struct plane luma, chroma;
 };
 
-/* Some rays of one weight, where they see the slabs of the tile and the background, and
- * what they have to look at. */
-struct sight {
+/* At most RF_RAY_CHUNK rays of one weight, where they look for the slabs of the tile and for the
+ * hidden background, and which of these lookups need a test. */
+struct lookups {
     int rays;
     const int16_t *u, *v;
     int16_t own_u[RF_RAY_CHUNK], own_v[RF_RAY_CHUNK];
     int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
-    /* Of the first of them: */
+    /* The lookups in chroma of the first rays, which it shares: */
     int32_t chroma_offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t chroma_pixel[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     struct rf_sorted_rays sorted;
 };
 
-static void set_rays(struct sight *sight, const struct rf_ray_set *set, int first)
+static void set_rays(struct lookups *lookups, const struct rf_ray_set *set, int first)
 {
-    sight->rays = rf_rays_alike(set, first);
-    sight->u = set->u ? set->u + first : sight->own_u;
-    sight->v = set->u ? set->v + first : sight->own_v;
-    for (int n = 0; !set->u && n < sight->rays; n++) {
-        sight->own_u[n] = set->ray[first + n].u;
-        sight->own_v[n] = set->ray[first + n].v;
+    lookups->rays = rf_rays_alike(set, first);
+    lookups->u = set->u ? set->u + first : lookups->own_u;
+    lookups->v = set->u ? set->v + first : lookups->own_v;
+    for (int n = 0; !set->u && n < lookups->rays; n++) {
+        lookups->own_u[n] = set->ray[first + n].u;
+        lookups->own_v[n] = set->ray[first + n].v;
     }
 }
 
-/* Sums of luma and of chroma, of rays of one weight: of light, or of light times
- * weights of eq. 5 and those weights; and in `sum` of all rays. */
+/* The sums of luma [0] and of chroma [1]. A run of rays of one weight sums light, or light times
+ * weights of eq. 5 and these weights; `sum` and `weight` add up all runs. */
 struct sums {
-    uint32_t run[2][LANES], run_weight[2][LANES]; /* light times weight in 16 bits */
+    uint32_t run[2][LANES], run_weight[2][LANES]; /* products fit 16 bits */
     uint64_t weighted_run[2][LANES], weight_run[2][LANES];
     uint64_t sum[2][LANES], weight[2][LANES];
 };
 
-/* Weights that differ too much for products of 16 bits. */
+/* Whether weights differ too much for products of 16 bits. */
 static bool has_wide_sums(const struct tile *tile)
 {
     return tile->weight && !tile->f->premultiplied;
@@ -96,42 +97,42 @@ static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_so
                                        tile->weight ? sums->run_weight[chroma] : NULL, &job);
 }
 
-/* Rays, of which chroma shares the first so many. Strips of a tile together: of one
- * plane, sorting each by itself costs more than it saves. */
-static void sort_rays(const struct tile *tile, struct sight *sight, int shared)
+/* Sorts rays, of which chroma shares the first `shared`. All strips of a tile are sorted together:
+ * for one plane, sorting each by itself costs more than it saves. */
+static void sort_rays(const struct tile *tile, struct lookups *lookups, int shared)
 {
     const struct rf_sort_job job = {
         .range = tile->range,
         .front = tile->luma.light,
-        .behind = tile->luma.behind,
-        .rays = sight->rays,
+        .behind = tile->luma.background,
+        .rays = lookups->rays,
         .slabs = tile->plan.slabs,
         .beneath = rf_looks_beneath(tile->f),
         .slab = tile->plan.slab,
         .joined = tile->plan.joined,
-        .offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
-        .cell = (const int32_t(*)[RF_RAY_CHUNK])sight->cell,
+        .offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->offset,
+        .cell = (const int32_t(*)[RF_RAY_CHUNK])lookups->cell,
         .weight = tile->weight,
-        .behind_weight = tile->weight_behind,
-        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->offset,
+        .behind_weight = tile->background_weight,
+        .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->offset,
         .shared = shared,
-        .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->chroma_offset,
-        .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])sight->chroma_pixel,
+        .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->chroma_offset,
+        .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->chroma_pixel,
         .chroma_front = tile->chroma.light,
-        .chroma_behind = tile->chroma.behind,
+        .chroma_behind = tile->chroma.background,
     };
 
     for (int k = 0; k <= tile->plan.slabs; k++) {
-        const int blur = k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->behind;
+        const int blur = k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->background_blur;
 
-        tile->f->exec->kernels->aim(sight->offset[k], sight->cell[k], sight->u, sight->v, blur,
-                                    (int32_t)tile->f->view->stride, (int32_t)tile->f->range.stride,
-                                    sight->rays);
-        tile->f->exec->kernels->aim_chroma(sight->chroma_offset[k], sight->chroma_pixel[k],
-                                           sight->u, sight->v, blur, tile->chroma.down,
+        tile->f->exec->kernels->aim(lookups->offset[k], lookups->cell[k], lookups->u, lookups->v,
+                                    blur, (int32_t)tile->f->view->stride,
+                                    (int32_t)tile->f->range.stride, lookups->rays);
+        tile->f->exec->kernels->aim_chroma(lookups->chroma_offset[k], lookups->chroma_pixel[k],
+                                           lookups->u, lookups->v, blur, tile->chroma.down,
                                            (int32_t)tile->f->view->stride, shared);
     }
-    tile->f->exec->kernels->sort_rays(&sight->sorted, &job);
+    tile->f->exec->kernels->sort_rays(&lookups->sorted, &job);
 }
 
 static void clear_run(const struct tile *tile, struct sums *sums)
@@ -152,7 +153,7 @@ static void clear_run(const struct tile *tile, struct sums *sums)
     }
 }
 
-/* A run of rays of a weight, of `rays[p]` of them. */
+/* Adds a run of rays of one weight, `rays[p]` of them in plane p. */
 static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight, const int rays[2])
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
@@ -170,26 +171,26 @@ static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
     clear_run(tile, sums);
 }
 
-/* As sweep_rays() of sweep.c. */
+/* Sums the rays run by run, as sweep_rays() of sweep.c does. */
 static void sweep_rays(const struct tile *tile, struct sums *sums)
 {
     const struct rf_ray_set *set = tile->set;
     int rays[2] = {0, 0}; /* in this run */
-    struct sight sight;
+    struct lookups lookups;
 
     clear_run(tile, sums);
     for (int n = 0, end; n < set->count; n = end) {
         const uint64_t weight = set->ray[n].weight;
         int shared;
 
-        set_rays(&sight, set, n);
-        end = n + sight.rays;
+        set_rays(&lookups, set, n);
+        end = n + lookups.rays;
         shared = rf_shared_rays(set, n, end);
-        rays[0] += sight.rays;
+        rays[0] += lookups.rays;
         rays[1] += shared;
-        sort_rays(tile, &sight, shared);
-        sweep_plane(tile, false, &sight.sorted, sums);
-        sweep_plane(tile, true, &sight.sorted, sums);
+        sort_rays(tile, &lookups, shared);
+        sweep_plane(tile, false, &lookups.sorted, sums);
+        sweep_plane(tile, true, &lookups.sorted, sums);
         if (!set->equal && (end == set->count || set->ray[end].weight != weight)) {
             add_run(tile, sums, weight, rays);
             rays[0] = rays[1] = 0;
@@ -197,21 +198,21 @@ static void sweep_rays(const struct tile *tile, struct sums *sums)
     }
 }
 
-/* Means of rays that weigh the same, of some rows and then of those between. */
-static void take_means(const struct tile *tile, bool chroma, struct sums *sums,
-                       uint16_t mean[LANES])
+/* Computes the means of rays of equal weight: of some rows first, then of the rows between. */
+static void compute_means(const struct tile *tile, bool chroma, struct sums *sums,
+                          uint16_t mean[LANES])
 {
     const struct rf_kernels *kernels = tile->f->exec->kernels;
     const struct plane *plane = chroma ? &tile->chroma : &tile->luma;
     const int rays = chroma ? tile->set->shared : tile->set->count;
     const int lanes = plane->computed.count * RF_TILE;
-    const uint16_t softness = rf_softness(tile->f, &tile->plan, tile->behind);
+    const uint16_t softness = rf_softness(tile->f, &tile->plan, tile->background_blur);
     uint16_t memory[LANES], *computed = plane->computed.step == 1 ? mean : memory;
 
     for (int i = 0; tile->f->premultiplied && chroma && i < lanes; i++)
         sums->run[1][i] *= 2; /* Q12 to Q13 */
     if (!tile->weight && !chroma && rf_exceeds_means(&tile->plan))
-        rf_limit_sums(sums->run[0], (uint32_t)rays, lanes);
+        rf_clamp_sums(sums->run[0], (uint32_t)rays, lanes);
     if (tile->f->premultiplied)
         kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma], lanes);
     else if (tile->weight)
@@ -232,19 +233,20 @@ static void sweep_means(struct tile *tile, struct sums *sums, struct rf_decode_j
 {
     const struct rf_frame *f = tile->f;
 
-    tile->luma.computed = rf_tile_rows(f, &tile->plan, tile->behind);
-    tile->chroma.computed =
-        tile->chroma.down ? rf_chroma_rows(f, &tile->plan, tile->behind) : tile->luma.computed;
+    tile->luma.computed = rf_tile_rows(f, &tile->plan, tile->background_blur);
+    tile->chroma.computed = tile->chroma.down
+                                ? rf_chroma_rows(f, &tile->plan, tile->background_blur)
+                                : tile->luma.computed;
     sweep_rays(tile, sums);
-    take_means(tile, false, sums, means->luma);
-    take_means(tile, true, sums, means->chroma);
+    compute_means(tile, false, sums, means->luma);
+    compute_means(tile, true, sums, means->chroma);
 }
 
-/* The same from rays that do not weigh the same. */
+/* Computes the means of rays that do not weigh the same. */
 static void sweep_sums(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
-    /* of Q12; of Q13, or Q12 of chroma, times Q12 */
+    /* Light is Q12 where it is plain; premultiplied it is Q13, chroma Q12, times weights of Q12. */
     const uint64_t plain[2] = {4, 4}, premultiplied[2] = {1 << 13, 1 << 14};
     const uint64_t *unit = tile->f->premultiplied ? premultiplied : plain;
     uint16_t *const mean[2] = {means->luma, means->chroma};
@@ -271,18 +273,18 @@ static void set_planes(struct tile *tile, int tx, int ty)
 
     tile->range = tile->f->range.at + RF_TILE / RF_CELL * (ty * tile->f->range.stride + tx);
     tile->weight = tile->f->weighted ? tile->f->weight.at + origin : NULL;
-    tile->weight_behind = tile->f->background_weight.at + origin;
+    tile->background_weight = tile->f->background_weight.at + origin;
     tile->luma = (struct plane){
         .blur = tile->f->blur.at + origin,
         .light = tile->f->smooth.channel[0] + origin,
-        .behind = tile->f->background.light.channel[0] + origin,
+        .background = tile->f->background.light.channel[0] + origin,
         .rows = RF_TILE,
         .steps = rf_steps_of(&tile->plan),
     };
     tile->chroma = (struct plane){
         .blur = chroma->blur.at + at,
         .light = chroma->smooth.at + at,
-        .behind = chroma->background.at + at,
+        .background = chroma->background.at + at,
         .rows = RF_TILE >> down,
         .steps = 65535 / RF_CHROMA_MAX, /* 8 */
         .down = down,
@@ -297,7 +299,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
 
     (void)worker;
     tile.f = f;
-    tile.behind = f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
+    tile.background_blur = f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
     rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &tile.plan);
     if (tile.plan.sharp) {
         rf_copy_yuv_tile(f, rect);

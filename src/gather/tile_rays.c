@@ -1,3 +1,4 @@
+/* tile_rays.c: shapes the rays of one tile for the cat eye of a lens and for its colour fringes. */
 #include "gather/tile_rays.h"
 
 #include <math.h>
@@ -13,7 +14,6 @@ static void set_fringe(struct rf_tile_rays *rays, float fringe)
 void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
                        const struct rf_ray_set *set, int tx, int ty)
 {
-
     rays->set = set;
     rays->has_eye = f->params->cat_eye > 0;
     rays->shorter_before = rays->shorter_behind = 0;
@@ -21,17 +21,16 @@ void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
         set_fringe(rays, f->params->fringe);
     if (rays->has_eye) {
         const int64_t w = f->view->photo_width, h = f->view->photo_height;
-        /* twice the distances from the middle */
+        /* Twice the distances of the tile from the middle of the photo. */
         const int64_t x = 2 * f->view->x0 + (2 * tx + 1) * RF_TILE - w;
         const int64_t y = 2 * f->view->y0 + (2 * ty + 1) * RF_TILE - h;
-
         const int amount = (int)floorf(f->params->cat_eye * 65536 + 0.5f);
 
         rf_cat_eye_at(f->cat_eye, x, y, w * w + h * h, amount, &rays->eye);
         rays->has_eye = !rays->eye.is_round;
         rays->shape = f->cat_shape->is_there ? f->cat_shape : NULL;
         if (rays->has_eye && rays->shape)
-            rf_cat_shape_at(rays->shape, x, y, w * w + h * h, amount, &rays->rim);
+            rf_cat_shape_at(rays->shape, x, y, w * w + h * h, amount, &rays->cut);
     }
 }
 
@@ -46,7 +45,7 @@ static const struct refocus_ray *get(const struct rf_tile_rays *rays, const stru
     if (!rays->has_eye)
         return ray;
     for (int n = 0; n < count; n++)
-        memory[n] = rays->shape ? rf_cat_shape_ray(rays->shape, &rays->rim, &ray[n])
+        memory[n] = rays->shape ? rf_cat_shape_ray(rays->shape, &rays->cut, &ray[n])
                                 : rf_cat_eye_ray(&rays->eye, &ray[n]);
     return memory;
 }

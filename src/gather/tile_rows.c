@@ -1,19 +1,22 @@
+/* tile_rows.c: decides which rows of a tile are computed and how much its means are softened. */
 #include "gather/tile_rows.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 enum {
-    ROW_BLUR = 40, /* times the root of the rays: 1.25 pixels of blur, Q7.8, of 64 of them, */
-    LEAST_ROW_BLUR = 256, /* for rows a pixel apart */
-    SOFT_BLUR = 640,      /* 2.5 pixels */
+    /* Rows may lie a pixel apart from a blur of ROW_BLUR sqrt(rays) on, Q7.8: 1.25 pixels for 64
+     * rays; no less than one pixel. */
+    ROW_BLUR = 40,
+    LEAST_ROW_BLUR = 256,
+    SOFT_BLUR = 640, /* 2.5 pixels, Q7.8 */
 };
 
 int rf_row_gap(const struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
     const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
-    int gap, height = 1; /* half the opening's, Q15 */
+    int gap, height = 1; /* half the aperture's, Q15 */
 
     if (p->rays == REFOCUS_RAYS_FULL || p->rays > RF_LIVE_RAYS || p->cat_eye > 0 ||
         p->fringe != 0 || f->fine)
@@ -24,33 +27,33 @@ int rf_row_gap(const struct rf_frame *f)
     return ((gap > LEAST_ROW_BLUR ? gap : LEAST_ROW_BLUR) << 15) / height;
 }
 
-/* The least blur of all that is seen from a tile. */
-static int least_blur(const struct rf_tile_plan *plan, int behind)
+/* The least blur of everything that rays of a tile can hit, the hidden background included. */
+static int least_blur(const struct rf_tile_plan *plan, int background_blur)
 {
-    return plan->least < abs(behind) ? plan->least : abs(behind);
+    return plan->least < abs(background_blur) ? plan->least : abs(background_blur);
 }
 
-/* From 0 at `from` to 65535 at 5/4 of that. */
-static int64_t share_above(int from, int blur)
+/* Rises from 0 at `from` to 65535 at 5/4 of that. */
+static int64_t ramp(int from, int blur)
 {
-    const int64_t share = INT64_C(65535) * 4 * (blur - from) / from;
+    const int64_t part = INT64_C(65535) * 4 * (blur - from) / from;
 
-    return share < 0 ? 0 : share < 65535 ? share : 65535;
+    return part < 0 ? 0 : part < 65535 ? part : 65535;
 }
 
-uint16_t rf_softness(const struct rf_frame *f, const struct rf_tile_plan *plan, int behind)
+uint16_t rf_softness(const struct rf_frame *f, const struct rf_tile_plan *plan, int background_blur)
 {
-    const int64_t far_apart = share_above(f->prefilter_above[0], plan->reach);
-    const int64_t blurred = share_above(SOFT_BLUR, least_blur(plan, behind));
+    const int64_t far_apart = ramp(f->prefilter_above[0], plan->reach);
+    const int64_t blurred = ramp(SOFT_BLUR, least_blur(plan, background_blur));
 
     return (uint16_t)(f->fine ? 0 : far_apart < blurred ? far_apart : blurred);
 }
 
 struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                                 int behind)
+                                 int background_blur)
 {
     static const struct rf_tile_rows sparse[] = {{5, 4}, {3, 6}, {2, 8}};
-    const int least = least_blur(plan, behind);
+    const int least = least_blur(plan, background_blur);
 
     for (int i = 0; f->row_gap && (f->splats || !plan->lamp) && i < 3; i++)
         if (least / sparse[i].step >= f->row_gap)
@@ -59,9 +62,9 @@ struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_
 }
 
 struct rf_tile_rows rf_chroma_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                                   int behind)
+                                   int background_blur)
 {
-    const int least = least_blur(plan, behind);
+    const int least = least_blur(plan, background_blur);
 
     if (f->row_gap && (f->splats || !plan->lamp) && least / 4 >= f->row_gap)
         return (struct rf_tile_rows){2, 4};

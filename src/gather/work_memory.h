@@ -1,10 +1,10 @@
-/* work_memory.h: memory of the methods that work on whole frames. */
+/* work_memory.h: the memory that methods of whole frames share. */
 #ifndef RF_WORK_MEMORY_H
 #define RF_WORK_MEMORY_H
 
 #include <stdint.h>
 
-/* What memory must suffice for. */
+/* The largest picture and lens that memory must suffice for. */
 struct rf_limits {
     int width, height, pad, threads;
     float max_blur_radius;
