@@ -1,3 +1,4 @@
+/* aperture.c: creates apertures: discs, polygons, masks, irises and figures. */
 #include "aperture/aperture.h"
 
 #include <math.h>
@@ -53,7 +54,7 @@ static int open_mask(const struct refocus_aperture *a, double x, double y)
     return a->mask[(int)py * REFOCUS_MAX_APERTURE_SIDE + (int)px];
 }
 
-/* The light of a place that is open and rho^2 away from the middle. */
+/* The light, 0 to 255, of a place that is open by `open` and whose rho^2 is `square`. */
 static int lit(const struct refocus_aperture *a, int open, double square)
 {
     if (rf_profile_is_even(&a->behind))
@@ -136,7 +137,7 @@ int refocus_aperture_create_polygon(struct refocus_aperture **aperture, int blad
     return REFOCUS_OK;
 }
 
-/* Mean of the mask over each cell of a RF_CURVE_SIDE^2 grid, of 8 x 8 points a cell. */
+/* Reduces the mask to a grid of RF_CURVE_SIDE^2 cells: each is the mean of 8 x 8 points. */
 static void reduce(struct refocus_aperture *a)
 {
     for (int j = 0; j < RF_CURVE_SIDE; j++) {
@@ -207,7 +208,7 @@ static bool is_simple(const struct refocus_aperture_params *p)
     return p->squeeze == 1 && p->hole == 0 && p->edge_behind == 0 && p->edge_before == 0;
 }
 
-/* Everything that rays depend on, beyond the outline. */
+/* Adds everything else that rays depend on beside the outline: squeeze, hole and edges. */
 static void add_profiles(struct refocus_aperture *a, const struct refocus_aperture_params *p)
 {
     a->squeeze_x = p->squeeze < 1 ? p->squeeze : 1;

@@ -1,3 +1,4 @@
+/* cat_eye.c: moves rays of a circle into the lens shape that is left of it away from the axis. */
 #include "aperture/cat_eye.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ static int16_t to_q15(double v)
     return (int16_t)floor((v > 1 ? 1 : v) * ONE + 0.5);
 }
 
-/* area[i]: that of a quarter of the opening up to x = i / STEPS of its half width. */
+/* Adds up areas: area[i] is that of a quarter of the aperture up to i / STEPS of its half width. */
 static void add_up(double pushed, double area[STEPS + 1])
 {
     area[0] = 0;
@@ -30,7 +31,7 @@ void rf_cat_eye_make(struct rf_cat_eye *eye)
 {
     double whole[STEPS + 1], cut[STEPS + 1];
 
-    if (eye->made)
+    if (eye->ready)
         return;
     add_up(0, whole);
     for (int level = 0; level < RF_CAT_LEVELS; level++) {
@@ -39,7 +40,7 @@ void rf_cat_eye_make(struct rf_cat_eye *eye)
 
         add_up(pushed, cut);
         for (int k = 0; k <= RF_CAT_KNOTS; k++) {
-            /* heights vanish at the very end: look just before it */
+            /* Heights vanish at the very end, so look just before it. */
             const int knot = k < RF_CAT_KNOTS ? k * (STEPS / RF_CAT_KNOTS) : STEPS - 1;
             const double share = whole[knot] / whole[STEPS] * cut[STEPS];
             double x;
@@ -52,7 +53,7 @@ void rf_cat_eye_make(struct rf_cat_eye *eye)
                 to_q15(height_at(x, pushed) / height_at((double)knot / STEPS, 0));
         }
     }
-    eye->made = true;
+    eye->ready = true;
 }
 
 static int mix(int a, int b, int part, int bits)
@@ -65,7 +66,7 @@ void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t c
 {
     const int64_t square = x * x + y * y;
     const double length = sqrt((double)square); /* exact to the last bit */
-    /* Q8 of levels */
+    /* Levels in Q8. */
     const int pushed = (int)(square * amount / corner * RF_CAT_LEVELS >> 8);
     int level = pushed >> 8, part = pushed & 255;
 

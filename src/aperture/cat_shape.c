@@ -1,9 +1,11 @@
+/* cat_shape.c: moves rays of an iris or a figure into what a lens leaves of it away from the axis.
+ */
 #include "aperture/cat_shape.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { ONE = 32767, SIDE = 1 << RF_RIM_BITS, TURN = 4 << 16, PART_BITS = 10 };
+enum { ONE = 32767, SIDE = 1 << RF_KNOT_BITS, TURN = 4 << 16, PART_BITS = 10 };
 
 struct point {
     double u, v;
@@ -14,7 +16,7 @@ static double cross(struct point a, struct point b)
     return a.u * b.v - a.v * b.u;
 }
 
-/* Direction at a number of quarter turns from (1, 0), 0 to 4. */
+/* The direction at a number of quarter turns from (1, 0), 0 to 4. */
 static struct point direction(double turns)
 {
     const double part = turns - floor(turns), rest = 1 - part;
@@ -36,8 +38,7 @@ static int corners(const struct refocus_aperture *a)
     return a->shape == RF_SHAPE_POLYGON ? a->blades : RF_OUTLINE;
 }
 
-/* Corner i of the rim, with the signs of rays: minus the place on the mask as it is
- * seen. */
+/* Corner i of the outline, with the signs of rays: minus the place on the mask as it is seen. */
 static struct point corner(const struct refocus_aperture *a, int i)
 {
     if (a->shape == RF_SHAPE_POLYGON)
@@ -53,8 +54,8 @@ static bool is_circle(const struct refocus_aperture *a)
     return true;
 }
 
-/* Where the rim is met in a direction. */
-static struct point rim_at(const struct refocus_aperture *a, struct point to)
+/* The point of the outline in a direction from the middle. */
+static struct point outline_at(const struct refocus_aperture *a, struct point to)
 {
     for (int i = 0; i < corners(a); i++) {
         const struct point p = corner(a, i), q = corner(a, i + 1);
@@ -83,7 +84,7 @@ static double quarter_turns(struct point p)
     return p.u < 0 ? 2 - p.v / span : 3 + p.u / span;
 }
 
-/* Sine of the angle that the rim turns by at corner i. */
+/* The sine of the angle by which the outline turns at corner i. */
 static double turn_at(const struct refocus_aperture *a, int i)
 {
     const int n = corners(a);
@@ -94,39 +95,39 @@ static double turn_at(const struct refocus_aperture *a, int i)
            sqrt((in.u * in.u + in.v * in.v) * (out.u * out.u + out.v * out.v));
 }
 
-/* The direction of each knot, quarter turns; the first may be a little below 0. */
-static void place_knots(const struct refocus_aperture *a, double turns[RF_RIM + 1])
+/* Places the knots: the direction of each in quarter turns. The first may be a little below 0. */
+static void place_knots(const struct refocus_aperture *a, double turns[RF_KNOTS + 1])
 {
-    double sharpest[RF_RIM];
+    double sharpest[RF_KNOTS];
 
-    for (int k = 0; k < RF_RIM; k++) {
+    for (int k = 0; k < RF_KNOTS; k++) {
         turns[k] = (double)k / SIDE;
-        sharpest[k] = 0.1; /* a smooth rim turns by less from one vertex to the next */
+        sharpest[k] = 0.1; /* a smooth outline turns by less at a vertex */
     }
     for (int i = 0; i < corners(a); i++) {
         const double at = quarter_turns(corner(a, i)), turn = turn_at(a, i);
         const int k = (int)floor(at * SIDE + 0.5);
 
-        if (turn > sharpest[k % RF_RIM]) {
-            sharpest[k % RF_RIM] = turn;
-            turns[k % RF_RIM] = k < RF_RIM ? at : at - 4;
+        if (turn > sharpest[k % RF_KNOTS]) {
+            sharpest[k % RF_KNOTS] = turn;
+            turns[k % RF_KNOTS] = k < RF_KNOTS ? at : at - 4;
         }
     }
-    turns[RF_RIM] = turns[0] + 4;
+    turns[RF_KNOTS] = turns[0] + 4;
 }
 
-/* Sums of the triangles between the middle and neighbours, as shares. */
+/* Adds up twice the areas of the triangles between the middle and neighbouring knots. */
 static double add_up(const double *u, const double *v, double *area)
 {
     area[0] = 0;
-    for (int k = 0; k < RF_RIM; k++)
+    for (int k = 0; k < RF_KNOTS; k++)
         area[k + 1] = area[k] + (u[k] * v[k + 1] - v[k] * u[k + 1]);
-    return area[RF_RIM];
+    return area[RF_KNOTS];
 }
 
 void rf_cat_shape_make(struct rf_cat_shape *shape, const struct refocus_aperture *a)
 {
-    double turns[RF_RIM + 1], all;
+    double turns[RF_KNOTS + 1], all;
 
     if (shape->id == a->id)
         return;
@@ -136,23 +137,23 @@ void rf_cat_shape_make(struct rf_cat_shape *shape, const struct refocus_aperture
     if (!shape->is_there)
         return;
     place_knots(a, turns);
-    for (int k = 0; k <= RF_RIM; k++) {
+    for (int k = 0; k <= RF_KNOTS; k++) {
         const double turn = turns[k] < 0 ? turns[k] + 4 : turns[k];
-        const struct point at = rim_at(a, direction(turn));
+        const struct point at = outline_at(a, direction(turn));
         const double u = at.u / a->squeeze_x, v = at.v / a->squeeze_y;
 
         shape->place[k] = (int32_t)floor(turns[k] * 65536 + 0.5);
         shape->u[k] = at.u;
         shape->v[k] = at.v;
         shape->span[k] = (int32_t)floor((fabs(at.u) + fabs(at.v)) * 32768 + 0.5);
-        if (k < RF_RIM) {
+        if (k < RF_KNOTS) {
             shape->length[k] = sqrt(u * u + v * v);
             shape->along_u[k] = u / shape->length[k];
             shape->along_v[k] = v / shape->length[k];
         }
     }
     all = add_up(shape->u, shape->v, shape->area);
-    for (int k = 0; k <= RF_RIM; k++)
+    for (int k = 0; k <= RF_KNOTS; k++)
         shape->area[k] /= all;
 }
 
@@ -166,7 +167,7 @@ static int16_t to_q15(double x)
 void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y, int64_t corner,
                      int amount, struct rf_cat_shape_here *here)
 {
-    double u[RF_RIM + 1], v[RF_RIM + 1], area[RF_RIM + 1];
+    double u[RF_KNOTS + 1], v[RF_KNOTS + 1], area[RF_KNOTS + 1];
     const int64_t square = x * x + y * y;
     const double distance = sqrt((double)square),
                  d = (double)(square * amount) / ((double)corner * 65536);
@@ -174,9 +175,9 @@ void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y, int
     double all;
     int at = 0;
 
-    for (int k = 0; k < RF_RIM; k++) {
-        /* the two circles meet a ray at |c| between it and the axis at
-         * sqrt(1 - d^2 (1 - c^2)) -+ d |c|: the nearer one counts */
+    for (int k = 0; k < RF_KNOTS; k++) {
+        /* A ray whose direction has the cosine c to the axis leaves the two circles at
+         * sqrt(1 - d^2 (1 - c^2)) -+ d |c|: the nearer one counts. */
         const double c = fabs(shape->along_u[k] * axis_u + shape->along_v[k] * axis_v);
         const double most = sqrt(1 - d * d * (1 - c * c)) - d * c;
         const double part = most < shape->length[k] ? most / shape->length[k] : 1;
@@ -184,24 +185,24 @@ void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y, int
         u[k] = shape->u[k] * part;
         v[k] = shape->v[k] * part;
     }
-    u[RF_RIM] = u[0];
-    v[RF_RIM] = v[0];
+    u[RF_KNOTS] = u[0];
+    v[RF_KNOTS] = v[0];
     all = add_up(u, v, area);
-    for (int k = 0; k < RF_RIM; k++) {
+    for (int k = 0; k < RF_KNOTS; k++) {
         const double share = shape->area[k] * all;
         double part;
 
-        while (at < RF_RIM - 1 && area[at + 1] <= share)
+        while (at < RF_KNOTS - 1 && area[at + 1] <= share)
             at++;
         part = (share - area[at]) / (area[at + 1] - area[at]);
         here->u[k] = to_q15(u[at] + part * (u[at + 1] - u[at]));
         here->v[k] = to_q15(v[at] + part * (v[at + 1] - v[at]));
     }
-    here->u[RF_RIM] = here->u[0];
-    here->v[RF_RIM] = here->v[0];
+    here->u[RF_KNOTS] = here->u[0];
+    here->v[RF_KNOTS] = here->v[0];
 }
 
-/* Quarter turns and parts of one, Q16. */
+/* The direction of (u, v) in quarter turns, Q16. */
 static int32_t place_of(int u, int v, int32_t span)
 {
     const int32_t quarter = u > 0 && v >= 0 ? 0 : u <= 0 && v > 0 ? 1 : u < 0 && v <= 0 ? 2 : 3;
@@ -210,18 +211,18 @@ static int32_t place_of(int u, int v, int32_t span)
     return (quarter << 16) + (int32_t)(((int64_t)past << 16) / span);
 }
 
-/* The knot before a place, which is brought between the first and the last. Knots are
- * at most half a step from where equal steps would have them. */
+/* Finds the knot before a place, and brings the place between the first knot and the last. Knots
+ * are at most half a step from where equal steps would have them. */
 static int find_knot(const struct rf_cat_shape *shape, int32_t *place)
 {
     int k;
 
     if (*place < shape->place[0])
         *place += TURN;
-    if (*place >= shape->place[RF_RIM])
+    if (*place >= shape->place[RF_KNOTS])
         *place -= TURN;
-    k = *place < 0 ? 0 : *place >> (16 - RF_RIM_BITS);
-    k = k < RF_RIM ? k : RF_RIM - 1;
+    k = *place < 0 ? 0 : *place >> (16 - RF_KNOT_BITS);
+    k = k < RF_KNOTS ? k : RF_KNOTS - 1;
     if (k > 0 && *place < shape->place[k])
         return k - 1;
     return *place >= shape->place[k + 1] ? k + 1 : k;
@@ -232,9 +233,9 @@ static int mix(int a, int b, int part)
     return a + (((b - a) * part + (1 << (PART_BITS - 1))) >> PART_BITS);
 }
 
-static int16_t scaled(int rim, int32_t share)
+static int16_t scaled(int outline, int32_t share)
 {
-    const int64_t q = ((int64_t)rim * share + (1 << 14)) >> 15;
+    const int64_t q = ((int64_t)outline * share + (1 << 14)) >> 15;
 
     return (int16_t)(q > ONE ? ONE : q < -ONE ? -ONE : q);
 }
@@ -254,7 +255,7 @@ struct refocus_ray rf_cat_shape_ray(const struct rf_cat_shape *shape,
     part = (int)((int64_t)(place - shape->place[k]) * (1 << PART_BITS) /
                  (shape->place[k + 1] - shape->place[k]));
     share = (int32_t)(((int64_t)span << 15) / mix(shape->span[k], shape->span[k + 1], part));
-    share = share < 1 << 15 ? share : 1 << 15; /* rims between knots are straight */
+    share = share < 1 << 15 ? share : 1 << 15; /* the outline is straight between knots */
     return (struct refocus_ray){scaled(mix(here->u[k], here->u[k + 1], part), share),
                                 scaled(mix(here->v[k], here->v[k + 1], part), share), ray->weight};
 }

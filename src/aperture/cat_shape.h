@@ -1,10 +1,10 @@
 /* cat_shape.h: irises and figures that a lens cuts off at two sides away from its axis.
  *
- * What is left is the part common to the opening and to two unit circles, one pushed by
+ * The cut shape is the part common to the aperture and to two unit circles, one pushed by
  * +d and one by -d along an axis: straight blades stay straight, and corners stay where
- * no circle reaches them. Both rims, that of the whole opening and that of what is
- * left, are seen whole from the middle, so a ray keeps its share of the way from there
- * to the rim, and directions are turned so that equal areas stay equal. So every tile
+ * no circle reaches them. Both outlines, that of the whole aperture and that of the cut
+ * shape, are seen whole from the middle, so a ray keeps its share of the way from there
+ * to the outline, and directions are turned so that equal areas stay equal. So every tile
  * keeps all its rays, and they move little from one tile to the next. (A circle's are
  * moved by cat_eye.h, for less.)
  */
@@ -16,36 +16,36 @@
 
 #include "aperture/aperture.h"
 
-/* Knots of the rim: at equal steps of |u| and |v| around the square |u| + |v| = 1, but
- * that those next to corners of the rim are in the corners. */
-enum { RF_RIM_BITS = 6, RF_RIM = 4 << RF_RIM_BITS };
+/* The number of knots of an outline. They lie at equal steps around the square |u| + |v| = 1, but
+ * the knot that is nearest to a corner of the outline lies in that corner. */
+enum { RF_KNOT_BITS = 6, RF_KNOTS = 4 << RF_KNOT_BITS };
 
 struct rf_cat_shape {
-    uint64_t id;                             /* of the aperture; 0: not made yet */
-    bool is_there;                           /* an outline, and no circle */
-    double u[RF_RIM + 1], v[RF_RIM + 1];     /* the rim, as rays have it */
-    double area[RF_RIM + 1];                 /* before it, 1 = all */
-    double length[RF_RIM];                   /* from the middle, without the squeeze, */
-    double along_u[RF_RIM], along_v[RF_RIM]; /* and the direction of that, length 1 */
-    int32_t place[RF_RIM + 1];               /* quarter turns and parts of one, Q16 */
-    int32_t span[RF_RIM + 1];                /* |u| + |v|, Q15 */
+    uint64_t id;                                 /* id of the aperture; 0: nothing is there yet */
+    bool is_there;                               /* the aperture has an outline that is no circle */
+    double u[RF_KNOTS + 1], v[RF_KNOTS + 1];     /* the outline, with the signs of rays */
+    double area[RF_KNOTS + 1];                   /* sum before each knot, 1 = all */
+    double length[RF_KNOTS];                     /* distance from the middle without the squeeze */
+    double along_u[RF_KNOTS], along_v[RF_KNOTS]; /* direction from the middle, length 1 */
+    int32_t place[RF_KNOTS + 1];                 /* direction in quarter turns, Q16 */
+    int32_t span[RF_KNOTS + 1];                  /* |u| + |v|, Q15 */
 };
 
-/* For an aperture, unless it is made for that. */
+/* Makes the knots of an aperture, unless they are those of that aperture already. */
 void rf_cat_shape_make(struct rf_cat_shape *shape, const struct refocus_aperture *aperture);
 
-/* The rim of what is left at one place, Q15: at the shares of area that the knots of
- * the whole rim have. */
+/* The outline of the cut shape at one place of the photo, Q15, at the shares of area that the knots
+ * of the whole outline have. */
 struct rf_cat_shape_here {
-    int16_t u[RF_RIM + 1], v[RF_RIM + 1];
+    int16_t u[RF_KNOTS + 1], v[RF_KNOTS + 1];
 };
 
-/* At (x, y) from the middle of a picture, not both 0, `corner` from there to a corner
- * squared, where d is `amount`, Q16, below 1. */
+/* Makes the cut shape at (x, y) from the middle of a picture, not both 0. `corner` is the squared
+ * distance from there to a corner, where d is `amount`, Q16, below 1. */
 void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y, int64_t corner,
                      int amount, struct rf_cat_shape_here *here);
 
-/* A ray of the whole opening in what is left. */
+/* Moves a ray of the whole aperture into the cut shape. */
 struct refocus_ray rf_cat_shape_ray(const struct rf_cat_shape *shape,
                                     const struct rf_cat_shape_here *here,
                                     const struct refocus_ray *ray);

@@ -1,9 +1,9 @@
 /* chords.c: where an iris or a figure is open at each height.
  *
- * Every row of an iris is one chord, as it is convex; of a heart and a star two may be,
- * however they are turned. Where they begin and end is kept for heights 2 / RF_CHORDS
- * of the radius apart. Where a row has but one, the other is as long as nothing, at its
- * end: as chords are straight from height to height, so is what is open of a row.
+ * Every row of an iris is one chord, as it is convex; a row of a heart or a star may have two,
+ * however it is turned. Their ends are kept for heights that lie 2 / RF_CHORDS of the radius
+ * apart, and ends between two heights lie on a straight line. Where a row has one chord, the
+ * second one has the length 0 and lies at the end of the first.
  */
 #include "aperture/aperture.h"
 
@@ -32,8 +32,8 @@ static int16_t to_q14(double v)
     return (int16_t)floor(v * 16384 + 0.5);
 }
 
-/* Where the outline crosses a height, from left to right: so many, or one more than
- * there is room for. */
+/* Finds where the outline crosses a height, from left to right. Returns the number of crossings, or
+ * one more than there is room for. */
 static int crossings(const struct refocus_aperture *a, double y, double x[2 * RF_CHORD_SETS])
 {
     int count = 0;
@@ -55,7 +55,8 @@ static int crossings(const struct refocus_aperture *a, double y, double x[2 * RF
     return count;
 }
 
-/* The chords at a height; of none both ends are 0. False: they are too many. */
+/* Sets the chords at a height; both ends of a row without any are 0. Returns false if there are too
+ * many. */
 static bool set_chords(struct refocus_aperture *a, int row)
 {
     double x[2 * RF_CHORD_SETS];

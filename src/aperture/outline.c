@@ -1,6 +1,6 @@
-/* outline.c: openings whose rim is seen whole from their middle.
+/* outline.c: irises and figures as outlines that are seen whole from their middle.
  *
- * Such a rim is a radius for each direction. It is kept as RF_OUTLINE vertices at equal
+ * Such an outline is a radius for each direction. It is kept as RF_OUTLINE vertices at equal
  * steps of the circle: the triangles between the middle and two neighbours have the
  * areas by which rays are spread, and the same triangles say whether a place lies
  * within.
@@ -9,8 +9,7 @@
 
 #include <math.h>
 
-/* Radius of a side between two corners on the unit circle, `off` turns from its
- * middle. */
+/* The radius of a side between two corners on the unit circle, `off` turns from its middle. */
 static double side_radius(int blades, double curvature, double off)
 {
     double half_chord, apothem, sine, cosine, bulge, arc, back;
@@ -20,13 +19,13 @@ static double side_radius(int blades, double curvature, double off)
     bulge = curvature * (1 - apothem);
     if (bulge < 1e-6)
         return apothem / cosine;
-    /* radius of the blade */
+    /* `arc` is the radius of the blade, whose centre lies `back` beyond the aperture's middle. */
     arc = (half_chord * half_chord + bulge * bulge) / (2 * bulge);
-    back = arc - (apothem + bulge); /* its centre lies that far behind the middle */
+    back = arc - (apothem + bulge);
     return sqrt(arc * arc - back * back * sine * sine) - back * cosine;
 }
 
-/* Turns since the last corner, in parts of a blade: 0 to 1. */
+/* The turns since the last corner, in parts of a blade: 0 to 1. */
 static double along_blade(double turns, int blades)
 {
     return turns * blades - floor(turns * blades);
@@ -44,13 +43,13 @@ static double iris_radius(const struct refocus_aperture_params *p, double turns)
         return radius;
     least = side_radius(p->blades, p->curvature, 0);
     radius *= p->opening / least;
-    /* of corners in the barrel */
+    /* The corners lie here, or where the barrel cuts them off. */
     most = p->opening / least < 1 ? p->opening / least : 1;
     return (radius < 1 ? radius : 1) / most;
 }
 
-/* Of a star: straight lines between points at 1 and notches at the golden ratio's
- * square. */
+/* The radius of a star: straight lines between points at 1 and notches at 0.382, the inverse square
+ * of the golden ratio. */
 static double star_radius(int points, double turns)
 {
     const double part = along_blade(turns, points);
@@ -64,8 +63,8 @@ static double star_radius(int points, double turns)
     return dy / (cosine * dy - sine * dx);
 }
 
-/* Of the heart (x^2 + y^2 - 1)^3 = x^2 y^3, its middle moved up and all within radius
- * 1. */
+/* The radius of the heart (x^2 + y^2 - 1)^3 = x^2 y^3, its middle moved up by 0.14 and all of it
+ * scaled by 1 / 1.26 to lie within radius 1. */
 static double heart_radius(double turns)
 {
     double low = 0, high = 1, sine, cosine;
@@ -145,7 +144,7 @@ double rf_outline_square(const struct refocus_aperture *a, double x, double y)
     int low = lower ? RF_OUTLINE / 2 : 0, high = low + RF_OUTLINE / 2;
     double ex, ey, ratio;
 
-    while (high - low > 1) { /* the triangle that the place is in the direction of */
+    while (high - low > 1) { /* find the triangle in the direction of the place */
         const int middle = (low + high) / 2;
 
         if (a->vertex_x[middle] * y - a->vertex_y[middle] * x >= 0)

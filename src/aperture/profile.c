@@ -1,8 +1,8 @@
-/* profile.c: light from the middle of an aperture to its rim; refocus_aperture_params
- * has the equations. */
+/* profile.c: how light is spread from the middle of an aperture to its edge, by the equations of
+ * refocus_aperture_params. */
 #include "aperture/aperture.h"
 
-/* Share of the light within v of the area. */
+/* The share of the light that falls within the share v of the area. */
 static double share_within(double edge, double v)
 {
     if (edge >= 0)

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/* Sizes of sets: a tile takes the smallest that is dense enough, at most the preset's; one
- * that a highlight reaches, whose disc would show the single rays, at most twice that. */
+/* The sizes of sets. A tile uses the smallest set that is dense enough, at most the preset's; a
+ * tile that a highlight reaches, whose disc would show the single rays, uses at most twice that. */
 static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
 enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
 
@@ -33,7 +33,7 @@ static bool are_equal(const struct rf_ray_set *set)
     return true;
 }
 
-/* By weight, so that few runs of equal ones are left, then down and across. */
+/* Orders rays by weight, so that there are few runs of equal weight, then down and across. */
 static bool comes_before(const struct refocus_ray *a, const struct refocus_ray *b)
 {
     if (a->weight != b->weight)
@@ -55,7 +55,7 @@ static void sift_down(struct refocus_ray *ray, int root, int count)
     ray[root] = moved;
 }
 
-/* A heap sort: in place. */
+/* Sorts by a heap, which works in place. */
 static void sort_rays(struct refocus_ray *ray, int count)
 {
     for (int root = count / 2 - 1; root >= 0; root--)
@@ -69,8 +69,8 @@ static void sort_rays(struct refocus_ray *ray, int count)
     }
 }
 
-/* Rays that chroma shares become the first ones of each chunk. Of sets that lie on
- * spirals or along a curve (aperture/rays.c) every second ray is as even a set. */
+/* Makes the rays that chroma shares the first ones of each chunk. In sets that lie on spirals or
+ * along a curve (rays.c) every second ray makes an equally even set. */
 static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
 {
     struct refocus_ray *const ray = set->ray;
@@ -90,7 +90,7 @@ static void share_rays(struct rf_ray_set *set, struct refocus_ray *spare)
     }
 }
 
-/* Coordinates of a set's rays apart from each other; returns where memory goes on. */
+/* Copies the coordinates of a set's rays into two arrays; returns where memory goes on. */
 static struct refocus_ray *part_coordinates(struct rf_ray_set *set, struct refocus_ray *next)
 {
     enum { EACH = sizeof *next / sizeof(int16_t) };
@@ -105,13 +105,14 @@ static struct refocus_ray *part_coordinates(struct rf_ray_set *set, struct refoc
     return next + (2 * set->count + EACH - 1) / EACH;
 }
 
-/* Rays of chroma, whose samples lie two pixels apart, for so many of luma: all of a few. */
+/* The number of rays of chroma, whose samples lie two pixels apart, for so many of luma: half of
+ * them, or all of a few. */
 static int chroma_rays(int rays)
 {
     return rays < 48 ? rays : rays / 2;
 }
 
-/* Every pixel of the aperture mask is a ray. */
+/* Makes the set in which every pixel of the aperture mask is a ray. */
 static void make_full_set(struct rf_ray_sets *sets, const struct refocus_aperture *aperture,
                           float max_blur_radius, struct rf_run *run)
 {
@@ -127,7 +128,7 @@ static void make_full_set(struct rf_ray_sets *sets, const struct refocus_apertur
     sets->preset = 0;
 }
 
-/* A set of `count` rays at `next`; returns where memory goes on. */
+/* Makes a set of `count` rays at `next`; returns where memory goes on. */
 static struct refocus_ray *make_set(struct rf_ray_set *set, const struct refocus_aperture *aperture,
                                     int count, bool chroma, struct refocus_ray *next,
                                     struct rf_run *run)
@@ -149,13 +150,14 @@ static struct refocus_ray *make_set(struct rf_ray_set *set, const struct refocus
     return part_coordinates(set, next);
 }
 
-/* The set of as many rays as were asked for, those below it, and if asked for denser ones. */
+/* Makes the set of as many rays as were asked for, the smaller ones, and if asked for denser ones.
+ * For 40 rays they are 24, 32 and 40, and then 48 and 64. */
 static int make_classes(struct rf_ray_sets *sets, const struct rf_ray_request *request,
                         struct rf_run *run)
 {
     struct refocus_ray *next = sets->memory;
     bool own = false; /* the set of request->rays is there */
-    int made = 0;
+    int filled = 0;
 
     for (int i = 0; i < CLASSES || !own; i++) {
         int count = i < CLASSES ? class_rays[i] : request->rays;
@@ -164,13 +166,13 @@ static int make_classes(struct rf_ray_sets *sets, const struct rf_ray_request *r
             i -= count > request->rays; /* comes before this one */
             count = request->rays;
             own = true;
-            sets->preset = made;
+            sets->preset = filled;
         } else if (own && (!request->denser || count > DENSER * request->rays)) {
             break;
         }
-        next = make_set(&sets->set[made++], request->aperture, count, request->chroma, next, run);
+        next = make_set(&sets->set[filled++], request->aperture, count, request->chroma, next, run);
     }
-    return made;
+    return filled;
 }
 
 static bool are_for(const struct rf_ray_sets *sets, const struct rf_ray_request *request,
@@ -184,8 +186,8 @@ void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *req
                       struct rf_run *run)
 {
     const bool full = request->rays == REFOCUS_RAYS_FULL;
-    const float blur = full ? request->max_blur_radius : 0; /* sets of N do not depend on it */
-    int made = 1;
+    const float blur = full ? request->max_blur_radius : 0; /* sets of N rays do not depend on it */
+    int filled = 1;
 
     if (are_for(sets, request, blur))
         return;
@@ -193,10 +195,10 @@ void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *req
     if (full)
         make_full_set(sets, request->aperture, blur, run);
     else
-        made = make_classes(sets, request, run);
+        filled = make_classes(sets, request, run);
     if (rf_run_cancelled(run)) /* sets may be incomplete */
         return;
-    sets->sets = made;
+    sets->sets = filled;
     sets->aperture = request->aperture->id;
     sets->rays = request->rays;
     sets->denser = request->denser;
@@ -204,11 +206,12 @@ void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *req
     sets->blur = blur;
 }
 
-/* N >= 1.3 pi reach^2 rays are as good as all. */
-const struct rf_ray_set *rf_rays_for(const struct rf_ray_sets *sets, int reach, bool lamp)
+/* N >= 1.3 pi reach^2 rays are as good as all: 66 of them for a reach of 4 pixels, so a tile uses
+ * the set of 96. */
+const struct rf_ray_set *rf_rays_for(const struct rf_ray_sets *sets, int reach, bool highlight)
 {
     const int64_t need = (int64_t)reach * reach * 4084 / 1000; /* Q16 */
-    const int last = lamp ? sets->sets - 1 : sets->preset;
+    const int last = highlight ? sets->sets - 1 : sets->preset;
 
     for (int i = 0; i < last; i++)
         if ((int64_t)sets->set[i].count << 16 >= need)

@@ -1,10 +1,10 @@
-/* rays.c: ray samples from an aperture.
+/* rays.c: spreads ray samples evenly over the light of an aperture.
  *
- * N rays of equal share. A disc takes Vogel's spiral: ray n at radius sqrt((n + 1/2) /
- * N) and n golden turns; for the sizes that tiles choose from, points of it that were
- * moved so that their projections are even as well (tables/rays.py). A polygon takes the
- * spiral, its circles drawn onto the polygon so that equal areas stay equal; so does any
- * other outline, by its triangles, and where light is not spread evenly the radii are
+ * Each of N rays stands for an equal share of the light. A disc takes Vogel's spiral: ray n at
+ * radius sqrt((n + 1/2) / N) and n golden turns; for the sizes that tiles choose from, points of
+ * that spiral that were moved so that their projections are even as well (tables/rays.py). A
+ * polygon takes the spiral, its circles drawn onto the polygon so that equal areas stay equal; so
+ * does any other outline, by its triangles, and where light is not spread evenly the radii are
  * those of equal light. A mask takes N points at equal steps of light along a Hilbert
  * curve over it, then a few steps of Lloyd's relaxation.
  *
@@ -96,7 +96,7 @@ static void outline_rays(const struct refocus_aperture *a, int count, bool befor
     }
 }
 
-/* Cell number `at` along a Hilbert curve through RF_CURVE_SIDE^2 cells. */
+/* Finds cell number `at` along a Hilbert curve through RF_CURVE_SIDE^2 cells. */
 static void hilbert(int at, int *x, int *y)
 {
     *x = *y = 0;
@@ -122,11 +122,12 @@ static void hilbert(int at, int *x, int *y)
     }
 }
 
-/* Places in 1/256 of a cell of the reduced mask. */
+/* A place, in 1/256 of a cell of the reduced mask. */
 struct place {
     int32_t x, y;
 };
 
+/* Moves each place to the middle of the light that is nearest to it: one step of Lloyd's. */
 static void relax(const uint8_t *cell, int count, struct place *place, struct rf_run *run)
 {
     int64_t sum_x[REFOCUS_MAX_RAYS] = {0}, sum_y[REFOCUS_MAX_RAYS] = {0};
@@ -162,7 +163,7 @@ static void relax(const uint8_t *cell, int count, struct place *place, struct rf
     }
 }
 
-/* The light of each cell. */
+/* Computes the light of each cell of the reduced mask. */
 static void weigh_cells(const struct refocus_aperture *a, bool before,
                         uint8_t cell[RF_CURVE_SIDE * RF_CURVE_SIDE])
 {
@@ -177,7 +178,7 @@ static void weigh_cells(const struct refocus_aperture *a, bool before,
         cell[i] = (uint8_t)floor(a->reduced[i] * density + 0.5);
         any = any || cell[i];
     }
-    if (!any) /* all of it lies in the hole: better a shape than none */
+    if (!any) /* all of it lies in the hole: an even shape is better than none */
         memcpy(cell, a->reduced, RF_CURVE_SIDE * RF_CURVE_SIDE);
 }
 
@@ -237,7 +238,7 @@ int refocus_aperture_rays(const struct refocus_aperture *aperture, int count,
     return rf_aperture_rays(aperture, count, false, rays, NULL);
 }
 
-/* Open share of mask pixel (x, y) at radius K, 0 to 255: 8 x 8 points. */
+/* The open share of mask pixel (x, y) at radius K, 0 to 255, by 8 x 8 points. */
 static int coverage(const struct refocus_aperture *a, double radius, int x, int y)
 {
     int sum = 0;
@@ -259,7 +260,7 @@ int rf_aperture_full_rays(const struct refocus_aperture *aperture, double max_bl
     if (!(max_blur_radius > 0 && max_blur_radius <= 127) || capacity < 0 || (capacity > 0 && !rays))
         return REFOCUS_ERR_ARGUMENT;
     most = (int)ceil(max_blur_radius);
-    for (int open = 1; open >= 0; open--) { /* the open pixels, then those half open */
+    for (int open = 1; open >= 0; open--) { /* open pixels, then half open ones */
         for (int y = -most; y <= most && !rf_run_cancelled(run); y++) {
             for (int x = -most; x <= most; x++) {
                 const int weight = coverage(aperture, max_blur_radius, x, y);
@@ -272,7 +273,7 @@ int rf_aperture_full_rays(const struct refocus_aperture *aperture, double max_bl
             }
         }
     }
-    if (count == 0) { /* a blur too small for the mask to leave a trace: its centre */
+    if (count == 0) { /* the mask is smaller than any pixel: use its centre */
         if (capacity > 0)
             rays[0] = make_ray(0, 0, 255);
         count = 1;
