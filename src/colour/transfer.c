@@ -50,21 +50,22 @@ void rf_highlight_weights(uint16_t weight[256], double sigma)
     }
 }
 
-/* Whether a mean between these two is code c's. */
+/* Whether all means from `low` to `high` have the code c. */
 static bool is_code(const struct rf_transfer *transfer, int c, double low, double high)
 {
     return low >= 0 && high < RF_MEAN_MAX + 4 && transfer->to_code[(int)low] == c &&
            transfer->to_code[(int)high] == c;
 }
 
-/* Whether c comes back from its light, with the weight of any pixel that has it. */
+/* Whether code c comes back from its light, with the weight of any pixel whose largest code is c or
+ * more. */
 static bool keeps_code(const struct rf_transfer *transfer, const uint16_t weight[256], int c)
 {
     for (int most = c; most < 256; most++) {
         const int w = weight[most] >> 3;
         const double mean = 8192.0 * ((2 * transfer->to_light[c] * w + 2048) >> 12) / w + 0.5;
 
-        if (!is_code(transfer, c, mean - 0.02, mean + 0.02)) /* means of rays are that near */
+        if (!is_code(transfer, c, mean - 0.02, mean + 0.02)) /* means of rays are that close */
             return false;
     }
     return true;

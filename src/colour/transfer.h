@@ -1,4 +1,4 @@
-/* transfer.h: between 8-bit codes and the values that are averaged.
+/* transfer.h: converts between 8-bit codes and the values that are averaged.
  *
  * Values are Q12: 0 to RF_LIGHT_MAX = 4095 is black to white. Means are Q14: four times
  * that, so that an average keeps two bits that its parts do not have.
@@ -20,7 +20,7 @@ enum {
 
 struct rf_transfer {
     uint16_t to_light[256];           /* Q12 */
-    uint8_t to_code[RF_MEAN_MAX + 4]; /* by Q14 mean */
+    uint8_t to_code[RF_MEAN_MAX + 4]; /* code of a Q14 mean */
 };
 
 void rf_transfer_init(struct rf_transfer *transfer, int blend);
@@ -35,9 +35,10 @@ void rf_transfer_init(struct rf_transfer *transfer, int blend);
 void rf_highlight_weights(uint16_t weight[256], double sigma);
 
 /*
- * Light times weight in 16 bits (kernels.h, weigh) is rounded; whether each code that no
- * channel of a pixel exceeds comes back from its weighted mean nevertheless. In sRGB it
- * does for weights of 0.64 and more of the largest, from sigma 272 on.
+ * Whether each code comes back from its weighted mean, although light times weight in 16 bits
+ * (kernels.h, weigh) is rounded. It must do so with the weight of any pixel none of whose
+ * channels is below it. In sRGB it does for weights of 0.64 and more of the largest, from
+ * sigma 272 on.
  */
 bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256]);
 

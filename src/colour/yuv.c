@@ -6,13 +6,14 @@
 
 #include <refocus/render.h>
 
-/* Nearest whole number; none of the values here is near a half that could go both ways. */
+/* The nearest whole number. None of the values here is so near a half that it could go both ways.
+ */
 static int rounded(double v)
 {
     return (int)floor(v + 0.5);
 }
 
-/* The curve between the codes of the table: straight. */
+/* Interpolates the curve between the codes of the table by straight lines. */
 static void set_light(struct rf_yuv_curve *curve, const uint16_t to_light[256])
 {
     for (int tone = 0; tone < RF_TONES; tone++) {
@@ -23,7 +24,7 @@ static void set_light(struct rf_yuv_curve *curve, const uint16_t to_light[256])
     }
 }
 
-/* The tone whose light is nearest; the middle one of several. */
+/* Finds for each mean the tone whose light is nearest; of several the middle one. */
 static void set_tones(struct rf_yuv_curve *curve)
 {
     int first = 0; /* the first tone of at least the light */
@@ -44,7 +45,7 @@ static void set_tones(struct rf_yuv_curve *curve)
     }
 }
 
-/* Codes of Y: the one whose interval, half a code to both sides, holds the light. */
+/* Finds for each mean the code of Y whose interval, half a code to both sides, holds the light. */
 static void set_codes(struct rf_yuv_curve *curve, int black, double tones_per_code, int white)
 {
     int code = black;

@@ -1,4 +1,4 @@
-/* yuv.h: between codes of Y, U, V and the values that are averaged.
+/* yuv.h: converts between codes of Y, U, V and the values that are averaged.
  *
  * g is the curve of the blend, R', G', B' the colour of a pixel as usual, each clipped to black
  * and white. Samples of chroma are shared by 2 x 2 or 2 x 1 pixels: with Y' the luma of the
@@ -40,11 +40,11 @@ enum {
 struct rf_yuv_curve {
     int16_t luma[256]; /* tone of a code of Y */
     uint16_t light_of_luma[256];
-    int32_t tones_per_code[2];            /* B' - Y' for U, R' - Y' for V, Q12, */
-    int32_t green_per_code[2];            /* how much they take from G' */
+    int32_t tones_per_code[2];            /* B' - Y' for U, R' - Y' for V, Q12 */
+    int32_t green_per_code[2];            /* how much they subtract from G', Q12 */
     uint16_t light[RF_TONES];             /* Q12 */
-    int16_t tone[(RF_MEAN_MAX >> 1) + 1]; /* by Q13 mean */
-    uint8_t to_code[RF_MEAN_MAX + 1];     /* Y by Q14 mean */
+    int16_t tone[(RF_MEAN_MAX >> 1) + 1]; /* tone of a Q13 mean */
+    uint8_t to_code[RF_MEAN_MAX + 1];     /* Y of a Q14 mean */
     int32_t codes_per_tone[2];            /* U and V, Q16 */
     int32_t kr, kg, kb;                   /* in 1 / RF_SHARE; they add up to 1 */
     int32_t red, blue;                    /* Kr / Kg, Kb / Kg */

@@ -1,22 +1,23 @@
-/* field.c: fields of blur in space, Kosloff & Barsky 2007, section 5. */
+/* field.c: computes blur from its place in space, Kosloff & Barsky 2007, section 5. */
 #include "focus/focus.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* sqrt is exact to the last bit wherever doubles are IEEE's, and v has 53 bits at
- * most. */
+/* The length of a vector, rounded half up. sqrt is exact to the last bit wherever doubles are
+ * IEEE's, and the sum has 53 bits at most. */
 static int32_t length(int64_t a, int64_t b, int64_t c)
 {
     return (int32_t)floor(sqrt((double)(a * a + b * b + c * c)) + 0.5);
 }
 
-/* Offset of the middle of pixel `at` from `centre`, in picture widths. */
+/* The offset of the middle of pixel `at` from `centre`, in picture widths. */
 static int32_t offset(int at, int width, int32_t centre)
 {
     return (int32_t)(((int64_t)(2 * at + 1) * RF_ONE + width) / (2 * width)) - centre;
 }
 
+/* The blur at a distance: 0 within the radius, RF_ONE from a falloff beyond it on. */
 static int32_t beyond(const struct rf_field *field, int32_t distance)
 {
     const int64_t over = distance - field->radius;

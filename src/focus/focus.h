@@ -36,13 +36,13 @@ struct rf_focus_plan {
     bool plain;                   /* s = K (df - d) and nothing else */
     uint32_t number;              /* counts renders with maps, which may change in between */
     int width, height;            /* pixels of the whole photo */
-    uint16_t least, most;         /* disparities are clamped to them */
+    uint16_t least, most;         /* disparities are clamped to these */
     uint16_t limit;               /* |s| at most, Q7.8 */
     int32_t share;                /* how much of depth counts, Q16 */
     int64_t tilt, tilt_x, tilt_y; /* at pixel (0, 0), and a pixel's step: Q24 */
     int bands;                    /* 1 or more when any is wider than nothing, else 0 */
     struct rf_band band[REFOCUS_MAX_BANDS];
-    const struct refocus_disparity *surface, *sharp, *picture; /* or NULL */
+    const struct refocus_disparity *surface, *sharp, *picture; /* each may be NULL */
     struct rf_field field;
 };
 
@@ -57,11 +57,11 @@ void rf_focus_plan_make(struct rf_focus_plan *plan, const struct rf_settings *pa
 void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity, int x,
                   int y, int n);
 
-/* e of a field, signed as s is: what is nearer than its centre is below 0. */
+/* The e of a field, signed as s is: below 0 where the pixel is nearer than the centre. */
 int32_t rf_field_at(const struct rf_focus_plan *plan, int x, int y, int d);
 
-/* A map's value at pixel (x, y) of a picture of width x height that it covers: between
- * its samples in proportion; the sample itself when the sizes are the same. */
+/* The value of a map at pixel (x, y) of a picture of width x height that it covers. It is
+ * interpolated between samples, and the sample itself when the sizes are the same. */
 int rf_map_at(const struct refocus_disparity *map, int width, int height, int x, int y);
 
 #endif

@@ -8,8 +8,8 @@ static int sample(const struct refocus_disparity *map, int x, int y)
     return map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
 }
 
-/* Where the middle of pixel `at` of `pixels` lies among `samples`, Q16 from the middle
- * of the first, within the first and the last. */
+/* The place of the middle of pixel `at` of `pixels` among `samples`, Q16 from the middle of the
+ * first, clamped to the first and the last. */
 static int64_t place(int at, int pixels, int samples)
 {
     const int64_t twice = ((int64_t)(2 * at + 1) * samples << 16) / pixels;
@@ -36,7 +36,7 @@ int rf_map_at(const struct refocus_disparity *map, int width, int height, int x,
     j = (int)(fy >> 16);
     fx &= 0xffff;
     fy &= 0xffff;
-    right = i + (fx > 0); /* a sample that does not count may not be there */
+    right = i + (fx > 0); /* a sample with no share may not be there */
     below = j + (fy > 0);
     upper = mix(sample(map, i, j), sample(map, right, j), fx) >> 8;
     lower = mix(sample(map, i, below), sample(map, right, below), fx) >> 8;

@@ -12,12 +12,11 @@ enum {
     BINS = 2048,
     WIDTH = 65536 / BINS, /* disparities of a bin */
     APART = BINS / 64,    /* empty bins that part two surfaces */
-    NOISE = 1024,         /* a bin with less than 1/NOISE of the pixels is as good as
-                             empty */
-    SHARE = 4,            /* the nearest surface with 1/SHARE of them is meant */
+    NOISE = 1024,         /* a bin with at most 1/NOISE of the pixels counts as empty */
+    SHARE = 4,            /* the nearest surface with 1/SHARE of the pixels is meant */
 };
 
-/* Disparities of a part of a map: a disc when radius > 0, else the whole rectangle. */
+/* A part of a map: a disc when radius > 0, else the whole rectangle. */
 struct part {
     const struct refocus_disparity *map;
     int x0, y0, x1, y1;
@@ -54,7 +53,7 @@ static uint32_t count_bins(const struct part *part, uint32_t count[BINS])
     return sum;
 }
 
-/* The bin of the median of the surface that is meant. */
+/* Finds the surface that is meant; returns the bin of its median. */
 static int find_surface(const uint32_t count[BINS], uint32_t sum)
 {
     uint32_t best = 0, left;

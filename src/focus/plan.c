@@ -19,7 +19,7 @@ static int32_t to_fixed(double v, double one)
     return (int32_t)floor(v * one + 0.5);
 }
 
-/* The tilt at the middle of pixel (x, y) is tilt + x tilt_x + y tilt_y. */
+/* Plans the tilt, which at the middle of pixel (x, y) is tilt + x tilt_x + y tilt_y. */
 static void plan_tilt(struct rf_focus_plan *plan, const struct rf_settings *p)
 {
     const double q24 = 16777216.0, one = RF_ONE;
@@ -31,7 +31,7 @@ static void plan_tilt(struct rf_focus_plan *plan, const struct rf_settings *p)
                                 down * (0.5 / plan->height - p->tilt_y) + 0.5);
 }
 
-/* An offset of a band is that of its middle from the focus: with it, e is counted from
+/* Makes a band. Its offset is that of its middle from the focus: added to e, it counts e from
  * there. */
 static struct rf_band band_of(const struct rf_focus_plan *plan, int disparity, float half_width,
                               float transition)

@@ -1,5 +1,5 @@
-/* plane.c: planes of focus. 1/z of a plane in space is affine in the picture's
- * coordinates, and disparity is affine in 1/z. */
+/* plane.c: finds planes of focus through points and lines of a photo. 1/z of a plane in space is
+ * affine in the picture's coordinates, and disparity is affine in 1/z. */
 #include <refocus/render.h>
 
 #include <math.h>
@@ -69,7 +69,7 @@ int refocus_focus_plane_of_line(struct refocus_focus_plane *plane,
     plane->x = from->x;
     plane->y = from->y;
     plane->focus_disparity = from->disparity;
-    /* to the right of (dx, dy), y down */
+    /* The plane rises to the right of (dx, dy); y points down. */
     plane->across = (float)(slope * -dy / length);
     plane->down = (float)(slope * dx / length * aspect);
     return good_plane(plane);

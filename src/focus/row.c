@@ -8,7 +8,8 @@ static int clamp(int v, int least, int most)
     return v < least ? least : v > most ? most : v;
 }
 
-/* How much of a distance from its middle a band leaves. */
+/* How much a band leaves of a distance from its middle: nothing where it is sharp, then more and
+ * more up to all of it. */
 static int32_t shorten(const struct rf_band *band, int32_t distance)
 {
     if (distance <= band->sharp)
@@ -19,9 +20,9 @@ static int32_t shorten(const struct rf_band *band, int32_t distance)
 }
 
 /*
- * The least that any band leaves of e, which is counted from the focus at this place,
- * or for the further bands of `flat`, counted from the focus disparity. Before the
- * nearest of them a pixel is a foreground, behind it a background: so what is blurred
+ * The least that any band leaves of e. For the first band e is counted from the focus at this
+ * place; for the further bands it is `flat`, counted from the focus disparity. Before the
+ * nearest band a pixel is a foreground, behind it a background: so a surface that is blurred
  * between two bands stays behind the near one instead of spreading over it.
  */
 static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e, int32_t flat)
@@ -39,7 +40,7 @@ static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e, int
     return before ? -least : least;
 }
 
-/* How much of a difference of disparities counts. */
+/* The part of a difference of disparities that counts. */
 static int32_t depth_of(const struct rf_focus_plan *plan, int difference)
 {
     return (int32_t)(((int64_t)difference * plan->share + (1 << 15)) >> 16);
@@ -65,7 +66,7 @@ void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_
         const int32_t e = plan->field.shape == REFOCUS_FIELD_LENS ? lens_at(plan, x + i, y, d)
                                                                   : rf_field_at(plan, x + i, y, d);
         const uint32_t distance = (uint32_t)clamp(abs(e), 0, RF_ONE);
-        /* as signed_blur */
+        /* The kernel signed_blur computes this for a plain lens, with the same bits. */
         uint32_t s = (distance * plan->focus.radius + (1 << 15)) >> 16;
 
         s = s > plan->limit ? plan->limit : s;

@@ -42,7 +42,7 @@ void rf_extend_chroma(const struct rf_viewport *view, const struct rf_chroma_siz
 {
     const int w = 2 * size->width, left = view->pad & ~1;
     const int right = view->tiles_x * RF_TILE + view->pad;
-    /* offsets of half a row round up */
+    /* Offsets of half a row round up. */
     const int beyond = size->down ? view->pad / 2 + 1 : view->pad;
     const int below = (RF_TILE >> size->down) + beyond;
     const size_t bytes = (size_t)(left + right) * 2;

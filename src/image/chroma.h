@@ -20,7 +20,7 @@
 struct rf_yuv {
     bool on;                       /* else it is of R, G and B, and the rest is not valid */
     int down;                      /* rows of the photo to one of chroma: 1 << down */
-    uint32_t matrix, range, blend; /* of the curve */
+    uint32_t matrix, range, blend; /* select the curve */
     bool curve_made;
     struct rf_yuv_curve curve;
 };
@@ -58,10 +58,10 @@ struct rf_yuv_codes {
 /* All of a photo of Y, U and V that has no place in the planes of R, G and B. */
 struct rf_chroma_planes {
     struct rf_chroma_size size;
-    struct rf_chroma_q12 light;      /* of the photo */
+    struct rf_chroma_q12 light;      /* the photo's own */
     struct rf_chroma_q12 smooth;     /* pre-filtered */
-    struct rf_chroma_q12 background; /* of the hidden background */
-    struct rf_blur_q8 blur;          /* of each sample, given twice */
+    struct rf_chroma_q12 background; /* hidden background */
+    struct rf_blur_q8 blur;          /* given twice for each sample */
     struct rf_yuv_codes codes;
 };
 

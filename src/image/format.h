@@ -1,4 +1,4 @@
-/* format.h: where R, G, B and alpha stand in a pixel of a packed format. */
+/* format.h: where R, G, B and alpha stand in a pixel, and checks of pictures and maps. */
 #ifndef RF_FORMAT_H
 #define RF_FORMAT_H
 
@@ -35,7 +35,7 @@ static inline bool rf_good_stride(ptrdiff_t stride, ptrdiff_t bytes, int rows)
     return stride >= -most && stride <= most && (rows == 1 || stride >= bytes || stride <= -bytes);
 }
 
-/* Rows of pixels to a row of chroma: 1 << this. */
+/* The number of rows of pixels to a row of chroma is 1 << this. */
 static inline int rf_chroma_down(uint32_t format)
 {
     return format == REFOCUS_FORMAT_YUYV ? 0 : 1;

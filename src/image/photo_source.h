@@ -15,9 +15,9 @@
 struct rf_photo_source {
     int width, height;
     const struct rf_transfer *transfer; /* between codes and the light of the blend in use */
-    struct rf_light_q12 light;          /* channel[0] == NULL: strip mode, */
+    struct rf_light_q12 light;          /* channel[0] == NULL: strip mode */
     struct rf_disparity_q16 disparity;
-    const struct refocus_image *image; /* where these three hold instead */
+    const struct refocus_image *image; /* these three are for strip mode */
     const struct refocus_disparity *map;
     int code_step; /* rf_code_step() of the map */
 };

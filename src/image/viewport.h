@@ -16,7 +16,7 @@
  */
 struct rf_viewport {
     int photo_width, photo_height; /* pixels */
-    int x0, y0;                    /* of pixel (0, 0) in the photo */
+    int x0, y0;                    /* place of pixel (0, 0) in the photo */
     int width, height;             /* pixels */
     int tiles_x, tiles_y;
     int pad;               /* pixels beyond each side of a padded plane that may be read */

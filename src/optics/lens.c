@@ -1,5 +1,5 @@
-/* The thin lens, see refocus/lens.h. Only + - * / in doubles: the same bits
- * everywhere. */
+/* lens.c: blur and depth of field of a thin lens, see refocus/lens.h. It uses only + - * / in
+ * doubles, which give the same bits everywhere. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@ static bool is_positive(double value)
     return value > 0 && value < INFINITY;
 }
 
-/* Of a depth that may be infinite. */
+/* Whether a value is a depth, which may be infinite. */
 static bool is_depth(double value)
 {
     return value > 0 && 1 / value < INFINITY;
@@ -27,7 +27,7 @@ static bool is_range(const struct refocus_depth_range *range)
     return range && is_depth(range->near_m) && range->near_m < range->far_m;
 }
 
-/* 1/z0 - 1/z1, > 0 except for neighbours among the doubles. */
+/* The span 1/z0 - 1/z1, > 0 except for neighbours among the doubles. */
 static double dioptres(const struct refocus_depth_range *range)
 {
     return 1 / range->near_m - 1 / range->far_m;
@@ -99,8 +99,7 @@ double refocus_blur_radius(double max_blur_radius_px, double disparity, double f
  *
  * which holds for infinite depths too and does not subtract two equal V. Half of it in
  * pixels is s R |1/u - 1/p| V_u / f = K |d - df| / (1 - f/u): eq. 2 of Yang et al.
- * leaves the last factor, by which the picture grows when the lens moves out to focus,
- * away.
+ * omits the last factor, by which the picture grows when the lens moves out to focus.
  */
 double refocus_circle_of_confusion_m(const struct refocus_lens *lens, double focus_m,
                                      double depth_m)

@@ -1,6 +1,6 @@
 /* arena.h: one block of memory, handed out in aligned pieces.
  *
- * The same code runs twice: with base == NULL it only adds up the bytes, then, on the
+ * A layout runs twice: with base == NULL it only adds up the bytes, then, on a
  * block of that size, it sets the pointers. So size and use cannot disagree. Sizes are
  * 64-bit and saturate at UINT64_MAX, which no allocation can satisfy.
  */
@@ -17,6 +17,7 @@ struct rf_arena {
     uint64_t used;
 };
 
+/* Hands out `count` elements of `size` bytes; NULL while only counting, or if they are too many. */
 static inline void *rf_arena_take(struct rf_arena *arena, uint64_t count, uint64_t size)
 {
     const uint64_t at = arena->used;

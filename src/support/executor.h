@@ -1,4 +1,5 @@
-/* executor.h: what a pass runs with: threads, scratch rows for each, kernels, and a way to stop. */
+/* executor.h: threads, scratch rows for each of them, kernels, and a way to stop: all that a pass
+ * needs to run. */
 #ifndef RF_EXECUTOR_H
 #define RF_EXECUTOR_H
 
@@ -11,7 +12,7 @@ struct rf_kernels;
 struct rf_executor {
     struct rf_pool *pool;
     struct rf_run *run;
-    const struct rf_kernels *kernels; /* of the instruction set in use: kernels/kernels.h */
+    const struct rf_kernels *kernels; /* for the instruction set in use: kernels/kernels.h */
     uint16_t *scratch;                /* scratch_size elements for each thread */
     uint64_t scratch_size;
 };
@@ -29,7 +30,7 @@ static inline bool rf_cancelled(const struct rf_executor *exec)
     return rf_run_cancelled(exec->run);
 }
 
-/* Asks for the i-th of many small things: one in 64 looks. */
+/* Asks so before the i-th of many small items: every 64th item looks. */
 static inline bool rf_cancelled_at(const struct rf_executor *exec, uint32_t i)
 {
     return i % 64 == 0 && rf_cancelled(exec);

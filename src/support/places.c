@@ -1,3 +1,4 @@
+/* places.c: keeps the first places, row by row, of a list that is full. */
 #include "support/places.h"
 
 #include <stdbool.h>
@@ -30,7 +31,7 @@ static uint8_t *at(void *list, uint32_t i, size_t size)
     return (uint8_t *)list + (size_t)i * size;
 }
 
-/* What is at i of a heap of n sinks to where it belongs. */
+/* Lets entry i of a heap of n sink to where it belongs. */
 static void sink(void *list, uint32_t i, uint32_t n, size_t size)
 {
     uint8_t own[MOST_SIZE];

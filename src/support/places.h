@@ -1,4 +1,4 @@
-/* places.h: lists of places with room for so many, of which the first stay, row by row, in
+/* places.h: lists of places with limited room. Of more places the first ones stay, row by row, in
  * whichever order they come.
  *
  * An entry of any type begins with its x and y, uint16_t both. A full list is a heap whose last
@@ -10,10 +10,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* One more, of `size` bytes, to *count of them. */
+/* Adds an entry of `size` bytes to the *count of a list, or drops it if the list is full of earlier
+ * places. */
 void rf_add_place(void *list, uint32_t *count, uint32_t capacity, const void *entry, size_t size);
 
-/* Put them in the order of the rows. */
+/* Sorts the entries row by row. */
 void rf_sort_places(void *list, uint32_t count, size_t size);
 
 #endif

@@ -1,3 +1,4 @@
+/* pool.c: threads that share out the items of a loop. */
 #include "support/pool.h"
 
 #include <refocus/status.h>
@@ -13,13 +14,13 @@ enum {
 };
 
 enum {
-    SPIN_NS = 150 * 1000, /* longer than what is done between two loops of a picture */
+    SPIN_NS = 150 * 1000, /* longer than the work between two loops of a picture */
     SPINS = 32,           /* pauses between two looks at the clock */
-    SHARES = 4,           /* of each thread in what is left */
+    SHARES = 4,           /* runs for each thread in the items that are left */
 };
 
-/* Items that lie side by side share cache lines of what they write, so they are taken
- * in runs, long ones first, which get shorter as less is left. */
+/* Takes a run of items. Items that lie side by side write to shared cache lines, so they are handed
+ * out in runs, long ones first, which get shorter as fewer items are left. */
 static int take_run(struct rf_pool *pool, int *end)
 {
     const int shares = SHARES * pool->threads;
@@ -50,8 +51,8 @@ static void take_items(struct rf_pool *pool, int worker)
         }
 }
 
-/* The items of the caller's loop are our workers: each has scratch memory of its own,
- * and takes items of ours until there are none. */
+/* An item of the caller's loop is one of our workers: it has scratch memory of its own, and takes
+ * items of ours until there are none. */
 static void caller_item(void *context, int32_t worker)
 {
     take_items(context, worker);
@@ -85,8 +86,7 @@ static bool nobody_in(unsigned state)
     return !(state & WORKERS);
 }
 
-/* To be woken takes 50 us and more, about as long as a small loop: stay awake for a
- * while. */
+/* Stays awake for a while, as to be woken takes 50 us and more, about as long as a small loop. */
 static bool spin(struct rf_pool *pool, bool (*is_over)(struct rf_pool *pool, unsigned seen),
                  unsigned seen)
 {
@@ -116,9 +116,9 @@ static bool is_left(struct rf_pool *pool, unsigned seen)
     return nobody_in(atomic_load(&pool->state));
 }
 
-/* Either sleepers is seen by whoever opens a loop, or the loop by the sleeper: both
- * exchange before they look. A store would do for processors, but emulators of ARM let
- * the load after it go first, and both sides sleep. */
+/* Waits for a loop, asleep if it takes long. Whoever opens a loop sees `sleepers`, or the sleeper
+ * sees the loop: both exchange before they look. A store would do for processors, but emulators of
+ * ARM let the load after it go first, and both sides sleep. */
 static void wait_for_loop(struct rf_pool *pool, unsigned seen)
 {
     if (spin(pool, is_called, seen))
@@ -131,8 +131,8 @@ static void wait_for_loop(struct rf_pool *pool, unsigned seen)
     pthread_mutex_unlock(&pool->lock);
 }
 
-/* A loop that is closed is not waited for by those who come too late, nor they by it.
- */
+/* Joins the loop if it is still open. A thread that comes too late does not wait for a closed loop,
+ * nor the loop for it. */
 static bool join_loop(struct rf_pool *pool, unsigned *seen)
 {
     unsigned state = atomic_load(&pool->state);
@@ -185,7 +185,7 @@ static void close_loop(struct rf_pool *pool)
     if (nobody_in(atomic_fetch_and(&pool->state, ~(unsigned)OPEN)) || spin(pool, is_left, 0))
         return;
     pthread_mutex_lock(&pool->lock);
-    atomic_exchange(&pool->waits, true); /* as with sleepers */
+    atomic_exchange(&pool->waits, true); /* exchanged before the look, as `sleepers` is */
     while (!is_left(pool, 0))
         pthread_cond_wait(&pool->done, &pool->lock);
     atomic_store(&pool->waits, false);

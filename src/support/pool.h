@@ -23,12 +23,12 @@ enum rf_run_state { RF_RUN_IDLE, RF_RUN_RUNNING, RF_RUN_CANCELLED };
 
 struct rf_run {
     atomic_int state;              /* enum rf_run_state */
-    void (*looked_at)(void *user); /* tests only, else NULL: called by whoever asks */
+    void (*looked_at)(void *user); /* for tests, else NULL: called at each look */
     void *user;
 };
 
-/* Asked by everything that takes long, at least once a millisecond or two. NULL:
- * never. */
+/* Whether a run was cancelled; a NULL run never is. Every loop that takes long asks at least once a
+ * millisecond or two. */
 static inline bool rf_run_cancelled(struct rf_run *run)
 {
     if (!run)
@@ -41,8 +41,8 @@ static inline bool rf_run_cancelled(struct rf_run *run)
 typedef void rf_work_fn(void *context, int item, int worker);
 
 struct rf_pool {
-    int threads; /* with the calling one; or the most that the caller's may be */
-    bool spins;  /* there is a processor for each */
+    int threads;                      /* with the calling one, or the caller's at most */
+    bool spins;                       /* there is a processor for each thread */
     struct refocus_parallel parallel; /* the caller's, or parallel_for == NULL */
     pthread_t thread[RF_MAX_THREADS];
     pthread_mutex_t lock; /* only for those that sleep, and to wake them */
@@ -53,17 +53,17 @@ struct rf_pool {
     atomic_int sleepers; /* pool threads */
     struct rf_run *run;  /* CANCELLED: hand out no more items */
 
-    /* The loop: set before it is opened, kept until the last worker has left. */
+    /* The loop, which is set before it is opened and kept until the last worker has left. */
     rf_work_fn *work;
     void *context;
     int count;
-    atomic_uint state; /* pool threads in it, whether it is open to more, its number */
-    char apart[64];    /* a cache line of its own for what all change */
+    atomic_uint state; /* the threads in it, whether it is open, and its number */
+    char apart[64];    /* gives `next`, which all threads change, its own cache line */
     atomic_int next;   /* item */
     char apart_too[64];
 };
 
-/* How many threads to work with when a caller asks for so many: 0 asks for one a processor. */
+/* The number of threads to work with when a caller asks for so many: 0 asks for one a processor. */
 int rf_thread_count(int32_t asked);
 
 /* Starts threads of its own, or none where the caller's parallel_for is to be used

@@ -1,3 +1,4 @@
+/* status.c: the version of the library and its status codes in words. */
 #include <refocus/status.h>
 
 const char *refocus_version(void)
