@@ -1,8 +1,8 @@
-/* gather.c: `blur`, the image-space filter that Yang et al. 2016 compare with.
+/* blur.c: the method `blur`, the image-space filter that Yang et al. 2016 compare with.
  *
  * Each pixel is the mean over its own circle of confusion, whatever lies in it: the pixels
- * p + u s(p) for all rays u, by its own blur s(p) = K (df - d(p)). O(N M) and nothing about
- * who hides whom: colours bleed over edges, and a blurred foreground ends as sharply as
+ * p + u s(p) for all rays u, by its own blur s(p) = K (df - d(p)). It costs O(N M) and ignores
+ * visibility: colours bleed over edges, and a blurred foreground ends as sharply as
  * its depth does.
  */
 #include "papers/papers.h"

@@ -1,4 +1,4 @@
-/* blurriness.h: the lookup table of the NVIDIA white paper. */
+/* blurriness.h: the table of the NVIDIA white paper that turns disparities into blur. */
 #ifndef RF_BLURRINESS_H
 #define RF_BLURRINESS_H
 

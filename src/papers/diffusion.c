@@ -22,24 +22,24 @@ struct work {
     struct rf_series series;
     struct rf_diffusion_layer layer;
     uint8_t *member;
-    float *weight; /* W of the layer's pixels; of the series, `across` */
+    float *weight; /* W of the layer's pixels; for the series, `across` */
     float *own, *radius;
     float *plane[CHANNELS]; /* the layer */
     float *scratch[2][CHANNELS];
-    float *below[CHANNELS]; /* what has been composited */
+    float *below[CHANNELS]; /* the layers composited so far */
     ptrdiff_t stride;
     uint64_t planes_size;                 /* floats of a plane */
     float most_radius, weight_per_square; /* W = weight_per_square radius^2 */
     int steps;
 };
 
-/* Memory when the arena has some; else *counted is filled and the bytes are counted. */
+/* Lays out the memory of the arena; without any it fills *counted and only counts the bytes. */
 static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *arena,
                             struct work *counted)
 {
     struct work *work = rf_arena_take(arena, 1, sizeof *work);
     const uint64_t w = (uint64_t)limits->width, h = (uint64_t)limits->height;
-    const uint64_t size = (w + 2) * (h + 2), origin = w + 3; /* of pixel (0, 0) */
+    const uint64_t size = (w + 2) * (h + 2), origin = w + 3; /* where pixel (0, 0) lies */
     float *plane;
 
     if (!work)
@@ -88,7 +88,7 @@ static void radius_row(void *context, int y, int worker)
             (float)abs(work->f->blur.at[y * work->f->view->stride + x]) / 256;
 }
 
-/* Cut the disparities into layers where the fewest pixels are, a least distance apart. */
+/* Cuts the disparities into layers where the fewest pixels are, a least distance apart. */
 static void split_layers(struct work *work)
 {
     const struct rf_frame *f = work->f;
@@ -147,7 +147,7 @@ static float conductance(const struct work *work, float radius)
     return radius < 0.5f ? RF_ACROSS_LEAST : 0.5f * (part < 1 ? part * part : 1);
 }
 
-/* Weights of the region, and the object alone in the planes. */
+/* Sets the weights of the region, and puts the object alone into the planes. */
 static void cut_out_row(void *context, int item, int worker)
 {
     const struct work *work = context;
@@ -209,8 +209,8 @@ static void diffuse_channel(void *context, int c, int worker)
                           work->scratch[1][c]);
 }
 
-/* Over: what is below counts as whole wherever there is any of it, because a surface goes on
- * behind what hides it. */
+/* Composites a row of the layer over the layers below it. These count as whole wherever there is
+ * any of them, because a surface goes on behind the one that hides it. */
 static void composite_row(void *context, int item, int worker)
 {
     const struct work *work = context;
@@ -230,7 +230,7 @@ static void composite_row(void *context, int item, int worker)
     }
 }
 
-/* Rows y0 - 1 to y1 of a plane to 0, sides and all. */
+/* Clears rows y0 - 1 to y1 of a plane, its sides included. */
 static void clear(const struct work *work, float *plane, int y0, int y1)
 {
     for (int y = y0 - 1; y <= y1 && !rf_cancelled(work->f->exec); y++)
@@ -253,7 +253,7 @@ static void do_layer(struct work *work, int number)
         layer->edge_y = work->scratch[0][1];
         layer->edge_radius = work->scratch[0][2];
         rf_layer_list_edge(layer);
-        if (rf_cancelled(work->f->exec)) /* the list may have no end */
+        if (rf_cancelled(work->f->exec)) /* a cancelled list may have no end */
             return;
         rf_pool_run(pool, extrapolate_tile, work, layer->tiles_x * layer->tiles_y);
     }
@@ -284,7 +284,7 @@ static void write_row(void *context, int item, int worker)
     (void)worker;
     for (int x = f->region.x0; x < f->region.x1; x++) {
         const ptrdiff_t at = y * work->stride + x, p = y * f->view->stride + x;
-        /* where almost nothing is, the picture */
+        /* Where almost nothing was composited, the picture itself counts. */
         const double own = work->below[4][at] < 0.05 ? 0.05 - work->below[4][at] : 0;
         const double w = own * rf_weight_of(f, f->light.channel, p);
         double light[3];

@@ -144,7 +144,8 @@ struct sums {
     float weight[RF_EDGE_TILE], radius[RF_EDGE_TILE];
 };
 
-/* What an edge pixel, or `count` of them together, adds to n points of a row, `step` apart. */
+/* Adds an edge pixel, or `count` of them together, to the sums of n points of a row, `step` apart.
+ */
 static void add_edge(struct sums *restrict sums, float dx, float dy, float step, float count,
                      float radius, int n)
 {

@@ -16,11 +16,11 @@
 
 #include <math.h>
 
-/* Added to C while it flows, and taken away again: no sum comes near the smallest numbers, with
- * which processors are slow. */
+/* LIFT is added to C while it flows, and subtracted again: so no sum comes near the denormal
+ * numbers, with which processors are slow. */
 static const float LIFT = 1 / 1024.0f;
 
-/* Sum over the neighbours of W(q) (C(q) - C(p)): nothing flows where all is the same. */
+/* The sum over the neighbours of W(q) (C(q) - C(p)): nothing flows where all values are alike. */
 #define FLOW(c, w, x, stride)                                                                      \
     ((w)[(x)-1] * ((c)[(x)-1] - (c)[x]) + (w)[(x) + 1] * ((c)[(x) + 1] - (c)[x]) +                 \
      (w)[(x) - (stride)] * ((c)[(x) - (stride)] - (c)[x]) +                                        \
@@ -69,7 +69,7 @@ void rf_series_make(struct rf_series *series, int steps, double largest_weight)
     const double reach = 64 + 8 * sqrt(steps * largest_weight); /* beyond: below rounding */
     const int most = reach < RF_SERIES_MOST ? (int)reach : RF_SERIES_MOST, points = 2 * most;
 
-    /* the cosine transform of the function at Chebyshev's points */
+    /* This is the cosine transform of the function at Chebyshev's points. */
     for (int j = 0; j < points; j++) {
         double sine, t, before = 1, here;
         const double scale = 2.0 / points;
@@ -87,8 +87,8 @@ void rf_series_make(struct rf_series *series, int steps, double largest_weight)
         }
     }
     series->terms = most;
-    /* What is left out reaches a pixel that passes nothing on as a divided difference of T_k,
-     * which is k^2 at the most. */
+    /* The omitted terms reach a pixel that passes nothing on as divided differences of T_k, which
+     * are k^2 at the most. */
     while (series->terms > 2 && tail < 1e-3) {
         series->terms--;
         tail += fabs(coefficient[series->terms - 1]) * series->terms * series->terms;

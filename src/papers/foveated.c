@@ -5,12 +5,12 @@
  * 5, ... are spread as uniform discs, all samples whose circle holds a pixel, front to
  * back: the borders of the discs before the focus from the outermost in, the middle,
  * then those behind it from the innermost out. Alpha saturates, so nothing gets too
- * bright, and what is missing at the end is taken from the picture (hypo-intensity
+ * bright, and the alpha that is missing at the end comes from the picture (hypo-intensity
  * correction).
  *
- * Outside, two Gaussian pyramids (5 x 5, halved each time) hold what is before and what
- * is behind the focus. A pixel reads its own one where the blur is as large as its
- * circle of confusion, between two levels; what that level does not cover comes from
+ * Outside, two Gaussian pyramids (5 x 5, halved each time) hold the pixels before and
+ * behind the focus. A pixel reads the pyramid of its own side between the two levels whose
+ * blurs are nearest to its circle of confusion; the part that they do not cover comes from
  * the picture.
  *
  * Across the side of the volume the one fades into the other.
@@ -45,11 +45,11 @@ struct work {
     const struct level *from;
     struct level *to;
 
-    struct offset *offset; /* by distance; border b begins at border[b] */
+    struct offset *offset; /* sorted by distance; border b begins at border[b] */
     int border[BORDERS + 1], front_borders, back_borders;
-    uint32_t alpha[BORDERS]; /* of each pixel of a disc of diameter 2 b + 1 */
+    uint32_t alpha[BORDERS]; /* alpha[b]: one pixel of a disc of diameter 2 b + 1 */
 
-    double centre_x, centre_y, radius, margin; /* of the volume, pixels */
+    double centre_x, centre_y, radius, margin; /* the volume, pixels */
 };
 
 static uint64_t disc_pixels(int borders)
@@ -71,7 +71,7 @@ static void size_levels(struct work *work, int width, int height)
     }
 }
 
-/* Memory when the arena has some; else *counted is filled and the bytes are counted. */
+/* Lays out the memory of the arena; without any it fills *counted and only counts the bytes. */
 static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *arena,
                             struct work *counted)
 {
@@ -105,7 +105,7 @@ uint64_t rf_foveated_work(const struct rf_limits *limits)
     return arena.used;
 }
 
-/* Which disc a signed blur has: diameter 2 b + 1. */
+/* The border b of the disc that a signed blur has: its diameter is 2 b + 1. */
 static int border_of(int s)
 {
     return ((s < 0 ? -s : s) + 128) >> 8;
@@ -132,7 +132,7 @@ static void list_borders(struct work *work, int most)
     work->border[most + 1] = n;
 }
 
-/* Sums of one pixel of the high resolution technique. */
+/* The sums of one pixel in the high resolution technique. */
 struct sums {
     uint64_t light[3], weight;
     uint32_t alpha;
@@ -150,10 +150,9 @@ static void blend(const struct rf_frame *f, ptrdiff_t q, uint32_t alpha, struct 
         sums->light[c] += w * f->light.channel[c][q];
 }
 
-/* Border b: samples whose disc reaches from there to p, before (sign -1) or behind (1). */
+/* Blends the samples in border b whose disc reaches p, before (sign -1) or behind (1) the focus. */
 static void blend_border(const struct work *work, ptrdiff_t p, int b, int sign, struct sums *sums)
 {
-
     for (int i = work->border[b]; i < work->border[b + 1] && sums->alpha < ONE; i++) {
         const ptrdiff_t q = p + work->offset[i].y * work->f->view->stride + work->offset[i].x;
         const int s = work->f->blur.at[q] * sign;
@@ -178,7 +177,8 @@ static void exact(const struct work *work, int x, int y, double light[3])
         light[c] = (double)sums.light[c] / (double)sums.weight;
 }
 
-/* Level 0: the pixels before the focus in one pyramid, those behind it in the other. */
+/* Writes a row of level 0: pixels before the focus in one pyramid, pixels behind it in the other.
+ */
 static void first_level_row(void *context, int y, int worker)
 {
     const struct work *work = context;
@@ -207,7 +207,7 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* (1 4 6 4 1) / 16 about in[2 x], ends extended; neighbours are `step` apart. */
+/* Filters by (1 4 6 4 1) / 16 about in[2 x], ends extended; neighbours are `step` apart. */
 static float reduce(const float *in, int x, int n, size_t step)
 {
     const float *at[5];
@@ -274,8 +274,9 @@ static void sample(const struct level *level, int i, int x, int y, double share,
     }
 }
 
-/* Variance along one axis of what level i makes of a pixel: the filters' (4^i - 1) / 3, and a
- * sixth of its own pixel's square from the interpolation. A disc of radius r has r^2 / 4. */
+/* The variance along one axis of a pixel as level i shows it: (4^i - 1) / 3 by the filters, and a
+ * sixth of the square of the level's own pixel by the interpolation. A disc of radius r has
+ * r^2 / 4. */
 static double level_variance(int i)
 {
     const double four = (double)(1 << 2 * i);
@@ -303,13 +304,13 @@ static void fast(const struct work *work, int x, int y, double light[3])
         sample(&pyramid[i], i, x, y, 1 - part, sum);
         sample(&pyramid[i + 1], i + 1, x, y, part, sum);
     }
-    /* where the level does not cover, the picture */
+    /* Where the level does not cover, the picture shows. */
     part = sum[4] < 1 ? 1 - sum[4] : 0;
     for (int c = 0; c < 3; c++)
         light[c] = (sum[c] + part * w * f->light.channel[c][p]) / (sum[3] + part * w);
 }
 
-/* 1 in the volume, 0 outside, and between them across its side. */
+/* The share of the exact technique: 1 in the volume, 0 outside, falling across its side. */
 static double attention(const struct work *work, int x, int y)
 {
     const struct rf_settings *p = work->f->params;
@@ -349,7 +350,8 @@ static void write_rows(void *context, int item, int worker)
     }
 }
 
-/* The cone's radius in the picture: tan(half its angle) to tan(half the picture's). */
+/* Makes the volume. The cone's radius is to half the picture's width as tan(half its angle) to
+ * tan(half the picture's). */
 static void make_volume(struct work *work)
 {
     const struct rf_settings *p = work->f->params;

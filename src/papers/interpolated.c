@@ -15,13 +15,14 @@ enum { SECOND = 1 << 15 };
 struct work {
     struct rf_frame *f;
     uint8_t table[RF_BLURRINESS_SIZE];
-    uint16_t share[RF_BLURRINESS_SIZE]; /* of the way to the first target, or SECOND and that
-                                           from there to the second; Q15 */
+    /* Q15 share of the way to the first target, or SECOND plus that from the first to the second:
+     */
+    uint16_t share[RF_BLURRINESS_SIZE];
     struct rf_target target[2];
     struct rf_target_work making;
 };
 
-/* Memory when the arena has some; else *counted is filled and the bytes are counted. */
+/* Lays out the memory of the arena; without any it fills *counted and only counts the bytes. */
 static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *arena,
                             struct work *counted)
 {
@@ -66,7 +67,7 @@ void rf_blurriness_table(uint8_t table[RF_BLURRINESS_SIZE], double focus, double
     }
 }
 
-/* From a to b by a share in Q15; both Q14, which leaves room for a sign. */
+/* Goes from a to b by a share in Q15. Both are Q14, which leaves room for a sign. */
 static inline int16_t between(int16_t a, int16_t b, int16_t share)
 {
     return (int16_t)(a + (int16_t)((2 * (b - a) * share) >> 16));
@@ -79,7 +80,7 @@ static void mix_rows(int16_t *restrict out, const int16_t *restrict a, const int
         out[x] = between(a[x], b[x], share);
 }
 
-/* From the middle of each pixel to that of the next. */
+/* Interpolates from the middle of each pixel to that of the next. */
 static inline void lines(int16_t *restrict out, const int16_t *restrict row, const int16_t *share,
                          int n, const int side)
 {
@@ -88,7 +89,7 @@ static inline void lines(int16_t *restrict out, const int16_t *restrict row, con
             out[x * side + i] = between(row[x], row[x + 1], share[i]);
 }
 
-/* Straight lines between the middles of n pixels, each `side` = 2^shift wide, at n * side
+/* Draws straight lines between the middles of n pixels, each `side` = 2^shift wide, at n * side
  * places; `row` has pixels -1 and n, too. */
 static void enlarge(int16_t *restrict out, const int16_t *restrict row, int n, int shift)
 {
@@ -101,7 +102,7 @@ static void enlarge(int16_t *restrict out, const int16_t *restrict row, int n, i
         out[i] = between(row[-1], row[0], share[side / 2 + i]);
         out[n * side - side / 2 + i] = between(row[n - 1], row[n], share[i]);
     }
-    switch (shift) { /* the compiler knows the side in each */
+    switch (shift) { /* the compiler knows the side in each case */
     case 1:
         lines(place, row, share, n - 1, 2);
         break;
@@ -116,7 +117,7 @@ static void enlarge(int16_t *restrict out, const int16_t *restrict row, int n, i
     }
 }
 
-/* Row y of the picture, of one channel of a target. */
+/* Enlarges one channel of a target to row y of the picture. */
 static void enlarged_row(const struct rf_target *b, int c, int y, int16_t *row, int16_t *out)
 {
     const int place = 2 * y + 1 - (1 << b->shift); /* from the middle of row 0, in halves */
@@ -137,7 +138,7 @@ static void enlarged_row(const struct rf_target *b, int c, int y, int16_t *row, 
     enlarge(out, row, b->width, b->shift);
 }
 
-/* Between the picture and the first target, or above SECOND between that and the second. */
+/* Interpolates between the picture and the first target, or from SECOND on between both targets. */
 static void interpolate(uint16_t *restrict mean, const uint16_t *restrict light,
                         const int16_t *restrict middle, const int16_t *restrict last,
                         const uint16_t *restrict share, int n)
@@ -175,7 +176,7 @@ static void write_row(void *context, int item, int worker)
     rf_encode_row(f, x0, y, n, mean);
 }
 
-/* The table again, as shares of the way from one target to the next. */
+/* Turns the table into shares of the way from one target to the next. */
 static void make_shares(struct work *work)
 {
     for (int i = 0; i < RF_BLURRINESS_SIZE; i++) {
@@ -198,7 +199,7 @@ void rf_interpolated_frame(struct rf_frame *f)
     work->f = f;
     if (last <= 0)
         last = p->max_blur_radius * (df > 0.5 ? df : 1 - df);
-    if (last <= c0) /* then nothing is blurred at all */
+    if (last <= c0) /* nothing is blurred at all */
         last = 2 * c0;
     if (middle <= c0 || middle >= last)
         middle = (c0 + last) / 2;

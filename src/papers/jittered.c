@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-/* 32 well-mixed bits of three numbers. */
+/* Hashes three numbers to 32 well-mixed bits. */
 static uint32_t draw(uint32_t seed, uint32_t place, uint32_t cell)
 {
     uint64_t h = ((uint64_t)place << 32 | cell) + seed * UINT64_C(0x9e3779b97f4a7c15);
@@ -29,9 +29,10 @@ static uint32_t place_of(const struct rf_frame *f, int x, int y)
     return (uint32_t)(y + f->view->y0) << 16 | (uint32_t)(x + f->view->x0);
 }
 
-/* What the pixels of a tile drew of a cell: by member of the cell, the pixels that drew it. */
+/* The draws of the pixels of a tile from one cell: for each member of the cell the pixels that drew
+ * it. */
 struct draws {
-    int first[16 * 16 + 1]; /* in pixel[], of each member */
+    int first[16 * 16 + 1]; /* each member begins there in pixel[] */
     uint8_t pixel[RF_TILE * RF_TILE];
 };
 
@@ -63,7 +64,7 @@ static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell, st
         }
 }
 
-/* Follow the ray through mask pixel (mx, my) for the pixels that drew it. */
+/* Follows the ray through mask pixel (mx, my) for the pixels that drew it. */
 static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_blur_range reach,
                    int mx, int my, const struct draws *draws, int member,
                    struct rf_exact_sums *sums)
@@ -105,6 +106,6 @@ void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
     for (int y = rect.y0; y < rect.y1; y++)
         for (int x = rect.x0; x < rect.x1; x++)
             if (sums.weight[y % RF_TILE * RF_TILE + x % RF_TILE] <= 0)
-                rf_path_add(f, &centre, x, y, 1, &sums); /* all draws were of closed ones */
+                rf_path_add(f, &centre, x, y, 1, &sums); /* all draws hit closed mask pixels */
     rf_exact_write(f, rect, &sums);
 }

@@ -2,12 +2,12 @@
  *
  * Each ray (u, v) of the aperture is a camera. The picture is warped forward to it: pixel q
  * goes to p = q - (u, v) s(q), which is eq. 4 read backwards; where several go to one place
- * the nearest stays. Places that nothing went to are holes: they take the colour of the
- * farther of the two ends of the hole in their row. The views are added up as they are made, so
- * nothing of them is kept: O(N) memory, as the paper notes.
+ * the nearest stays. Places that nothing went to are holes: they get the colour of the
+ * farther of the two ends of the hole in their row. Each view is added up at once, so
+ * no view is stored: O(N) memory, as the paper notes.
  *
- * The picture is done in bands of rows, all views of a band by one thread. A view is kept
- * as the blur s of what was seen: it says from where, p + (u, v) s, as well.
+ * The picture is done in bands of rows, all views of a band by one thread. A view is stored
+ * as the blur s of the pixel that was seen, which also tells its place, p + (u, v) s.
  */
 #include "papers/papers.h"
 
@@ -55,7 +55,7 @@ static int greater(int a, int b)
     return a > b ? a : b;
 }
 
-/* Warp all that can come to rows y0 .. y1 - 1 in the view of a ray. */
+/* Warps all pixels that can come to rows y0 .. y1 - 1 in the view of a ray. */
 static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0, int y1,
                  struct band *band)
 {
@@ -93,7 +93,7 @@ static void add(const struct rf_frame *f, const struct refocus_ray *ray, ptrdiff
         band->light[c][at] += w * f->light.channel[c][q];
 }
 
-/* Add a row of a view to the sums, its holes filled. */
+/* Adds a row of a view to the sums, with its holes filled. */
 static void add_row(const struct rf_frame *f, const struct refocus_ray *ray, int y, int row,
                     struct band *band)
 {

@@ -14,7 +14,7 @@
 
 enum { MOST_ORDERS = 2100 };
 
-/* J_0(v) .. J_n(v) by Miller's backward recurrence, J_(k-1) = (2k/v) J_k - J_(k+1), and
+/* Computes J_0(v) .. J_n(v) by Miller's backward recurrence, J_(k-1) = (2k/v) J_k - J_(k+1), and
  * J_0 + 2 J_2 + 2 J_4 + ... = 1. Returns n, beyond which they are below 1e-12. */
 static int bessel(double v, double *j)
 {

@@ -1,4 +1,4 @@
-/* papers.h: the methods of the papers, and what they share.
+/* papers.h: the methods that the papers compare, and the functions that these methods share.
  *
  * Methods that work on whole frames run their own passes on f->exec and write all pixels of
  * f->region. Their memory is f->work: as much as their work_bytes says for the renderer's limits,
@@ -18,7 +18,7 @@ rf_frame_fn rf_lightfield_frame, rf_scatter_frame, rf_foveated_frame, rf_interpo
 rf_work_bytes_fn rf_lightfield_work, rf_scatter_work, rf_foveated_work, rf_interpolated_work,
     rf_diffusion_work;
 
-/* Pixel (x, y) of the region from Q12 light times weights, and the weights. */
+/* Writes pixel (x, y) of the region: the quotient of Q12 light times weights and of the weights. */
 static inline void rf_write_mean(const struct rf_frame *f, int x, int y, const uint64_t light[3],
                                  uint64_t weight)
 {
@@ -30,7 +30,7 @@ static inline void rf_write_mean(const struct rf_frame *f, int x, int y, const u
     rf_write_pixel(f, x, y, rgb);
 }
 
-/* The same from real numbers. Sums of one colour may be off by rounding, as long as it is
+/* Writes a pixel from real numbers. Sums of one colour may be off by rounding, as long as it is
  * less than half a step of the mean. */
 static inline void rf_write_real(const struct rf_frame *f, int x, int y, const double light[3],
                                  double weight)

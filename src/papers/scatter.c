@@ -1,4 +1,4 @@
-/* scatter.c: every sample spread over its circle of confusion, Potmesil & Chakravarty 1981.
+/* scatter.c: spreads every sample over its circle of confusion, Potmesil & Chakravarty 1981.
  *
  * The picture is a grid of samples. Each spreads its light over its circle of confusion by an
  * intensity distribution whose integral is 1: lookup tables for equally spaced blur radii
@@ -9,7 +9,7 @@
  * A star filter spreads part of the light again along spikes. It is applied to the four
  * sums, so that it is one more factor of each sample's distribution.
  *
- * Nothing says who hides whom: what is blurred behind washes over what is sharp before it.
+ * Visibility is ignored: a blurred background washes over a sharp foreground.
  */
 #include "papers/papers.h"
 #include "papers/scatter.h"
@@ -19,28 +19,28 @@
 
 enum {
     BAND = 16,
-    AT_ONCE = 32, /* pixels between two looks at whether to go on */
+    AT_ONCE = 32, /* pixels between two looks for a cancelled run */
     MOST_TABLES = 4 * REFOCUS_MAX_BLUR_RADIUS + 1,
     MOST_SPIKES = 16,
 };
 
 struct work {
-    /* What the tables were made for. */
+    /* The tables, and the settings that they are for: */
     uint64_t tag;
     double radius, airy_radius;
     uint32_t spread;
     int tables;
     struct rf_spread_table *table;
     uint32_t *shares;
-    uint32_t *attenuation; /* 1 / z^2 in Q12 of the nearest, of d >> 8 */
+    uint32_t *attenuation; /* 1 / z^2 for d >> 8, in Q12 of the nearest plane's */
     uint64_t *sum[4];      /* numerators R, G, B and the denominator; row after row */
-    /* Of the frame. */
+    /* The frame: */
     struct rf_frame *f;
     int spike_count, spike_length;
     double spike_x[MOST_SPIKES], spike_y[MOST_SPIKES];
 };
 
-/* Memory when the arena has some; else *counted is filled and the bytes are counted. */
+/* Lays out the memory of the arena; without any it fills *counted and only counts the bytes. */
 static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *arena,
                             struct work *counted)
 {
@@ -78,12 +78,12 @@ static void fill_table(void *context, int item, int worker)
     struct work *work = context;
 
     (void)worker;
-    /* the largest first: they take longest */
+    /* The largest tables come first, as they take longest. */
     rf_spread_fill(&work->table[work->tables - 1 - item], work->spread, work->airy_radius,
                    work->f->exec->run);
 }
 
-/* Tables for this K, unless they are there already. */
+/* Makes the tables for this K, unless they are there already. */
 static bool make_tables(struct work *work, struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
@@ -113,7 +113,8 @@ static bool make_tables(struct work *work, struct rf_frame *f)
     return true;
 }
 
-/* 1 / z^2 of disparities d = i / 255, of the nearest: ((1 + d (ratio - 1)) / ratio)^2. */
+/* Makes the table of 1 / z^2 for disparities d = i / 255, relative to the nearest plane:
+ * ((1 + d (ratio - 1)) / ratio)^2. */
 static void make_attenuation(struct work *work, double ratio)
 {
     for (int i = 0; i < 256; i++) {
@@ -124,7 +125,7 @@ static void make_attenuation(struct work *work, double ratio)
     }
 }
 
-/* Weight of the sample at (x, y): eq. 5 times 1 / z^2, at most 2^16. */
+/* The weight of the sample at (x, y): eq. 5 times 1 / z^2, at most 2^16. */
 static uint32_t weight_of(const struct work *work, int x, int y)
 {
     const struct rf_frame *f = work->f;
@@ -136,7 +137,7 @@ static uint32_t weight_of(const struct work *work, int x, int y)
     return (w * z >> 12) + !(w * z >> 12);
 }
 
-/* A row of the circle of a sample added to a row of sums. */
+/* Adds a row of the circle of a sample to a row of sums. */
 static void add_row(struct work *work, const uint32_t *restrict a, const uint32_t *restrict b,
                     uint32_t t, int count, size_t at, const uint32_t value[4])
 {
@@ -153,7 +154,7 @@ static void add_row(struct work *work, const uint32_t *restrict a, const uint32_
     }
 }
 
-/* Spread the sample at (x, y) over rows y0 .. y1 - 1. */
+/* Spreads the sample at (x, y) over rows y0 .. y1 - 1. */
 static void spread_sample(struct work *work, int x, int y, int y0, int y1)
 {
     const ptrdiff_t q = y * work->f->view->stride + x;
@@ -161,7 +162,7 @@ static void spread_sample(struct work *work, int x, int y, int y0, int y1)
     const uint32_t w = weight_of(work, x, y);
     const uint32_t value[4] = {w * work->f->light.channel[0][q], w * work->f->light.channel[1][q],
                                w * work->f->light.channel[2][q], w};
-    /* Q7 place among the tables */
+    /* The place among the tables is Q7. */
     const int largest = work->radius * 256 < 1 ? 1 : (int)(work->radius * 256 + 0.5);
     const int place = (int)((int64_t)blur * (work->tables - 1) * 128 / largest);
     const int i = place >> 7 < work->tables - 1 ? place >> 7 : work->tables - 2;
@@ -180,7 +181,8 @@ static void spread_sample(struct work *work, int x, int y, int y0, int y1)
     }
 }
 
-/* Sums are whole numbers, and a band of rows is one thread's: their order does not matter. */
+/* Spreads all samples over a band of rows. Sums are whole numbers and a band belongs to one thread,
+ * so their order does not matter. */
 static void spread_band(void *context, int item, int worker)
 {
     struct work *work = context;
@@ -200,7 +202,7 @@ static void spread_band(void *context, int item, int worker)
         }
 }
 
-/* Spikes with a strength that falls linearly to their end. */
+/* Makes the spikes of the star, whose strength falls linearly to their end. */
 static void make_star(struct work *work)
 {
     const struct rf_settings *p = work->f->params;
@@ -228,7 +230,7 @@ static void add_sums(const struct work *work, int x, int y, double weight, doubl
             weight * (double)work->sum[i][(size_t)cy * (size_t)work->f->view->width + (size_t)cx];
 }
 
-/* Light comes to (x, y) from where a spike of that light reaches it. */
+/* Writes a pixel with the light that the spikes of other pixels bring to (x, y). */
 static void write_star(const struct work *work, int x, int y)
 {
     const double strength = work->f->params->star_strength;

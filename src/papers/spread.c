@@ -25,7 +25,7 @@ int rf_spread_reach(double max_radius, int i)
     return (int)ceil(max_radius * next / (n - 1));
 }
 
-/* Intensity from the middle, [0], to the rim, [count]. */
+/* Computes the intensity from the middle, [0], to the edge of the circle, [count]. */
 static int make_profile(double radius, uint32_t spread, double airy_radius,
                         double profile[PROFILE + 1], struct rf_run *run)
 {
@@ -41,7 +41,7 @@ static int make_profile(double radius, uint32_t spread, double airy_radius,
     return count;
 }
 
-/* Integral over the pixel (x, y) by n x n points. */
+/* Integrates over the pixel (x, y) by n x n points. */
 static double over_pixel(double radius, const double *profile, int count, int x, int y)
 {
     const int n = radius < 16 ? 16 : radius < 48 ? 8 : 4;
@@ -76,7 +76,7 @@ void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_
         return;
     }
     count = make_profile(table->radius, spread, airy_radius, profile, run);
-    for (int pass = 0; pass < 2; pass++) { /* first the sum, then the shares of it */
+    for (int pass = 0; pass < 2; pass++) { /* first the sum, then the shares */
         for (int y = 0; y <= most; y++) {
             if (rf_run_cancelled(run))
                 return;
@@ -96,8 +96,8 @@ void rf_spread_fill(struct rf_spread_table *table, uint32_t spread, double airy_
             }
         }
     }
-    /* What rounding left over goes to the middle, which keeps at least a little: a pixel's
-     * denominator is never 0. */
+    /* The remainder of rounding goes to the middle, which keeps at least a little, so that a
+     * pixel's denominator is never 0. */
     left += table->share[reach];
     table->share[reach] = left > 1 ? (uint32_t)left : 1;
 }

@@ -1,9 +1,11 @@
+/* target.c: makes the blurred pictures of the NVIDIA white paper, by means of blocks and a filter.
+ */
 #include "papers/target.h"
 
 #include <string.h>
 
-/* Three boxes of 2 h + 1 values and the share a of one more at each side have three times the
- * variance of one. */
+/* Makes the taps of a filter with this variance: three boxes of 2 h + 1 values and the share a of
+ * one more at each side have three times the variance of one box. */
 static void make_taps(struct rf_target_work *work, double variance)
 {
     double kernel[2 * RF_TARGET_TAPS + 1] = {0}, a;
@@ -28,9 +30,9 @@ static void make_taps(struct rf_target_work *work, double variance)
         work->tap[i] = (float)kernel[RF_TARGET_TAPS + i];
 }
 
-/* Size and filter for a blur radius: a disc of radius r has the variance r^2 / 4 along an axis,
- * of which means of blocks make (side^2 - 1) / 12 and enlarging them by straight lines
- * side^2 / 6. */
+/* Sets size and filter for a blur radius. A disc of radius r has the variance r^2 / 4 along an
+ * axis, of which means of blocks make (side^2 - 1) / 12 and enlarging them by straight lines side^2
+ * / 6. */
 static void shape(struct rf_target_work *work, struct rf_target *target, double radius)
 {
     double variance = radius * radius / 4;
@@ -54,7 +56,7 @@ static void add_row(uint32_t *restrict sum, const uint16_t *restrict row, int n)
         sum[x] += row[x];
 }
 
-/* Means of blocks of side x side pixels of the picture, whose border is extended. */
+/* Computes means of blocks of side x side pixels of the picture, whose border is extended. */
 static void reduce(const struct rf_target_work *work, int c, int y, uint32_t *sum, float *out)
 {
     const struct rf_target *t = work->target;
@@ -78,7 +80,7 @@ static void reduce(const struct rf_target_work *work, int c, int y, uint32_t *su
     }
 }
 
-/* The same of light times the weights of eq. 5, and the weights. */
+/* Computes such means of light times the weights of eq. 5, and of the weights. */
 static void reduce_weighted(const struct rf_target_work *work, int y,
                             float *const out[RF_TARGET_CHANNELS])
 {

@@ -12,19 +12,19 @@ struct rf_target {
 
 enum {
     RF_TARGET_SHIFTS = 4,
-    RF_TARGET_TAPS = 12, /* to either side, at the most */
+    RF_TARGET_TAPS = 12, /* at most so many to either side */
     RF_TARGET_SPARE = 64,
-    RF_TARGET_ROWS = 5,     /* of floats, scratch of a thread */
+    RF_TARGET_ROWS = 5,     /* rows of floats, scratch of a thread */
     RF_TARGET_CHANNELS = 4, /* light times weight in R, G, B, and the weight of eq. 5 */
 };
 
 struct rf_target_work {
     const struct rf_frame *f;
-    float *across[RF_TARGET_CHANNELS]; /* filtered in x; of the picture's size */
+    float *across[RF_TARGET_CHANNELS]; /* filtered in x, as large as the picture */
     float *row;                        /* scratch of each thread */
     int row_length;                    /* the picture's width and RF_TARGET_SPARE */
     const struct rf_target *target;
-    float tap[RF_TARGET_TAPS + 1]; /* of the filter */
+    float tap[RF_TARGET_TAPS + 1]; /* the filter from its middle on */
     int taps;
 };
 
@@ -38,7 +38,7 @@ static inline int rf_clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Set size and light, for a blur radius in pixels that is cut at REFOCUS_MAX_BLUR_RADIUS. */
+/* Sets size and light for a blur radius in pixels that is cut at REFOCUS_MAX_BLUR_RADIUS. */
 void rf_target_make(struct rf_target_work *work, struct rf_target *target, double radius);
 
 #endif

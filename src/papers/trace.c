@@ -1,4 +1,4 @@
-/* trace.c: where a ray goes in the picture, and what it meets there.
+/* trace.c: follows rays through the picture to the surfaces that they hit.
  *
  * The part of a ray between the nearest and the farthest plane covers, in the picture, the
  * segment from p + u K (df - 1) to p + u K df. Its pixels are tried from the near end; the
@@ -6,8 +6,8 @@
  *
  *     | l_pq - |u| K (df - d_q) | <= 1/2,
  *
- * is what the ray sees. For one ray and one l_pq those are the d_q of an interval, the same
- * for every pixel p. A ray that meets nothing is hidden: the surface of p is taken to be
+ * is the one that the ray sees. For one ray and one l_pq those are the d_q of an interval, the same
+ * for every pixel p. A ray that hits nothing is hidden: the surface of p is assumed to be
  * symmetric about p, so the hidden pixel at l = |u| K (df - d_p) is replaced by the one at -l.
  */
 #include "papers/papers.h"
@@ -55,7 +55,7 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Rounded half up; |x| < 2^30. */
+/* Rounds half up; |x| < 2^30. */
 static int nearest(double x)
 {
     const int whole = (int)(x + 0.5);
@@ -63,7 +63,8 @@ static int nearest(double x)
     return whole - (whole > x + 0.5);
 }
 
-/* The disparities that satisfy eq. 4 at distance `along`: low to low + width; false: none. */
+/* Finds the disparities that satisfy eq. 4 at distance `along`: low to low + width. Returns false
+ * if there are none. */
 static bool hit_range(double along, double reach, double df, struct rf_step *step)
 {
     const double least = (df - (along + 0.5) / reach) * 65535;
@@ -137,7 +138,7 @@ void rf_path_of(const struct rf_frame *f, struct rf_blur_range reach, double u, 
     }
 }
 
-/* The front-most hit of the ray of pixel (x, y); false: it meets nothing. */
+/* Finds the front-most hit of the ray of pixel (x, y); returns false if it hits nothing. */
 static bool trace(const struct rf_frame *f, const struct rf_path *path, int x, int y, int *qx,
                   int *qy)
 {
@@ -160,7 +161,7 @@ static bool trace(const struct rf_frame *f, const struct rf_path *path, int x, i
     return false;
 }
 
-/* The pixel that stands for one hidden from the ray. */
+/* Finds the pixel that stands for the one that is hidden from the ray. */
 static void mirror(const struct rf_frame *f, const struct rf_path *path, int x, int y, int *qx,
                    int *qy)
 {

@@ -7,28 +7,28 @@
 /* A ray covers at most K + 2 pixels along its longer axis. */
 enum { RF_MAX_STEPS = REFOCUS_MAX_BLUR_RADIUS + 3 };
 
-/* A pixel on the way of a ray and the disparities that the ray can meet there. */
+/* A pixel on the way of a ray and the disparities that the ray can hit there. */
 struct rf_step {
     int16_t dx, dy;
-    uint16_t low, width; /* a hit if 0 <= d - low <= width; see `never` */
+    uint16_t low, width; /* a hit if 0 <= d - low <= width */
     ptrdiff_t offset;    /* in f->disparity.at */
 };
 
 struct rf_path {
     double u, v;
-    bool central; /* the ray through the middle of the lens meets its own pixel */
+    bool central; /* the ray through the middle of the lens hits its own pixel */
     int steps;    /* from the nearest plane to the farthest */
     struct rf_step step[RF_MAX_STEPS];
 };
 
-/* The least and the largest blur K (df - d), in pixels, that rays of a tile can meet. */
+/* The least and the largest blur K (df - d), in pixels, that rays of a tile can hit. */
 struct rf_blur_range {
     double least, most;
 };
 struct rf_blur_range rf_blur_range_of(const struct rf_frame *f, int tx, int ty);
 
-/* The way of ray (u, v), the same for every pixel of a tile: the part of it where there can be
- * something. */
+/* Finds the way of ray (u, v), which is the same for every pixel of a tile: the part of it where
+ * there can be a hit. */
 void rf_path_of(const struct rf_frame *f, struct rf_blur_range reach, double u, double v,
                 struct rf_path *path);
 
@@ -38,12 +38,12 @@ struct rf_exact_sums {
     double weight[RF_TILE * RF_TILE];
 };
 
-/* Adds what the ray sees at (x, y) to the sums: the front-most hit, or where there is none
- * the pixel mirrored about (x, y). */
+/* Adds the light of the ray of (x, y) to the sums: that of the front-most hit, or where there is
+ * none that of the pixel mirrored about (x, y). */
 void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, int y, double weight,
                  struct rf_exact_sums *sums);
 
-/* Means into the output picture. */
+/* Writes the means to the output picture. */
 void rf_exact_write(const struct rf_frame *f, struct rf_rect rect,
                     const struct rf_exact_sums *sums);
 
