@@ -1,3 +1,4 @@
+/* create.c: creates, describes and ends renderers. */
 #include <refocus/render.h>
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* layout.c: where everything in a renderer's block of memory lies. */
+/* layout.c: lays out everything that a renderer holds in one block of memory. */
 #include "renderer/layout.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 #include "support/arena.h"
 #include "tiles/ranges.h"
 
-/* Pixels that may be read beyond the picture: the largest offset, one for the
- * pre-filter, one for rounding. */
+/* The pixels beyond the picture that may be read: the largest offset, one for the pre-filter, and
+ * one for rounding. */
 int rf_padding_for(float max_blur_radius)
 {
     return (int)ceilf(max_blur_radius) + 2;
@@ -21,7 +21,7 @@ ptrdiff_t rf_pitch_for(int width, int pad)
     const int tiles = (width + RF_TILE - 1) / RF_TILE;
     const ptrdiff_t pitch = ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) / 32;
 
-    /* an odd number of cache lines: rows and planes then spread over all cache sets */
+    /* With an odd number of cache lines, rows and planes spread over all cache sets. */
     return 32 * (pitch | 1);
 }
 
@@ -34,14 +34,14 @@ static void take_level(struct rf_arena *arena, struct rf_level *level)
     level->blur.at = rf_arena_take(arena, pixels, 2);
 }
 
-/* Elements of a group of padded planes: row y of plane i is at group + y * stride + i *
- * pitch, so that what is read together lies together. */
+/* The number of elements of a group of padded planes. Row y of plane i is at group + y * stride + i
+ * * pitch, so that rows that are read together lie together. */
 static uint64_t group_size(const struct rf_photo *photo, int height)
 {
     return (uint64_t)photo->stride * ((uint64_t)height + 2 * (uint64_t)photo->pad + RF_TILE);
 }
 
-/* What a photo of at most this size has beside its planes. */
+/* Lays out the lists of a photo of at most this size: silhouettes, highlights, blends of bands. */
 static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
 {
     rf_take_silhouettes(&photo->silhouettes, arena, width, height);
@@ -49,7 +49,7 @@ static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width
     photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
-/* Thin things of a photo of this size. */
+/* Lays out the thin structures of a photo of this size. */
 static void take_thin(struct rf_arena *arena, struct rf_thin_list *thin, int width, int height)
 {
     const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
@@ -59,7 +59,8 @@ static void take_thin(struct rf_arena *arena, struct rf_thin_list *thin, int wid
     thin->run = rf_arena_take(arena, across * down, sizeof *thin->run);
 }
 
-/* What is drawn of them. Its sources lie in the pyramid, which comes later. */
+/* Lays out the coverage that thin structures are drawn into. Its sources share memory with the
+ * pyramid, which comes later. */
 static void take_coverage(struct rf_arena *arena, struct rf_coverage *coverage, int width,
                           int height)
 {
@@ -75,7 +76,7 @@ static void take_coverage(struct rf_arena *arena, struct rf_coverage *coverage, 
     coverage->swapped = rf_arena_take(arena, down, sizeof *coverage->swapped);
 }
 
-/* The photo, and what a lens setting makes of it. */
+/* Lays out the photo, and the planes that depend on the lens setting. */
 static void take_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                        struct rf_arena *arena)
 {
@@ -97,8 +98,8 @@ static void take_whole(struct refocus_renderer *r, const struct refocus_renderer
         photo->disparity = first + 3 * photo->pitch;
     }
     take_lists(arena, photo, w, h);
-    r->seen_group = rf_arena_take(arena, size, 2);
-    r->behind_group = rf_arena_take(arena, size, 2);
+    r->smooth_group = rf_arena_take(arena, size, 2);
+    r->background_group = rf_arena_take(arena, size, 2);
 }
 
 static int up_to_tiles(int v)
@@ -107,9 +108,9 @@ static int up_to_tiles(int v)
 }
 
 /*
- * The mark of a pixel depends on pixels 2 K + 1 away; the fill of one, by way of levels
- * below RF_KEPT, on known ones 12 away, whose light depends on 7 more; blur, where
- * there are lamps, on 5 more.
+ * Chooses the sides and margins of blocks. The mark of a pixel depends on pixels 2 K + 1 away. An
+ * inpainted pixel depends, by way of levels below RF_KEPT, on known pixels 12 away, whose light
+ * depends on 7 more; blur, where there are highlights, depends on 5 more.
  */
 static void shape_blocks(struct rf_in_place *in_place, int pad)
 {
@@ -123,7 +124,8 @@ static void shape_blocks(struct rf_in_place *in_place, int pad)
     in_place->block = MARK_BLOCK + 2 * (in_place->mark_margin - in_place->margin);
 }
 
-/* Planes for the window of a block, and what is kept of the whole photo. */
+/* Lays out the planes of the window of a block, and the marks and levels that are stored for the
+ * whole photo. */
 static void take_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                         struct rf_arena *arena)
 {
@@ -140,8 +142,8 @@ static void take_blocks(struct refocus_renderer *r, const struct refocus_rendere
     photo->stride = RF_GROUP * photo->pitch;
     size = (uint64_t)photo->stride * (uint64_t)(side + RF_TILE + 2 * RF_SPARE_ROWS);
     photo->group = rf_arena_take(arena, size, 2);
-    r->seen_group = rf_arena_take(arena, size, 2);
-    r->behind_group = rf_arena_take(arena, size, 2);
+    r->smooth_group = rf_arena_take(arena, size, 2);
+    r->background_group = rf_arena_take(arena, size, 2);
     photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
     take_lists(arena, photo, w, h);
     in_place->known_stride = (w + 7) / 8;
@@ -151,7 +153,7 @@ static void take_blocks(struct refocus_renderer *r, const struct refocus_rendere
         take_level(arena, &in_place->kept.level[i]);
 }
 
-/* Bytes for the greediest of the methods that work on whole frames. */
+/* The most bytes that any of the methods of whole frames needs. */
 static uint64_t work_bytes(const struct refocus_renderer_params *params)
 {
     const struct rf_limits limits = {params->max_width, params->max_height,
@@ -179,22 +181,22 @@ static int block_side(const struct refocus_renderer_params *params)
     return rf_block_side(&in_place);
 }
 
-/* As many as the largest full mask, or all sets of N, have. */
+/* The number of rays of the largest full mask, or of all sets of N rays, whichever is more. */
 static uint64_t few_rays(const struct refocus_renderer_params *params)
 {
     const uint64_t side = 2 * (uint64_t)ceilf(params->max_blur_radius) + 1;
-    const uint64_t sets = 7680; /* on both sides of the focus, and coordinates apart */
+    const uint64_t sets = 7680; /* for both sides of the focus, and with coordinates apart */
 
     return side * side > sets ? side * side : sets;
 }
 
-/* Sets the pointers of r, or with arena->base == NULL only counts. */
+/* Sets the pointers of r; with arena->base == NULL it only counts the bytes. */
 static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                     struct rf_arena *arena)
 {
     const int side = params->in_place ? block_side(params) : INT32_MAX;
     const int w = params->max_width, h = params->max_height;
-    /* of the largest window */
+    /* The size of the largest window. */
     const int across = w < side ? w : side, down = h < side ? h : side;
     const uint64_t tiles =
         (uint64_t)((across + RF_TILE - 1) / RF_TILE) * (uint64_t)((down + RF_TILE - 1) / RF_TILE);
@@ -211,8 +213,8 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     for (int i = 1; i <= r->pyramid.levels; i++)
         take_level(arena, &r->pyramid.level[i]);
     after = arena->used;
-    arena->used = before; /* the pyramid is done with before there are weights */
-    /* weights, and before them the foreground */
+    arena->used = before; /* the pyramid is no longer needed when weights begin */
+    /* This holds the foreground cells, and then the weights. */
     r->foreground.stride = rf_pitch_for(across, pad);
     r->foreground.most = rf_arena_take(
         arena, (uint64_t)r->foreground.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
@@ -220,7 +222,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         r->foreground.most += pad * (r->foreground.stride + 1);
     after = arena->used > after ? arena->used : after;
     r->has_thin = params->thin && !params->in_place;
-    if (r->has_thin) { /* and not begun while sources are drawn */
+    if (r->has_thin) { /* the pyramid begins after the sources are drawn */
         arena->used = before;
         r->coverage.source =
             rf_arena_take(arena, RF_COVERAGE_SOURCES * tiles, rf_coverage_source_bytes());
@@ -254,7 +256,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
 uint64_t rf_layout_size(const struct refocus_renderer_params *params)
 {
     struct refocus_renderer counted;
-    struct rf_arena arena = {NULL, RF_ARENA_ALIGN}; /* blocks may begin anywhere */
+    struct rf_arena arena = {NULL, RF_ARENA_ALIGN}; /* a block may begin anywhere */
 
     rf_arena_take(&arena, 1, sizeof counted);
     lay_out(&counted, params, &arena);

@@ -1,4 +1,4 @@
-/* load.c: takes a photo and its disparities into the planes of the window. */
+/* load.c: loads a photo and its disparities into the planes of the window. */
 #include "renderer/load.h"
 
 #include "passes/disparity.h"
@@ -38,7 +38,7 @@ void rf_reload_yuv_rows(struct refocus_renderer *r, int y0, int y1, int worker)
     rf_reblend_yuv_rows(&r->exec, &r->view, &pass, y0, y1, worker);
 }
 
-/* The planes of pre-filtered light are free until something is rendered. */
+/* Uses the planes of pre-filtered light as scratch: they are free until something is rendered. */
 void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparity *map, int step,
                        int left, int above)
 {

@@ -10,8 +10,7 @@
  *     smooth           upsampling (colours), dequantising (spare) | pre-filtered light
  *     background blur  cells | blur of the hidden background | its weights
  *     background light upsampling | spare of the pre-filter | cone | light of the hidden background
- *     pyramid          coverage sources | pyramid | foreground cells | weights of the pre-filtered
- * light
+ *     pyramid          coverage sources | pyramid | foreground cells | weights
  *
  * Of a photo of Y, U and V the weights lie in the third plane of the hidden background's light,
  * which no other plane of such a photo uses: there they share nothing.
@@ -27,7 +26,7 @@ enum rf_plane {
     RF_PLANE_NONE,
     RF_PLANE_UPSAMPLE_CONFIDENCE,
     RF_PLANE_BLUR,
-    RF_PLANE_PREPARE_SPARE, /* of upsampling, or of dequantising */
+    RF_PLANE_PREPARE_SPARE, /* scratch of upsampling and of dequantising */
     RF_PLANE_SMOOTH,
     RF_PLANE_CELLS,
     RF_PLANE_BACKGROUND_BLUR,
@@ -58,12 +57,13 @@ struct rf_lifetimes {
     uint8_t lives[RF_SLOTS]; /* enum rf_plane */
 };
 
-/* The plane is about to be written; what lay in its slot is gone. */
+/* Declares that a plane is about to be written: the plane that lay in its slot is gone. */
 void rf_plane_begin(struct rf_lifetimes *lifetimes, enum rf_plane plane);
 
+/* Whether a plane was begun and no other one of its slot since. */
 bool rf_plane_lives(const struct rf_lifetimes *lifetimes, enum rf_plane plane);
 
-/* The plane is about to be read. */
+/* Declares that a plane is about to be read. */
 static inline void rf_plane_read(const struct rf_lifetimes *lifetimes, enum rf_plane plane)
 {
     assert(rf_plane_lives(lifetimes, plane));

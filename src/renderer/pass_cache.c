@@ -62,13 +62,14 @@ void rf_note_light(struct rf_frame *f)
     memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
-/* What a region needs of the photo. */
+/* The parts of the photo that a region needs. */
 struct parts {
-    struct rf_rect seen; /* where its rays go, in whole cells: the background layer */
-    struct rf_rect bins; /* and the tiles that may reach it */
+    struct rf_rect visible; /* where its rays go, in whole cells: needs the hidden background */
+    struct rf_rect bins;    /* tiles that may reach it: need bins */
 };
 
-/* What r->cache.thin is for this frame: 0, or the size of discs and the blend. */
+/* The value of r->cache.thin for this frame: 0, or the size of discs, whether there are mattes, and
+ * the blend. */
 static uint32_t thin_key(const struct rf_frame *f)
 {
     return rf_thin_is_separated(&f->thin)
@@ -85,7 +86,7 @@ static bool has_same_thin(const struct rf_frame *f)
            (!rf_thin_is_separated(&f->thin) || m->splat_blur == f->thin.splat_blur);
 }
 
-/* Whether all of that is there. */
+/* Whether all results that these parts need are there. */
 static bool is_there(const struct rf_frame *f, const struct parts *parts, bool layers)
 {
     const struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
@@ -93,12 +94,12 @@ static bool is_there(const struct rf_frame *f, const struct parts *parts, bool l
     if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
         return false;
     return rf_same_lens(f) && contains(m->window, parts->bins) && has_same_thin(f) &&
-           (layers ? m->background && rf_same_light(f) && contains(m->exact, parts->seen) &&
+           (layers ? m->background && rf_same_light(f) && contains(m->exact, parts->visible) &&
                          (!m->weighted || rf_is_sweep(f))
                    : !m->silhouettes);
 }
 
-/* Blur, bins and silhouettes of the window. */
+/* Computes blur, bins and silhouettes of the window, as far as they are not there. */
 static void make_blur(struct rf_frame *f, bool layers)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -121,13 +122,14 @@ static void make_blur(struct rf_frame *f, bool layers)
         m->blur = !rf_cancelled(&r->exec);
     }
     if (m->blur && layers && !m->silhouettes) {
-        m->blur = false; /* until all are in */
+        m->blur = false; /* until all of them are patched in */
         rf_pass_silhouettes(f);
         m->blur = m->silhouettes = !rf_cancelled(&r->exec);
     }
 }
 
-/* Highlights change the blur: they are marked in one that is new, make_blur(). */
+/* Computes the smooth light, unless it is there. Highlights change the blur: they are marked only
+ * in blur that is new, see make_blur(). */
 static void make_smooth(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -145,28 +147,29 @@ static void make_smooth(struct rf_frame *f)
     } else {
         rf_pass_smooth(f);
         m->ranges = !rf_cancelled(&r->exec);
-        m->blur = m->ranges; /* else its cells may be gone */
+        m->blur = m->ranges; /* a cancelled pass may have lost its cells */
     }
     rf_note_light(f);
     m->smooth = !rf_cancelled(&r->exec);
 }
 
-/* `part` of the photo in the window. */
+/* A part of the photo, in pixels of the window. */
 static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
 {
     return (struct rf_rect){part.x0 - r->view.x0, part.y0 - r->view.y0, part.x1 - r->view.x0,
                             part.y1 - r->view.y0};
 }
 
-/* How far beyond a tile something thick decides what becomes of what is thin in it. */
+/* The distance beyond a tile within which a thick surface decides how thin structures in the tile
+ * are drawn. */
 static int thin_margin(const struct rf_frame *f)
 {
     return rf_thin_is_separated(&f->thin) ? rf_renderer_of(f)->view.pad + 2 * RF_TILE : 0;
 }
 
-/* How far from the window's sides the mark and the smooth light are those of the whole
- * photo: a cone's reach and the three steps of the pre-filter; at the photo's own
- * sides, all. */
+/* The part of the window where the mark and the smooth light are the same as for the whole photo.
+ * It is the reach of a cone and of the three steps of the pre-filter away from the window's sides;
+ * at the photo's own sides nothing is lost. */
 static struct rf_rect sure_part(const struct rf_frame *f)
 {
     const struct refocus_renderer *r = rf_renderer_of(f);
@@ -181,23 +184,23 @@ static struct rf_rect sure_part(const struct rf_frame *f)
     };
 }
 
-/* The background layer of the window; true: `seen` is as if made for the whole photo.
- */
-static bool make_background(struct rf_frame *f, struct rf_rect seen)
+/* Computes the hidden background of the window. Returns true if `visible` has the same background
+ * as it has for the whole photo. */
+static bool make_background(struct rf_frame *f, struct rf_rect visible)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_pass_cache *m = &r->cache;
 
-    if (m->background && contains(m->exact, seen) && (!m->weighted || rf_is_sweep(f)))
+    if (m->background && contains(m->exact, visible) && (!m->weighted || rf_is_sweep(f)))
         return true;
     m->background = false;
     rf_pass_mark_background(f, r->pyramid.levels);
     if (rf_cancelled(&r->exec))
         return false;
     if (!contains(m->window, rf_whole(r)) &&
-        !rf_background_is_exact(&r->view, &r->pyramid, in_window(r, seen), sure_part(f)))
+        !rf_background_is_exact(&r->view, &r->pyramid, in_window(r, visible), sure_part(f)))
         return false;
-    m->exact = contains(m->window, rf_whole(r)) ? m->window : seen;
+    m->exact = contains(m->window, rf_whole(r)) ? m->window : visible;
     rf_pass_inpaint(f, r->pyramid.levels);
     m->background = !rf_cancelled(&r->exec);
     m->weighted = false;
@@ -214,7 +217,7 @@ static int ceil_to(int v, int step, int most)
     return v > most - step ? most : (v + step - 1) / step * step;
 }
 
-/* A part of the photo, grown by so many pixels each way and on to whole `step`s. */
+/* A part of the photo, grown by so many pixels each way and then to multiples of `step`. */
 static struct rf_rect grown(const struct refocus_renderer *r, struct rf_rect part, int by, int step)
 {
     const struct rf_photo *photo = &r->photo;
@@ -224,7 +227,7 @@ static struct rf_rect grown(const struct refocus_renderer *r, struct rf_rect par
                             ceil_to(part.y1 + by, step, photo->height)};
 }
 
-/* Large windows save nothing. */
+/* Whether a window is so large that it saves nothing over the whole photo. */
 static bool is_large(const struct refocus_renderer *r, struct rf_rect window)
 {
     const struct rf_rect all = rf_whole(r);
@@ -247,12 +250,12 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
     int around = 2 * r->view.pad, step = RF_TILE;
 
     if (rf_same_lens(f) && contains(r->cache.window, all))
-        window = all; /* much of it is there */
+        window = all; /* much of it is there already */
     for (;;) {
         if (layers && !contains(window, all)) {
             while (step < around / 2)
                 step *= 2;
-            window = grown(r, parts->seen, 2 * r->view.pad + 8 + thin_margin(f) + around, step);
+            window = grown(r, parts->visible, 2 * r->view.pad + 8 + thin_margin(f) + around, step);
             window = around_both(window, grown(r, parts->bins, 0, step));
         }
         if (is_large(r, window))
@@ -263,13 +266,14 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
         if (!layers || rf_cancelled(&r->exec))
             return;
         make_smooth(f);
-        if (rf_cancelled(&r->exec) || make_background(f, parts->seen) || rf_cancelled(&r->exec))
+        if (rf_cancelled(&r->exec) || make_background(f, parts->visible) || rf_cancelled(&r->exec))
             return;
         around *= 2;
     }
 }
 
-/* The sweep takes the background's blur from the bins. */
+/* Computes the weights, which overwrite the background's blur: the sweep reads that from the bins.
+ */
 static void make_weights(struct rf_frame *f)
 {
     struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
@@ -279,13 +283,13 @@ static void make_weights(struct rf_frame *f)
         return;
     m->weighted = true;
     m->premultiplied = f->premultiplied;
-    m->sigma = -1; /* until they are all there */
+    m->sigma = -1; /* until all of them are there */
     rf_pass_weights(f);
     if (!rf_cancelled(&rf_renderer_of(f)->exec))
         m->sigma = f->params->sigma;
 }
 
-/* The window is all of the photo. */
+/* Finds thin structures, in a window that is all of the photo. */
 static void find_thin(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -318,7 +322,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     if (need == RF_NEED_LIGHT || rf_cancelled(&r->exec))
         return;
     if (!whole) {
-        parts.seen = grown(r, grown(r, region, 0, RF_TILE), r->view.pad + RF_CELL, 1);
+        parts.visible = grown(r, grown(r, region, 0, RF_TILE), r->view.pad + RF_CELL, 1);
         parts.bins = grown(r, region, r->view.pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
     if (is_there(f, &parts, layers)) {
@@ -326,7 +330,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         rf_set_planes(f);
         f->bright = layers ? r->cache.bright : RF_WHITE;
     } else {
-        /* the background takes smooth light without it */
+        /* The background is inpainted from smooth light that is neither boosted nor weighted. */
         if (r->cache.boosted || r->cache.premultiplied)
             r->cache = (struct rf_pass_cache){0};
         make_in_window(f, &parts, layers);

@@ -1,4 +1,4 @@
-/* passes.c: the passes over the window, one after the other. */
+/* passes.c: runs each pass over the window, on the planes that it reads and writes. */
 #include "renderer/passes.h"
 
 #include <limits.h>
@@ -18,8 +18,8 @@
 #include "thin/thin.h"
 #include "tiles/ranges.h"
 
-/* Whether sums of premultiplied light stay below 2^31: 8 times white in Q13, and twice the rays
- * for highlights. */
+/* Whether sums of premultiplied light stay below 2^31: 8 times white in Q13, with twice the rays
+ * for highlights. 8 x 8190 x 2 x 8192 = 2^30. */
 static bool may_premultiply(const struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
@@ -30,7 +30,7 @@ static bool may_premultiply(const struct rf_frame *f)
            p->rays != REFOCUS_RAYS_FULL && p->rays <= 8192;
 }
 
-/* Eq. 5 over the Q12 values of the blend in use. */
+/* Computes eq. 5 over the Q12 values of the blend in use. */
 void rf_set_weights(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -117,7 +117,8 @@ static void range_band(void *context, int band, int worker)
     rf_range_rows(&rf_renderer_of(f)->exec, &rf_renderer_of(f)->view, &pass, band, worker);
 }
 
-/* The background's planes are not in use yet. */
+/* Pre-filters the light. The hidden background's planes serve as scratch: they are not in use yet.
+ */
 static void prefilter(struct rf_frame *f)
 {
     const struct refocus_renderer *r = rf_renderer_of(f);
@@ -181,7 +182,7 @@ void rf_pass_boost(struct rf_frame *f)
                             ray_gap(f->params), times[f->bright] * RF_LIGHT_MAX);
 }
 
-/* The light is the photo's again afterwards, whatever happens; of the next as well. */
+/* Afterwards the light is the photo's again, whatever happens, as the next frame needs it too. */
 void rf_pass_prefilter(struct rf_frame *f)
 {
     struct rf_lifetimes *lifetimes = &rf_renderer_of(f)->lifetimes;
@@ -198,8 +199,8 @@ void rf_pass_prefilter(struct rf_frame *f)
         rf_thin_swap_light_back(&f->thin);
 }
 
-/* How many steps the mark's cone takes: it falls by half a pixel of blur a pixel, and blurs
- * of a lens differ by K at most, those of tilts and fields by twice that. */
+/* The number of steps of the mark's cone. It falls by half a pixel of blur for each pixel, and
+ * blurs of a lens differ by K at most, those of tilts and fields by twice that. */
 static int mark_reach(const struct rf_frame *f)
 {
     const int steps = (f->plan.plain ? 2 : 4) * rf_renderer_of(f)->view.pad;
@@ -370,7 +371,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
     rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
     rf_plane_begin(&r->lifetimes, RF_PLANE_PYRAMID);
     rf_pool_run(r->exec.pool, dilate_item, &mark, 2);
-    /* each row of the cone is read before the background's light takes its place */
+    /* Each row of the cone is read before the background's light is written over it. */
     rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
     rf_pool_run(r->exec.pool, mark_band, &mark, rf_bands(&r->view));
     if (!r->yuv.on)

@@ -1,3 +1,4 @@
+/* prepare.c: takes in a photo and its disparity map for the renders that follow. */
 #include <refocus/render.h>
 
 #include <string.h>
@@ -11,8 +12,8 @@
 #include "renderer/layout.h"
 #include "renderer/load.h"
 
-/* The planes of blurs, of pre-filtered light and of the background layer are free until
- * something is rendered. */
+/* Upsamples the map. The planes of blurs, of pre-filtered light and of the hidden background serve
+ * as scratch: they are free until something is rendered. */
 static void upsample(struct refocus_renderer *r, const struct refocus_image *photo,
                      const struct refocus_disparity *map)
 {
@@ -31,7 +32,7 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
                     (uint8_t *)r->smooth.channel[2]},
                    r->smooth.stride * (ptrdiff_t)sizeof *r->smooth.channel[0]},
         .sure = {(uint8_t *)r->blur.at, r->blur.stride * (ptrdiff_t)sizeof *r->blur.at},
-        /* after the bytes of `sure` in each row */
+        /* This follows the bytes of `sure` in each row. */
         .unsure = {(uint16_t *)r->blur.at + (r->view.width + 1) / 2, r->blur.stride},
         .span = r->spans,
         .out = r->disparity,
@@ -43,7 +44,7 @@ static void upsample(struct refocus_renderer *r, const struct refocus_image *pho
     rf_upsample(&up, &r->pool);
 }
 
-/* A picture in RGB8 in the memory of disparities and what is free beside the codes of U and V. */
+/* A picture in RGB8, in the memory of disparities and in the bytes beside the codes of U and V. */
 static struct refocus_image yuv_guide(const struct refocus_renderer *r)
 {
     const struct rf_yuv_codes *codes = &r->chroma.codes;
@@ -100,7 +101,7 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
     own->height = photo->height;
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
     own->silhouettes.count = 0;
-    r->blend = REFOCUS_BLEND_LINEAR; /* that silhouettes are found in, whatever came before */
+    r->blend = REFOCUS_BLEND_LINEAR; /* silhouettes are always found in linear light */
     rf_yuv_begin(&r->yuv, photo, r->blend);
     rf_run_begin(r);
     if (r->in_place.on) {

@@ -1,3 +1,4 @@
+/* render.c: renders one frame: checks it, runs its passes and then its tiles. */
 #include <refocus/render.h>
 
 #include <math.h>
@@ -77,8 +78,9 @@ static void look_item(void *context, int item, int worker)
                                  rf_smaller((ty + 1) * RF_TILE, f->region.y1)});
 }
 
-/* From which blur on the rays of the preset lie 1.5, 3 and 6 pixels apart. Stills do not move, and
- * highlights keep more of their light where each step is there at once. */
+/* Sets the blurs from which on the rays of the preset lie 1.5, 3 and 6 pixels apart: for 64
+ * rays 6.8, 13.5 and 27.1 pixels. The steps of live frames set in gradually; those of stills, which
+ * do not move, at once, as highlights keep more of their light then. */
 static void set_prefilter(struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
@@ -94,7 +96,7 @@ static void set_prefilter(struct rf_frame *f)
     }
 }
 
-/* Thin structures of a photo of R, G and B, where the renderer has memory for them. */
+/* Sets up the thin structures of a photo of R, G and B, where the renderer has memory for them. */
 static void set_up_thin(struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
@@ -110,7 +112,7 @@ static void set_up_thin(struct rf_frame *f)
                    });
 }
 
-/* What tile_item() reads of a rectangle of tiles. */
+/* Sets the rectangle of tiles that tile_item() goes through. */
 static void set_tiles(struct rf_frame *f)
 {
     f->first_tx = f->region.x0 / RF_TILE;
@@ -119,7 +121,8 @@ static void set_tiles(struct rf_frame *f)
     f->count_ty = (f->region.y1 - 1) / RF_TILE - f->first_ty + 1;
 }
 
-/* Once, with the photo's light in the blend in use and its highlights found. */
+/* Begins the look, once, when the photo's light is in the blend in use and its highlights are
+ * found. */
 static void begin_look(struct rf_frame *f)
 {
     if (f->look_ready)
@@ -137,7 +140,8 @@ static void run_tiles(struct rf_frame *f)
     rf_pool_run(&rf_renderer_of(f)->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
-/* The largest blur there can be, pixels. Of a lens the farther of both ends has it. */
+/* The largest blur that there can be, in pixels. With a plain lens the end that is farther from the
+ * focus has it. */
 static float largest_blur(const struct rf_frame *f)
 {
     const int df = f->focus.disparity, farther = rf_larger(df, UINT16_MAX - df);

@@ -1,4 +1,4 @@
-/* render_yuv.c: what can be rendered of a photo of Y, U and V, and its pre-filter. */
+/* render_yuv.c: checks whether a photo of Y, U and V can be rendered, and sets its pre-filter. */
 #include "renderer/render_yuv.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 #include "image/format.h"
 #include "renderer/renderer.h"
 
-/* What is made of R, G and B alone. */
+/* Whether the look is one that only photos of R, G and B can have. */
 static bool has_look(const struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
@@ -40,7 +40,8 @@ int rf_check_yuv(const struct rf_log *log, const struct rf_frame *f, struct rf_r
     return REFOCUS_OK;
 }
 
-/* |s| that gaps between the rays of chroma, in its samples, are as wide at as those of luma. */
+/* Sets the |s| at which gaps between the rays of chroma, in its samples, are as wide as those of
+ * luma are at f->prefilter_above. */
 static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_STEPS])
 {
     const struct refocus_renderer *r = rf_renderer_of(f);
@@ -54,7 +55,7 @@ static void set_chroma_above(const struct rf_frame *f, int above[RF_PREFILTER_ST
     }
 }
 
-/* No blur is larger. Of a lens the farther of both ends has it. */
+/* The largest blur, Q7.8. With a plain lens the end that is farther from the focus has it. */
 static int largest_blur(const struct rf_frame *f)
 {
     const int64_t df = f->focus.disparity, farther = df > UINT16_MAX - df ? df : UINT16_MAX - df;
@@ -74,7 +75,7 @@ struct rf_prefilter_chroma rf_chroma_prefilter(const struct rf_frame *f)
     };
 
     set_chroma_above(f, chroma.above);
-    /* else no tile would be touched */
+    /* Further steps would touch no tile. */
     chroma.steps = largest_blur(f) > chroma.above[1] ? RF_PREFILTER_STEPS : 1;
     return chroma;
 }

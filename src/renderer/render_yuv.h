@@ -1,4 +1,4 @@
-/* render_yuv.h: what a photo of Y, U and V needs beside or in place of what others do. */
+/* render_yuv.h: the steps that only photos of Y, U and V need. */
 #ifndef RF_RENDER_YUV_H
 #define RF_RENDER_YUV_H
 

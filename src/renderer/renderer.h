@@ -1,4 +1,5 @@
-/* renderer.h: what a renderer holds. One block of memory, laid out by layout.c. */
+/* renderer.h: the renderer: the prepared photo, its planes, and which results are valid. It is one
+ * block of memory, laid out by layout.c. */
 #ifndef RF_RENDERER_H
 #define RF_RENDERER_H
 
@@ -22,7 +23,6 @@
 #include "image/planes.h"
 #include "look/look.h"
 #include "image/viewport.h"
-#include "renderer/renderer.h"
 #include "kernels/kernels.h"
 #include "passes/prefilter.h"
 #include "renderer/memory_plan.h"
@@ -37,19 +37,18 @@ enum {
 };
 
 /* The photo as it was prepared. */
-
 struct rf_photo {
     int width, height;              /* pixels; 0: none prepared */
     int pad;                        /* pixels beyond each side that may be read */
     ptrdiff_t stride;               /* elements from row to row, of all padded planes */
     ptrdiff_t pitch;                /* elements between the planes of a group; see layout.c */
-    uint16_t *group;                /* of four planes: R, G, B, disparity */
+    uint16_t *group;                /* four planes: R, G, B, disparity */
     uint16_t *light[3], *disparity; /* pixel (0, 0); not in strip mode */
     uint8_t *alpha;                 /* unpadded, width a row */
     uint8_t *band_blend;            /* enum refocus_blend that the light of a band of rows is in */
     struct rf_silhouettes silhouettes;
     struct rf_highlights highlights;
-    uint32_t highlights_blend; /* that they were found in, or RF_NO_BLEND */
+    uint32_t highlights_blend; /* blend that they were found in, or RF_NO_BLEND */
     struct rf_thin_list thin;
 };
 
@@ -61,17 +60,17 @@ struct rf_pass_cache {
     bool splatted;         /* highlights are marked to be splatted */
     bool ranges;           /* ranges of the tiles; until then their cells live */
     bool smooth;           /* the pre-filtered light */
-    enum rf_bright bright; /* by how much boosted highlights may exceed white */
+    enum rf_bright bright; /* how far boosted highlights may exceed white */
     bool boosted;          /* highlights in the pre-filtered light are boosted */
     bool background;       /* the hidden background */
     bool weighted;         /* weights of `sigma` lie in place of its blur */
-    bool premultiplied;    /* the light of both layers is times them */
+    bool premultiplied;    /* the light of both layers is multiplied by them */
     float sigma;
     int rays;              /* number of rays that highlights were widened for */
     struct rf_rect window; /* part of the photo that all of it is limited to */
     struct rf_rect exact;  /* part where the background is that of the whole photo */
     struct rf_focus_plan plan;
-    int shift;      /* of the bins */
+    int shift;      /* scale of the bins */
     uint32_t thin;  /* how thin structures were separated: thin_key() */
     int splat_blur; /* Q7.8: from which blur on they were splatted */
     uint32_t blend;
@@ -90,10 +89,10 @@ struct rf_in_place {
     bool on;
     struct refocus_image photo; /* the caller's */
     struct refocus_disparity map;
-    int code_step;               /* of the map, rf_code_step() */
+    int code_step;               /* rf_code_step() of the map */
     int block, margin;           /* pixels of a block that is rendered, and around it */
-    int mark_block, mark_margin; /* of one whose background is marked */
-    struct rf_rect beyond;       /* of the margin in use, what lies beyond the photo */
+    int mark_block, mark_margin; /* a block whose background is marked */
+    struct rf_rect beyond;       /* part of the margin in use that lies beyond the photo */
     uint8_t *known;              /* known_stride bytes a row, bit x % 8 of byte x / 8 */
     ptrdiff_t known_stride;
     struct rf_pyramid kept; /* levels from RF_KEPT on */
@@ -106,7 +105,7 @@ struct refocus_renderer {
     void *block;
     uint64_t memory;
     uint32_t cpu;              /* enum refocus_cpu, never AUTO */
-    struct rf_kernels kernels; /* of that set */
+    struct rf_kernels kernels; /* the functions of that set */
     int max_width, max_height;
     float max_blur_radius;
 
@@ -114,16 +113,16 @@ struct refocus_renderer {
     struct rf_run run;
     struct rf_executor exec; /* all three, as passes get them */
 
-    /* The prepared photo, and memory for what a lens setting makes of it. */
+    /* The prepared photo, and memory for the planes that depend on a lens setting. */
     bool prepared;
     struct rf_photo photo;
-    uint16_t *seen_group, *behind_group;
+    uint16_t *smooth_group, *background_group; /* blur and smooth light; hidden background */
     struct rf_pass_cache cache;
     struct rf_lifetimes lifetimes;
     struct rf_in_place in_place;
-    struct rf_focus_plan last_plan; /* of the last render, */
-    bool last_silhouettes;          /* with the silhouettes, */
-    bool blurred;                   /* if there was one */
+    struct rf_focus_plan last_plan; /* the plan of the last render */
+    bool last_silhouettes;          /* silhouettes were patched in it */
+    bool blurred;                   /* there was a last render */
 
     /*
      * The window, and its planes as if it were all there is: set by rf_use(). The background and
@@ -131,62 +130,63 @@ struct refocus_renderer {
      */
     struct rf_viewport view;
     ptrdiff_t pitch; /* elements between the planes of a group; see layout.c */
-    uint32_t blend;  /* that the light planes are in */
+    uint32_t blend;  /* blend of the planes of light */
     struct rf_light_q12 light;
     struct rf_light_q12 smooth; /* light, pre-filtered where rays lie far apart */
     struct rf_blur_q8 blur;
     struct rf_disparity_q16 disparity;
     struct rf_alpha_u8 alpha;
     struct rf_background background;
-    struct rf_yuv yuv;              /* of the photo, */
-    struct rf_chroma_planes chroma; /* and if it is of Y, U and V, planes of the window */
+    struct rf_yuv yuv;              /* the photo's coding */
+    struct rf_chroma_planes chroma; /* planes of the window, if yuv.on */
     struct rf_dilated_blur cone;    /* while the background is marked */
     struct rf_pyramid pyramid;
     struct rf_weight_q15 weight, background_weight; /* once the background is inpainted */
     struct rf_cells cells;                          /* until the background is marked */
-    struct rf_foreground_cells foreground;          /* of the inpainted background, up to weights */
+    struct rf_foreground_cells foreground; /* from the inpainted background up to weights */
     struct rf_range_plane range;
-    struct rf_bins *bins; /* of each tile */
+    struct rf_bins *bins; /* one for each tile */
 
-    struct rf_taps *taps;  /* of the depth upsampler: of columns, then of rows */
-    struct rf_span *spans; /* and its spans */
+    struct rf_taps *taps;  /* the depth upsampler's: of columns, then of rows */
+    struct rf_span *spans; /* the depth upsampler's */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
-    bool keep_codes;        /* which may be used */
-    float weight_sigma;     /* that it was made for, in weight_blend */
+    bool keep_codes;        /* rf_weights_keep_codes(): light may be premultiplied */
+    float weight_sigma;     /* sigma of light_weight, in weight_blend */
     uint32_t weight_blend;
 
-    bool has_thin; /* there is memory for what is thin: */
+    bool has_thin; /* there is memory for thin structures */
     struct rf_coverage coverage;
-    struct rf_stars stars;  /* of this lens setting */
-    struct rf_grain *grain; /* of this lens setting */
-    uint32_t renders;       /* so far, that had maps of their own */
+    struct rf_stars stars;  /* for this lens setting */
+    struct rf_grain *grain; /* for this lens setting */
+    uint32_t renders;       /* counts renders with maps of their own */
 
     struct rf_work_memory work;
-    const struct refocus_papers *papers; /* or NULL */
-    uint32_t methods;                    /* REFOCUS_METHOD_BIT of those that it suffices for */
+    const struct refocus_papers *papers; /* may be NULL */
+    uint32_t methods;                    /* REFOCUS_METHOD_BIT of each that `work` suffices for */
 
     struct rf_ray_sets ray_sets;
-    struct rf_cat_eye cat_eye;     /* made when it is first asked for; */
-    struct rf_cat_shape cat_shape; /* that of the last aperture with one */
+    struct rf_cat_eye cat_eye;     /* made when it is first needed */
+    struct rf_cat_shape cat_shape; /* for the last aperture that needed one */
 };
 
-/* Make a part of the photo the window; tell a frame of its planes. */
+/* Make a part of the photo the window, and give a frame the views of its planes. */
 void rf_use(struct refocus_renderer *r, struct rf_rect window);
 void rf_set_planes(struct rf_frame *f);
 
-/* Before the rays: in debug builds the frame gets no view of a plane that does not live. */
+/* Gives a frame its views before the rays: in debug builds none of a plane that does not live. */
 void rf_set_gather_planes(struct rf_frame *f);
 
-/* All of the photo, in the blend in use. */
+/* The whole photo, in the blend in use, and its size. */
 struct rf_photo_source rf_photo_source(const struct refocus_renderer *r);
 static inline struct rf_rect rf_whole(const struct refocus_renderer *r)
 {
     return (struct rf_rect){0, 0, r->photo.width, r->photo.height};
 }
 
-/* A worker's scratch: two rows of the largest picture with the margins of spread_row. */
+/* Elements of a worker's scratch: two rows of the largest picture with the margins of spread_row.
+ */
 static inline uint64_t rf_scratch_size(int max_width)
 {
     return 2 * ((uint64_t)max_width + 2 * RF_SPREAD_MARGIN);

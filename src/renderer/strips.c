@@ -1,11 +1,11 @@
-/* strips.c: strip mode. The photo is in the caller's memory; the planes hold a block of
- * it and a margin at a time, and the passes work on that window.
+/* strips.c: strip mode, which renders a photo block by block. The photo stays in the caller's
+ * memory; the planes hold one block with a margin at a time, and the passes work on that window.
  *
- * The fill of the background takes its colours from all over the photo. So the photo is
- * gone through twice. First the marks of all pixels are kept, and of the pyramid the
- * levels from RF_KEPT on, which are then filled; the levels below them are made again
- * for each block that is rendered. Nothing is approximated: the bytes are those of the
- * whole.
+ * The hidden background is inpainted with colours from all over the photo. So there are two
+ * runs through the photo. The first stores the marks of all pixels, and the levels of the
+ * pyramid from RF_KEPT on, which are then inpainted. The second renders: it computes the levels
+ * below RF_KEPT again for each block. Nothing is approximated: the bytes are the same as without
+ * strips.
  */
 #include <string.h>
 
@@ -36,7 +36,7 @@ static int blocks(const struct refocus_renderer *r, int block)
     return (all.x1 + block - 1) / block * ((all.y1 + block - 1) / block);
 }
 
-/* A block with its margin, but for what of that lies beyond the photo. */
+/* A block with its margin, cut off at the sides of the photo. */
 static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect block, int margin)
 {
     const struct rf_rect all = rf_whole(r);
@@ -53,7 +53,7 @@ static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect
                             part.y1 - r->view.y0};
 }
 
-/* A part of a picture as a picture. */
+/* A part of a picture, as a picture of its own. */
 static struct refocus_image image_part(const struct refocus_image *image, struct rf_rect part)
 {
     struct refocus_image out = *image;
@@ -76,7 +76,7 @@ static struct refocus_disparity map_part(const struct refocus_disparity *map, st
     return out;
 }
 
-/* Make a block of the caller's photo and its margin the window. */
+/* Makes a block of the caller's photo and its margin the window. */
 static void load(struct refocus_renderer *r, struct rf_rect block, int margin)
 {
     const struct rf_rect window = around(r, block, margin);
@@ -108,7 +108,7 @@ void rf_find_silhouettes_in_blocks(struct refocus_renderer *r)
     }
 }
 
-/* Light, blur and smooth light of a block and its margin. */
+/* Computes light, blur and smooth light of a block and its margin. */
 static void make_window(struct rf_frame *f, struct rf_rect block, int margin, enum rf_need need)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -124,7 +124,7 @@ static void make_window(struct rf_frame *f, struct rf_rect block, int margin, en
     rf_pass_smooth(f);
 }
 
-/* Keep what the background's mark knows of a block. */
+/* Stores which pixels of a block the mark of the background knows. */
 static void keep_known(struct refocus_renderer *r, struct rf_rect block)
 {
     const struct rf_in_place *in_place = &r->in_place;
@@ -144,13 +144,13 @@ static void keep_known(struct refocus_renderer *r, struct rf_rect block)
     }
 }
 
-/* So many pixels of the photo at level RF_KEPT, rounded up. */
+/* The number of pixels of level RF_KEPT that n pixels of the photo make, rounded up. */
 static int kept_pixels(int n)
 {
     return (n + (1 << RF_KEPT) - 1) >> RF_KEPT;
 }
 
-/* And what the pyramid has above it: blocks begin at multiples of its pixels. */
+/* Stores level RF_KEPT of the pyramid above a block, which begins at a multiple of its pixels. */
 static void keep_level(struct refocus_renderer *r, struct rf_rect block)
 {
     const struct rf_level *from = &r->pyramid.level[RF_KEPT];
@@ -168,11 +168,11 @@ static void keep_level(struct refocus_renderer *r, struct rf_rect block)
             memcpy(to->light.channel[c] + out, from->light.channel[c] + in, (size_t)n * 2);
         memcpy(to->blur.at + out, from->blur.at + in, (size_t)n * 2);
         if (x0 + n == to->width && to->width % 2)
-            to->blur.at[out + n] = RF_NO_BLUR; /* a column more */
+            to->blur.at[out + n] = RF_NO_BLUR; /* there is one more column */
     }
 }
 
-/* The first time through the photo. */
+/* Runs through the photo for the first time. */
 static void mark(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -211,7 +211,7 @@ static void known_band(void *context, int band, int worker)
 
             out[x] = known[q / 8] >> q % 8 & 1 ? blur[x] : RF_NO_BLUR;
         }
-        out[r->view.width] = RF_NO_BLUR; /* a column more if the width is odd */
+        out[r->view.width] = RF_NO_BLUR; /* there is one more column if the width is odd */
         for (int c = 0; c < 3; c++)
             memcpy(r->background.light.channel[c] + at, r->smooth.channel[c] + at,
                    (size_t)r->view.width * 2);
@@ -219,7 +219,7 @@ static void known_band(void *context, int band, int worker)
     rf_background_push_band(&r->exec, &r->pyramid, band, RF_KEPT - 1);
 }
 
-/* The background of the window from what is kept. */
+/* Computes the background of the window from the marks and levels that were stored. */
 static void make_background(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -246,7 +246,7 @@ static void make_background(struct rf_frame *f)
     *level = own;
 }
 
-/* Whether the first time through the photo was for this lens and light. */
+/* Whether the first run through the photo was for this lens and light. */
 static bool is_marked(const struct rf_frame *f)
 {
     return rf_renderer_of(f)->cache.background && rf_same_lens(f) && rf_same_light(f);

@@ -1,3 +1,4 @@
+/* view.c: gives out the disparities of a prepared photo and the blurs of its last render. */
 #include <refocus/render.h>
 
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 #include "support/compare.h"
 #include "support/log.h"
 
-/* The prepared disparities; those of strip mode, where none are kept, are made again. */
+/* Copies the prepared disparities. Strip mode, which stores none, computes them again. */
 static void copy_disparities(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
     enum { SIDE = RF_DEQUANTISE_PATCH };
@@ -33,7 +34,7 @@ static void copy_disparities(const struct refocus_renderer *r, uint16_t *out, pt
 
 enum { RUN = 256 };
 
-/* Signed blurs of the last render in place of disparities, then without their signs. */
+/* Replaces disparities by the signed blurs of the last render, then drops their signs. */
 static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
     const struct rf_photo *photo = &r->photo;

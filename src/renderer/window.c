@@ -1,4 +1,4 @@
-/* window.c: the views of the planes of a window, and of what a frame sees of them. */
+/* window.c: makes a part of the photo the window, and gives a frame the views of its planes. */
 #include "renderer/layout.h"
 
 #include <string.h>
@@ -8,11 +8,11 @@
 #include "tiles/ranges.h"
 #include "support/compare.h"
 
-/* Pixel (0, 0) of the window in a group of planes of a photo; see rf_use(). */
+/* The place of pixel (0, 0) of the window in a group of planes of a photo; see rf_use(). */
 static uint16_t *origin(const struct refocus_renderer *r, const struct rf_photo *photo,
                         uint16_t *group)
 {
-    if (r->in_place.on) /* the border, or where the photo goes on nothing but spare rows */
+    if (r->in_place.on) /* above it lies the border, or spare rows where the photo goes on */
         return group + (RF_SPARE_ROWS + r->view.border.y0) * photo->stride + r->view.border.x0;
     return group + (photo->pad + r->view.y0) * photo->stride + photo->pad + r->view.x0;
 }
@@ -20,24 +20,24 @@ static uint16_t *origin(const struct refocus_renderer *r, const struct rf_photo 
 static void place_planes(struct refocus_renderer *r, const struct rf_photo *photo)
 {
     uint16_t *const light = origin(r, photo, photo->group);
-    uint16_t *const seen = origin(r, photo, r->seen_group);
-    uint16_t *const behind = origin(r, photo, r->behind_group);
+    uint16_t *const smooth = origin(r, photo, r->smooth_group);
+    uint16_t *const background = origin(r, photo, r->background_group);
 
     for (int c = 0; c < 3; c++) {
         r->light.channel[c] = light + c * photo->pitch;
-        r->smooth.channel[c] = seen + (1 + c) * photo->pitch;
-        r->background.light.channel[c] = behind + (1 + c) * photo->pitch;
+        r->smooth.channel[c] = smooth + (1 + c) * photo->pitch;
+        r->background.light.channel[c] = background + (1 + c) * photo->pitch;
     }
     r->disparity.at = light + 3 * photo->pitch;
-    r->blur.at = (int16_t *)seen;
-    r->background.blur.at = (int16_t *)behind;
+    r->blur.at = (int16_t *)smooth;
+    r->background.blur.at = (int16_t *)background;
     r->light.stride = r->smooth.stride = r->background.light.stride = r->disparity.stride =
         r->blur.stride = r->background.blur.stride = photo->stride;
 }
 
 /*
- * Views of planes that lie in memory of others: memory_plan.h. The weights of a photo of Y, U and V
- * lie in the third plane of the background's light.
+ * Makes the views of planes that share memory with others: memory_plan.h. The weights of a photo of
+ * Y, U and V lie in the third plane of the background's light.
  */
 static void share_planes(struct refocus_renderer *r)
 {
@@ -53,18 +53,18 @@ static void share_planes(struct refocus_renderer *r)
                     : (struct rf_weight_q15){(uint16_t *)r->foreground.most, r->foreground.stride};
 }
 
-/* Row 0 of a plane of chroma: pixel (0, 0) of the window is at rows that are a multiple of RF_TILE.
- */
+/* The place of row 0 of a plane of chroma. The window begins at a row of the photo that is a
+ * multiple of RF_TILE, so the shift is exact. */
 static uint16_t *chroma_of(const struct refocus_renderer *r, uint16_t *plane)
 {
     return plane - (r->view.y0 - (r->view.y0 >> r->yuv.down)) * r->light.stride;
 }
 
 /*
- * The planes of a photo of Y, U and V. Luminance is in the first plane of light of each group and
- * chroma in the second; the blur of chroma is in the third of the pre-filtered light. The codes
+ * Makes the views of a photo of Y, U and V. Luminance is in the first plane of light of each group
+ * and chroma in the second; the blur of chroma is in the third of the pre-filtered light. The codes
  * that came in are kept: Y in place of alpha, U and V in the photo's third plane of light. All of
- * light.channel is luminance, for those who ask for the brightest.
+ * light.channel is luminance, so that the brightest channel is luminance too.
  */
 static void place_chroma(struct refocus_renderer *r)
 {
