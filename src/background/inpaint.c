@@ -241,9 +241,10 @@ static void pull_chroma(const struct yuv_step *step, int c0, int c1)
         step->exec->kernels->join2(out, coarse->light.channel[1] + at,
                                    coarse->light.channel[2] + at, coarse->width);
         if (!chroma->size.down) /* known samples have rows of their own */
-            step->exec->kernels->keep2(out, chroma->smooth.at + y * chroma->smooth.stride,
-                                       chroma->blur.at + y * chroma->blur.stride,
-                                       fine->blur.at + y * fine->blur.stride, coarse->width);
+            step->exec->kernels->restore_known2(out, chroma->smooth.at + y * chroma->smooth.stride,
+                                                chroma->blur.at + y * chroma->blur.stride,
+                                                fine->blur.at + y * fine->blur.stride,
+                                                coarse->width);
     }
     rf_extend_chroma(step->view, &chroma->size, chroma->background.at, chroma->background.stride,
                      c0, c1);

@@ -230,7 +230,7 @@ static void settle_block(const struct rf_upsampler *up, const struct three *thre
         row[j] = inside ? row[j] : near_by[j] + 1;
         sure[j] = inside ? sure[j] : near_sure[j] + 1;
     }
-    up->kernels->lean3(three->out + x, row, sure, n);
+    up->kernels->median3(three->out + x, row, sure, n);
 }
 
 static void settle_row(const struct rf_upsampler *up, int y)

@@ -178,7 +178,7 @@ static void turn(const struct patch *patch, uint8_t *out, const uint8_t *samples
 
     for (int j = 0; j < RF_AROUND; j++)
         row[j] = inside ? samples + off[j] + x : take8(spare[j], samples + off[j], x, up->columns);
-    up->kernels->turn8(out, row);
+    up->kernels->transpose8(out, row);
 }
 
 /* The samples around RF_CELLS cells from the first-th on. */
@@ -199,7 +199,7 @@ static void look_around(struct patch *patch, int first)
         of_colour[j] = y * up->colour.stride;
         of_trust[j] = y * up->trust.stride;
     }
-    up->kernels->turn16(patch->around.disparity, row);
+    up->kernels->transpose16(patch->around.disparity, row);
     for (int c = 0; c < 3; c++)
         turn(patch, patch->around.colour[c], up->colour.channel[c], of_colour, x, inside);
     if (up->confidence)
@@ -229,8 +229,8 @@ static void fill_cell(struct patch *patch, int cell, int i)
         if (!found)
             up->kernels->find_surfaces(&patch->cell, &window, &patch->parts, i);
         found = true;
-        up->kernels->surface(result, sure, &patch->cell, &window, lie_of(patch, cell, x, n), colour,
-                             rows * n);
+        up->kernels->choose_surface(result, sure, &patch->cell, &window, lie_of(patch, cell, x, n),
+                                    colour, rows * n);
         put_rows(patch, result, sure, x, (size_t)n);
     }
 }
@@ -291,7 +291,7 @@ static void fill_cells(struct patch *patch, int first, int n)
         if (up->confidence)
             trust[j] = up->trust.at + (patch->row + j) * up->trust.stride + first - PAD;
     }
-    const unsigned any = up->kernels->rough(rough, row, trust, STEP, n);
+    const unsigned any = up->kernels->rough_cells(rough, row, trust, STEP, n);
 
     if (any & RF_ROUGH_CORNER)
         for (int i = 0; i < n; i++)
@@ -299,7 +299,7 @@ static void fill_cells(struct patch *patch, int first, int n)
                 clamp_cell(patch, first + i, row, i);
     if (!(any & RF_ROUGH))
         return;
-    up->kernels->part(&patch->parts, row, n);
+    up->kernels->part_taps(&patch->parts, row, n);
     look_around(patch, first);
     for (int i = 0; i < n; i++)
         if (rough[i] == RF_ROUGH && up->span[first + i].begin < up->span[first + i + 1].begin)

@@ -97,7 +97,7 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
     const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
     if (f->bright) /* highlights make means above white */
-        f->exec->kernels->at_most(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
+        f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
     encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at}, RF_TILE);
 }
 

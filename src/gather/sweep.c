@@ -343,8 +343,8 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_matte_over(&f->thin, tx, ty, mean);
     if (f->thin.disc_scale)
         rf_coverage_over(&f->thin, tx, ty, mean);
-    if (f->splats && plan.lamp)
-        f->exec->kernels->at_most(mean[0], RF_MEAN_MAX, 3 * LANES);
+    if (f->splats && plan.highlight)
+        f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * LANES);
     if (!rf_cancelled(f->exec))
         rf_encode_means(f, rect, mean);
 }

@@ -55,7 +55,7 @@ struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_
     static const struct rf_tile_rows sparse[] = {{5, 4}, {3, 6}, {2, 8}};
     const int least = least_blur(plan, background_blur);
 
-    for (int i = 0; f->row_gap && (f->splats || !plan->lamp) && i < 3; i++)
+    for (int i = 0; f->row_gap && (f->splats || !plan->highlight) && i < 3; i++)
         if (least / sparse[i].step >= f->row_gap)
             return sparse[i];
     return (struct rf_tile_rows){1, RF_TILE};
@@ -66,7 +66,7 @@ struct rf_tile_rows rf_chroma_rows(const struct rf_frame *f, const struct rf_til
 {
     const int least = least_blur(plan, background_blur);
 
-    if (f->row_gap && (f->splats || !plan->lamp) && least / 4 >= f->row_gap)
+    if (f->row_gap && (f->splats || !plan->highlight) && least / 4 >= f->row_gap)
         return (struct rf_tile_rows){2, 4};
     return (struct rf_tile_rows){1, RF_TILE / 2};
 }

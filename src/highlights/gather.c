@@ -135,8 +135,8 @@ static void raise_run(const struct gather *g, const struct rf_highlight *run)
         if (!rf_place_in(g->window->view, run, i, &x, &y) || rf_is_edge(run, i))
             continue;
         reach = 1 + reach_of(blur_at(g, x, y), g->gap);
-        rf_put_in_front(g->window->view, g->foreground,
-                        (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
+        rf_force_foreground(g->window->view, g->foreground,
+                            (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
     }
 }
 

@@ -66,7 +66,7 @@ static void note_reach(const struct rf_highlight_window *w, int x, int y, int re
 {
     struct rf_bins *bins = &w->bins[(size_t)(y / RF_TILE) * w->view->tiles_x + x / RF_TILE];
 
-    bins->lamp = (int16_t)rf_larger(reach, bins->lamp);
+    bins->highlight = (int16_t)rf_larger(reach, bins->highlight);
 }
 
 /* The mean blur of those pixels of a run that are blurred as its middle is, if that is two thirds

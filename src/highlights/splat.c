@@ -351,14 +351,14 @@ void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan
                          int ty, uint16_t *const mean[3])
 {
     const struct rf_viewport *view = splat->window.view;
-    const int reach = plan->lamp / 256 + 1;
+    const int reach = plan->highlight / 256 + 1;
     const int x0 = view->x0 + tx * RF_TILE - reach - RF_HIGHLIGHT_RUN;
     const int y0 = rf_larger(view->y0 + ty * RF_TILE - reach - RF_HIGHLIGHT_STACK, 0);
     const int y1 = rf_smaller(view->y0 + (ty + 1) * RF_TILE + reach, view->photo_height);
     const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_HIGHLIGHT_RUN);
     struct canvas canvas; /* large: not all of it set */
 
-    if (!plan->lamp)
+    if (!plan->highlight)
         return;
     canvas.splat = splat;
     canvas.mean = mean;

@@ -67,9 +67,9 @@ static void copy_tile(const struct subtract *s, int tx, int ty)
     const struct rf_highlight_window *w = s->window;
     struct rf_bins *bins = &w->bins[(size_t)ty * w->view->tiles_x + tx];
 
-    if (bins->taken)
+    if (bins->subtracted)
         return;
-    bins->taken = true;
+    bins->subtracted = true;
     for (int c = 0; c < w->channels; c++)
         for (int y = ty * RF_TILE - 1; y <= (ty + 1) * RF_TILE; y++) {
             const ptrdiff_t at = y * w->light.stride + tx * RF_TILE - 1;

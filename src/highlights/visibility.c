@@ -128,8 +128,8 @@ static bool may_meet(const struct rf_splat *splat, const struct rf_slab *slab, s
     const int x = rf_larger(at.x1 - wide + 1, -far);
 
     return wide > LARGE || high > LARGE ||
-           splat->exec->kernels->meets(blur->at + at.y0 * blur->stride + x, blur->stride, wide,
-                                       high, slab);
+           splat->exec->kernels->any_in_slab(blur->at + at.y0 * blur->stride + x, blur->stride,
+                                             wide, high, slab);
 }
 
 static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_visibility *tile,
@@ -253,7 +253,8 @@ static void set_shade(struct rf_shade *shade, const struct rf_visibility *tile,
     if (shade->hidden != RF_HIDDEN_PARTLY)
         return;
     way = way_to(run, &screen, farthest_look(tile->splat));
-    tile->splat->exec->kernels->hide(shade->visible, blur, plane->stride, &screen.slab, job, &way);
+    tile->splat->exec->kernels->occlude_disc(shade->visible, blur, plane->stride, &screen.slab, job,
+                                             &way);
     shade->hidden = hidden_in(shade->visible, job->first, job->end);
 }
 

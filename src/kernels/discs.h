@@ -26,11 +26,11 @@
  * as it is `tall`, 1 to 4, the mean: of what each is a quarter of a pixel above and below the
  * middle of the row.
  *
- * meets: whether any of width x height pixels from `blur` on lies in a slab; width: RF_TILE at
- * least.
+ * any_in_slab: whether any of width x height pixels from `blur` on lies in a slab; width: RF_TILE
+ * at least.
  *
- * hide: both masks of `visible` in those rows: not where a slab that is part of the way to the run
- * hides it, where blur, of the tile's first pixel, lies in it at
+ * occlude_disc: both masks of `visible` in those rows: not where a slab that is part of the way to
+ * the run hides it, where blur, of the tile's first pixel, lies in it at
  *
  *     x + round(step away / 2^23), y + round(step (64 middle - 128 y -+ 32) / 2^23)
  *     away = first + last - 128 x - floor(aside (last - first) / 16) for the one, and
@@ -59,10 +59,10 @@ struct rf_disc_way {
     bool mirrored;
     int16_t times;
 };
-typedef bool rf_meets_fn(const int16_t *blur, ptrdiff_t stride, int width, int height,
-                         const struct rf_slab *slab);
-typedef void rf_hide_fn(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
-                        const struct rf_slab *slab, const struct rf_disc_job *job,
-                        const struct rf_disc_way *way);
+typedef bool rf_any_in_slab_fn(const int16_t *blur, ptrdiff_t stride, int width, int height,
+                               const struct rf_slab *slab);
+typedef void rf_occlude_disc_fn(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
+                                const struct rf_slab *slab, const struct rf_disc_job *job,
+                                const struct rf_disc_way *way);
 
 #endif

@@ -20,8 +20,8 @@ static inline uint32_t rf_mean_scale(uint64_t rays)
     return scale > UINT32_MAX ? UINT32_MAX : (uint32_t)scale;
 }
 
-/* at_most: none of n values above `most`. */
-typedef void rf_at_most_fn(uint16_t *value, uint16_t most, int n);
+/* clamp_row: none of n values above `most`. */
+typedef void rf_clamp_row_fn(uint16_t *value, uint16_t most, int n);
 
 /* weighted_means: Q14 means of n <= RF_TILE * RF_TILE sums below 2^51 of Q12 values times
  * weights, and of their weights: 4 sum / weight half up, to 2^-35; exact where all values are
@@ -84,18 +84,19 @@ typedef void rf_between_chroma_fn(uint16_t *mean, const uint16_t *computed);
 typedef void rf_soften_fn(uint16_t *mean, int rows, int each, bool down, uint16_t share);
 
 /*
- * lay_veil: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn
+ * composite_thin: over the 16 x 16 means at mean[0] to mean[2], at most 65535, what is drawn
  * in cells of 4 x 4 pixels (thin/coverage.h): 6 x 6 of them, the first one above and to the
- * left of the tile, each of light times cover and cover, Q12 times 2^RF_VEIL_SHIFT,
+ * left of the tile, each of light times cover and cover, Q12 times 2^RF_COVERAGE_SHIFT,
  * between -2 and 2. Between the middles of cells it is linear, rounded down twice, at
  * 2^-8 of Q12 and at Q14.
  *
  *     mean = light + mean - round(cover mean), 0 to 65535;  cover from 0 to 1
  */
-enum { RF_VEIL_CELLS = 6, RF_VEIL_SHIFT = 14 };
-static_assert((uint64_t)8 * (2 * 4096) * (1 << RF_VEIL_SHIFT) <= INT32_MAX,
+enum { RF_COVERAGE_CELLS = 6, RF_COVERAGE_SHIFT = 14 };
+static_assert((uint64_t)8 * (2 * 4096) * (1 << RF_COVERAGE_SHIFT) <= INT32_MAX,
               "eighths of cells between -2 and 2 fit 32 bits");
-typedef void rf_lay_veil_fn(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4]);
+typedef void rf_composite_thin_fn(uint16_t *const mean[3],
+                                  int32_t cell[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4]);
 
 /* brightest: the largest value of any channel of a row. */
 typedef uint16_t rf_brightest_fn(const uint16_t *red, const uint16_t *green, const uint16_t *blue,

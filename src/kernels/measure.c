@@ -50,7 +50,7 @@ static void dilate_from(const struct rf_kernels *k, struct rows *r)
 
 static void mark(const struct rf_kernels *k, struct rows *r)
 {
-    k->mark(r->blur[1] + MARGIN, r->blur[0] + MARGIN, r->shorts[0] + MARGIN, N);
+    k->mark_foreground(r->blur[1] + MARGIN, r->blur[0] + MARGIN, r->shorts[0] + MARGIN, N);
 }
 
 static void push(const struct rf_kernels *k, struct rows *r)
@@ -92,7 +92,7 @@ static void lean3(const struct rf_kernels *k, struct rows *r)
                                     r->shorts[2] + MARGIN};
     const uint8_t *const sure[3] = {r->unsure + MARGIN, r->unsure + MARGIN, r->unsure + MARGIN};
 
-    k->lean3(r->shorts[6] + MARGIN, row, sure, N);
+    k->median3(r->shorts[6] + MARGIN, row, sure, N);
 }
 
 static void series_row(const struct rf_kernels *k, struct rows *r)
@@ -152,13 +152,13 @@ static const struct {
     {"smooth3", "pixel", smooth3, N},
     {"spread_row", "pixel", spread_row, N},
     {"dilate_from", "pixel", dilate_from, N},
-    {"mark", "pixel", mark, N},
+    {"mark_foreground", "pixel", mark, N},
     {"push", "pixel", push, N / 2},
     {"pull", "pixel", pull, N},
     {"means", "pixel", means, N},
     {"weighted_means", "pixel", weighted_means, N},
     {"blend4", "pixel", blend4, N},
-    {"lean3", "pixel", lean3, N},
+    {"median3", "pixel", lean3, N},
     {"series_row", "pixel", series_row, N},
     {"smooth_codes", "pixel", smooth_codes, N},
 };

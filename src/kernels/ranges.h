@@ -28,8 +28,8 @@ enum { RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
  *
  * foreground: one row of n cells, as cells: the greatest blur of those pixels whose background has
  * another, or RF_NO_BLUR.
- * bare: of one row of windows, from RF_WINDOW_Y rows of such cells, as windows; RF_BARE becomes
- * what it should be. The scratch is n + 2 border + RF_WINDOW_X - 1 long.
+ * mark_bare: of one row of windows, from RF_WINDOW_Y rows of such cells, as windows; RF_BARE
+ * becomes what it should be. The scratch is n + 2 border + RF_WINDOW_X - 1 long.
  */
 enum { RF_CELL = 4, RF_WINDOW_X = RF_TILE / RF_CELL + 1, RF_WINDOW_Y = RF_STRIP / RF_CELL + 1 };
 enum { RF_BARE = 1 << 16 };
@@ -64,7 +64,7 @@ typedef void rf_windows_fn(uint32_t *range, const int16_t *const least[RF_WINDOW
                            int border);
 typedef void rf_foreground_fn(int16_t *most, const int16_t *blur, const int16_t *behind,
                               ptrdiff_t stride, int n);
-typedef void rf_bare_fn(uint32_t *range, const int16_t *const foreground[RF_WINDOW_Y],
-                        int16_t *scratch, int n, int border);
+typedef void rf_mark_bare_fn(uint32_t *range, const int16_t *const foreground[RF_WINDOW_Y],
+                             int16_t *scratch, int n, int border);
 
 #endif

@@ -29,9 +29,9 @@ typedef void rf_widen4_fn(uint16_t *out, const uint16_t *in, const struct rf_tap
  * apart, or where one is trusted less than wholly (255). If that is so only with those in the
  * corners, which are 1/36 of the mean at the most, it is rough there.
  *
- * rough: which of n cells side by side are, RF_ROUGH, RF_ROUGH_CORNER or 0, and all of them or-ed.
- * Element i of row[j] is a tap of cells i - 3 to i; elements to n + 2 are read. trust[0] == NULL:
- * all are sure.
+ * rough_cells: which of n cells side by side are, RF_ROUGH, RF_ROUGH_CORNER or 0, and all of them
+ * or-ed. Element i of row[j] is a tap of cells i - 3 to i; elements to n + 2 are read. trust[0] ==
+ * NULL: all are sure.
  */
 enum {
     RF_TAP_COUNT = RF_TAPS * RF_TAPS,
@@ -42,20 +42,20 @@ enum {
     RF_BATCH_SPARE = 32
 };
 enum { RF_ROUGH = 1, RF_ROUGH_CORNER = 2 };
-typedef unsigned rf_rough_fn(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
-                             const uint8_t *const trust[RF_TAPS], int step, int n);
+typedef unsigned rf_rough_cells_fn(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
+                                   const uint8_t *const trust[RF_TAPS], int step, int n);
 
 /*
- * part: the taps of n cells side by side, ascending, and where they are parted: where one is more
- * than 1/44 of the range above the last, or more than 1/8 above the first of its surface. Rows as
- * for rough; those columns of `parts` from n on are of no meaning.
+ * part_taps: the taps of n cells side by side, ascending, and where they are parted: where one is
+ * more than 1/44 of the range above the last, or more than 1/8 above the first of its surface. Rows
+ * as for rough; those columns of `parts` from n on are of no meaning.
  */
 enum { RF_GAP = 65535 / 44, RF_WIDEST = 65535 / 8 };
 struct rf_parts {
     uint16_t sorted[RF_TAP_COUNT][RF_CELLS];
     uint16_t starts[RF_CELLS]; /* bit i: sorted[i] is the first of a surface */
 };
-typedef void rf_part_fn(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n);
+typedef void rf_part_taps_fn(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n);
 
 /*
  * The 8 x 8 samples around a cell, of which the middle ones are its taps, column by column: element
@@ -67,11 +67,12 @@ struct rf_window {
     const uint8_t *trust;     /* 255 = sure, or NULL: all are */
 };
 
-/* turn8, turn16: RF_TURNED columns of 8 rows laid end to end. */
+/* transpose8, turn16: RF_TURNED columns of 8 rows laid end to end. */
 enum { RF_TURNED = RF_CELLS + RF_AROUND };
-typedef void rf_turn8_fn(uint8_t out[RF_AROUND * RF_TURNED], const uint8_t *const row[RF_AROUND]);
-typedef void rf_turn16_fn(uint16_t out[RF_AROUND * RF_TURNED],
-                          const uint16_t *const row[RF_AROUND]);
+typedef void rf_transpose8_fn(uint8_t out[RF_AROUND * RF_TURNED],
+                              const uint8_t *const row[RF_AROUND]);
+typedef void rf_transpose16_fn(uint16_t out[RF_AROUND * RF_TURNED],
+                               const uint16_t *const row[RF_AROUND]);
 
 struct rf_surface {
     uint64_t samples;     /* bit 8 i + j: that of column i and row j shows what it looks like */
@@ -107,8 +108,8 @@ struct rf_lie {
 };
 
 /*
- * surface: disparities of n pixels of a cell. A pixel weighs each surface by how near its taps
- * are and by how much the photo here looks like the photo at all its samples,
+ * choose_surface: disparities of n pixels of a cell. A pixel weighs each surface by how near its
+ * taps are and by how much the photo here looks like the photo at all its samples,
  *
  *     prior = sum over its taps t of near_by[t] (trust[t], unless the cell is sure)
  *     alike = sum over its samples i of rf_likeness[|colour - colour[i]|], from 9 on of 0
@@ -129,22 +130,22 @@ struct rf_lie {
 static const uint8_t rf_likeness[16] = {225, 155, 103, 65, 39, 21, 10, 4, 1};
 static_assert(RF_AROUND * RF_AROUND * 225 <= UINT16_MAX,
               "the likeness of all samples fits 16 bits");
-typedef void rf_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
-                           const struct rf_cell *cell, const struct rf_window *window,
-                           const struct rf_lie *lie, uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE],
-                           int n);
+typedef void rf_choose_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
+                                  const struct rf_cell *cell, const struct rf_window *window,
+                                  const struct rf_lie *lie,
+                                  uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n);
 
 /* quarter: colours of n pixels of 3 or 4 bytes, of which the first three, in steps of
  * four codes. */
 typedef void rf_quarter_fn(uint8_t *const out[3], const uint8_t *pixels, int bytes, int n);
 
 /*
- * lean3: the rows' middle one, but where it is not sure, the 3 x 3 around weighed, four for what is
- * sure (255) and one for what is not (0): the least that more than 3/5 of the weights are at or
+ * median3: the rows' middle one, but where it is not sure, the 3 x 3 around weighed, four for what
+ * is sure (255) and one for what is not (0): the least that more than 3/5 of the weights are at or
  * below, in even steps. A median that leans to the near: what is thin is in front. Elements -1 to n
  * of the rows are read.
  */
-typedef void rf_lean3_fn(uint16_t *out, const uint16_t *const row[3], const uint8_t *const sure[3],
-                         int n);
+typedef void rf_median3_fn(uint16_t *out, const uint16_t *const row[3],
+                           const uint8_t *const sure[3], int n);
 
 #endif

@@ -116,13 +116,13 @@ static void filter_rows(const struct step *step, int ty, int y0, int y1)
 
     for (int tx = 0, end; tx < tiles; tx = end) {
         const enum task task = task_of(step, tx, ty);
-        const bool subtracted = step->subtracted && bins[tx].taken;
+        const bool subtracted = step->subtracted && bins[tx].subtracted;
         uint16_t *const *in = subtracted ? step->subtracted : step->in;
         const int x0 = tx * RF_TILE;
         int n;
 
         for (end = tx + 1; end < tiles && task_of(step, end, ty) == task &&
-                           subtracted == (step->subtracted && bins[end].taken);)
+                           subtracted == (step->subtracted && bins[end].subtracted);)
             end++;
         n = (end * RF_TILE < step->width ? end * RF_TILE : step->width) - x0;
         for (int y = y0; y < y1 && task != SKIP; y++) {

@@ -288,7 +288,7 @@ static void note_band(void *context, int band, int worker)
     struct refocus_renderer *r = context;
 
     (void)worker;
-    rf_note_background(&r->view, r->background.blur, r->bins, band);
+    rf_note_background_blur(&r->view, r->background.blur, r->bins, band);
     rf_foreground_rows(&r->exec, &r->view, r->blur, r->background.blur, &r->foreground, band);
 }
 
@@ -297,7 +297,7 @@ static void bare_band(void *context, int band, int worker)
     struct refocus_renderer *r = context;
     const struct rf_range_pass pass = range_pass(r);
 
-    rf_bare_rows(&r->exec, &r->view, &pass, band, worker);
+    rf_mark_bare_ranges(&r->exec, &r->view, &pass, band, worker);
 }
 
 static void weigh_band(void *context, int band, int worker)

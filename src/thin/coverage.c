@@ -71,7 +71,8 @@ static void share(const int32_t light[4], int radius, int32_t each[4])
     for (int y = 1; y <= radius >> 8; y++)
         length += 2 * chord(y << 8, radius);
     for (int c = 0; c < 4; c++) /* sums are of pixels, 16 a cell */
-        each[c] = (int32_t)(((int64_t)light[c] * (1 << (RF_VEIL_SHIFT + 8 - 4))) / (2 * length));
+        each[c] =
+            (int32_t)(((int64_t)light[c] * (1 << (RF_COVERAGE_SHIFT + 8 - 4))) / (2 * length));
 }
 
 static void collect_band(void *context, int ty, int worker)
@@ -192,30 +193,30 @@ static int clamp(int v, int most)
 
 /* Cells around a tile; false: nothing is drawn there. */
 static bool get_cells(const struct rf_thin_pass *t, int tx, int ty,
-                      int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
+                      int32_t part[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4])
 {
     const int across = t->view->tiles_x * CELLS, down = t->view->tiles_y * CELLS;
     const bool inside = tx > 0 && tx < t->view->tiles_x - 1;
     int any = 0;
 
-    for (int j = 0; j < RF_VEIL_CELLS; j++) {
+    for (int j = 0; j < RF_COVERAGE_CELLS; j++) {
         const int y = clamp(ty * CELLS + j - 1, down - 1);
         int32_t(*const row)[4] = t->coverage->cell + (ptrdiff_t)y * t->coverage->stride;
 
         if (inside)
             memcpy(part[j], row[tx * CELLS - 1], sizeof part[j]);
         else
-            for (int i = 0; i < RF_VEIL_CELLS; i++)
+            for (int i = 0; i < RF_COVERAGE_CELLS; i++)
                 memcpy(part[j][i], row[clamp(tx * CELLS + i - 1, across - 1)], sizeof part[j][i]);
-        for (int i = 0; i < RF_VEIL_CELLS; i++)
+        for (int i = 0; i < RF_COVERAGE_CELLS; i++)
             any |= part[j][i][3];
     }
-    return any >> RF_VEIL_SHIFT != 0;
+    return any >> RF_COVERAGE_SHIFT != 0;
 }
 
 bool rf_has_coverage(const struct rf_thin_pass *t, int tx, int ty)
 {
-    int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
+    int32_t part[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4];
 
     return get_cells(t, tx, ty, part);
 }
@@ -223,8 +224,8 @@ bool rf_has_coverage(const struct rf_thin_pass *t, int tx, int ty)
 void rf_coverage_over(const struct rf_thin_pass *t, int tx, int ty,
                       uint16_t mean[3][RF_TILE * RF_TILE])
 {
-    int32_t part[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
+    int32_t part[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4];
 
     if (get_cells(t, tx, ty, part))
-        t->exec->kernels->lay_veil((uint16_t *const[3]){mean[0], mean[1], mean[2]}, part);
+        t->exec->kernels->composite_thin((uint16_t *const[3]){mean[0], mean[1], mean[2]}, part);
 }

@@ -103,7 +103,7 @@ struct rf_coverage {
     uint32_t *sources;                 /* number of sources of each row of tiles */
     struct rf_thin_choice *choice;     /* choice of each tile */
     bool *swapped;                     /* whether the light planes hold F, for each row of tiles */
-    int32_t (*cell)[4];                /* alpha N and alpha, Q12 times 2^RF_VEIL_SHIFT */
+    int32_t (*cell)[4];                /* alpha N and alpha, Q12 times 2^RF_COVERAGE_SHIFT */
     int stride;
 };
 

@@ -124,8 +124,8 @@ void rf_foreground_rows(const struct rf_executor *exec, const struct rf_viewport
     }
 }
 
-void rf_put_in_front(const struct rf_viewport *view, const struct rf_foreground_cells *foreground,
-                     struct rf_rect pixels)
+void rf_force_foreground(const struct rf_viewport *view,
+                         const struct rf_foreground_cells *foreground, struct rf_rect pixels)
 {
     const int last_x = cells_x(view) - 1, last_y = view->tiles_y * EACH - 1;
 
@@ -135,8 +135,8 @@ void rf_put_in_front(const struct rf_viewport *view, const struct rf_foreground_
             foreground->most[y * foreground->stride + x] = INT16_MAX;
 }
 
-void rf_bare_rows(const struct rf_executor *exec, const struct rf_viewport *view,
-                  const struct rf_range_pass *pass, int ty, int worker)
+void rf_mark_bare_ranges(const struct rf_executor *exec, const struct rf_viewport *view,
+                         const struct rf_range_pass *pass, int ty, int worker)
 {
     const struct window_rows rows = window_rows(view, ty);
     int16_t *const scratch = (int16_t *)rf_scratch(exec, worker);
@@ -148,7 +148,7 @@ void rf_bare_rows(const struct rf_executor *exec, const struct rf_viewport *view
             cell[j] = pass->foreground.most + clamp(y + j, rows.last) * pass->foreground.stride;
         if (pass->whole_tiles)
             join_strips(cell, joined_rows(scratch, &rows), rows.cells, greater_row);
-        exec->kernels->bare(pass->range.at + y * pass->range.stride - rows.border, cell, scratch,
-                            rows.cells, rows.border);
+        exec->kernels->mark_bare(pass->range.at + y * pass->range.stride - rows.border, cell,
+                                 scratch, rows.cells, rows.border);
     }
 }

@@ -51,7 +51,7 @@ void rf_add_to_cell(const struct rf_cells *cells, int x, int y, int16_t blur);
 /* Arguments of the passes that make ranges, and where these go. */
 struct rf_range_pass {
     struct rf_cells cells;                 /* read by rf_range_rows() */
-    struct rf_foreground_cells foreground; /* read by rf_bare_rows() */
+    struct rf_foreground_cells foreground; /* read by rf_mark_bare_ranges() */
     bool whole_tiles;                      /* ranges are of both strips of a tile: a photo of Y, U
                                               and V is swept a tile at a time */
     struct rf_range_plane range;           /* written */
@@ -68,11 +68,11 @@ void rf_foreground_rows(const struct rf_executor *exec, const struct rf_viewport
                         const struct rf_foreground_cells *foreground, int ty);
 
 /* Makes cells foreground whatever their blur: those of the pixels, the last ones too. */
-void rf_put_in_front(const struct rf_viewport *view, const struct rf_foreground_cells *foreground,
-                     struct rf_rect pixels);
+void rf_force_foreground(const struct rf_viewport *view,
+                         const struct rf_foreground_cells *foreground, struct rf_rect pixels);
 
 /* Tells which ranges of row ty are bare (kernels.h), from the foreground of all rows. */
-void rf_bare_rows(const struct rf_executor *exec, const struct rf_viewport *view,
-                  const struct rf_range_pass *pass, int ty, int worker);
+void rf_mark_bare_ranges(const struct rf_executor *exec, const struct rf_viewport *view,
+                         const struct rf_range_pass *pass, int ty, int worker);
 
 #endif

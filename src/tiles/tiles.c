@@ -121,8 +121,8 @@ void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_
     tile->most = blur > tile->most ? blur : tile->most;
 }
 
-void rf_note_background(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
-                        struct rf_bins *bins, int ty)
+void rf_note_background_blur(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
+                             struct rf_bins *bins, int ty)
 {
     const int16_t *row = background_blur.at + (ty * RF_TILE + RF_TILE / 2) * background_blur.stride;
 
@@ -207,8 +207,8 @@ static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
 
     if (bins->brightest > sum->brightest)
         sum->brightest = bins->brightest;
-    if (bins->lamp > sum->lamp && bins->lamp >= kept->blur)
-        sum->lamp = bins->lamp;
+    if (bins->highlight > sum->highlight && bins->highlight >= kept->blur)
+        sum->highlight = bins->highlight;
     if (bins->dots > sum->dots && bins->dots >= kept->blur)
         sum->dots = bins->dots;
     if (!near && !far)
@@ -323,7 +323,7 @@ void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
     const struct rf_bins in_reach = collect(view, bins, reach, tx, ty);
 
     cover(&in_reach, reach->scale, plan);
-    plan->lamp = in_reach.lamp;
+    plan->highlight = in_reach.highlight;
     plan->dots = in_reach.dots > 0;
     plan->brightest = in_reach.brightest;
 }

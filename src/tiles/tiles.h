@@ -25,7 +25,7 @@ struct rf_tile_plan {
     int reach;          /* largest |s| that reaches the tile, Q7.8, */
     int least;          /* the least |s| that reaches it */
     bool sharp;         /* nothing here or reaching here is blurred by half a pixel */
-    int lamp;           /* largest |s| of a highlight in reach, Q7.8; 0: none is in reach */
+    int highlight;      /* largest |s| of a highlight in reach, Q7.8; 0: none is in reach */
     bool dots;          /* a highlight that is small beside the gaps of the rays is in reach */
     uint16_t brightest; /* brightest light of the tiles in reach, as in rf_bins */
     struct rf_slab slab[RF_MAX_SLABS];
@@ -59,8 +59,8 @@ void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_
                 int x, int y, int16_t blur);
 
 /* Writes to the bins of the tiles of row ty the background's blur in the middle of each. */
-void rf_note_background(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
-                        struct rf_bins *bins, int ty);
+void rf_note_background_blur(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
+                             struct rf_bins *bins, int ty);
 
 /* Finds everything the rays of a tile need, from the bins of those in reach. */
 void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,

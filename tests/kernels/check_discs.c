@@ -191,12 +191,12 @@ static int check_hide(const struct subject *subject)
                         meets(&job, &way, &slab, blur, x, y - (y - job.first) % way.rows, k)
                             ? 0
                             : 0xffff;
-        subject->kernels.hide(visible, blur, SIDE, &slab, &job, &way);
+        subject->kernels.occlude_disc(visible, blur, SIDE, &slab, &job, &way);
         for (int i = 0; i < 2 * LANES; i++)
             if (visible[i] != should[i])
-                return wrong(subject, "hide", i, visible[i], should[i]);
+                return wrong(subject, "occlude_disc", i, visible[i], should[i]);
     }
-    printf("ok    %-12s %-6s\n", "hide", subject->cpu);
+    printf("ok    %-12s %-6s\n", "occlude_disc", subject->cpu);
     return 0;
 }
 
@@ -216,11 +216,11 @@ static int check_meets(const struct subject *subject)
         for (int i = 0; i < SIDE * SIDE; i++)
             plane[i] = (int16_t)(low < 0 ? low + slab.width + 1 : low - 1);
         plane[at] = (int16_t)(low + (noise(&seed) % 2 ? slab.width : 0));
-        met = subject->kernels.meets(plane, SIDE, width, height, &slab);
+        met = subject->kernels.any_in_slab(plane, SIDE, width, height, &slab);
         if (met != inside)
-            return wrong(subject, "meets", at, met, inside);
+            return wrong(subject, "any_in_slab", at, met, inside);
     }
-    printf("ok    %-12s %-6s\n", "meets", subject->cpu);
+    printf("ok    %-12s %-6s\n", "any_in_slab", subject->cpu);
     return 0;
 }
 

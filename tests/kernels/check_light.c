@@ -393,14 +393,15 @@ static int check_soften(const struct subject *subject)
 }
 
 /* Between the middles of four cells, in real numbers. */
-static double between_cells(int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4], int c, int x, int y)
+static double between_cells(int32_t cell[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4], int c, int x,
+                            int y)
 {
     const double u = (2 * x + 5) / 8.0, v = (2 * y + 5) / 8.0;
     const int i = (int)u, j = (int)v;
     const double above = cell[j][i][c] + (u - i) * (cell[j][i + 1][c] - cell[j][i][c]);
     const double below = cell[j + 1][i][c] + (u - i) * (cell[j + 1][i + 1][c] - cell[j + 1][i][c]);
 
-    return (above + (v - j) * (below - above)) / (1 << RF_VEIL_SHIFT) / 4096;
+    return (above + (v - j) * (below - above)) / (1 << RF_COVERAGE_SHIFT) / 4096;
 }
 
 static int check_veil(const struct subject *subject)
@@ -408,24 +409,24 @@ static int check_veil(const struct subject *subject)
     uint32_t seed = 15;
 
     for (int round = 0; round < 200; round++) {
-        int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4];
+        int32_t cell[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4];
         uint16_t mean[3][LANES], out[3][LANES], plain[3][LANES];
         struct rf_kernels c;
         uint32_t cpu = 1; /* plain C */
 
         rf_kernels_select(&c, &cpu);
-        for (int i = 0; i < RF_VEIL_CELLS * RF_VEIL_CELLS; i++)
+        for (int i = 0; i < RF_COVERAGE_CELLS * RF_COVERAGE_CELLS; i++)
             for (int k = 0; k < 4; k++) /* a little below 0, and above 1 */
-                cell[i / RF_VEIL_CELLS][i % RF_VEIL_CELLS][k] =
+                cell[i / RF_COVERAGE_CELLS][i % RF_COVERAGE_CELLS][k] =
                     (int32_t)((round % 2 ? noise(&seed) : (uint32_t)round << 19) %
-                              (9u << (RF_VEIL_SHIFT + 9))) -
+                              (9u << (RF_COVERAGE_SHIFT + 9))) -
                     (1 << 20);
         for (int i = 0; i < 3 * LANES; i++)
             mean[i / LANES][i % LANES] = (uint16_t)(noise(&seed) >> (round % 3 ? 18 : 16));
         memcpy(out, mean, sizeof out);
         memcpy(plain, mean, sizeof out);
-        subject->kernels.lay_veil((uint16_t *const[3]){out[0], out[1], out[2]}, cell);
-        c.lay_veil((uint16_t *const[3]){plain[0], plain[1], plain[2]}, cell);
+        subject->kernels.composite_thin((uint16_t *const[3]){out[0], out[1], out[2]}, cell);
+        c.composite_thin((uint16_t *const[3]){plain[0], plain[1], plain[2]}, cell);
         for (int i = 0; i < 3 * LANES; i++) {
             const int k = i / LANES, p = i % LANES;
             const double cover = fmin(fmax(between_cells(cell, 3, p % RF_TILE, p / RF_TILE), 0), 1);
@@ -433,7 +434,7 @@ static int check_veil(const struct subject *subject)
             const double should = fmin(fmax(mean[k][p] * (1 - cover) + light, 0), 65535);
 
             if (out[k][p] != plain[k][p] || fabs(out[k][p] - should) > 4)
-                return wrong(subject, "lay_veil", "a pixel", out[k][p],
+                return wrong(subject, "composite_thin", "a pixel", out[k][p],
                              out[k][p] != plain[k][p] ? plain[k][p] : should);
         }
     }

@@ -85,9 +85,9 @@ static int check_turned(const struct subject *subject, int round)
             byte[c][j] = samples.colour[c][j];
         byte[3][j] = samples.trust[j];
     }
-    subject->kernels.turn16(turned.disparity, disparity);
+    subject->kernels.transpose16(turned.disparity, disparity);
     for (int c = 0; c < 4; c++)
-        subject->kernels.turn8(c < 3 ? turned.colour[c] : turned.trust, byte[c]);
+        subject->kernels.transpose8(c < 3 ? turned.colour[c] : turned.trust, byte[c]);
     for (int i = 0; i < ACROSS * RF_AROUND; i++) {
         const int x = i / RF_AROUND, y = i % RF_AROUND;
 
@@ -214,12 +214,12 @@ static int check_cells(const struct subject *subject, int round, uint32_t *seed)
         row[j] = samples.disparity[j + 2] + 2;
         trust[j] = trusting ? samples.trust[j + 2] + 2 : NULL;
     }
-    subject->kernels.part(&parts, row, n);
+    subject->kernels.part_taps(&parts, row, n);
     if (!are_parts(n)) {
         printf("FAIL  part %s: round %d\n", subject->cpu, round);
         return 1;
     }
-    const unsigned found = subject->kernels.rough(rough, row, trust, step, n);
+    const unsigned found = subject->kernels.rough_cells(rough, row, trust, step, n);
 
     for (int i = 0; i < n; i++) {
         int is_rough = 0;
@@ -266,7 +266,7 @@ static int check_pixels(const struct subject *subject, int round)
 
     memset(out, 0xa5, sizeof out);
     memset(sure, 0xa5, sizeof sure);
-    subject->kernels.surface(out, sure, &cell, &window, &lie, colour, n);
+    subject->kernels.choose_surface(out, sure, &cell, &window, &lie, colour, n);
     for (int x = 0; x < RF_BATCH + BEYOND; x++) {
         uint8_t is_sure = 0xa5;
         const int should = x < n ? expect(&window, x, &is_sure) : 0xa5a5;
@@ -394,7 +394,7 @@ static int check_lean(const struct subject *subject, int round, uint32_t *seed)
         is_sure[i / (MOST + 2)][i % (MOST + 2)] = noise(seed) % 3 ? 0 : 255;
     }
     memset(out, 0xa5, sizeof out);
-    subject->kernels.lean3(out, row, sure, n);
+    subject->kernels.median3(out, row, sure, n);
     for (int x = 0; x < MOST + BEYOND; x++) {
         uint16_t nine[9], should = 0xa5a5;
         uint8_t nine_sure[9];
@@ -430,6 +430,6 @@ int check_surface(const struct subject *subject)
             check_blend(subject, round, &seed) || check_lean(subject, round, &seed))
             return 1;
     }
-    printf("ok    %-12s %-6s %d cells\n", "surface", subject->cpu, ROUNDS);
+    printf("ok    %-12s %-6s %d cells\n", "choose_surface", subject->cpu, ROUNDS);
     return 0;
 }

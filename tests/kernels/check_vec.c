@@ -245,7 +245,7 @@ static const struct {
     {"sub", vec_u16_sub, c_sub},
     {"and", vec_u16_and, c_and},
     {"without", vec_u16_without, c_without},
-    {"at_most", vec_u16_at_most, c_at_most},
+    {"clamp_row", vec_u16_at_most, c_at_most},
     {"or", vec_u16_or, c_or},
     {"xor", vec_u16_xor, c_xor},
     {"max", vec_u16_max, c_max},

@@ -458,7 +458,7 @@ static int check_keep(const struct subject *subject)
         }
         for (int i = 0; i < 2 * n + 2; i++)
             out[i] = filled[i] = (uint16_t)noise(&state);
-        subject->kernels.keep2(out, own, blur, behind, n);
+        subject->kernels.restore_known2(out, own, blur, behind, n);
         for (int i = 0; i < 2 * n + 2; i++) {
             const int pair = i & ~1;
             const bool known =
@@ -466,10 +466,10 @@ static int check_keep(const struct subject *subject)
             const uint16_t should = known ? own[i] : filled[i];
 
             if (out[i] != should)
-                return fail(subject, "keep2", seed, i, out[i], should);
+                return fail(subject, "restore_known2", seed, i, out[i], should);
         }
     }
-    printf("ok    %-12s %-6s 200 cases\n", "keep2", subject->cpu);
+    printf("ok    %-12s %-6s 200 cases\n", "restore_known2", subject->cpu);
     return 0;
 }
 

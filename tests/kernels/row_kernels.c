@@ -151,7 +151,7 @@ static void expect_dilate_from(void *const *row, int parameter, int n)
 static void run_mark(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
     (void)parameter;
-    k->mark(row[0], row[1], row[2], n);
+    k->mark_foreground(row[0], row[1], row[2], n);
 }
 
 static void expect_mark(void *const *row, int parameter, int n)
@@ -273,7 +273,7 @@ static void expect_means(void *const *row, int parameter, int n)
 
 static void run_at_most(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    k->at_most(row[0], (uint16_t)parameter, n);
+    k->clamp_row(row[0], (uint16_t)parameter, n);
 }
 
 static void expect_at_most(void *const *row, int parameter, int n)
@@ -516,7 +516,13 @@ const struct row_kernel row_kernels[] = {
      0,
      run_dilate_from,
      expect_dilate_from},
-    {"mark", 3, {{BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {RAISED, 1, 0, 0}}, 0, 0, run_mark, expect_mark},
+    {"mark_foreground",
+     3,
+     {{BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {RAISED, 1, 0, 0}},
+     0,
+     0,
+     run_mark,
+     expect_mark},
     {"push",
      10,
      {{LIGHT, 1, 0, 0},
@@ -552,6 +558,6 @@ const struct row_kernel row_kernels[] = {
      run_pull_blur,
      expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
-    {"at_most", 1, {{LIGHT, 1, 0, 0}}, 0, UINT16_MAX, run_at_most, expect_at_most},
+    {"clamp_row", 1, {{LIGHT, 1, 0, 0}}, 0, UINT16_MAX, run_at_most, expect_at_most},
 };
 const int row_kernel_count = sizeof row_kernels / sizeof row_kernels[0];

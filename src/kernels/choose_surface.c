@@ -1,4 +1,4 @@
-/* surface.c: which surface each pixel of a cell belongs to, and its disparity there. */
+/* choose_surface.c: which surface each pixel of a cell belongs to, and its disparity there. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 
@@ -150,9 +150,9 @@ static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct 
         sure[x] = best[x] / 4 > second[x] ? 255 : 0;
 }
 
-void rf_surface_c(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH], const struct rf_cell *cell,
-                  const struct rf_window *window, const struct rf_lie *lie,
-                  uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
+void rf_choose_surface_c(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH], const struct rf_cell *cell,
+                         const struct rf_window *window, const struct rf_lie *lie,
+                         uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += LANES) {
         uint8_t *const own[3] = {colour[0] + x, colour[1] + x, colour[2] + x};

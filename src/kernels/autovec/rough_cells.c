@@ -1,9 +1,9 @@
-/* rough.c: which cells of a coarse map have a depth edge among their samples. */
+/* rough_cells.c: which cells of a coarse map have a depth edge among their samples. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 
-unsigned RF_VEC(rf_rough)(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
-                          const uint8_t *const trust[RF_TAPS], int step, int n)
+unsigned RF_VEC(rf_rough_cells)(uint8_t rough[RF_CELLS], const uint16_t *const row[RF_TAPS],
+                                const uint8_t *const trust[RF_TAPS], int step, int n)
 {
     const uint16_t *restrict a = row[0], *restrict b = row[1];
     const uint16_t *restrict c = row[2], *restrict d = row[3];

@@ -1,4 +1,5 @@
-/* surface_vec.c: which surface each pixel of a cell belongs to, a vector of pixels at a time. */
+/* choose_surface_vec.c: which surface each pixel of a cell belongs to, a vector of pixels at a
+ * time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
@@ -131,9 +132,10 @@ static inline void weigh(struct found *found, const struct rf_surface *s, const 
     }
 }
 
-void RF_VEC(rf_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH], const struct rf_cell *cell,
-                        const struct rf_window *window, const struct rf_lie *lie,
-                        uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
+void RF_VEC(rf_choose_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
+                               const struct rf_cell *cell, const struct rf_window *window,
+                               const struct rf_lie *lie,
+                               uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += VEC_U8) {
         const vec_u8 own[3] = {vec_u8_load(colour[0] + x), vec_u8_load(colour[1] + x),

@@ -1,5 +1,5 @@
-/* hide_vec.c: which part of a highlight's disc nearer surfaces occlude, a vector of pixels at a
- * time.
+/* occlude_disc_vec.c: which part of a highlight's disc nearer surfaces occlude, a vector of pixels
+ * at a time.
  *
  * Places are found for all rows before what is there is looked up, and that before it is judged, so
  * that no vector waits for its elements.
@@ -68,9 +68,9 @@ static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, v
     }
 }
 
-void RF_VEC(rf_hide)(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
-                     const struct rf_slab *slab, const struct rf_disc_job *job,
-                     const struct rf_disc_way *way)
+void RF_VEC(rf_occlude_disc)(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
+                             const struct rf_slab *slab, const struct rf_disc_job *job,
+                             const struct rf_disc_way *way)
 {
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));

@@ -1,4 +1,5 @@
-/* lean3_vec.c: a median of 3 x 3 disparities, weighted and leaning to the near, a vector at a time.
+/* median3_vec.c: a median of 3 x 3 disparities, weighted and leaning to the near, a vector at a
+ * time.
  */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
@@ -44,13 +45,13 @@ static inline vec_u16 lean(const uint16_t *const row[3], const uint8_t *const su
     return vec_u16_select(is_sure, vec_u16_load(row[1] + x), vec_u16_and(result, even));
 }
 
-void RF_VEC(rf_lean3)(uint16_t *out, const uint16_t *const row[3], const uint8_t *const sure[3],
-                      int n)
+void RF_VEC(rf_median3)(uint16_t *out, const uint16_t *const row[3], const uint8_t *const sure[3],
+                        int n)
 {
     int x = 0;
 
     for (; x + (int)VEC_U16 <= n; x += VEC_U16)
         vec_u16_store(out + x, lean(row, sure, x));
-    rf_lean3_c(out + x, (const uint16_t *const[3]){row[0] + x, row[1] + x, row[2] + x},
-               (const uint8_t *const[3]){sure[0] + x, sure[1] + x, sure[2] + x}, n - x);
+    rf_median3_c(out + x, (const uint16_t *const[3]){row[0] + x, row[1] + x, row[2] + x},
+                 (const uint8_t *const[3]){sure[0] + x, sure[1] + x, sure[2] + x}, n - x);
 }

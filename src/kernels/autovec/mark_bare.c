@@ -1,9 +1,9 @@
-/* bare.c: which windows have a background that shows what the picture shows. */
+/* mark_bare.c: which windows have a background that shows what the picture shows. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/cell_runs.h"
 
-void RF_VEC(rf_bare)(uint32_t *restrict range, const int16_t *const foreground[RF_WINDOW_Y],
-                     int16_t *restrict scratch, int n, int border)
+void RF_VEC(rf_mark_bare)(uint32_t *restrict range, const int16_t *const foreground[RF_WINDOW_Y],
+                          int16_t *restrict scratch, int n, int border)
 {
     const int16_t *restrict f0 = foreground[0], *restrict f1 = foreground[1];
     const int16_t *restrict f2 = foreground[2];

@@ -1,8 +1,8 @@
-/* keep2.c: gives pairs back that were known before the background was inpainted. */
+/* restore_known2.c: gives pairs back that were known before the background was inpainted. */
 #include "kernels/kernels.h"
 
-void RF_VEC(rf_keep2)(uint16_t *restrict out, const uint16_t *restrict own,
-                      const int16_t *restrict blur, const int16_t *restrict behind, int n)
+void RF_VEC(rf_restore_known2)(uint16_t *restrict out, const uint16_t *restrict own,
+                               const int16_t *restrict blur, const int16_t *restrict behind, int n)
 {
     for (int x = 0; x < n; x++) {
         const uint16_t known =

@@ -1,15 +1,15 @@
-/* lay_veil.c: composites the cells of thin structures over the means of a tile. */
+/* composite_thin.c: composites the cells of thin structures over the means of a tile. */
 #include "kernels/kernels.h"
 
 /* A row of cells at the middles of pixels, those of a channel together. */
-static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_VEIL_CELLS][4])
+static void across_cells(int32_t out[4][RF_TILE], int32_t cell[RF_COVERAGE_CELLS][4])
 {
     for (int x = 0; x < RF_TILE; x++) {
         const int at = 2 * x + 5, i = at >> 3, part = at & 7; /* eighths of a cell */
 
         for (int c = 0; c < 4; c++)
             out[c][x] =
-                (cell[i][c] * (8 - part) + cell[i + 1][c] * part) >> (RF_VEIL_SHIFT + 3 - 8);
+                (cell[i][c] * (8 - part) + cell[i + 1][c] * part) >> (RF_COVERAGE_SHIFT + 3 - 8);
     }
 }
 
@@ -33,11 +33,12 @@ static void lay_row(uint16_t *restrict out, const int32_t *restrict light,
     }
 }
 
-void RF_VEC(rf_lay_veil)(uint16_t *const mean[3], int32_t cell[RF_VEIL_CELLS][RF_VEIL_CELLS][4])
+void RF_VEC(rf_composite_thin)(uint16_t *const mean[3],
+                               int32_t cell[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4])
 {
-    int32_t row[RF_VEIL_CELLS][4][RF_TILE];
+    int32_t row[RF_COVERAGE_CELLS][4][RF_TILE];
 
-    for (int i = 0; i < RF_VEIL_CELLS; i++)
+    for (int i = 0; i < RF_COVERAGE_CELLS; i++)
         across_cells(row[i], cell[i]);
     for (int y = 0; y < RF_TILE; y++) {
         const int at = 2 * y + 5, i = at >> 3, part = at & 7;

@@ -1,4 +1,4 @@
-/* hide.c: which part of a highlight's disc nearer surfaces occlude. */
+/* occlude_disc.c: which part of a highlight's disc nearer surfaces occlude. */
 #include "kernels/kernels.h"
 #include "support/compare.h"
 
@@ -7,8 +7,9 @@ static int go(const struct rf_disc_way *way, int v)
     return (v * (1 << way->shift) * way->times + (1 << 22)) >> 23;
 }
 
-void rf_hide_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride, const struct rf_slab *slab,
-               const struct rf_disc_job *job, const struct rf_disc_way *way)
+void rf_occlude_disc_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
+                       const struct rf_slab *slab, const struct rf_disc_job *job,
+                       const struct rf_disc_way *way)
 {
     const uint16_t low = rf_range_from(slab), to = rf_range_to(slab, slab);
 

@@ -1,5 +1,5 @@
-/* part_vec.c: sorts the samples around each cell, and parts them into surfaces, a vector of cells
- * at a time. */
+/* part_taps_vec.c: sorts the samples around each cell, and parts them into surfaces, a vector of
+ * cells at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 #include "kernels/sort_network.h"
@@ -38,7 +38,7 @@ static inline void part_some(struct rf_parts *parts, const uint16_t *const row[R
     vec_u16_store(parts->starts + i, starts);
 }
 
-void RF_VEC(rf_part)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
+void RF_VEC(rf_part_taps)(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
 {
     uint16_t spare[RF_TAPS][RF_CELLS + RF_TAPS];
     const uint16_t *whole[RF_TAPS];

@@ -1,4 +1,4 @@
-/* part.c: sorts the samples around each cell, and parts them into surfaces. */
+/* part_taps.c: sorts the samples around each cell, and parts them into surfaces. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 #include "kernels/sort_network.h"
@@ -24,7 +24,7 @@ static void sort(uint16_t sorted[TAPS][RF_CELLS])
         order(sorted[rf_exchange16[i][0]], sorted[rf_exchange16[i][1]]);
 }
 
-void rf_part_c(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
+void rf_part_taps_c(struct rf_parts *parts, const uint16_t *const row[RF_TAPS], int n)
 {
     uint16_t low[RF_CELLS], starts[RF_CELLS];
 

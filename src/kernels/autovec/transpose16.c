@@ -1,7 +1,8 @@
-/* turn16.c: rows of 16-bit values to columns laid end to end. */
+/* transpose16.c: rows of 16-bit values to columns laid end to end. */
 #include "kernels/kernels.h"
 
-void RF_VEC(rf_turn16)(uint16_t out[RF_AROUND * RF_TURNED], const uint16_t *const row[RF_AROUND])
+void RF_VEC(rf_transpose16)(uint16_t out[RF_AROUND * RF_TURNED],
+                            const uint16_t *const row[RF_AROUND])
 {
     const uint16_t *restrict a = row[0], *restrict b = row[1], *restrict c = row[2];
     const uint16_t *restrict d = row[3], *restrict e = row[4], *restrict f = row[5];

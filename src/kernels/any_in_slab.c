@@ -1,8 +1,8 @@
-/* meets.c: whether any pixel of a block lies in a slab. */
+/* any_in_slab.c: whether any pixel of a block lies in a slab. */
 #include "kernels/kernels.h"
 
-bool rf_meets_c(const int16_t *blur, ptrdiff_t stride, int width, int height,
-                const struct rf_slab *slab)
+bool rf_any_in_slab_c(const int16_t *blur, ptrdiff_t stride, int width, int height,
+                      const struct rf_slab *slab)
 {
     const uint16_t from = rf_range_from(slab), to = rf_range_to(slab, slab);
 

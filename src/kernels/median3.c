@@ -1,4 +1,4 @@
-/* lean3.c: a median of 3 x 3 disparities, weighted and leaning to the near. */
+/* median3.c: a median of 3 x 3 disparities, weighted and leaning to the near. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 #include "kernels/sort_network.h"
@@ -31,8 +31,8 @@ static uint16_t leaning(uint16_t v[9])
     return (uint16_t)(v[i] & ~1);
 }
 
-void rf_lean3_c(uint16_t *restrict out, const uint16_t *const row[3], const uint8_t *const sure[3],
-                int n)
+void rf_median3_c(uint16_t *restrict out, const uint16_t *const row[3],
+                  const uint8_t *const sure[3], int n)
 {
     for (int x = 0; x < n; x++) {
         uint16_t v[9];

@@ -1,9 +1,9 @@
-/* meets_vec.c: whether any pixel of a block lies in a slab, a vector of pixels at a time. */
+/* any_in_slab_vec.c: whether any pixel of a block lies in a slab, a vector of pixels at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 
-bool RF_VEC(rf_meets)(const int16_t *blur, ptrdiff_t stride, int width, int height,
-                      const struct rf_slab *slab)
+bool RF_VEC(rf_any_in_slab)(const int16_t *blur, ptrdiff_t stride, int width, int height,
+                            const struct rf_slab *slab)
 {
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));

@@ -1,7 +1,7 @@
-/* turn8.c: rows of bytes to columns laid end to end. */
+/* transpose8.c: rows of bytes to columns laid end to end. */
 #include "kernels/kernels.h"
 
-void RF_VEC(rf_turn8)(uint8_t out[RF_AROUND * RF_TURNED], const uint8_t *const row[RF_AROUND])
+void RF_VEC(rf_transpose8)(uint8_t out[RF_AROUND * RF_TURNED], const uint8_t *const row[RF_AROUND])
 {
     const uint8_t *restrict a = row[0], *restrict b = row[1], *restrict c = row[2];
     const uint8_t *restrict d = row[3], *restrict e = row[4], *restrict f = row[5];

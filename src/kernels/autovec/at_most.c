@@ -1,8 +1,0 @@
-/* at_most.c: clamps the values of a row. */
-#include "kernels/kernels.h"
-
-void RF_VEC(rf_at_most)(uint16_t *restrict value, uint16_t most, int n)
-{
-    for (int i = 0; i < n; i++)
-        value[i] = value[i] < most ? value[i] : most;
-}
