@@ -60,6 +60,7 @@ enum refocus_figure {
     REFOCUS_FIGURE_HEART = 1,
     REFOCUS_FIGURE_STAR = 2, /**< of `blades` points, 0 = 5 */
 };
+enum { REFOCUS_FIGURE_COUNT = 3 };
 
 /**
  * What an opening can be. Start from refocus_aperture_params_default(), a disc.

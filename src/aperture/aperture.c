@@ -198,7 +198,7 @@ static bool good_params(const struct refocus_aperture_params *p)
     return p->reserved == 0 && (p->blades == 0 || (p->blades >= 3 && p->blades <= 16)) &&
            in(p->rotation_deg, -3600, 3600) && in(p->curvature, 0, 1) && in(p->opening, 0, 1) &&
            in(p->squeeze, 0.5, 2) && in(p->hole, 0, 0.9) && in(p->edge_behind, -1, 1) &&
-           in(p->edge_before, -1, 1) && p->figure <= REFOCUS_FIGURE_STAR && !(p->figure && iris) &&
+           in(p->edge_before, -1, 1) && p->figure < REFOCUS_FIGURE_COUNT && !(p->figure && iris) &&
            !(p->mask && (p->figure || p->blades || p->rotation_deg != 0 || iris));
 }
 

@@ -263,7 +263,7 @@ static void refused(void **state)
         p.hole = i == 13 ? 0.91 : i == 14 ? -0.1 : 0;
         p.edge_behind = i == 15 ? 1.1 : i == 16 ? (double)NAN : 0;
         p.edge_before = i == 17 ? -1.1 : 0;
-        p.figure = i == 18 ? 3 : 0;
+        p.figure = i == 18 ? REFOCUS_FIGURE_COUNT : 0;
         if (i == 19)
             p.struct_size = 8;
         if (i == 20) {

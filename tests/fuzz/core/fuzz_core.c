@@ -64,7 +64,7 @@ static struct refocus_aperture_params take_opening(struct input *in, int wild)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
 
-    p.figure = (uint32_t)take_in(in, wild, 0, 2);
+    p.figure = (uint32_t)take_in(in, wild, 0, REFOCUS_FIGURE_COUNT - 1);
     p.blades = take_in(in, wild, 2, 16);
     if (p.blades == 2)
         p.blades = 0;
