@@ -101,7 +101,7 @@ struct rf_in_place {
 struct refocus_renderer {
     struct refocus_allocator allocator;
     struct refocus_log log;
-    struct rf_settings settings; /* of the last render, whose plan has its maps */
+    struct rf_settings settings; /* the last render; its plan has its maps */
     void *block;
     uint64_t memory;
     uint32_t cpu;              /* enum refocus_cpu, never AUTO */

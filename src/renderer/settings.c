@@ -42,7 +42,7 @@ static const struct feature {
 /* A field that is a number: where it is among all features and in struct rf_settings. Names of
  * features are said, that of the struct they hang on is not. */
 struct row {
-    struct rf_rule rule; /* of struct refocus_settings */
+    struct rf_rule rule; /* the offset is in struct refocus_settings */
     size_t to;
 };
 

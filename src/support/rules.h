@@ -7,7 +7,7 @@
 
 #include "support/log.h"
 
-enum { RF_RULE_BYTES = 4 }; /* of every field that has a rule */
+enum { RF_RULE_BYTES = 4 }; /* size of every field that has a rule */
 
 enum rf_rule_type { RF_REAL, RF_SIGNED, RF_UNSIGNED }; /* float, int32_t, uint32_t */
 
