@@ -129,7 +129,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .front = f->smooth.channel[0] + at,
         .behind = f->background.light.channel[0] + at,
         .weight = f->weighted ? f->weight.at + weight_at : NULL,
-        .behind_weight = f->background_weight.at + at,
+        .background_weight = f->background_weight.at + at,
         .rays = lookups->rays,
         .slabs = plan->slabs,
         .beneath = rf_looks_beneath(f),

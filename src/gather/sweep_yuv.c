@@ -113,13 +113,13 @@ static void sort_rays(const struct tile *tile, struct lookups *lookups, int shar
         .offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->offset,
         .cell = (const int32_t(*)[RF_RAY_CHUNK])lookups->cell,
         .weight = tile->weight,
-        .behind_weight = tile->background_weight,
+        .background_weight = tile->background_weight,
         .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->offset,
         .shared = shared,
         .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->chroma_offset,
         .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->chroma_pixel,
         .chroma_front = tile->chroma.light,
-        .chroma_behind = tile->chroma.background,
+        .chroma_background = tile->chroma.background,
     };
 
     for (int k = 0; k <= tile->plan.slabs; k++) {

@@ -91,10 +91,10 @@ struct rf_silhouettes {
 };
 
 /* Gives the lists of photos up to that size their memory. */
-void rf_take_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
-                        int max_height);
-void rf_take_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena, int max_width,
-                         int max_height);
+void rf_lay_out_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
+                           int max_height);
+void rf_lay_out_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena,
+                            int max_width, int max_height);
 
 /* Lists the highlights of the photo anew. Reads the photo's light. What a cancelled run leaves is
  * of no use. */

@@ -10,8 +10,8 @@ static uint32_t capacity_of(int max_width)
     return (uint32_t)max_width * RF_HIGHLIGHT_ROWS / 76 + 6;
 }
 
-void rf_take_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
-                        int max_height)
+void rf_lay_out_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
+                           int max_height)
 {
     const int parts = (max_height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
 

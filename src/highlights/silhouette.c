@@ -271,8 +271,8 @@ void rf_patch_silhouettes(const struct rf_executor *exec, const struct rf_silhou
     }
 }
 
-void rf_take_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena, int max_width,
-                         int max_height)
+void rf_lay_out_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena,
+                            int max_width, int max_height)
 {
     const uint64_t pixels = (uint64_t)max_width * (uint64_t)max_height;
 

@@ -63,10 +63,10 @@ typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u,
 enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 
 struct rf_sort_job {
-    const uint32_t *range;                  /* at the strip's first pixel */
-    const uint32_t *below;                  /* at the strip below, if both are one; else NULL */
-    const uint16_t *front, *behind;         /* first of three planes of light, there */
-    const uint16_t *weight, *behind_weight; /* for sweep_weighted, else NULL: see there */
+    const uint32_t *range;                      /* at the strip's first pixel */
+    const uint32_t *below;                      /* at the strip below, if both are one; else NULL */
+    const uint16_t *front, *behind;             /* first of three planes of light, there */
+    const uint16_t *weight, *background_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
     bool beneath;
     const struct rf_slab *slab;
@@ -80,7 +80,7 @@ struct rf_sort_job {
      * cells, which begin at even pixels. */
     int shared;
     const int32_t (*chroma_offset)[RF_RAY_CHUNK], (*chroma_weight_offset)[RF_RAY_CHUNK];
-    const uint16_t *chroma_front, *chroma_behind;
+    const uint16_t *chroma_front, *chroma_background;
 };
 
 struct rf_sorted_rays {

@@ -44,8 +44,8 @@ static uint64_t group_size(const struct rf_photo *photo, int height)
 /* Lays out the lists of a photo of at most this size: silhouettes, highlights, blends of bands. */
 static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
 {
-    rf_take_silhouettes(&photo->silhouettes, arena, width, height);
-    rf_take_highlights(&photo->highlights, arena, width, height);
+    rf_lay_out_silhouettes(&photo->silhouettes, arena, width, height);
+    rf_lay_out_highlights(&photo->highlights, arena, width, height);
     photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 

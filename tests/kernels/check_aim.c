@@ -65,9 +65,9 @@ struct sight {
     struct rf_slab slab[MOST_SLABS];
     bool joined[MOST_SLABS];
     int32_t offset[MOST_SLABS + 1][RF_RAY_CHUNK], cell[MOST_SLABS][RF_RAY_CHUNK];
-    uint16_t chroma_front[1000], chroma_behind[1000];
+    uint16_t chroma_front[1000], chroma_background[1000];
     int32_t chroma_offset[MOST_SLABS + 1][RF_RAY_CHUNK];
-    uint16_t weight[1000], behind_weight[1000];
+    uint16_t weight[1000], background_weight[1000];
     int32_t chroma_weight_offset[MOST_SLABS + 1][RF_RAY_CHUNK];
     struct rf_sort_job job;
     struct rf_sorted_rays sorted, expected;
@@ -117,23 +117,23 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
         .cell = (const int32_t(*)[RF_RAY_CHUNK])s->cell,
         .shared = seed % 3 ? noise_between(&seed, 0, n) : 0,
         .weight = seed % 5 < 2 ? s->weight : NULL,
-        .behind_weight = s->behind_weight,
+        .background_weight = s->background_weight,
         .weight_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_offset, /* any */
         .chroma_weight_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_weight_offset,
         .chroma_offset = (const int32_t(*)[RF_RAY_CHUNK])s->chroma_offset,
         .chroma_front = s->chroma_front,
-        .chroma_behind = s->chroma_behind,
+        .chroma_background = s->chroma_background,
     };
 }
 
 /* Expects ray n, the m-th, to see last what lies in slab k, or the hidden background there. */
 static void expect_last(struct sight *s, int n, int m, int k, bool behind)
 {
-    const uint16_t *weight = behind ? s->behind_weight : s->weight;
+    const uint16_t *weight = behind ? s->background_weight : s->weight;
 
     s->expected.last[m] = (behind ? s->behind : s->front) + s->offset[k][n];
     s->expected.chroma_last[m] =
-        (behind ? s->chroma_behind : s->chroma_front) + s->chroma_offset[k][n];
+        (behind ? s->chroma_background : s->chroma_front) + s->chroma_offset[k][n];
     s->expected.last_weight[m] = weight + (behind ? s->offset[k][n] : s->chroma_offset[k][n]);
     s->expected.last_behind[m] = behind;
     s->expected.chroma_last_weight[m] = weight + s->chroma_weight_offset[k][n];

@@ -132,16 +132,16 @@ static RF_ALWAYS_INLINE void place_last(struct rf_sorted_rays *restrict sorted,
     if (way.weighted) {
         sorted->last_behind[m] = behind;
         sorted->last_weight[m] =
-            (const uint16_t *)choose(behind, job->behind_weight, job->weight) +
+            (const uint16_t *)choose(behind, job->background_weight, job->weight) +
             *(const int32_t *)choose(behind, &job->offset[last][n], &job->weight_offset[last][n]);
     }
     if (way.shared && n < job->shared)
         sorted->chroma_last[m] =
-            (const uint16_t *)choose(behind, job->chroma_behind, job->chroma_front) +
+            (const uint16_t *)choose(behind, job->chroma_background, job->chroma_front) +
             job->chroma_offset[last][n];
     if (way.shared && way.weighted && n < job->shared)
         sorted->chroma_last_weight[m] =
-            (const uint16_t *)choose(behind, job->behind_weight, job->weight) +
+            (const uint16_t *)choose(behind, job->background_weight, job->weight) +
             job->chroma_weight_offset[last][n];
 }
 
