@@ -1,4 +1,4 @@
-/** @file aperture.h  The shape of the opening that the rays pass through.
+/** @file aperture.h  The shape of the aperture, which the rays pass through.
  *
  * A mask is drawn as the photographer sees it from behind the camera, x to the
  * right and y down: a light behind the plane in focus shows the mask as drawn, a
@@ -58,12 +58,12 @@ REFOCUS_API int refocus_aperture_create_mask(struct refocus_aperture **aperture,
 enum refocus_figure {
     REFOCUS_FIGURE_NONE = 0,
     REFOCUS_FIGURE_HEART = 1,
-    REFOCUS_FIGURE_STAR = 2, /**< of `blades` points, 0 = 5 */
+    REFOCUS_FIGURE_STAR = 2, /**< a star of `blades` points, 0 = 5 */
 };
 enum { REFOCUS_FIGURE_COUNT = 3 };
 
 /**
- * What an opening can be. Start from refocus_aperture_params_default(), a disc.
+ * The parameters of an aperture. Start from refocus_aperture_params_default(), a disc.
  *
  * The outline is a mask's, a figure's, or an iris's. An iris of n blades with curvature
  * c has corners on the circle of radius K, and arcs between them that bulge c times as

@@ -20,7 +20,7 @@ enum refocus_sample {
     REFOCUS_SAMPLE_F32 = 3,
 };
 
-/** What the samples are proportional to. */
+/** The quantity that the samples are proportional to. */
 enum refocus_depth_meaning {
     REFOCUS_DEPTH_DISPARITY = 1, /**< linear in 1/z: value_far is d = 0, value_near is d
                                       = 1 */
@@ -61,7 +61,7 @@ struct refocus_depth_map {
     double near_m, far_m;
 };
 
-/** What refocus_depth_to_disparity() found. */
+/** The findings of refocus_depth_to_disparity(). */
 struct refocus_depth_report {
     double near_m;     /**< z0 of the result; 0 when not known */
     double far_m;      /**< z1 of the result; 0 when not known; may be INFINITY */
@@ -98,7 +98,7 @@ REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map, 
 /** Largest patch that can be taken for a speck, in samples. */
 enum { REFOCUS_MAX_SPECKLE = 255 };
 
-/** What refocus_depth_repair() does. Start from refocus_repair_params_default(). */
+/** The steps of refocus_depth_repair(). Start from refocus_repair_params_default(). */
 struct refocus_repair_params {
     uint32_t struct_size;        /**< sizeof(struct refocus_repair_params) */
     int32_t speckle;             /**< patches of fewer samples are filled like holes, 0 to

@@ -35,7 +35,7 @@ REFOCUS_API int refocus_focus_at_point(const struct refocus_disparity *map, int 
                                        int radius, float *focus);
 
 /**
- * The same of a rectangle.
+ * Finds the disparity of a rectangle.
  *
  * @param x, y, width, height  a part of the map, at least a pixel
  */
@@ -48,7 +48,7 @@ struct refocus_focus_plane {
     float x, y;            /**< place at which focus_disparity holds, 0 to 1 of width and
                                 height */
     float focus_disparity; /**< there, 0 to 1 */
-    float across, down;    /**< what it grows by over the width and over the height */
+    float across, down;    /**< growth over the width and over the height */
 };
 
 /** A point of a photo: place, 0 to 1 of width and height, and disparity, 0 to 1. */

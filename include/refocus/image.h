@@ -26,7 +26,7 @@ enum refocus_format {
     REFOCUS_FORMAT_YUYV = 8,  /**< 4:2:2 in plane 0: Y U Y V for two pixels */
 };
 
-/** What the weights of R, G and B in Y are: Y = Kr R + (1 - Kr - Kb) G + Kb B. */
+/** The weights of R, G and B in Y: Y = Kr R + (1 - Kr - Kb) G + Kb B. */
 enum refocus_matrix {
     REFOCUS_MATRIX_BT601 = 0, /**< Kr = 0.299, Kb = 0.114 */
     REFOCUS_MATRIX_BT709 = 1, /**< Kr = 0.2126, Kb = 0.0722 */

@@ -16,7 +16,7 @@ struct refocus_kernel_time {
     const char *unit; /**< static; "pixel", or "ray sample": one ray of one pixel */
     double ns;        /**< nanoseconds for one, by the instruction set that was asked
                            for */
-    double ns_c;      /**< and by plain C */
+    double ns_c;      /**< by plain C */
 };
 
 /**

@@ -64,7 +64,7 @@ static inline struct refocus_search_params refocus_search_params_default(void)
 struct refocus_jittered_params {
     uint32_t struct_size; /**< sizeof(struct refocus_jittered_params) */
     int32_t cell;         /**< a, the side of a cell in mask pixels, 1 to 16; default 2 */
-    uint32_t seed;        /**< which pixel of each cell; any number; default 0 */
+    uint32_t seed;        /**< seed of the choice of a pixel in each cell; any number; default 0 */
 };
 
 static inline struct refocus_jittered_params refocus_jittered_params_default(void)
@@ -132,7 +132,8 @@ struct refocus_foveated_params {
     uint32_t struct_size; /**< sizeof(struct refocus_foveated_params) */
     float x, y;           /**< centre of attention, 0 to 1 of width and height; default 0.5 */
     float angle;          /**< across the volume of attention, 0 to 170 degrees; default 10 */
-    float picture_angle;  /**< that the picture's width is seen at, 1 to 170 degrees; default 50 */
+    float picture_angle;  /**< the angle that the picture's width is seen at, 1 to 170 degrees;
+                             default 50 */
     float depth;          /**< how far the volume reaches before and behind the focus, in
                                disparity, 0 to 1; default 1 */
 };
@@ -160,7 +161,7 @@ enum refocus_solver {
  *  refocus_diffusion_params_default(). */
 struct refocus_diffusion_params {
     uint32_t struct_size; /**< sizeof(struct refocus_diffusion_params) */
-    int32_t layers;       /**< that the picture is split into by depth, 1 to 8; default 4 */
+    int32_t layers;       /**< layers that the picture is split into by depth, 1 to 8; default 4 */
     uint32_t solver;      /**< enum refocus_solver; default fast */
     float conductivity;   /**< weight W where blur is strongest, 0.01 to 1; default 0.125 */
 };

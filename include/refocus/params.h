@@ -105,7 +105,7 @@ struct refocus_look_params {
                                (anywhere, when it does so nowhere), by brightness, and laid over
                                the blurred parts as luma noise. 0 = none, the default; 1 = as much
                                as there was */
-    uint32_t grain_seed;  /**< which grain; any number; default 0 */
+    uint32_t grain_seed;  /**< seed of the grain; any number; default 0 */
     int32_t star_spikes;  /**< scatter, sweep: of a star filter, 0 = none, the default, else 2 to
                                16; sweep gives them to small clipped highlights */
     float star_length;    /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS; default 24 */
@@ -162,10 +162,10 @@ struct refocus_focus_params {
     float depth_share;            /**< 0 to 1, the default: how much depth counts. Below 1 with a
                                  tilt: depth is compressed along a line, Yang et al. 2016, fig.
                                  13(a); 0 = only the place counts, as in pictures of miniatures */
-    float half_width;             /**< of the band about df: 0, the default, to 1 */
+    float half_width;             /**< half the width of the band about df: 0, the default, to 1 */
     float transition;             /**< 0, the default, to 1; see struct refocus_band */
-    float least_disparity;        /**< what is farther counts as this far, 0 to 1; default 0 */
-    float most_disparity;         /**< what is nearer counts as this near, from least_disparity to
+    float least_disparity;        /**< anything farther counts as this far, 0 to 1; default 0 */
+    float most_disparity;         /**< anything nearer counts as this near, from least_disparity to
                                  1; default 1 */
     float blur_limit;             /**< no blur is larger: 0 to REFOCUS_MAX_BLUR_RADIUS pixels, the
                                  default */
@@ -224,8 +224,9 @@ struct refocus_field_params {
     float falloff;        /**< further distance at which r = K, 0.001 to 4; default 0.3 */
     float angle;          /**< a of the plane's normal, degrees, -3600 to 3600: 0 = sharp at one x,
                                the default, 90 = at one d */
-    const struct refocus_disparity *map; /**< of REFOCUS_FIELD_PICTURE; any size, read between its
-                               samples, which stay as those of struct refocus_focus_params do */
+    const struct refocus_disparity
+        *map; /**< the map of REFOCUS_FIELD_PICTURE; any size, read between its
+    samples, which stay as those of struct refocus_focus_params do */
 };
 
 /** @param disparity  of the centre: the disparity in focus, mostly */
@@ -244,19 +245,19 @@ static inline struct refocus_field_params refocus_field_params_default(float dis
 
 /** How to refocus. Start from refocus_render_params_default(). */
 struct refocus_render_params {
-    uint32_t struct_size;       /**< sizeof(struct refocus_render_params) */
-    uint32_t method;            /**< enum refocus_method; default sweep */
-    float focus_disparity;      /**< df: the disparity in focus, 0 to 1 */
-    float max_blur_radius;      /**< K in pixels, 0 to the renderer's max_blur_radius */
-    int32_t rays;               /**< ray samples at the largest blur, 1 to REFOCUS_MAX_RAYS, or
-                                     REFOCUS_RAYS_FULL; default 64 */
-    uint32_t blend;             /**< enum refocus_blend; default linear */
-    float sigma;                /**< of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
-                                     Yang et al. 2016, eq. 5: >= 1; INFINITY = plain average; default
-                                     1e30 */
-    uint32_t prefilter;         /**< sweep: 1 = smooth the input between rays that lie far apart,
-                                     and the result where all that is seen is blurred; default 1 */
-    int32_t region_x, region_y; /**< the part of the picture to render: its */
+    uint32_t struct_size;  /**< sizeof(struct refocus_render_params) */
+    uint32_t method;       /**< enum refocus_method; default sweep */
+    float focus_disparity; /**< df: the disparity in focus, 0 to 1 */
+    float max_blur_radius; /**< K in pixels, 0 to the renderer's max_blur_radius */
+    int32_t rays;          /**< ray samples at the largest blur, 1 to REFOCUS_MAX_RAYS, or
+                                REFOCUS_RAYS_FULL; default 64 */
+    uint32_t blend;        /**< enum refocus_blend; default linear */
+    float sigma;        /**< sigma of the highlight weight exp(-(max(R,G,B) - 255)^2 / 2 sigma^2),
+                             Yang et al. 2016, eq. 5: >= 1; INFINITY = plain average; default
+                             1e30 */
+    uint32_t prefilter; /**< sweep: 1 = smooth the input between rays that lie far apart,
+                             and the result where all that is seen is blurred; default 1 */
+    int32_t region_x, region_y;              /**< the part of the picture to render: its */
     int32_t region_width, region_height;     /**< corner and size; all 0 = the whole */
     const struct refocus_aperture *aperture; /**< NULL = a disc, the only one that scatter,
                                  foveated, interpolated and diffusion know */

@@ -76,11 +76,11 @@ enum refocus_cpu {
     REFOCUS_CPU_AVX512 = 5, /**< 256-bit vectors with the masks of AVX-512 (BW, VL, VNNI) */
 };
 
-/** What a renderer can do at most. Start from refocus_renderer_params_default(). */
+/** The limits of a renderer. Start from refocus_renderer_params_default(). */
 struct refocus_renderer_params {
     uint32_t struct_size;  /**< sizeof(struct refocus_renderer_params) */
-    int32_t max_width;     /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
-    int32_t max_height;    /**< of photos, pixels, 1 to REFOCUS_MAX_SIDE */
+    int32_t max_width;     /**< largest photo, pixels, 1 to REFOCUS_MAX_SIDE */
+    int32_t max_height;    /**< largest photo, pixels, 1 to REFOCUS_MAX_SIDE */
     float max_blur_radius; /**< largest K, 0 to REFOCUS_MAX_BLUR_RADIUS */
     int32_t threads;       /**< 1 to 64; 0 = one for each processor. With `parallel`: the most
                                 that work at once */
@@ -88,7 +88,7 @@ struct refocus_renderer_params {
     uint64_t max_memory;   /**< bytes; creation fails above; 0 = no limit */
     struct refocus_allocator allocator; /**< all NULL: malloc and free */
     struct refocus_log log;             /**< message NULL: silent */
-    uint32_t methods;  /**< those of `papers` that need memory of their own and may be rendered:
+    uint32_t methods;  /**< methods of `papers` that need memory of their own and may be rendered:
                             REFOCUS_METHOD_BIT() of each, or-ed */
     uint32_t reserved; /**< 0 */
     struct refocus_parallel parallel;    /**< parallel_for NULL: threads of its own */
@@ -247,7 +247,8 @@ enum refocus_view {
 REFOCUS_API int refocus_get_view(struct refocus_renderer *renderer, uint32_t view, uint16_t *out,
                                  ptrdiff_t stride);
 
-/** What a renderer works with. Start from refocus_renderer_info_default(). */
+/** The threads, instruction set and memory of a renderer. Start from
+ * refocus_renderer_info_default(). */
 struct refocus_renderer_info {
     uint32_t struct_size; /**< sizeof(struct refocus_renderer_info), set by the caller */
     int32_t threads;

@@ -18,8 +18,8 @@ struct refocus_temporal;
 /** How to filter. Start from refocus_temporal_params_default(). */
 struct refocus_temporal_params {
     uint32_t struct_size; /**< sizeof(struct refocus_temporal_params) */
-    int32_t width;        /**< of the maps, samples, 1 to REFOCUS_MAX_SIDE */
-    int32_t height;       /**< of the maps, samples, 1 to REFOCUS_MAX_SIDE */
+    int32_t width;        /**< size of the maps, samples, 1 to REFOCUS_MAX_SIDE */
+    int32_t height;       /**< size of the maps, samples, 1 to REFOCUS_MAX_SIDE */
     uint32_t reserved;    /**< 0 */
     float strength;       /**< share of the past where nothing changes, 0 (off) to
                                0.95 */

@@ -11,8 +11,8 @@
 /* The state of each pixel. Strokes set the first two; a pixel that is not open keeps its label. */
 enum {
     RF_INSIDE = 1, /* it is the object's */
-    RF_SEED = 2,   /* its label is certain */
-    RF_OPEN = 4,   /* its label is to be found */
+    RF_SEED = 2,   /* the label is certain */
+    RF_OPEN = 4,   /* the label is to be found */
 };
 
 struct rf_grid {

@@ -11,7 +11,7 @@
 /* The strokes of a layer follow each other in the list. */
 struct layer {
     int first, count;
-    bool stale; /* its strokes are others than its spans */
+    bool stale; /* the strokes are others than its spans */
     struct rf_spans spans;
 };
 

@@ -73,7 +73,7 @@ int try_wls(const uint8_t *rgb, const float *left, const float *right, float *ou
         const auto filter = cv::ximgproc::createDisparityWLSFilterGeneric(true);
         cv::Mat result, back = fixed(right, width, height), map(height, width, CV_32F, out);
 
-        back = -back; /* those of the right picture are negative there */
+        back = -back; /* disparities of the right picture are negative there */
         filter->setLambda(8000);
         filter->setSigmaColor(1.2);
         filter->setLRCthresh(24);

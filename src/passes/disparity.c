@@ -6,7 +6,7 @@
 #include "depth/dequantise.h"
 #include "support/compare.h"
 
-enum { ROWS = 16 }; /* of a work item */
+enum { ROWS = 16 }; /* rows of a work item */
 
 static void take_band(void *context, int band, int worker)
 {

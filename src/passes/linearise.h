@@ -14,7 +14,7 @@
 #include "support/executor.h"
 
 struct rf_linearise {
-    const struct refocus_image *photo; /* of R, G and B, as large as the window */
+    const struct refocus_image *photo; /* R, G and B, as large as the window */
     const struct rf_transfer *transfer;
     struct rf_light_q12 light; /* written, with its border */
     struct rf_alpha_u8 alpha;  /* written */

@@ -16,8 +16,8 @@
 struct rf_linearise_yuv {
     const struct rf_yuv_curve *curve;
     struct rf_chroma_size size;
-    const struct refocus_image *photo; /* of Y, U and V, as large as the window */
-    const struct refocus_image *guide; /* its memory is written: the picture in RGB8, for those who
+    const struct refocus_image *photo; /* Y, U and V, as large as the window */
+    const struct refocus_image *guide; /* written: the picture in RGB8, for those who
                                           look for edges; or NULL */
     struct rf_yuv_codes codes;         /* written */
     struct rf_light_q12 light;         /* written, with its border: channel[0] is luminance */

@@ -46,7 +46,7 @@ static bool is_wide_near(const struct step *step, int tx, int ty, int least)
     return false;
 }
 
-/* What a step does with a tile. */
+/* The task of a step in a tile. */
 enum task { SKIP, COPY, FILTER };
 
 /* Steps 1 and 2 are there and back between two planes, so that tiles that step 1 leaves alone need

@@ -127,7 +127,7 @@ static uint16_t greatest(uint16_t v, const uint16_t *values, int n)
     return v;
 }
 
-/* What lies beyond the sides counts for the tiles there. */
+/* Pixels beyond the sides count for the tiles there. */
 void rf_premultiply_rows(const struct rf_executor *exec, const struct rf_viewport *view,
                          const struct rf_weights *pass, int ty, int worker)
 {

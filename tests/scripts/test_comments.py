@@ -12,11 +12,10 @@ import re
 import sys
 
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
-BARE = ('of', 'what', 'those', 'and', 'that', 'or', 'which', 'its', 'their', 'as', 'but', 'by',
-        'the same', 'in which', 'from which', 'where those')
+BARE = ('of', 'what', 'those', 'and', 'that', 'which', 'its', 'their', 'the same', 'in which',
+        'from which', 'where those')
 COMMENT = re.compile(r'/\*\*?<?[ \t\n*]*(.*?)\*/', re.S)
 BEGINS_BARE = re.compile(r'(?:%s)\b' % '|'.join(BARE), re.I)
-# Where a line of a comment only goes on from the field above it.
 FOLDERS = ('src', 'include', 'platform', 'examples', 'tests')
 
 
@@ -38,7 +37,7 @@ def faults_of_first_line(path):
     first = path.read_text().lstrip()
     name = re.escape(path.name)
     if path.is_relative_to(TOP / 'include'):
-        good = re.match(r'/\*\* @file %s\s+\S' % name, first)
+        good = re.match(r'/\*\* @file (?:\S*/)?%s\s+\S' % name, first)
     else:
         good = re.match(r'/\*\s+(?:\S*/)?%s: \S' % name, first)
     if not good:

@@ -162,7 +162,7 @@ REFOCUS_API int refocus_strokes_get(const struct refocus_strokes *strokes, int i
 REFOCUS_API const uint16_t *refocus_strokes_disparity(const struct refocus_strokes *strokes);
 
 /**
- * What the last layer covers, 255 or 0.
+ * The mask that the last layer covers, 255 or 0.
  *
  * @param mask    a picture of any size of the whole photo, each pixel as at its centre
  * @param stride  bytes from a row to the next; may be negative

@@ -9,7 +9,7 @@ enum { VARIANTS_MOST = 32 };
 struct variant {
     const char *label; /* as on the command line: NAME or NAME:OPTION=VALUE:... */
     struct engine_settings settings;
-    struct engine engine; /* its parameters and aperture; without a renderer */
+    struct engine engine; /* parameters and aperture of the method; without a renderer */
 };
 
 struct variants {

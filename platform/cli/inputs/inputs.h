@@ -74,7 +74,7 @@ struct input {
     struct refocus_photo *photo;
     struct refocus_photo *side;             /* a depth file of its own, or NULL */
     const struct refocus_photo *depth_from; /* one of the two */
-    struct refocus_photo made;              /* its depth is made of pictures; samples below */
+    struct refocus_photo made;              /* depth is made of pictures; samples below */
     float *made_samples;
     uint16_t *disparity; /* packed */
     uint8_t *confidence; /* one for each sample of the map: 0 = filled */

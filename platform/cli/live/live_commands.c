@@ -64,7 +64,7 @@ static bool hear(struct client *client)
 
 enum { FIRST_MS = 250, FIRST_READS = 4096 };
 
-/* What stands on standard input from the beginning: a file whole, and of a pipe what whoever
+/* Reads at the beginning what stands on standard input: a file whole, and of a pipe what whoever
  * fills it has written, for which it is given a moment. Of a terminal nothing. */
 static void hear_first(struct client *client)
 {
