@@ -8,7 +8,7 @@
 /* Set and read between calls into what is tested, which may allocate from several
  * threads. */
 extern struct failing {
-    long calls;        /* threads that asked for memory */
+    long calls;        /* calls that asked for memory */
     long fail_at;      /* the one of them that gets none, from 1 on; 0 = none */
     long live;         /* blocks not freed yet */
     size_t held, peak; /* bytes in them, now and at the most */

@@ -63,7 +63,7 @@ enum refocus_frame_flags {
     REFOCUS_FRAME_CHANGED = 4,    /**< format, size or stride differ from the frame
                                        before */
     REFOCUS_FRAME_MONOTONIC = 8,  /**< timestamp_ns is of CLOCK_MONOTONIC */
-    REFOCUS_FRAME_STILL = 16,     /**< the same picture at every time: it goes with any
+    REFOCUS_FRAME_STILL = 16,     /**< one picture at every time: it goes with any
                                        other */
 };
 
