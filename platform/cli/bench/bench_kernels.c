@@ -12,9 +12,10 @@ static int unsupported(uint32_t cpu)
 static const char *cpu_name(uint32_t cpu)
 {
     struct refocus_renderer_params params = refocus_renderer_params_default(1, 1, 0);
-    struct refocus_renderer_info info = {.cpu = cpu};
+    struct refocus_renderer_info info = refocus_renderer_info_default();
     struct refocus_renderer *renderer;
 
+    info.cpu = cpu;
     params.threads = 1;
     params.cpu = cpu;
     if (refocus_renderer_create(&renderer, &params) == REFOCUS_OK)

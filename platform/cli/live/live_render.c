@@ -29,6 +29,7 @@ static bool fit_renderer(struct live *live, int width, int height)
         return false;
     }
     interrupt_watch(live->engine->renderer);
+    live->engine->info = refocus_renderer_info_default();
     refocus_renderer_get_info(live->engine->renderer, &live->engine->info);
     return true;
 }

@@ -133,6 +133,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
                               refocus_strerror(status), width, height, blur,
                               (double)refocus_renderer_memory(&params) / (1 << 20));
     interrupt_watch(engine->renderer);
+    engine->info = refocus_renderer_info_default();
     refocus_renderer_get_info(engine->renderer, &engine->info);
     return papers_place(&settings->papers, &engine->params, width, height);
 }
