@@ -275,6 +275,7 @@ need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev lib
     skip 'picture files and the refocus command' 'their libraries are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
 need_packages libsdl2-dev xvfb xdotool || skip 'the window' 'SDL2, Xvfb or xdotool is missing'
+need_packages abigail-tools || skip 'the ABI of the last release' 'no abidiff'
 need_packages clang-format || skip 'the layout of the source' 'no clang-format'
 
 gcc_stage

@@ -13,7 +13,7 @@ complain() {
 }
 
 names=$(nm -g --defined-only "$static" | awk 'NF == 3 {print $3}' | sort -u)
-exports=$(nm -D --defined-only "$shared" | awk 'NF == 3 {print $3}' | sort -u)
+exports=$(nm -D --defined-only "$shared" | awk '$2 != "A" && NF == 3 {sub(/@.*/, "", $3); print $3}' | sort -u)
 needs=$(readelf -d "$shared" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
 [ -n "$names" ] && [ -n "$exports" ] && [ -n "$needs" ] || { echo 'nm or readelf found nothing'; exit 1; }
 

@@ -1,0 +1,110 @@
+/* depth.h: that of librefocus 0.2, without its comments; made by tests/symbols/abi.py. */
+#ifndef REFOCUS_DEPTH_H
+#define REFOCUS_DEPTH_H
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <refocus/image.h>
+#include <refocus/sized.h>
+#include <refocus/status.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+enum refocus_sample {
+    REFOCUS_SAMPLE_U8 = 1,
+    REFOCUS_SAMPLE_U16 = 2,
+    REFOCUS_SAMPLE_F32 = 3,
+};
+enum refocus_depth_meaning {
+    REFOCUS_DEPTH_DISPARITY = 1,
+    REFOCUS_DEPTH_DISTANCE = 2,
+};
+enum refocus_depth_flags {
+    REFOCUS_DEPTH_ZERO_IS_UNKNOWN = 1,
+    REFOCUS_DEPTH_MAX_IS_UNKNOWN = 2,
+    REFOCUS_DEPTH_2047_IS_UNKNOWN = 4,
+};
+struct refocus_depth_map {
+    const void *samples;
+    int32_t width;
+    int32_t height;
+    ptrdiff_t stride;
+    uint32_t sample;
+    uint32_t meaning;
+    uint32_t flags;
+    uint32_t reserved;
+    double value_near, value_far;
+    double metres_per_unit, metres_at_zero;
+    double near_m, far_m;
+};
+struct refocus_depth_report {
+    double near_m;
+    double far_m;
+    double value_near;
+    double value_far;
+    uint64_t unknown;
+    uint64_t clamped;
+    uint64_t specks;
+};
+REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map, uint16_t *disparity,
+                                           ptrdiff_t stride, struct refocus_depth_report *report);
+enum { REFOCUS_MAX_SPECKLE = 255 };
+struct refocus_repair_params {
+    uint32_t struct_size;
+    int32_t speckle;
+    uint8_t *confidence;
+    ptrdiff_t confidence_stride;
+};
+static inline struct refocus_repair_params refocus_repair_params_default(void)
+{
+    struct refocus_repair_params params;
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    return params;
+}
+REFOCUS_API int refocus_depth_repair(const struct refocus_depth_map *map,
+                                     const struct refocus_repair_params *params,
+                                     uint16_t *disparity, ptrdiff_t stride,
+                                     struct refocus_depth_report *report);
+struct refocus_upsample_params {
+    uint32_t struct_size;
+    int32_t threads;
+    uint32_t cpu;
+    uint32_t reserved;
+    const uint8_t *confidence;
+    ptrdiff_t confidence_stride;
+};
+static inline struct refocus_upsample_params refocus_upsample_params_default(void)
+{
+    struct refocus_upsample_params params;
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    return params;
+}
+REFOCUS_API int refocus_upsample(const struct refocus_image *photo,
+                                 const struct refocus_disparity *map,
+                                 const struct refocus_upsample_params *params, uint16_t *out,
+                                 ptrdiff_t stride);
+enum { REFOCUS_MAX_SNAP = 16 };
+struct refocus_snap_params {
+    uint32_t struct_size;
+    int32_t reach;
+    int32_t threads;
+    uint32_t cpu;
+};
+static inline struct refocus_snap_params refocus_snap_params_default(int32_t reach)
+{
+    struct refocus_snap_params params;
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.reach = reach;
+    return params;
+}
+REFOCUS_API int refocus_depth_snap(const struct refocus_image *photo,
+                                   const struct refocus_disparity *map,
+                                   const struct refocus_snap_params *params, uint16_t *out,
+                                   ptrdiff_t stride);
+#ifdef __cplusplus
+}
+#endif
+#endif
