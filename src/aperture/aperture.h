@@ -9,7 +9,8 @@
 
 #include "support/pool.h"
 
-enum rf_shape { RF_SHAPE_DISC, RF_SHAPE_POLYGON, RF_SHAPE_MASK, RF_SHAPE_OUTLINE };
+struct rf_shape;
+extern const struct rf_shape rf_shape_disc;
 
 /* The side of the reduced mask that rays are spread over: a power of two, which a Hilbert curve can
  * fill. */
@@ -28,8 +29,8 @@ struct rf_profile {
 };
 
 struct refocus_aperture {
-    uint64_t id; /* equal for equal shapes, so that ray sets can be kept */
-    enum rf_shape shape;
+    uint64_t id;                  /* equal for equal shapes, so that ray sets can be kept */
+    const struct rf_shape *shape; /* table of operations: shape.h */
     int blades;
     double corner_x[16], corner_y[16]; /* units of K, y down, as the mask is seen */
     int width, height;                 /* size of the mask picture */
@@ -60,22 +61,16 @@ static inline bool rf_profile_is_even(const struct rf_profile *profile)
     return profile->hole == 0 && profile->edge == 0;
 }
 
-/* Whether an aperture has structure much finer than itself, which a blur by it still shows. */
-static inline bool rf_aperture_is_fine(const struct refocus_aperture *a)
+static inline bool rf_aperture_is_disc(const struct refocus_aperture *a)
 {
-    return a->shape == RF_SHAPE_MASK || a->figure || a->behind.hole > 0 || a->before.hole > 0 ||
-           a->behind.edge > 0 || a->before.edge > 0;
+    return a->shape == &rf_shape_disc;
 }
 
-/* Makes the outline of an iris or a figure, and the areas of its triangles. */
-void rf_outline_make(struct refocus_aperture *aperture,
-                     const struct refocus_aperture_params *params);
+/* Whether an aperture has structure much finer than itself, which a blur by it still shows. */
+bool rf_aperture_is_fine(const struct refocus_aperture *a);
 
-/* The place on an outline before which lies a share of its area, counter-clockwise. */
-void rf_outline_at(const struct refocus_aperture *aperture, double share, double *x, double *y);
-
-/* rho^2 of a place, 1 on the outline. */
-double rf_outline_square(const struct refocus_aperture *aperture, double x, double y);
+/* Whether an aperture may be open outside of the circle of radius K. */
+bool rf_aperture_fills_square(const struct refocus_aperture *a);
 
 /* Makes the chords of an iris or a figure that is evenly lit, once all else but its id is known.
  * Discs and masks have none. */

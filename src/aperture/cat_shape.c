@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "aperture/shape.h"
+
 enum { ONE = 32767, SIDE = 1 << RF_KNOT_BITS, TURN = 4 << 16, PART_BITS = 10 };
 
 struct point {
@@ -33,21 +35,19 @@ static struct point direction(double turns)
     }
 }
 
-static int corners(const struct refocus_aperture *a)
-{
-    return a->shape == RF_SHAPE_POLYGON ? a->blades : RF_OUTLINE;
-}
-
 /* Corner i of the outline, with the signs of rays: minus the place on the mask as it is seen. */
 static struct point corner(const struct refocus_aperture *a, int i)
 {
-    if (a->shape == RF_SHAPE_POLYGON)
-        return (struct point){-a->corner_x[i % a->blades], -a->corner_y[i % a->blades]};
-    return (struct point){-a->vertex_x[i] * a->squeeze_x, a->vertex_y[i] * a->squeeze_y};
+    const struct rf_corner seen = a->shape->corner(a, i % a->shape->corners(a));
+
+    return (struct point){-seen.x, -seen.y};
 }
 
+/* Whether an outline is that of a circle, which cat_eye.h cuts for less. */
 static bool is_circle(const struct refocus_aperture *a)
 {
+    if (a->shape != &rf_shape_outline)
+        return false;
     for (int i = 0; i < RF_OUTLINE; i++)
         if (fabs(a->vertex_x[i] * a->vertex_x[i] + a->vertex_y[i] * a->vertex_y[i] - 1) > 1e-9)
             return false;
@@ -57,7 +57,7 @@ static bool is_circle(const struct refocus_aperture *a)
 /* The point of the outline in a direction from the middle. */
 static struct point outline_at(const struct refocus_aperture *a, struct point to)
 {
-    for (int i = 0; i < corners(a); i++) {
+    for (int i = 0; i < a->shape->corners(a); i++) {
         const struct point p = corner(a, i), q = corner(a, i + 1);
         const double way = cross(p, q) < 0 ? -1 : 1; /* it may run either way round */
         const double before = way * cross(p, to), behind = way * cross(to, q);
@@ -87,7 +87,7 @@ static double quarter_turns(struct point p)
 /* The sine of the angle by which the outline turns at corner i. */
 static double turn_at(const struct refocus_aperture *a, int i)
 {
-    const int n = corners(a);
+    const int n = a->shape->corners(a);
     const struct point p = corner(a, (i + n - 1) % n), q = corner(a, i), r = corner(a, (i + 1) % n);
     const struct point in = {q.u - p.u, q.v - p.v}, out = {r.u - q.u, r.v - q.v};
 
@@ -104,7 +104,7 @@ static void place_knots(const struct refocus_aperture *a, double turns[RF_KNOTS 
         turns[k] = (double)k / SIDE;
         sharpest[k] = 0.1; /* a smooth outline turns by less at a vertex */
     }
-    for (int i = 0; i < corners(a); i++) {
+    for (int i = 0; i < a->shape->corners(a); i++) {
         const double at = quarter_turns(corner(a, i)), turn = turn_at(a, i);
         const int k = (int)floor(at * SIDE + 0.5);
 
@@ -132,8 +132,7 @@ void rf_cat_shape_make(struct rf_cat_shape *shape, const struct refocus_aperture
     if (shape->id == a->id)
         return;
     shape->id = a->id;
-    shape->is_there =
-        a->shape == RF_SHAPE_POLYGON || (a->shape == RF_SHAPE_OUTLINE && !is_circle(a));
+    shape->is_there = a->shape->corner && !is_circle(a);
     if (!shape->is_there)
         return;
     place_knots(a, turns);

@@ -6,25 +6,13 @@
  * second one has the length 0 and lies at the end of the first.
  */
 #include "aperture/aperture.h"
+#include "aperture/shape.h"
 
 #include <math.h>
 
-struct point {
-    double x, y; /* y down, as the mask is seen */
-};
-
-static int corners(const struct refocus_aperture *a)
+static struct rf_corner corner(const struct refocus_aperture *a, int i)
 {
-    return a->shape == RF_SHAPE_POLYGON ? a->blades : RF_OUTLINE;
-}
-
-static struct point corner(const struct refocus_aperture *a, int i)
-{
-    const int k = i % corners(a);
-
-    if (a->shape == RF_SHAPE_POLYGON)
-        return (struct point){a->corner_x[k], a->corner_y[k]};
-    return (struct point){a->vertex_x[k] * a->squeeze_x, -a->vertex_y[k] * a->squeeze_y};
+    return a->shape->corner(a, i % a->shape->corners(a));
 }
 
 static int16_t to_q14(double v)
@@ -38,8 +26,8 @@ static int crossings(const struct refocus_aperture *a, double y, double x[2 * RF
 {
     int count = 0;
 
-    for (int i = 0; i < corners(a); i++) {
-        const struct point p = corner(a, i), q = corner(a, i + 1);
+    for (int i = 0; i < a->shape->corners(a); i++) {
+        const struct rf_corner p = corner(a, i), q = corner(a, i + 1);
         double at;
         int k;
 
@@ -78,11 +66,10 @@ void rf_chords_make(struct refocus_aperture *a)
     double twice = 0;
 
     a->chord_sets = 0;
-    if ((a->shape != RF_SHAPE_POLYGON && a->shape != RF_SHAPE_OUTLINE) ||
-        !rf_profile_is_even(&a->behind) || !rf_profile_is_even(&a->before))
+    if (!a->shape->corner || !rf_profile_is_even(&a->behind) || !rf_profile_is_even(&a->before))
         return;
-    for (int i = 0; i < corners(a); i++) {
-        const struct point p = corner(a, i), q = corner(a, i + 1);
+    for (int i = 0; i < a->shape->corners(a); i++) {
+        const struct rf_corner p = corner(a, i), q = corner(a, i + 1);
 
         twice += p.x * q.y - p.y * q.x;
     }

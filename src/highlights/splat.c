@@ -19,9 +19,8 @@ enum {
 
 bool rf_can_splat(const struct rf_settings *params, const struct refocus_aperture *aperture)
 {
-    return params->highlight_gain > 1 &&
-           (aperture->shape == RF_SHAPE_DISC || aperture->chord_sets) && params->cat_eye == 0 &&
-           params->fringe == 0;
+    return params->highlight_gain > 1 && (rf_aperture_is_disc(aperture) || aperture->chord_sets) &&
+           params->cat_eye == 0 && params->fringe == 0;
 }
 
 /* Whether the discs of its pixels reach into the tile. */
@@ -46,7 +45,7 @@ static bool set_light(struct rf_disc_job *job, const struct rf_splat *splat,
                       const struct rf_splat_run *run)
 {
     const struct refocus_aperture *a = splat->aperture;
-    const double unit = a->shape == RF_SHAPE_DISC ? 3.14159265358979 : a->chord_area;
+    const double unit = rf_aperture_is_disc(a) ? 3.14159265358979 : a->chord_area;
     const double area = unit * run->radius * run->radius / 65536.0;
     const int blurred = rf_ramp(run->radius, BLURRED, WHOLLY);
     double share;
@@ -88,7 +87,7 @@ static void set_chords(struct rf_disc_job *job, const struct rf_splat *splat,
     const struct refocus_aperture *a = splat->aperture;
     const double unit = run->blur * (RF_SPLAT_UNIT / (2 * 256.0 * 16384)) / run->rows;
 
-    if (a->shape == RF_SHAPE_DISC) {
+    if (rf_aperture_is_disc(a)) {
         splat->exec->kernels->half_chords(job->right, run->radius, -run->middle, run->rows);
         for (int y = 0; y < RF_TILE; y++)
             job->left[y] = (int16_t)-job->right[y];
@@ -170,7 +169,7 @@ static void add_even(const struct canvas *canvas)
 /* How many chords a row of the aperture may have. */
 static int chord_sets(const struct refocus_aperture *a)
 {
-    return a->shape == RF_SHAPE_DISC ? 1 : a->chord_sets;
+    return rf_aperture_is_disc(a) ? 1 : a->chord_sets;
 }
 
 /* Draws a run through one set of chords, past all slabs but those that are clear. */

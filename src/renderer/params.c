@@ -30,7 +30,7 @@ static const char *refused(const struct refocus_renderer *r, const struct rf_set
         return "look->fringe, which belongs to the sweep";
     if (!sweep && has_sides(s))
         return "an aperture that differs before and behind the focus, which belongs to the sweep";
-    if (method->disc_only && s->aperture && s->aperture->shape != RF_SHAPE_DISC)
+    if (method->disc_only && s->aperture && !rf_aperture_is_disc(s->aperture))
         return "an aperture other than a disc";
     if (!method->any_focus && !is_plain_focus(r, s))
         return "focus or field other than that of a plain lens";

@@ -272,7 +272,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         f.exact = &exact;
     }
     rf_reach_init(&f.reach, f.scale, largest_blur(&f), r->photo.pad,
-                  f.aperture->shape == RF_SHAPE_MASK);
+                  rf_aperture_fills_square(f.aperture));
     set_prefilter(&f);
     r->blurred = false;
     r->last_plan = f.plan;

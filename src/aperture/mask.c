@@ -1,0 +1,197 @@
+/* mask.c: apertures that are drawn as a greyscale picture. */
+#include "aperture/aperture.h"
+#include "aperture/shape.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "image/format.h"
+
+/* The mask at a place, before it is squeezed and its light is spread. */
+static int mask_at(const struct refocus_aperture *a, double x, double y)
+{
+    const int side = a->width > a->height ? a->width : a->height;
+    const double px = x * side / 2 + a->width / 2.0;
+    const double py = y * side / 2 + a->height / 2.0;
+
+    if (px < 0 || py < 0 || px >= a->width || py >= a->height)
+        return 0;
+    return a->mask[(int)py * REFOCUS_MAX_APERTURE_SIDE + (int)px];
+}
+
+static int mask_open(const struct refocus_aperture *a, double x, double y)
+{
+    x /= a->squeeze_x;
+    y /= a->squeeze_y;
+    return rf_shape_light(a, mask_at(a, x, y), x * x + y * y);
+}
+
+/* Finds cell number `at` along a Hilbert curve through RF_CURVE_SIDE^2 cells. */
+static void hilbert(int at, int *x, int *y)
+{
+    *x = *y = 0;
+    for (int side = 1; side < RF_CURVE_SIDE; side *= 2, at /= 4) {
+        const int rx = 1 & (at / 2), ry = 1 & (at ^ rx);
+
+        if (ry == 0) {
+            const int old = *x;
+
+            if (rx == 1) {
+                *x = side - 1 - *x;
+                *y = side - 1 - *y;
+                *x ^= *y; /* swap */
+                *y ^= *x;
+                *x ^= *y;
+            } else {
+                *x = *y;
+                *y = old;
+            }
+        }
+        *x += side * rx;
+        *y += side * ry;
+    }
+}
+
+/* A place, in 1/256 of a cell of the reduced mask. */
+struct place {
+    int32_t x, y;
+};
+
+/* Moves each place to the middle of the light that is nearest to it: one step of Lloyd's. */
+static void relax(const uint8_t *cell, int count, struct place *place, struct rf_run *run)
+{
+    int64_t sum_x[REFOCUS_MAX_RAYS] = {0}, sum_y[REFOCUS_MAX_RAYS] = {0};
+    int64_t sum[REFOCUS_MAX_RAYS] = {0};
+
+    for (int y = 0; y < RF_CURVE_SIDE && !rf_run_cancelled(run); y++) {
+        for (int x = 0; x < RF_CURVE_SIDE; x++) {
+            const int weight = cell[y * RF_CURVE_SIDE + x];
+            const int32_t cx = 256 * x + 128, cy = 256 * y + 128;
+            int64_t least = INT64_MAX;
+            int nearest = 0;
+
+            if (!weight)
+                continue;
+            for (int n = 0; n < count; n++) {
+                const int64_t dx = place[n].x - cx, dy = place[n].y - cy;
+
+                if (dx * dx + dy * dy < least) {
+                    least = dx * dx + dy * dy;
+                    nearest = n;
+                }
+            }
+            sum[nearest] += weight;
+            sum_x[nearest] += (int64_t)weight * cx;
+            sum_y[nearest] += (int64_t)weight * cy;
+        }
+    }
+    for (int n = 0; n < count; n++) {
+        if (sum[n]) {
+            place[n].x = (int32_t)(sum_x[n] / sum[n]);
+            place[n].y = (int32_t)(sum_y[n] / sum[n]);
+        }
+    }
+}
+
+/* Computes the light of each cell of the reduced mask. */
+static void weigh_cells(const struct refocus_aperture *a, bool before,
+                        uint8_t cell[RF_CURVE_SIDE * RF_CURVE_SIDE])
+{
+    const struct rf_profile *profile = before ? &a->before : &a->behind;
+    bool any = false;
+
+    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++) {
+        const double x = (2 * (i % RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
+        const double y = (2 * (i / RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
+        const double density = rf_profile_density(profile, x * x + y * y);
+
+        cell[i] = (uint8_t)floor(a->reduced[i] * density + 0.5);
+        any = any || cell[i];
+    }
+    if (!any) /* all of it lies in the hole: an even shape is better than none */
+        memcpy(cell, a->reduced, RF_CURVE_SIDE * RF_CURVE_SIDE);
+}
+
+/* Spreads points at equal steps of light along a Hilbert curve, then relaxes them by a few steps.
+ */
+static void mask_rays(const struct refocus_aperture *a, int count, bool before,
+                      struct refocus_ray *rays, struct rf_run *run)
+{
+    struct place place[REFOCUS_MAX_RAYS];
+    uint8_t cell[RF_CURVE_SIDE * RF_CURVE_SIDE];
+    int64_t total = 0, passed = 0;
+    int n = 0;
+
+    weigh_cells(a, before, cell);
+    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++)
+        total += cell[i];
+    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++) {
+        int x, y;
+
+        hilbert(i, &x, &y);
+        passed += cell[y * RF_CURVE_SIDE + x];
+        while (n < count && (2 * n + 1) * total <= 2 * count * passed)
+            place[n++] = (struct place){256 * x + 128, 256 * y + 128};
+    }
+    for (int pass = 0; pass < 4; pass++)
+        relax(cell, count, place, run);
+    for (n = 0; n < count; n++)
+        rays[n] = rf_squeezed_ray(a, place[n].x / (128.0 * RF_CURVE_SIDE) - 1,
+                                  place[n].y / (128.0 * RF_CURVE_SIDE) - 1);
+}
+
+const struct rf_shape rf_shape_mask = {
+    .open = mask_open,
+    .rays = mask_rays,
+    .is_fine = true,
+    .fills_square = true,
+};
+
+/* Reduces the mask to a grid of RF_CURVE_SIDE^2 cells: each is the mean of 8 x 8 points. */
+static void reduce(struct refocus_aperture *a)
+{
+    for (int j = 0; j < RF_CURVE_SIDE; j++) {
+        for (int i = 0; i < RF_CURVE_SIDE; i++) {
+            int sum = 0;
+
+            for (int v = 0; v < 8; v++)
+                for (int u = 0; u < 8; u++)
+                    sum += mask_at(a, (2 * i + (2 * u + 1) / 8.0) / RF_CURVE_SIDE - 1,
+                                   (2 * j + (2 * v + 1) / 8.0) / RF_CURVE_SIDE - 1);
+            a->reduced[j * RF_CURVE_SIDE + i] = (uint8_t)((sum + 32) / 64);
+        }
+    }
+}
+
+int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8_t *mask, int width,
+                                 int height, ptrdiff_t stride)
+{
+    struct refocus_aperture *a;
+    int status, any = 0;
+
+    if (!aperture)
+        return REFOCUS_ERR_ARGUMENT;
+    *aperture = NULL;
+    if (!mask || width < 1 || height < 1 || width > REFOCUS_MAX_APERTURE_SIDE ||
+        height > REFOCUS_MAX_APERTURE_SIDE || !rf_good_stride(stride, width, height))
+        return REFOCUS_ERR_ARGUMENT;
+    status = rf_shape_create(aperture, &rf_shape_mask);
+    if (status)
+        return status;
+    a = *aperture;
+    a->width = width;
+    a->height = height;
+    for (int y = 0; y < height; y++)
+        memcpy(a->mask + y * REFOCUS_MAX_APERTURE_SIDE, mask + y * stride, (size_t)width);
+    reduce(a);
+    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++)
+        any |= a->reduced[i];
+    if (!any) {
+        refocus_aperture_destroy(aperture);
+        return REFOCUS_ERR_ARGUMENT;
+    }
+    a->id = rf_shape_hash(3, a->mask, sizeof a->mask);
+    a->id = rf_shape_hash(a->id, &width, sizeof width);
+    a->id = rf_shape_hash(a->id, &height, sizeof height);
+    return REFOCUS_OK;
+}
