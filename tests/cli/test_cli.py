@@ -359,9 +359,9 @@ class Limits(Case):
             self.fails(2, "--aperture: '%s' cannot be used; give polygon:BLADES or "
                           "polygon:BLADES:DEGREES with 3 to 16 blades" % shape,
                        *self.render('--aperture', shape))
-        self.fails(2, "--aperture: 'dics' is not known; give disc, polygon:BLADES, "
-                      "polygon:BLADES:DEGREES, heart, star or a mask picture",
-                   *self.render('--aperture', 'dics'))
+        self.fails(2, re.compile("^refocus: --aperture: 'dics' is not known; give disc, "
+                                 "polygon:BLADES, polygon:BLADES:DEGREES, heart, star.* or a mask "
+                                 "picture"), *self.render('--aperture', 'dics'))
         self.fails(1, 'wide.pgm: 256x1 pixels are too many for an aperture; give at most '
                       '255x255', *self.render('--aperture', 'wide.pgm'))
         self.fails(1, 'black.pgm: no pixel of the aperture is open; give white where light '

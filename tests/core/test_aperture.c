@@ -112,6 +112,17 @@ static void light(void **state)
         check_light(a, what);
         refocus_aperture_destroy(&a);
     }
+    for (uint32_t figure = 0; figure < REFOCUS_FIGURE_COUNT; figure++) {
+        struct refocus_aperture_params p = refocus_aperture_params_default();
+        struct refocus_aperture *a;
+        char what[20];
+
+        p.figure = figure;
+        a = make(&p);
+        snprintf(what, sizeof what, "figure %d", (int)figure);
+        check_light(a, what);
+        refocus_aperture_destroy(&a);
+    }
 }
 
 /* The older functions still make equal apertures. */

@@ -57,7 +57,7 @@ static void print_option(const struct option *option)
             snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", i == 0 ? ": " : ", ",
                      option->choice(i));
     print_wrapped(text, HELP_COLUMN, HELP_COLUMN);
-    if (option->kind == OPTION_CHOICE && option->summary)
+    if (option->summary)
         for (uint32_t i = 0; option->choice(i); i++) {
             printf("%*s%-13s", HELP_COLUMN + 2, "", option->choice(i));
             print_wrapped(option->summary(i), HELP_COLUMN + 15, HELP_COLUMN + 15);

@@ -31,7 +31,8 @@ struct option {
     const char *word;                       /* one word that stands for a number, or
                                                NULL */
     double word_value;                      /* the number it stands for */
-    const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE; NULL ends them */
+    const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE, some of OPTION_TEXT;
+                                               NULL ends them */
     const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
     const char *help;
     bool elsewhere; /* it says how this run goes, not how the picture looks: not in files of

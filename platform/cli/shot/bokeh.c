@@ -1,5 +1,6 @@
 /* bokeh.c: the shape of the aperture and what a lens adds to it are made from options. */
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -31,6 +32,28 @@ static const struct preset presets[] = {
     {"star", "five-pointed stars", "star", 0, 1, 0, 0, 0, 0, 0, 0},
     {"sparkle", "spikes on highlights, as of a star filter", "disc", 0, 1, 0, 0, 0, 0, 0, 6},
 };
+
+/* The figures of --aperture; `points` is how many a figure has by default, 0 where it has none. */
+static const struct figure {
+    const char *name, *summary;
+    uint32_t figure;
+    int32_t points;
+} figures[] = {
+    {"heart", "a heart, its point below", REFOCUS_FIGURE_HEART, 0},
+    {"star", "a star, of five points or as star:POINTS of 3 to 16", REFOCUS_FIGURE_STAR, 5},
+};
+
+enum { FIGURES = sizeof figures / sizeof *figures };
+
+const char *bokeh_figure_name(uint32_t index)
+{
+    return index < FIGURES ? figures[index].name : NULL;
+}
+
+const char *bokeh_figure_summary(uint32_t index)
+{
+    return index < FIGURES ? figures[index].summary : NULL;
+}
 
 const char *bokeh_preset_name(uint32_t index)
 {
@@ -78,24 +101,49 @@ static int parse_polygon(const char *shape, struct refocus_aperture_params *para
     return EXIT_DONE;
 }
 
-/* "star" or "star:7". */
-static int parse_star(const char *shape, struct refocus_aperture_params *params)
+/* A figure by its name, or where it has points by NAME:POINTS. */
+static const struct figure *find_figure(const char *shape)
 {
-    const char *number = shape + strlen("star");
+    for (size_t i = 0; i < FIGURES; i++) {
+        const size_t length = strlen(figures[i].name);
+
+        if (strncmp(shape, figures[i].name, length) == 0 &&
+            (shape[length] == '\0' || (shape[length] == ':' && figures[i].points)))
+            return &figures[i];
+    }
+    return NULL;
+}
+
+static int parse_figure(const struct figure *figure, const char *shape,
+                        struct refocus_aperture_params *params)
+{
+    const char *number = shape + strlen(figure->name);
     char *end = NULL;
-    long points = 5;
+    long points = figure->points;
 
     if (*number == ':')
         points =
             number[1 + strspn(number + 1, "0123456789")] == '\0' ? strtol(number + 1, &end, 10) : 0;
-    if (points < 3 || points > 16)
+    if (figure->points && (points < 3 || points > 16))
         return report_failure(EXIT_WRONG, "--aperture",
-                              "'%s' cannot be used; give star, or star:POINTS with 3 "
-                              "to 16 points",
-                              shape);
-    params->figure = REFOCUS_FIGURE_STAR;
+                              "'%s' cannot be used; give %s, or %s:POINTS with 3 to 16 points",
+                              shape, figure->name, figure->name);
+    params->figure = figure->figure;
     params->blades = (int32_t)points;
     return EXIT_DONE;
+}
+
+static int report_unknown_shape(const char *shape)
+{
+    char names[256] = "";
+
+    for (size_t i = 0; i < FIGURES; i++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "",
+                 figures[i].name);
+    return report_failure(EXIT_WRONG, "--aperture",
+                          "'%s' is not known; give disc, polygon:BLADES, "
+                          "polygon:BLADES:DEGREES, %s or a mask picture",
+                          shape, names);
 }
 
 /* A mask out of a greyscale picture, to be freed. */
@@ -105,10 +153,7 @@ static int read_mask(const char *file, struct refocus_aperture_params *params)
     uint8_t *mask;
 
     if (!strpbrk(file, "./") && access(file, F_OK) != 0)
-        return report_failure(EXIT_WRONG, "--aperture",
-                              "'%s' is not known; give disc, polygon:BLADES, "
-                              "polygon:BLADES:DEGREES, heart, star or a mask picture",
-                              file);
+        return report_unknown_shape(file);
     mask = papers_read_grey(file, &width, &height);
     if (!mask)
         return EXIT_FAILED;
@@ -126,16 +171,13 @@ static int read_mask(const char *file, struct refocus_aperture_params *params)
 
 static int parse_shape(const char *shape, struct refocus_aperture_params *params)
 {
+    const struct figure *figure = find_figure(shape);
+
     if (strcmp(shape, "disc") == 0)
         return EXIT_DONE;
     if (strncmp(shape, "polygon:", strlen("polygon:")) == 0)
         return parse_polygon(shape, params);
-    if (strcmp(shape, "star") == 0 || strncmp(shape, "star:", strlen("star:")) == 0)
-        return parse_star(shape, params);
-    if (strcmp(shape, "heart") != 0)
-        return read_mask(shape, params);
-    params->figure = REFOCUS_FIGURE_HEART;
-    return EXIT_DONE;
+    return figure ? parse_figure(figure, shape, params) : read_mask(shape, params);
 }
 
 /* How far the iris is open, of 1: 0 where there is no barrel. */

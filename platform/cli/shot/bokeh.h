@@ -25,6 +25,8 @@ struct bokeh_settings {
 
 const char *bokeh_preset_name(uint32_t index);
 const char *bokeh_preset_summary(uint32_t index);
+const char *bokeh_figure_name(uint32_t index);
+const char *bokeh_figure_summary(uint32_t index);
 
 #define BOKEH_NUMBER(type, member, name_, argument_, field_, least_, greatest_, help_)             \
     {                                                                                              \

@@ -91,9 +91,10 @@ const char *engine_blend_summary(uint32_t index);
          .name = "--aperture",                                                                     \
          .argument = "SHAPE",                                                                      \
          .offset = offsetof(type, member.aperture),                                                \
+         .choice = bokeh_figure_name,                                                              \
+         .summary = bokeh_figure_summary,                                                          \
          .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "          \
-                 "blades, heart, star or star:POINTS, or a mask picture of at most "               \
-                 "255x255, white = open"},                                                         \
+                 "blades, a mask picture of at most 255x255, white = open, or a figure:"},         \
         {.kind = OPTION_CHOICE,                                                                    \
          .name = "--blend",                                                                        \
          .argument = "NAME",                                                                       \
