@@ -27,9 +27,9 @@ struct rf_method {
 /* The table that the library of the papers hands to the core. Both are of one build: they share
  * the private structs of this folder, so the version and the size of the largest one must agree. */
 struct refocus_papers {
-    const char *version;                           /* REFOCUS_VERSION_STRING */
-    uint64_t frame_size;                           /* sizeof(struct rf_frame) */
-    struct rf_method method[REFOCUS_METHOD_COUNT]; /* empty where the core has its own */
+    const char *version;                                  /* REFOCUS_VERSION_STRING */
+    uint64_t frame_size;                                  /* sizeof(struct rf_frame) */
+    const struct rf_method *method[REFOCUS_METHOD_COUNT]; /* NULL where the core has its own */
 };
 
 #endif

@@ -32,7 +32,7 @@ static void gather(const struct rf_frame *f, int x, int y, struct rf_sums *sums)
         sums->light[c][i] = light[c];
 }
 
-void rf_blur_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+static void blur_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     struct rf_sums sums;
 
@@ -48,3 +48,5 @@ void rf_blur_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
     }
     rf_encode_tile(f, rect, &sums);
 }
+
+const struct rf_method rf_blur_method = {.tile = blur_tile};

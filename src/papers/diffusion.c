@@ -69,7 +69,7 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
     return work;
 }
 
-uint64_t rf_diffusion_work(const struct rf_limits *limits)
+static uint64_t work_bytes(const struct rf_limits *limits)
 {
     struct rf_arena arena = {NULL, 0};
     struct work counted;
@@ -311,7 +311,7 @@ static void measure(struct work *work)
     work->steps = (int)ceil(steps);
 }
 
-void rf_diffusion_frame(struct rf_frame *f)
+static void render_frame(struct rf_frame *f)
 {
     const struct rf_limits limits = f->limits;
     struct rf_arena arena = {f->work->at, 0};
@@ -342,3 +342,5 @@ void rf_diffusion_frame(struct rf_frame *f)
         do_layer(work, i);
     rf_pool_run(f->exec->pool, write_row, work, f->region.y1 - f->region.y0);
 }
+
+const struct rf_method rf_diffusion_method = {.frame = render_frame, .work_bytes = work_bytes};

@@ -96,7 +96,7 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
     return work;
 }
 
-uint64_t rf_foveated_work(const struct rf_limits *limits)
+static uint64_t work_bytes(const struct rf_limits *limits)
 {
     struct rf_arena arena = {NULL, 0};
     struct work counted;
@@ -366,7 +366,7 @@ static void make_volume(struct work *work)
     work->centre_y = p->attention_y * (work->f->view->height - 1);
 }
 
-void rf_foveated_frame(struct rf_frame *f)
+static void render_frame(struct rf_frame *f)
 {
     const struct rf_limits limits = f->limits;
     struct rf_arena arena = {f->work->at, 0};
@@ -383,3 +383,5 @@ void rf_foveated_frame(struct rf_frame *f)
     make_pyramids(work);
     rf_pool_run(f->exec->pool, write_rows, work, (f->region.y1 - f->region.y0 + ROWS - 1) / ROWS);
 }
+
+const struct rf_method rf_foveated_method = {.frame = render_frame, .work_bytes = work_bytes};

@@ -44,7 +44,7 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
     return work;
 }
 
-uint64_t rf_interpolated_work(const struct rf_limits *limits)
+static uint64_t work_bytes(const struct rf_limits *limits)
 {
     struct rf_arena arena = {NULL, 0};
     struct work counted;
@@ -186,7 +186,7 @@ static void make_shares(struct work *work)
     }
 }
 
-void rf_interpolated_frame(struct rf_frame *f)
+static void render_frame(struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
     const struct rf_limits limits = f->limits;
@@ -211,3 +211,5 @@ void rf_interpolated_frame(struct rf_frame *f)
         rf_target_make(&work->making, &work->target[1], last);
     rf_pool_run(f->exec->pool, write_row, work, f->region.y1 - f->region.y0);
 }
+
+const struct rf_method rf_interpolated_method = {.frame = render_frame, .work_bytes = work_bytes};

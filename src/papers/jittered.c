@@ -82,7 +82,7 @@ static void follow(const struct rf_frame *f, struct rf_rect rect, struct rf_blur
                     sums);
 }
 
-void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+static void jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct rf_blur_range reach = rf_blur_range_of(f, tx, ty);
     const int a = f->params->cell, side = (int)floor(f->params->max_blur_radius);
@@ -109,3 +109,5 @@ void rf_jittered_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
                 rf_path_add(f, &centre, x, y, 1, &sums); /* all draws hit closed mask pixels */
     rf_exact_write(f, rect, &sums);
 }
+
+const struct rf_method rf_jittered_method = {.tile = jittered_tile, .exact = rf_exact_init};

@@ -37,7 +37,7 @@ static uint64_t band_bytes(const struct rf_limits *limits)
     return arena.used;
 }
 
-uint64_t rf_lightfield_work(const struct rf_limits *limits)
+static uint64_t work_bytes(const struct rf_limits *limits)
 {
     struct rf_arena arena = {NULL, 0};
 
@@ -152,9 +152,11 @@ static void do_band(void *context, int item, int worker)
     }
 }
 
-void rf_lightfield_frame(struct rf_frame *f)
+static void render_frame(struct rf_frame *f)
 {
     const int rows = f->region.y1 - f->region.y0;
 
     rf_pool_run(f->exec->pool, do_band, f, (rows + BAND - 1) / BAND);
 }
+
+const struct rf_method rf_lightfield_method = {.frame = render_frame, .work_bytes = work_bytes};

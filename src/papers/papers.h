@@ -11,12 +11,23 @@
 #include "gather/method.h"
 #include "support/arena.h"
 
-rf_tile_fn rf_raytrace_tile, rf_jittered_tile, rf_blur_tile;
+/* Lists the methods: REFOCUS_METHOD_NAME is done by rf_name_method, a row at the end of its file.
+ */
+#define RF_PAPERS_METHODS(METHOD)                                                                  \
+    METHOD(RAYTRACE, raytrace)                                                                     \
+    METHOD(JITTERED, jittered)                                                                     \
+    METHOD(LIGHTFIELD, lightfield)                                                                 \
+    METHOD(BLUR, blur)                                                                             \
+    METHOD(SCATTER, scatter)                                                                       \
+    METHOD(FOVEATED, foveated)                                                                     \
+    METHOD(INTERPOLATED, interpolated)                                                             \
+    METHOD(DIFFUSION, diffusion)
+
+#define RF_DECLARE_METHOD(NAME, name) extern const struct rf_method rf_##name##_method;
+RF_PAPERS_METHODS(RF_DECLARE_METHOD)
+#undef RF_DECLARE_METHOD
+
 rf_exact_init_fn rf_exact_init;
-rf_frame_fn rf_lightfield_frame, rf_scatter_frame, rf_foveated_frame, rf_interpolated_frame,
-    rf_diffusion_frame;
-rf_work_bytes_fn rf_lightfield_work, rf_scatter_work, rf_foveated_work, rf_interpolated_work,
-    rf_diffusion_work;
 
 /* Writes pixel (x, y) of the region: the quotient of Q12 light times weights and of the weights. */
 static inline void rf_write_mean(const struct rf_frame *f, int x, int y, const uint64_t light[3],

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
+static void raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
     const struct rf_blur_range reach = rf_blur_range_of(f, tx, ty);
@@ -37,3 +37,5 @@ void rf_raytrace_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect r
     }
     rf_exact_write(f, rect, &sums);
 }
+
+const struct rf_method rf_raytrace_method = {.tile = raytrace_tile, .exact = rf_exact_init};

@@ -64,7 +64,7 @@ static struct work *lay_out(const struct rf_limits *limits, struct rf_arena *are
     return work;
 }
 
-uint64_t rf_scatter_work(const struct rf_limits *limits)
+static uint64_t work_bytes(const struct rf_limits *limits)
 {
     struct rf_arena arena = {NULL, 0};
     struct work counted;
@@ -269,7 +269,7 @@ static void write_row(void *context, int item, int worker)
     }
 }
 
-void rf_scatter_frame(struct rf_frame *f)
+static void render_frame(struct rf_frame *f)
 {
     const struct rf_limits limits = f->limits;
     struct rf_arena arena = {f->work->at, 0};
@@ -283,3 +283,5 @@ void rf_scatter_frame(struct rf_frame *f)
     rf_pool_run(f->exec->pool, spread_band, work, (f->view->height + BAND - 1) / BAND);
     rf_pool_run(f->exec->pool, write_row, work, f->region.y1 - f->region.y0);
 }
+
+const struct rf_method rf_scatter_method = {.frame = render_frame, .work_bytes = work_bytes};

@@ -48,16 +48,11 @@ const struct rf_method_info *rf_method_info(uint32_t method)
     return &info[method];
 }
 
-static bool is_there(const struct rf_method *method)
-{
-    return method->tile || method->frame;
-}
-
 const struct rf_method *rf_method_of(const struct refocus_papers *papers, uint32_t method)
 {
-    if (is_there(&own[method]))
+    if (own[method].tile)
         return &own[method];
-    return papers && is_there(&papers->method[method]) ? &papers->method[method] : NULL;
+    return papers ? papers->method[method] : NULL;
 }
 
 uint32_t rf_methods_of(const struct refocus_papers *papers, uint32_t asked)
