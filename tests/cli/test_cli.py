@@ -120,8 +120,9 @@ class Usage(Case):
         self.fails(2, 'info: no file; give refocus info FILE [--json]', 'info')
         self.fails(2, 'info: a file name is empty; give refocus info FILE [--json]', 'info', '')
         self.fails(2, '-o: the output has no name; give -o OUT', 'render', 'photo.ppm')
-        self.fails(2, "--method: 'swep' is not one of " + ', '.join(METHODS) + "; did you mean "
-                      "'sweep'?", *self.render('--method', 'swep'))
+        self.fails(2, re.compile("^refocus: --method: 'swep' is not one of " + ', '.join(METHODS) +
+                                 ".*; did you mean 'sweep'\\?"),
+                   *self.render('--method', 'swep'))
         self.fails(2, "--blend: 'foo' cannot be used; give one of linear, stored, gamma",
                    *self.render('--blend', 'foo'))
 

@@ -138,7 +138,7 @@ static void bad_settings(void **state)
     const struct bad bad[] = {
         BAD(refocus_settings, render.struct_size, 0),
         BAD(refocus_settings, render.struct_size, 8),
-        BAD(refocus_settings, render.method, 10),
+        BAD(refocus_settings, render.method, REFOCUS_METHOD_COUNT),
         BAD(refocus_settings, render.method, UINT32_MAX),
         BAD(refocus_settings, render.focus_disparity, -0.01f),
         BAD(refocus_settings, render.focus_disparity, 1.01f),
@@ -287,7 +287,7 @@ static void bad_settings(void **state)
         assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     }
     assert_int_equal(refocus_aperture_create_polygon(&aperture, 6, 0), REFOCUS_OK);
-    for (uint32_t m = REFOCUS_METHOD_SCATTER; m < REFOCUS_METHOD_COUNT; m++) {
+    for (uint32_t m = REFOCUS_METHOD_SCATTER; m <= REFOCUS_METHOD_DIFFUSION; m++) {
         params = refocus_settings_default(0.5f, 5);
         params.render.method = m;
         params.render.aperture = aperture;
