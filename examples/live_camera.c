@@ -1,4 +1,5 @@
-/* Refocus what a camera and a depth camera see, and take the camera up again when it fails.
+/* live_camera.c: refocuses what a camera and a depth camera see, and takes the camera up again when
+ * it fails.
  *
  *     live_camera v4l2:/dev/video0 v4l2:/dev/video2 v4l2:/dev/video9 100
  *     live_camera libcamera:0      v4l2:/dev/video2 null 100

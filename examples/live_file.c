@@ -1,4 +1,4 @@
-/* Refocus a y4m stream, with one depth map for all of it.
+/* live_file.c: refocuses a y4m stream, with one depth map for all of it.
  *
  *     live_file IN.y4m DEPTH.png OUT.y4m */
 #include <stdio.h>

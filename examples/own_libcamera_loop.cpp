@@ -1,6 +1,6 @@
-/* The library inside somebody else's libcamera program: the loop below is theirs, and the
- * three calls marked with arrows are all that is added. Frames are read where libcamera put
- * them. Prints the mean of each refocused frame.
+/* own_libcamera_loop.cpp: the library inside somebody else's libcamera program. The loop below is
+ * theirs, and the three calls marked with arrows are all that is added. Frames are read where
+ * libcamera put them. Prints the mean of each refocused frame.
  *
  *     own_libcamera_loop [FRAMES] */
 #include <condition_variable>

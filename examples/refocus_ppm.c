@@ -1,5 +1,5 @@
-/* The whole life of a picture: create a renderer once, prepare a photo once, render as
- * often as the lens changes.
+/* refocus_ppm.c: the whole life of a picture: create a renderer once, prepare a photo once, render
+ * as often as the lens changes.
  *
  * The "photo" is drawn here: a checkered wall far away, a ball, and a bar close to the
  * lens. It is rendered with the focus on each of the three.

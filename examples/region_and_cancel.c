@@ -1,4 +1,4 @@
-/* Tap to focus: what an interactive program does with a renderer.
+/* region_and_cancel.c: tap to focus, or what an interactive program does with a renderer.
  *
  * One thread renders: first the region around the tap, which is there at once, then
  * the whole picture. The other takes the taps; a new tap cancels what is being rendered
