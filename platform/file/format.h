@@ -12,7 +12,7 @@ struct rf_format {
     const char *library;    /* library that a build needs to read it; NULL: nothing */
     const char *endings[3]; /* endings of names under which it is written, NULL behind the last */
     bool writes_pictures, writes_depth;
-    bool has_second; /* it can hold the second picture of a stereo pair */
+    bool has_second; /* a file can hold the second picture of a stereo pair */
     bool only_depth; /* a file of this format is never a photo */
     /* Whether a file begins as this format does. */
     bool (*recognise)(struct rf_bytes file);

@@ -13,7 +13,7 @@ struct rf_raster {
     int32_t channels;   /* 1 or 3 */
     uint32_t sample;    /* enum refocus_sample; F32 only with one channel */
     uint32_t max_value; /* code of white; 0 for F32 */
-    bool lossy;         /* it comes from a JPEG: equal channels may differ by a little */
+    bool lossy;         /* read from a JPEG: channels that were equal may differ by a little */
 };
 
 /* Bytes that one sample of enum refocus_sample takes. */

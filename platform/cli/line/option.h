@@ -27,7 +27,7 @@ struct option {
                                beforehand and still afterwards were not given */
     double least, greatest; /* bounds of numbers; least is not allowed itself when above is set */
     bool above;
-    int count;                              /* how many OPTION_NUMBERS there are */
+    int count;                              /* number of OPTION_NUMBERS */
     const char *word;                       /* one word that stands for a number, or
                                                NULL */
     double word_value;                      /* the number it stands for */
@@ -35,7 +35,7 @@ struct option {
                                                NULL ends them */
     const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
     const char *help;
-    bool elsewhere; /* it says how this run goes, not how the picture looks: not in files of
+    bool elsewhere; /* the option is about this run, not about the picture: not in files of
                        settings */
     /* OPTION_TEXT that names a file with values of other options, which is read before the rest of
      * the command line, or NULL. Returns OPTIONS_PARSED or an exit code. */
@@ -58,7 +58,7 @@ struct command {
     const char *summary;          /* one line */
     const char *notes;            /* paragraphs after the options, or NULL */
     const struct option *options; /* ended by a row whose help is NULL */
-    int files_least, files_most;  /* how many names go with it */
+    int files_least, files_most;  /* number of file names that the command takes */
     int (*run)(int argc, char **argv);
 };
 

@@ -147,7 +147,7 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
     until.tv_nsec = (long)(wait_ns % 1000000000);
     pthread_mutex_lock(&depths->lock);
     depths->pinned = -1;
-    depths->needed_ns = timestamp_ns - half_ns; /* it may go back, when a clock was set */
+    depths->needed_ns = timestamp_ns - half_ns; /* time may go back, when a clock was set */
     pthread_cond_broadcast(&depths->changed);
     for (;;) {
         map = nearest(depths, timestamp_ns, &newest);
