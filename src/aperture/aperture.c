@@ -34,9 +34,16 @@ uint64_t rf_shape_hash(uint64_t h, const void *bytes, size_t size)
 
 int rf_shape_create(struct refocus_aperture **aperture, const struct rf_shape *shape)
 {
-    *aperture = calloc(1, sizeof **aperture);
-    if (!*aperture)
+    struct {
+        struct refocus_aperture aperture;
+        struct rf_aperture_tables tables;
+    } *block = calloc(1, sizeof *block);
+
+    *aperture = NULL;
+    if (!block)
         return REFOCUS_ERR_MEMORY;
+    *aperture = &block->aperture;
+    (*aperture)->tables = &block->tables;
     (*aperture)->shape = shape;
     (*aperture)->squeeze_x = (*aperture)->squeeze_y = 1;
     (*aperture)->id = 1;

@@ -28,22 +28,27 @@ struct rf_profile {
     double hole, edge;
 };
 
-struct refocus_aperture {
-    uint64_t id;                  /* equal for equal shapes, so that ray sets can be kept */
-    const struct rf_shape *shape; /* table of operations: shape.h */
-    int blades;
-    double corner_x[16], corner_y[16]; /* units of K, y down, as the mask is seen */
-    int width, height;                 /* size of the mask picture */
+/* The tables of masks and outlines. A disc has none, so that the constant one is small. */
+struct rf_aperture_tables {
     uint8_t mask[REFOCUS_MAX_APERTURE_SIDE * REFOCUS_MAX_APERTURE_SIDE];
     uint8_t reduced[RF_CURVE_SIDE * RF_CURVE_SIDE];            /* spans -1..1 in x and y */
     double vertex_x[RF_OUTLINE + 1], vertex_y[RF_OUTLINE + 1]; /* an outline, y up */
-    double area[RF_OUTLINE + 1];      /* sums of the triangles before a vertex, 1 = all */
-    double squeeze_x, squeeze_y;      /* factors that narrow the shape as it is drawn */
-    struct rf_profile behind, before; /* light for blurs behind and before the focus */
-    bool figure;                      /* an outline that is no iris: a heart or a star */
-    int chord_sets; /* most chords in a row of an outline; 0: more than are kept, or no outline */
+    double area[RF_OUTLINE + 1]; /* sums of the triangles before a vertex, 1 = all */
     int16_t chord[RF_CHORD_SETS][RF_CHORDS + 1][2]; /* first and last x, Q14 */
-    double chord_area;                              /* area within the outline */
+};
+
+struct refocus_aperture {
+    uint64_t id;                       /* equal for equal shapes, so that ray sets can be kept */
+    const struct rf_shape *shape;      /* table of operations: shape.h */
+    struct rf_aperture_tables *tables; /* NULL in rf_disc; owned: one block with the aperture */
+    int blades;
+    double corner_x[16], corner_y[16]; /* units of K, y down, as the mask is seen */
+    int width, height;                 /* size of the mask picture */
+    double squeeze_x, squeeze_y;       /* factors that narrow the shape as it is drawn */
+    struct rf_profile behind, before;  /* light for blurs behind and before the focus */
+    bool figure;                       /* an outline that is no iris: a heart or a star */
+    int chord_sets; /* most chords in a row of an outline; 0: more than are kept, or no outline */
+    double chord_area; /* area within the outline */
 };
 
 /* Whether rays before the focus differ from those behind it. */

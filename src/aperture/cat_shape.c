@@ -49,7 +49,8 @@ static bool is_circle(const struct refocus_aperture *a)
     if (a->shape != &rf_shape_outline)
         return false;
     for (int i = 0; i < RF_OUTLINE; i++)
-        if (fabs(a->vertex_x[i] * a->vertex_x[i] + a->vertex_y[i] * a->vertex_y[i] - 1) > 1e-9)
+        if (fabs(a->tables->vertex_x[i] * a->tables->vertex_x[i] +
+                 a->tables->vertex_y[i] * a->tables->vertex_y[i] - 1) > 1e-9)
             return false;
     return true;
 }

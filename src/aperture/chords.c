@@ -55,9 +55,9 @@ static bool set_chords(struct refocus_aperture *a, int row)
     a->chord_sets = sets > a->chord_sets ? sets : a->chord_sets;
     for (int set = 0; set < RF_CHORD_SETS; set++)
         for (int k = 0; k < 2; k++)
-            a->chord[set][row][k] = to_q14(count == 0   ? 0
-                                           : set < sets ? x[2 * set + k]
-                                                        : x[count - 1]);
+            a->tables->chord[set][row][k] = to_q14(count == 0   ? 0
+                                                   : set < sets ? x[2 * set + k]
+                                                                : x[count - 1]);
     return true;
 }
 

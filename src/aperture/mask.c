@@ -16,7 +16,7 @@ static int mask_at(const struct refocus_aperture *a, double x, double y)
 
     if (px < 0 || py < 0 || px >= a->width || py >= a->height)
         return 0;
-    return a->mask[(int)py * REFOCUS_MAX_APERTURE_SIDE + (int)px];
+    return a->tables->mask[(int)py * REFOCUS_MAX_APERTURE_SIDE + (int)px];
 }
 
 static int mask_open(const struct refocus_aperture *a, double x, double y)
@@ -105,11 +105,11 @@ static void weigh_cells(const struct refocus_aperture *a, bool before,
         const double y = (2 * (i / RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
         const double density = rf_profile_density(profile, x * x + y * y);
 
-        cell[i] = (uint8_t)floor(a->reduced[i] * density + 0.5);
+        cell[i] = (uint8_t)floor(a->tables->reduced[i] * density + 0.5);
         any = any || cell[i];
     }
     if (!any) /* all of it lies in the hole: an even shape is better than none */
-        memcpy(cell, a->reduced, RF_CURVE_SIDE * RF_CURVE_SIDE);
+        memcpy(cell, a->tables->reduced, RF_CURVE_SIDE * RF_CURVE_SIDE);
 }
 
 /* Spreads points at equal steps of light along a Hilbert curve, then relaxes them by a few steps.
@@ -158,7 +158,7 @@ static void reduce(struct refocus_aperture *a)
                 for (int u = 0; u < 8; u++)
                     sum += mask_at(a, (2 * i + (2 * u + 1) / 8.0) / RF_CURVE_SIDE - 1,
                                    (2 * j + (2 * v + 1) / 8.0) / RF_CURVE_SIDE - 1);
-            a->reduced[j * RF_CURVE_SIDE + i] = (uint8_t)((sum + 32) / 64);
+            a->tables->reduced[j * RF_CURVE_SIDE + i] = (uint8_t)((sum + 32) / 64);
         }
     }
 }
@@ -182,15 +182,15 @@ int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8
     a->width = width;
     a->height = height;
     for (int y = 0; y < height; y++)
-        memcpy(a->mask + y * REFOCUS_MAX_APERTURE_SIDE, mask + y * stride, (size_t)width);
+        memcpy(a->tables->mask + y * REFOCUS_MAX_APERTURE_SIDE, mask + y * stride, (size_t)width);
     reduce(a);
     for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++)
-        any |= a->reduced[i];
+        any |= a->tables->reduced[i];
     if (!any) {
         refocus_aperture_destroy(aperture);
         return REFOCUS_ERR_ARGUMENT;
     }
-    a->id = rf_shape_hash(3, a->mask, sizeof a->mask);
+    a->id = rf_shape_hash(3, a->tables->mask, sizeof a->tables->mask);
     a->id = rf_shape_hash(a->id, &width, sizeof width);
     a->id = rf_shape_hash(a->id, &height, sizeof height);
     return REFOCUS_OK;

@@ -21,18 +21,19 @@ static void make_vertices(struct refocus_aperture *a, const struct refocus_apert
         double sine, cosine;
 
         rf_sincos_turns(turns, &sine, &cosine);
-        a->vertex_x[i] = radius * cosine;
-        a->vertex_y[i] = radius * sine;
+        a->tables->vertex_x[i] = radius * cosine;
+        a->tables->vertex_y[i] = radius * sine;
     }
-    a->vertex_x[RF_OUTLINE] = a->vertex_x[0];
-    a->vertex_y[RF_OUTLINE] = a->vertex_y[0];
+    a->tables->vertex_x[RF_OUTLINE] = a->tables->vertex_x[0];
+    a->tables->vertex_y[RF_OUTLINE] = a->tables->vertex_y[0];
     for (int i = 0; i < RF_OUTLINE; i++) {
-        a->area[i] = sum;
-        sum += a->vertex_x[i] * a->vertex_y[i + 1] - a->vertex_y[i] * a->vertex_x[i + 1];
+        a->tables->area[i] = sum;
+        sum += a->tables->vertex_x[i] * a->tables->vertex_y[i + 1] -
+               a->tables->vertex_y[i] * a->tables->vertex_x[i + 1];
     }
     for (int i = 0; i < RF_OUTLINE; i++)
-        a->area[i] /= sum;
-    a->area[RF_OUTLINE] = 1;
+        a->tables->area[i] /= sum;
+    a->tables->area[RF_OUTLINE] = 1;
 }
 
 /* Finds the place on an outline before which lies a share of its area, counter-clockwise. */
@@ -44,14 +45,14 @@ static void place_at(const struct refocus_aperture *a, double share, double *x, 
     while (high - low > 1) {
         const int middle = (low + high) / 2;
 
-        if (a->area[middle] <= share)
+        if (a->tables->area[middle] <= share)
             low = middle;
         else
             high = middle;
     }
-    part = (share - a->area[low]) / (a->area[high] - a->area[low]);
-    *x = a->vertex_x[low] + part * (a->vertex_x[high] - a->vertex_x[low]);
-    *y = a->vertex_y[low] + part * (a->vertex_y[high] - a->vertex_y[low]);
+    part = (share - a->tables->area[low]) / (a->tables->area[high] - a->tables->area[low]);
+    *x = a->tables->vertex_x[low] + part * (a->tables->vertex_x[high] - a->tables->vertex_x[low]);
+    *y = a->tables->vertex_y[low] + part * (a->tables->vertex_y[high] - a->tables->vertex_y[low]);
 }
 
 /* The rho^2 of a place, 1 on the outline. */
@@ -64,14 +65,14 @@ static double square_of(const struct refocus_aperture *a, double x, double y)
     while (high - low > 1) { /* find the triangle in the direction of the place */
         const int middle = (low + high) / 2;
 
-        if (a->vertex_x[middle] * y - a->vertex_y[middle] * x >= 0)
+        if (a->tables->vertex_x[middle] * y - a->tables->vertex_y[middle] * x >= 0)
             low = middle;
         else
             high = middle;
     }
-    ex = a->vertex_x[high] - a->vertex_x[low];
-    ey = a->vertex_y[high] - a->vertex_y[low];
-    ratio = (ex * y - ey * x) / (ex * a->vertex_y[low] - ey * a->vertex_x[low]);
+    ex = a->tables->vertex_x[high] - a->tables->vertex_x[low];
+    ey = a->tables->vertex_y[high] - a->tables->vertex_y[low];
+    ratio = (ex * y - ey * x) / (ex * a->tables->vertex_y[low] - ey * a->tables->vertex_x[low]);
     return ratio * ratio;
 }
 
@@ -107,7 +108,8 @@ static int outline_corners(const struct refocus_aperture *a)
 
 static struct rf_corner outline_corner(const struct refocus_aperture *a, int i)
 {
-    return (struct rf_corner){a->vertex_x[i] * a->squeeze_x, -a->vertex_y[i] * a->squeeze_y};
+    return (struct rf_corner){a->tables->vertex_x[i] * a->squeeze_x,
+                              -a->tables->vertex_y[i] * a->squeeze_y};
 }
 
 const struct rf_shape rf_shape_outline = {
@@ -127,7 +129,7 @@ int rf_outline_create(struct refocus_aperture **aperture, const struct refocus_a
     a = *aperture;
     make_vertices(a, p);
     a->figure = p->figure != REFOCUS_FIGURE_NONE;
-    a->id = rf_shape_hash(4, a->vertex_x, sizeof a->vertex_x);
-    a->id = rf_shape_hash(a->id, a->vertex_y, sizeof a->vertex_y);
+    a->id = rf_shape_hash(4, a->tables->vertex_x, sizeof a->tables->vertex_x);
+    a->id = rf_shape_hash(a->id, a->tables->vertex_y, sizeof a->tables->vertex_y);
     return REFOCUS_OK;
 }

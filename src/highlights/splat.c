@@ -68,7 +68,8 @@ static bool set_light(struct rf_disc_job *job, const struct rf_splat *splat,
 /* Where a chord begins and ends at a height, in parts of the radius. */
 static void chord_at(const struct refocus_aperture *a, int set, double height, double ends[2])
 {
-    const int16_t(*const chord)[2] = a->chord[set];
+    const struct rf_aperture_tables *tables = a->tables;
+    const int16_t(*const chord)[2] = tables->chord[set];
     const double at = (height + 1) * (RF_CHORDS / 2);
     const int row = (int)floor(at);
 
