@@ -158,7 +158,7 @@ static RF_ALWAYS_INLINE void rf_sweep_weighted_planes_vec(uint64_t *const *sum,
     int count = planes > 1 ? v->rays->rays : 0;
 
     while (planes == 1 && rf_next_run(&run, v, planes))
-        for (int n = run.first; n < run.end; n++)
+        for (int n = run.first; n < run.end && count < RF_RAY_CHUNK; n++)
             ray[count++] = (uint8_t)n;
     for (int i = 0; i < v->rows * RF_TILE; i += vecs * (int)VEC_U16) {
         struct rf_vec_place p;
